@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh, said so that it can be mended.
+//! Errors of meshes, with the remedy.
 
 use std::io;
 use std::path::PathBuf;

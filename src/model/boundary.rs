@@ -399,7 +399,7 @@ pub struct Loads {
 
 #[doc(hidden)]
 impl Loads {
-    /// What of them varies in time.
+    /// The amplitudes, which vary in time.
     pub fn amplitudes(&mut self) -> impl Iterator<Item = &mut Amplitude> {
         let dead = self.dead.iter_mut().map(|load| &mut load.amplitude);
         let pressures = self.pressures.iter_mut().map(|load| &mut load.amplitude);

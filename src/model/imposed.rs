@@ -1,4 +1,4 @@
-//! What is imposed on bodies, and on each of their elements: an initial stress, temperatures and their work.
+//! Initial stress and temperatures of bodies and of their elements, and the work of temperatures.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;

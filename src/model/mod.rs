@@ -5,6 +5,7 @@ mod body;
 pub mod boundary;
 pub mod builder;
 mod expression;
+mod requests;
 pub(crate) mod written;
 
 cfg_if::cfg_if! {
@@ -44,7 +45,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::pair::ContactPair;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::ties::Ties;
-use crate::mesh::{Edge, Element, Mesh};
+use crate::mesh::{Element, Mesh};
 use aids::Aids;
 pub use body::{Body, Damping, Memories, PointMass};
 use boundary::Loads;
@@ -53,6 +54,7 @@ pub use imposed::{InitialStress, Thermal};
 use linkage::Linkage;
 use method::Chosen;
 pub use method::Method;
+pub use requests::{OutputRequests, Probe, WatchedSet};
 pub use scheme::Scheme;
 use state::StepStart;
 pub use state::{Energy, State};
@@ -87,20 +89,6 @@ impl Default for NewtonSettings {
     fn default() -> Self {
         Self { tolerance: 1e-8, max_iterations: 25 }
     }
-}
-
-/// A set of nodes whose mean displacement and reaction the history reports.
-#[derive(Clone, Debug, PartialEq)]
-#[doc(hidden)]
-pub struct WatchedSet {
-    /// name in results: that of the group, or what says which node it is
-    pub name: String,
-    /// its nodes, of which the displacement is the mean
-    pub nodes: Vec<usize>,
-    /// its edges, where it is a group of edges
-    pub edges: Vec<Edge>,
-    /// nodes whose reactions along x and y are its own
-    pub held: [Vec<usize>; 2],
 }
 
 /// The model; it does not change while it is solved.
@@ -146,24 +134,15 @@ pub struct Model {
     pub methods: Vec<Option<Chosen>>,
     /// steps, in order
     pub steps: Vec<Step>,
-    /// watched sets
-    #[doc(hidden)]
-    pub watch: Vec<WatchedSet>,
     /// initial velocity of every dof [L/T]
     #[doc(hidden)]
     pub initial_velocity: Vec<f64>,
     /// Forces of an initial stress of the bodies on every dof, which balance initial tractions of contacts, if any [F]
     #[doc(hidden)]
     pub prestress: Vec<f64>,
-    /// Least time between two rows of the history of implicit steps, and between the results of explicit ones [T]
+    /// what is recorded, and when
     #[doc(hidden)]
-    pub interval: Option<f64>,
-    /// Times that increments end at, ascending, because fields are written then [T]
-    #[doc(hidden)]
-    pub times: Vec<f64>,
-    /// Points of the bodies that are watched
-    #[doc(hidden)]
-    pub probes: Vec<Probe>,
+    pub requests: OutputRequests,
     /// when Newton's method stops
     pub newton: NewtonSettings,
     /// what makes iterations converge, all of it unless switched off for an experiment
@@ -256,16 +235,6 @@ impl Model {
         self.solids.iter().zip(&self.body_of_element).map(of).fold(0.0, f64::max)
     }
 
-    /// Whether fields are asked for at a time; round-off of the way there does not matter.
-    pub fn is_output_time(&self, time: f64) -> bool {
-        self.times.iter().any(|at| (at - time).abs() <= near(*at))
-    }
-
-    /// The next time after another at which fields are asked for.
-    pub fn next_output_time(&self, after: f64) -> Option<f64> {
-        self.times.iter().copied().find(|at| *at > after + near(*at))
-    }
-
     /// The state at rest before the first increment.
     pub fn initial_state(&self) -> State {
         let zero = vec![0.0; self.dofs()];
@@ -287,21 +256,4 @@ impl Model {
             energy: Energy::default(),
         }
     }
-}
-
-/// Difference below which two times are the same [T].
-fn near(time: f64) -> f64 {
-    16.0 * f64::EPSILON * time
-}
-
-/// A point that moves with a body, at which motion, strain and stress are asked for, as a gauge there would read them.
-#[derive(Clone, Debug, PartialEq)]
-#[doc(hidden)]
-pub struct Probe {
-    /// its name in results
-    pub name: String,
-    /// the element it lies in
-    pub element: usize,
-    /// its coordinates (ξ, η) in it
-    pub at: [f64; 2],
 }

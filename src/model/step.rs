@@ -2,7 +2,7 @@
 //!
 //! # Ends of steps
 //!
-//! What ends a step before its time: a reaction that reaches a value.
+//! Early end of a step: a reaction that reaches a value.
 //!
 //! ```text
 //! |F − F̄| ≤ tolerance max(|F̄|, |F₀|)                    F₀: at the start of the step

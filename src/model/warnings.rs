@@ -57,7 +57,7 @@ impl Model {
 
 /// Output times that a step ending early may shift.
 fn uncertain_times(model: &Model) -> Option<String> {
-    let step = model.steps.iter().find(|step| step.until.is_some()).filter(|_| !model.times.is_empty())?;
+    let step = model.steps.iter().find(|step| step.until.is_some()).filter(|_| !model.requests.times.is_empty())?;
     Some(format!(
         "step `{}` may end early (until), and all that follows then comes earlier: output.times after its start may \
          lie in other steps, or after the end of the run, and are not written then",

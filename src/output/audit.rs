@@ -46,7 +46,7 @@ pub struct Audit {
 pub struct Give {
     /// Elastic energy [F·L]
     elastic: f64,
-    /// What of it was in penalties [F·L]
+    /// Its part in penalties [F·L]
     penalties: f64,
 }
 

@@ -3,7 +3,7 @@
 //!
 //! # Memory
 //!
-//! What observers remember, as bytes.
+//! State of observers, as bytes.
 
 use std::fs::File;
 use std::io::{self, BufRead, Read, Seek, SeekFrom, Write};

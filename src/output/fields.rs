@@ -32,7 +32,7 @@ pub struct Fields {
     rows: usize,
     /// Times of the frames so far [T]
     times: Vec<f64>,
-    /// What the writer is to do; `None` when there is no more
+    /// Tasks of the writer; `None` when there are no more
     frames: Option<SyncSender<Task>>,
     /// `None` when it has ended
     writer: Option<JoinHandle<Result<(), Error>>>,
@@ -193,7 +193,7 @@ impl Observer for Fields {
             Selection::Parts(parts) => self.is_in_a_new_part(attempt.step.span, parts, state.time),
             Selection::Named => false,
         };
-        match is_due && is_row || attempt.ends_step(state) || model.is_output_time(state.time) {
+        match is_due && is_row || attempt.ends_step(state) || model.requests.is_time(state.time) {
             true => self.write(model, state),
             false => Ok(()),
         }

@@ -1,4 +1,4 @@
-//! What a frame shows of a state: bodies, interfaces, integration points.
+//! Content of a frame: bodies, interfaces, integration points.
 
 use nalgebra::Vector2;
 

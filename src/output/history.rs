@@ -62,14 +62,14 @@ impl Rows for HistoryRows {
         };
         let mut header: Vec<String> = names(&INCREMENT).chain(names(&ENERGIES)).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
-        header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
+        header.extend(model.requests.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
         header.extend(radiates(model).then(|| RADIATED.name.into()));
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
         let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
         for (pair, names) in model.contacts.iter().zip(&observed) {
             header.extend(names.iter().map(|name| format!("{}.mean_{name}", pair.name)));
         }
-        let edges: Vec<EdgeMeans> = model.watch.iter().filter_map(|set| edge_means(model, set)).collect();
+        let edges: Vec<EdgeMeans> = model.requests.watch.iter().filter_map(|set| edge_means(model, set)).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &RESULTANT)));
         header.extend(model.bodies.iter().flat_map(|body| of(&body.name, &BODY)));
         header.extend(edges.iter().flat_map(|(name, _)| of(name, &EDGES)));
@@ -105,7 +105,7 @@ impl Rows for HistoryRows {
             course.note(state.time, normal, tangential, slipping);
             table.numbers(row);
         }
-        for set in &model.watch {
+        for set in &model.requests.watch {
             table.numbers(watched_row(set, state));
         }
         table.numbers(radiates(model).then_some(state.energy.radiated));

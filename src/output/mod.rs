@@ -1,4 +1,4 @@
-//! What a run leaves behind: observers of every attempt, and the files they write.
+//! Results of a run: observers of every attempt, and the files they write.
 
 mod csv;
 mod frames;

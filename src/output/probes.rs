@@ -1,6 +1,6 @@
 //! `probes.csv`: what gauges at points of the bodies read, at the rows of the history.
 //!
-//! What a gauge at a point of a body reads.
+//! Readings of a gauge at a point of a body.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -28,14 +28,15 @@ impl Rows for ProbeRows {
     const NAME: &'static str = "probes";
 
     fn new(model: &Model) -> (Self, Vec<String>) {
-        let columns = model.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
+        let columns =
+            model.requests.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
         (Self, std::iter::once("time".into()).chain(columns).collect())
     }
 
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         table.number(state.time);
-        for probe in &model.probes {
+        for probe in &model.requests.probes {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
                 Reading::of(probe, model, state);
             let CauchyStress { xx, yy, zz, xy } = stress;

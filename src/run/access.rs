@@ -1,4 +1,4 @@
-//! What a caller may ask a run for, and lead, between its increments: groups, contacts and fields by their names.
+//! Access to a run between its increments: groups, contacts and fields by their names, and prescribed displacements.
 
 use nalgebra::Vector2;
 use thiserror::Error;

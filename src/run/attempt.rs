@@ -31,7 +31,7 @@ impl Simulation {
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
         let Self { model, step, state: old, work, .. } = self;
         let wanted = bounded(step, old.time, dt, None);
-        let dt = bounded(step, old.time, dt, model.next_output_time(old.time));
+        let dt = bounded(step, old.time, dt, model.requests.next_time(old.time));
         let (iterations, solved) = advance(model, step, old, dt, work);
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
@@ -96,13 +96,13 @@ impl Simulation {
     /// Start of explicit increments within an implicit step.
     fn rupture(&self) -> Phase {
         let calm = self.step.rupture.as_ref().map_or(f64::INFINITY, |rupture| rupture.calm);
-        let interval = self.model.interval.unwrap_or(f64::INFINITY).min(calm / RESULTS);
+        let interval = self.model.requests.interval.unwrap_or(f64::INFINITY).min(calm / RESULTS);
         Phase::Rupture { outputs: Outputs::new(self.state.time, interval), before: self.state.clone(), pace: 0.0 }
     }
 
     /// Explicit increments to the next output; in a rupture slip is `watched` since a state, before which it was so fast.
     pub(super) fn explicit(&mut self, outputs: Outputs, watched: Option<(Arc<State>, f64)>) -> Candidate {
-        let (time, following) = outputs.next(self.step.span, self.model.next_output_time(self.state.time));
+        let (time, following) = outputs.next(self.step.span, self.model.requests.next_time(self.state.time));
         let (from, before_pause) =
             self.midway.as_ref().map_or((&self.state, 0), |midway| (&midway.state, midway.increments));
         let (mut state, mut explicit) = (State::clone(from), self.explicit.clone());
@@ -137,7 +137,7 @@ impl Simulation {
         self.without_iterations(1, length, accepted, increments, outcome)
     }
 
-    /// What came of an attempt that solved no equations.
+    /// Outcome of an attempt that solved no equations.
     fn without_iterations(
         &self,
         number: usize,
@@ -247,7 +247,7 @@ impl Simulation {
         self.explicit = Some(explicit);
         self.state = Arc::new(state);
         if step_begins {
-            let interval = self.model.interval.unwrap_or((step.span.end - step.span.start) / RESULTS);
+            let interval = self.model.requests.interval.unwrap_or((step.span.end - step.span.start) / RESULTS);
             self.control.phase = Phase::Explicit(Outputs::new(step.span.start, interval));
         }
         Ok(())

@@ -7,7 +7,7 @@
 //!
 //! # Report
 //!
-//! What a friction law driven alone answered, and what its answers amount to.
+//! Responses of a friction law driven alone, with peaks, holds and sums.
 //!
 //! ```
 //! use fecontact::laws::friction::{SuperSubloading, SuperSubloadingParameters};
@@ -58,9 +58,9 @@ impl LawTest {
         Self { start: law.initial_state(pressure, 0.0), law: Box::new(law), path }
     }
 
-    /// Lead the law along its path, telling every step. The report comes back from a stopped test as well.
+    /// Drive the law along its path, recording every step. The report comes back from a stopped test as well.
     ///
-    /// The first row is the start: what the law answers to no slip in no time.
+    /// The first row is the start: the response to no slip in no time.
     ///
     /// # Errors
     /// [`Error`] when the law cannot answer, or a row cannot be written.
@@ -208,7 +208,7 @@ impl Phase {
         })
     }
 
-    /// Times to step onto, never over: knots of tables, turning points, touch and parting, the end.
+    /// Times at which a step ends exactly: knots of tables, turning points, closure and separation, the end.
     fn find_stops(&self, knots: Vec<f64>) -> Result<Vec<f64>, Undefined> {
         let samples = self.samples(&knots);
         let mut found = knots;
@@ -364,9 +364,9 @@ pub struct LawRow {
     pub time: f64,
     /// total slip since the start [L]
     pub slip: f64,
-    /// what the law answered
+    /// response of the law
     pub response: FrictionResponse,
-    /// μ: what the interface could carry over p [-]
+    /// μ: peak friction coefficient [-]
     pub mu: f64,
 }
 
@@ -380,7 +380,7 @@ pub struct PathPoint {
     pub slip: f64,
     /// |q|/p: apparent friction coefficient [-]
     pub coefficient: f64,
-    /// μ: what the interface could carry [-]
+    /// μ: peak friction coefficient [-]
     pub mu: f64,
 }
 
@@ -440,7 +440,7 @@ impl Peaks {
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct LawReport {
-    /// steps answered
+    /// steps
     pub steps: usize,
     /// most evaluations of the law's scalar equation in one step
     pub most_evaluations: usize,

@@ -91,11 +91,11 @@ impl Attempt<'_> {
     /// Row of the results that it is, given the time of the last row [T].
     pub(super) fn row_after(&self, model: &Model, last: f64) -> Row {
         let Some(new) = self.accepted else { return Row::Held };
-        let Some(interval) = model.interval else { return Row::Written };
+        let Some(interval) = model.requests.interval else { return Row::Written };
         let is_kept = || {
             matches!(self.step.scheme, Scheme::Explicit { .. })
                 || self.ends_step(new)
-                || model.is_output_time(new.time)
+                || model.requests.is_time(new.time)
                 || new.time - last >= interval * (1.0 - ROUND_OFF)
         };
         match regimes(model, self.old) != regimes(model, new) {

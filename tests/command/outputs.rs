@@ -837,6 +837,6 @@ fn gauges_come_from_code_as_well() {
     let model = Model::builder(mesh).body("body", common::linear(1.0, 0.3, 1.0)).step(still());
     let model =
         Arc::new(model.probe(Gauge::line("line", [0.0, 0.5], [1.0, 0.5], 3).of("body")).build().expect("a model"));
-    let names: Vec<&str> = model.probes.iter().map(|probe| probe.name.as_str()).collect();
+    let names: Vec<&str> = model.requests.probes.iter().map(|probe| probe.name.as_str()).collect();
     assert_eq!(names, ["line.1", "line.2", "line.3"]);
 }

@@ -309,7 +309,7 @@ fn bonded_materials_stretch_in_series() {
         assert_eq!(run.model.mesh.nodes.len(), nodes);
         let stress = u / (1.5 / e1 + 1.5 / e2);
         close("force", run.reaction("right", run.last())[0], stress, 1e-12);
-        let sets = &run.model.watch;
+        let sets = &run.model.requests.watch;
         assert_eq!(
             sets.iter().map(|set| set.name.as_str()).collect::<Vec<_>>(),
             ["joint", "near_3_1", "node_0", "corners"]

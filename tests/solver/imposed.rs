@@ -531,7 +531,7 @@ fn explicit_increments_heat_as_static_ones_do() {
         (fast["steps"][0]["duration"], fast["steps"][0]["scheme"]) = (json!(20), json!({"explicit": {}}));
         fast["steps"][0]["temperature"]["body"] = json!({"table": [[0, 20], [10, 70]]});
         let [slow, fast] = [case, fast].map(|case| finish(&case));
-        let of = |run: &Finished| Reading::of(&run.model.probes[0], &run.model, run.last()).stress;
+        let of = |run: &Finished| Reading::of(&run.model.requests.probes[0], &run.model, run.last()).stress;
         close("stress", of(&fast).xx, of(&slow).xx, 1e-6 * E);
         close("across", of(&fast).zz, of(&slow).zz, 1e-6 * E);
         let energy = fast.last().energy;

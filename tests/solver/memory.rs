@@ -65,7 +65,7 @@ fn alone(kind: &str, scheme: &Value) -> Value {
 }
 
 fn read(run: &Finished, probe: &str) -> CauchyStress {
-    let found = run.model.probes.iter().find(|known| known.name == probe).expect("the probe");
+    let found = run.model.requests.probes.iter().find(|known| known.name == probe).expect("the probe");
     Reading::of(found, &run.model, run.last()).stress
 }
 

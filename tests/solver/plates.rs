@@ -77,7 +77,7 @@ fn a_plate_is_watched_as_a_whole() {
         LoadStep::new("load", 1.0).dt(1.0).fix("block_bottom").support(Support::on("block_top").ux(0.0).uy(-0.02));
     let run = run_through(block(0.0).step(step).watch("block_top").watch("block_left").watch("block"));
     let state = run.last();
-    let [top, left, all] = [0, 1, 2].map(|k| &run.model.watch[k]);
+    let [top, left, all] = [0, 1, 2].map(|k| &run.model.requests.watch[k]);
     let reaction =
         |set: &fecontact::model::WatchedSet| set.held[1].iter().map(|node| state.reaction[2 * node + 1]).sum::<f64>();
     let pressed = -run.reaction("block_bottom", state)[1];

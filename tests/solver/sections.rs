@@ -128,8 +128,8 @@ fn a_hole_in_a_plate_is_kirschs() {
     let run = finish(&case);
     close("along", at(&run, [a, 0.0])[0], 3.0 * s * a / E, 3e-3 * s / E);
     close("across", at(&run, [0.0, a])[1], -s * a / E, 3e-3 * s / E);
-    let read = |k: usize| fecontact::output::probes::Reading::of(&run.model.probes[k], &run.model, run.last());
-    let names: Vec<&str> = run.model.probes.iter().map(|probe| probe.name.as_str()).collect();
+    let read = |k: usize| fecontact::output::probes::Reading::of(&run.model.requests.probes[k], &run.model, run.last());
+    let names: Vec<&str> = run.model.requests.probes.iter().map(|probe| probe.name.as_str()).collect();
     let of = |name: &str| read(names.iter().position(|other| *other == name).expect("a probe")).stress;
     close("3 S", of("side").xx, 3.0 * s, 0.02 * s);
     close("-S", of("front").yy, -s, 0.02 * s);

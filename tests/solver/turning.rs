@@ -201,9 +201,9 @@ fn reactions_of_a_plate_alike_in_one_component_count_by_component() {
     let run = run_through(model);
     let state = run.last();
     let sum = |set: usize, i: usize| -> f64 {
-        run.model.watch[set].held[i].iter().map(|node| state.reaction[2 * node + i]).sum()
+        run.model.requests.watch[set].held[i].iter().map(|node| state.reaction[2 * node + i]).sum()
     };
-    assert_eq!(run.model.watch[1].held.clone().map(|held| held.len()), [4, 3]);
+    assert_eq!(run.model.requests.watch[1].held.clone().map(|held| held.len()), [4, 3]);
     let plain = run_through(
         block(false).step(
             LoadStep::new("load", 1.0)

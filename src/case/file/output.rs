@@ -1,4 +1,4 @@
-//! What is written by a run, as a case asks for it.
+//! Output settings of a case.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

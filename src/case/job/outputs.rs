@@ -37,7 +37,7 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     if !model.contacts.is_empty() {
         files.push(INTERFACE);
     }
-    if !model.probes.is_empty() {
+    if !model.requests.probes.is_empty() {
         files.push("probes.csv");
     }
     if case.output.fronts.is_some() {
@@ -98,7 +98,7 @@ impl Outputs {
         if outputs.interface.is_none() && has_contacts {
             outputs.interface = Some(InterfaceStore::create(folder, model, &start, &case.units)?);
         }
-        if outputs.probes.is_none() && !model.probes.is_empty() {
+        if outputs.probes.is_none() && !model.requests.probes.is_empty() {
             outputs.probes = Some(Probes::create(folder, model)?);
         }
         if outputs.fields.is_none() && has_fields {

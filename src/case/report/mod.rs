@@ -1,4 +1,4 @@
-//! What `check` prints: how the case was understood.
+//! Report of `check`: how the case was understood.
 
 mod contact;
 mod steps;
@@ -248,8 +248,8 @@ fn output(case: &Case, model: &Model) -> Vec<String> {
             case.output.times.iter().map(|time| number(*time)).collect::<Vec<_>>().join(", ")
         ));
     }
-    if !model.probes.is_empty() {
-        lines.push(format!("{} in probes.csv", count(model.probes.len(), "probe")));
+    if !model.requests.probes.is_empty() {
+        lines.push(format!("{} in probes.csv", count(model.requests.probes.len(), "probe")));
     }
     if let Some(fronts) = case.output.fronts {
         let rate = number(fronts.slip_rate);

@@ -131,7 +131,7 @@ impl Offsets {
 pub struct ContactLaw {
     /// The law
     pub law: Box<dyn FrictionLaw>,
-    /// What the law says of itself, with the parts of the opening that the offsets change
+    /// Description of the law, with the parts of the opening that the offsets change
     pub description: Description,
     offsets: Offsets,
 }

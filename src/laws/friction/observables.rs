@@ -1,4 +1,4 @@
-//! What outputs show of friction beside what all laws have in common: the names come from the laws.
+//! Observables of friction that are particular to a law: the names come from the laws.
 
 use super::state::MOST_VARIABLES;
 use super::{Description, FrictionLaw, FrictionState};
@@ -49,7 +49,7 @@ const LONGEST: usize = 64;
 /// capitals, which not all systems distinguish in names of files.
 ///
 /// # Errors
-/// What is wrong with which name, and what to do.
+/// The name that is wrong, why, and what to do.
 #[doc(hidden)]
 pub fn check_names(description: &Description) -> Result<(), String> {
     let Description { variables, opening, .. } = description;

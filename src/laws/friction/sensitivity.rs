@@ -15,7 +15,7 @@ pub struct Variation {
     pub variables: [f64; MOST_VARIABLES],
 }
 
-/// What an answer is differentiated by: how that which it follows from varies, the pressure and the time being given.
+/// Direction of a derivative: variations of what the response depends on, pressure and time being given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Direction {

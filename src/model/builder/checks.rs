@@ -1,6 +1,6 @@
-//! What does not go together, and settings out of range.
+//! Incompatible settings, and settings out of range.
 //!
-//! What quasi-dynamic steps ask of a model.
+//! Requirements of quasi-dynamic steps on a model.
 
 use std::collections::BTreeSet;
 
@@ -44,7 +44,7 @@ pub fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
 
 /// Explicit steps write a row of results an interval.
 pub fn check_rows(model: &Model) -> Checked<()> {
-    let Some(interval) = model.interval else { return Ok(()) };
+    let Some(interval) = model.requests.interval else { return Ok(()) };
     let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
     let time: f64 = model.steps.iter().filter(explicit).map(|step| step.span.end - step.span.start).sum();
     let rows = time / interval;

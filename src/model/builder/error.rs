@@ -1,4 +1,4 @@
-//! What is wrong with a model, and where.
+//! Errors of a model, with their place.
 //!
 //! Numbers that may be computed with.
 //!
@@ -23,7 +23,7 @@ pub struct ModelError {
     pub message: String,
 }
 
-/// What is given, once it is found to be good.
+/// Checked input, or the error in it.
 pub type Checked<T> = Result<T, ModelError>;
 
 impl ModelError {

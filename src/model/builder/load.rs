@@ -207,7 +207,7 @@ impl Load {
         }
     }
 
-    /// What it does, where exactly one thing is given; without a value where that ends.
+    /// Its action, where exactly one is given; without a value where the load ends.
     #[doc(hidden)]
     pub fn action(&self) -> Option<Action<'_>> {
         let given = [
@@ -278,7 +278,7 @@ impl Load {
     }
 }
 
-/// What a step does to a support or a load: give it anew, or end it.
+/// Change of a support or a load in a step: a new value, or its end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change<T> {
     /// From now on it is this
@@ -288,7 +288,7 @@ pub enum Change<T> {
 }
 
 impl<T> Change<T> {
-    /// What is given, if it does not end.
+    /// The value, if it does not end.
     pub fn given(&self) -> Option<&T> {
         match self {
             Self::To(given) => Some(given),

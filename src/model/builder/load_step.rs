@@ -14,7 +14,7 @@ use crate::model::step::ForceComponent;
 
 /// Default relative tolerance of the force that ends a step.
 #[doc(hidden)]
-pub const MET: f64 = 1e-6;
+pub const UNTIL_TOLERANCE: f64 = 1e-6;
 
 /// A step: a time span with its scheme and increments, supports and loads.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
@@ -166,7 +166,7 @@ pub struct UntilSettings {
 }
 
 fn met() -> f64 {
-    MET
+    UNTIL_TOLERANCE
 }
 
 impl UntilSettings {
@@ -307,7 +307,7 @@ impl LoadStep {
     pub fn until(self, on: impl Into<Place>, part: ForceComponent, value: f64) -> Self {
         let [fx, fy, force] =
             [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));
-        Self { until: Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: MET }), ..self }
+        Self { until: Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: UNTIL_TOLERANCE }), ..self }
     }
 
     /// With a body, or point masses, that take a velocity when the step begins: a launch after settling [L/T].

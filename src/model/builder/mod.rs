@@ -59,7 +59,7 @@ pub(crate) use error::{check_line, check_positive};
 pub use friction::Friction;
 pub use groups::Place;
 pub use load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
-pub use load_step::{IncrementSettings, LoadStep, MET, Rotation, RuptureSettings, Support, UntilSettings};
+pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
 pub use loads::LoadsInForce;
 pub use pair::default_alpha_t;
 pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
@@ -72,16 +72,16 @@ use crate::mesh::section::Section;
 use crate::mesh::ties::Ties;
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::linkage::Linkage;
-use crate::model::{Damping, Memories, Model, NewtonSettings};
+use crate::model::{Damping, Memories, Model, NewtonSettings, OutputRequests};
 
-/// What a model is made of; [`Builder::build`] checks it and makes the model.
+/// Builder of a model; [`Builder::build`] checks all input and makes the model.
 #[derive(Default)]
 #[must_use]
 pub struct Builder {
     pub(crate) mesh: Mesh,
     pub(crate) title: String,
     pub(crate) bodies: Vec<(String, BodyInput)>,
-    /// A body that is spoken of before it is given, if there is one
+    /// A body that is changed before it is given, if there is one
     pub(crate) unknown: Option<String>,
     pub(crate) point_masses: Vec<(String, PointMassInput)>,
     pub(crate) periodic: Vec<[String; 2]>,
@@ -105,12 +105,12 @@ impl Model {
 }
 
 impl Builder {
-    /// What the model shows, in a line.
+    /// Title of the model, in a line.
     pub fn title(self, title: impl Into<String>) -> Self {
         Self { title: title.into(), ..self }
     }
 
-    /// What the plane stands for in space; that of the mesh, plane strain, unless given.
+    /// Plane strain, plane stress or axisymmetry; that of the mesh, plane strain, unless given.
     pub fn section(mut self, section: Section) -> Self {
         self.mesh.section = section;
         self
@@ -172,20 +172,20 @@ impl Builder {
         self
     }
 
-    /// Two groups whose nodes lie alike and move alike: what leaves by one side comes in by the other.
+    /// Periodic sides: two groups with matching nodes, which have equal displacements.
     pub fn periodic(mut self, side: impl Into<String>, other: impl Into<String>) -> Self {
         self.periodic.push([side.into(), other.into()]);
         self
     }
 
-    /// A loading plate: all nodes of a group move alike, as if glued to a rigid plate that does not turn. What acts on one of them
-    /// acts on the plate.
+    /// A loading plate: all nodes of a group have equal displacements, as if glued to a rigid plate that does not rotate. Loads on
+    /// one of them act on the plate.
     pub fn plate(mut self, group: impl Into<String>) -> Self {
         self.plates.push(LoadingPlateInput::Group(group.into()));
         self
     }
 
-    /// A loading plate that moves in another way than as one.
+    /// A loading plate with another constraint.
     pub fn plate_moving(mut self, group: impl Into<String>, moves: Plate) -> Self {
         self.plates.push(LoadingPlateInput::Moving(MovingPlateInput { on: group.into(), moves }));
         self
@@ -198,7 +198,7 @@ impl Builder {
         self
     }
 
-    /// A rigid body that may turn by itself, with its centre of mass [L] and its moment of inertia about that [M L²]; its mass is a
+    /// A rigid body that may rotate freely, with its centre of mass [L] and its moment of inertia about that [M L²]; its mass is a
     /// [point mass](Self::point_mass) of its name.
     pub fn free_rigid_body(mut self, name: impl Into<String>, reference: [f64; 2], inertia: f64) -> Self {
         self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
@@ -234,13 +234,13 @@ impl Builder {
         Self { newton, ..self }
     }
 
-    /// A point, or points along a line, at which motion, strain and stress are asked for.
+    /// A probe: a point, or points along a line, at which motion, strain and stress are recorded.
     pub fn probe(mut self, gauge: Gauge) -> Self {
         self.gauges.push(gauge);
         self
     }
 
-    /// Times that increments end at, because fields are asked for then [T].
+    /// Times at which increments end, because fields are written then [T].
     pub fn times(self, times: impl Into<Vec<f64>>) -> Self {
         Self { times: times.into(), ..self }
     }
@@ -277,13 +277,10 @@ impl Builder {
             contacts: Vec::new(),
             methods: Vec::new(),
             steps: Vec::new(),
-            watch: Vec::new(),
             aids: Default::default(),
             newton: checks::checked_newton(self.newton)?,
             prestress: Vec::new(),
-            interval: checks::checked_interval(self.interval)?,
-            times: Vec::new(),
-            probes: Vec::new(),
+            requests: OutputRequests { interval: checks::checked_interval(self.interval)?, ..Default::default() },
         };
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.plates = plates::plates(&self.plates, &model.mesh)?;
@@ -300,9 +297,9 @@ impl Builder {
             &model,
         )?;
         model.initial_velocity = initial::velocities(&self.velocities, &self.point_masses, &model)?;
-        model.watch = groups::watched(&self.watch, &model)?;
-        model.times = checks::checked_times(self.times, &model.steps)?;
-        model.probes = probes::probes(&self.gauges, &model)?;
+        model.requests.watch = groups::watched(&self.watch, &model)?;
+        model.requests.times = checks::checked_times(self.times, &model.steps)?;
+        model.requests.probes = probes::probes(&self.gauges, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
         checks::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;

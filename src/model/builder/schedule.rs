@@ -11,7 +11,7 @@ use super::error::{Checked, ModelError, check_positive};
 use super::groups;
 use super::groups::nodes_at;
 use super::initial::launch;
-use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UntilSettings};
+use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UNTIL_TOLERANCE, UntilSettings};
 use super::loads;
 use super::loads::LoadsInForce;
 use super::rigid;
@@ -44,7 +44,7 @@ pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
     given.iter().enumerate().map(|(k, step)| schedule.next(&format!("steps[{k}]"), step)).collect()
 }
 
-/// What one step hands on to the next.
+/// What a step inherits from the one before.
 struct Schedule<'m> {
     model: &'m Model,
     start: f64,
@@ -266,7 +266,7 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
     if !(tolerance > 0.0 && tolerance <= LOOSEST) {
         return refused(
             ".tolerance",
-            format!("is {tolerance}: must be above 0 and at most {LOOSEST}; 1e-6 is the default"),
+            format!("is {tolerance}: must be above 0 and at most {LOOSEST}; {UNTIL_TOLERANCE:e} is the default"),
         );
     }
     let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
@@ -290,7 +290,7 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
     Ok(Some(Until { on: on.to_string(), held, part, value, tolerance }))
 }
 
-/// What counts on the whole of the step.
+/// Refuse what is defined over the full duration of the step.
 fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<()> {
     let refused = |message: &str| Err(ModelError::new(place, message));
     if matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. }) {

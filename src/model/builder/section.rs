@@ -1,4 +1,4 @@
-//! What a section asks of mesh, bodies, supports and loads, and what it has no meaning for.
+//! Requirements of a section on mesh, bodies, supports and loads.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

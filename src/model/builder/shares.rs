@@ -1,4 +1,4 @@
-//! What a load on a side or a body leaves to each node.
+//! Nodal shares of loads on sides and bodies.
 
 use std::collections::BTreeMap;
 
@@ -78,7 +78,7 @@ pub fn mass_shares(model: &Model, name: &str, place: &str) -> Checked<Vec<Share>
     Ok(shares)
 }
 
-/// What the nodes of an absorbing side have of it.
+/// Nodal coefficients of an absorbing side.
 pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
     for Edge { nodes, element } in edges {

@@ -1,4 +1,4 @@
-//! What the arrays of the store are called, and what they are.
+//! Names and descriptions of the arrays of the store.
 
 use std::collections::{BTreeMap, BTreeSet};
 

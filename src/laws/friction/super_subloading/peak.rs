@@ -6,7 +6,7 @@
 //!
 //! # Onset
 //!
-//! What fast slip after rest does to friction, and rest after slip: the peak that is met, how far it falls and how soon it heals.
+//! Fast slip after stationary contact: the peak, the drop after it, and the time of healing.
 
 use std::f64::consts::LN_2;
 

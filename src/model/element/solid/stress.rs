@@ -1,6 +1,6 @@
 //! Cauchy stress at the quadrature points and at the nodes.
 //!
-//! What the reference geometry of an element says.
+//! Reference geometry of an element.
 
 use std::sync::OnceLock;
 
