@@ -57,6 +57,13 @@ const OF_PLACE: [Term; 3] = [Term::Solids, Term::Interfaces, Term::Loads];
 const OF_PLACE_AND_MOTION: [Term; 6] =
     [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
 
+/// The displacement at which terms are evaluated, and the velocity where viscous forces of the bodies are evaluated with them.
+#[derive(Clone, Copy)]
+struct Motion<'a> {
+    u: &'a [f64],
+    v: Option<&'a [f64]>,
+}
+
 impl Assembler {
     /// Numbers of contact points by status, as last evaluated.
     pub fn contact_counts(&self) -> ContactCounts {
@@ -142,8 +149,8 @@ impl Assembler {
         }
         self.magnitudes.fill(0.0);
         self.evaluation.damping.clear();
-        let motion = (trial, u, None);
-        self.add(&OF_PLACE_AND_MOTION, motion, responses, true, tangent.then_some(&mut system.tangent))?;
+        let motion = Motion { u, v: None };
+        self.add(&OF_PLACE_AND_MOTION, trial, motion, responses, true, tangent.then_some(&mut system.tangent))?;
         model.ties.gather(2, &mut self.evaluation.damping);
         model.ties.gather(2, &mut self.magnitudes);
         model.linkage.gather(&mut self.evaluation.damping);
@@ -168,7 +175,7 @@ impl Assembler {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             let clock = Instant::now();
             assembler.solids.retard(trial.step);
-            assembler.add(&OF_PLACE, (trial, u, v), responses, false, None)?;
+            assembler.add(&OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
             if let Some(v) = v {
                 assembler.add_viscous([u, v]);
             }
@@ -195,7 +202,8 @@ impl Assembler {
     fn add(
         &mut self,
         terms: &[Term],
-        (trial, u, v): (Trial, &[f64], Option<&[f64]>),
+        trial: Trial,
+        Motion { u, v }: Motion,
         responses: &[PairResponse],
         scaled: bool,
         mut tangent: Option<&mut SparseMatrix>,
@@ -389,7 +397,7 @@ impl Assembler {
             return Ok(tangent);
         }
         let kept = std::mem::take(&mut self.evaluation);
-        let added = self.add(&[term], (trial, u, None), responses, false, Some(&mut tangent));
+        let added = self.add(&[term], trial, Motion { u, v: None }, responses, false, Some(&mut tangent));
         self.evaluation = kept;
         added.map(|()| tangent)
     }

@@ -164,7 +164,7 @@ impl<'a> Run<'a> {
             Ok(mut maps) => {
                 maps.retain(|map| !map.times.is_empty());
                 let most = self.values(&maps);
-                maps.iter().enumerate().map(|one| map(one, most, pack, &mut self.notes)).collect()
+                maps.iter().enumerate().map(|(k, contact)| map(k, contact, most, pack, &mut self.notes)).collect()
             }
             Err(fault) => {
                 self.notes.push(format!("{fault}; the interface is not shown"));

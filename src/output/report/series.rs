@@ -253,8 +253,8 @@ fn thinned(name: &str, values: &[f32], shown: &[usize], points: usize) -> Vec<f6
     all
 }
 
-/// The map of the contact of a number for the page, with at most so many values a quantity; what is left out goes to the notes.
-pub fn map((number, map): (usize, &StoredContact), most: usize, pack: &mut Pack, notes: &mut Vec<String>) -> Value {
+/// The map of the contact of a number for the page, with at most `most` values per quantity; what is left out goes to the notes.
+pub fn map(number: usize, map: &StoredContact, most: usize, pack: &mut Pack, notes: &mut Vec<String>) -> Value {
     let StoredContact { name: contact, times, positions, quantities, .. } = map;
     let (points, rows) = (positions.len(), times.len());
     let group = (rows * points).div_ceil(most.max(points)).max(1);
