@@ -36,8 +36,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Between two increments supports can be prescribed ([`run::Simulation::lead`]) and loads changed ([`model::builder::LoadsInForce`]), a
-//! candidate can be dropped ([`run::Simulation::try_increment`]), and a run saved and resumed with bitwise identical results
+//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`model::builder::LoadsInForce`]), a
+//! candidate can be dropped ([`run::Simulation::try_increment`]), and a run saved and resumed to the same bits
 //! ([`run::Saved`], in memory or as bytes).
 //!
 //! # What is published

@@ -1,4 +1,4 @@
-//! A case with every default filled in, which gives bitwise identical results.
+//! A case with every default filled in, which runs to the same bits.
 
 use serde_json::Value;
 

@@ -422,7 +422,7 @@ struct Sums {
     gap: f64,
     slip: f64,
     along: Vector2<f64>,
-    /// Sum of ℓ times the lever of a rigid body that moves
+    /// That of the lever of a rigid body that moves
     arm: Vector2<f64>,
     foot: Option<MasterPoint>,
 }

@@ -241,7 +241,7 @@ pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)
 /// What slip radiates, η v, is a traction of the surfaces like friction, 0 without radiation damping. The pressure p_w of a fluid is
 /// a load, and left out.
 ///
-/// In axisymmetry F_x sums up the radial parts of the full turn, and M is that of the section.
+/// Of rings F_x sums up the radial parts of the full turn, and M is that of the section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resultant {
     /// F [F]

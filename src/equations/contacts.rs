@@ -77,12 +77,12 @@ pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut 
 pub struct Springs {
     /// All of it [F·L]
     pub stored: f64,
-    /// What is numerical: an exact contact has no compliance there [F·L]
+    /// What is numerical: an exact contact would not give way there [F·L]
     pub numerical: f64,
 }
 
 impl Springs {
-    /// The energies of a contact in some state.
+    /// Those of a contact in some state.
     pub fn of(pair: &ContactPair, states: &[ContactState]) -> Self {
         let mut springs = Self::default();
         for (point, state) in pair.points.iter().zip(states) {

@@ -1,4 +1,4 @@
-//! Which nodes couple: the pattern of the tangent, and where every element finds its own blocks in it.
+//! Who couples with whom: the pattern of the tangent, and where every element finds its own blocks in it.
 
 use std::sync::Arc;
 

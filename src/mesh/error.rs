@@ -1,4 +1,4 @@
-//! Errors of meshes, with the remedy.
+//! What can be wrong with a mesh, said so that it can be mended.
 
 use std::io;
 use std::path::PathBuf;

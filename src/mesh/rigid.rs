@@ -12,7 +12,7 @@
 //!
 //! r is a length of the size of the model, so that all dofs are lengths and all forces on them forces. The second dof of the
 //! turning node does nothing, and is 0. In this way supports, reactions, energies, time schemes and checkpoints know of rigid
-//! bodies by themselves.
+//! bodies without being told.
 
 use nalgebra::{Rotation2, Vector2};
 

@@ -399,7 +399,7 @@ pub struct Loads {
 
 #[doc(hidden)]
 impl Loads {
-    /// The amplitudes, which vary in time.
+    /// What of them varies in time.
     pub fn amplitudes(&mut self) -> impl Iterator<Item = &mut Amplitude> {
         let dead = self.dead.iter_mut().map(|load| &mut load.amplitude);
         let pressures = self.pressures.iter_mut().map(|load| &mut load.amplitude);

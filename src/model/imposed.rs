@@ -1,4 +1,4 @@
-//! Initial stress and temperatures of bodies and of their elements, and the work of temperatures.
+//! What is imposed on bodies, and on each of their elements: an initial stress, temperatures and their work.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -71,7 +71,7 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// Thermal expansion of a body that is undeformed at the temperature 0.
+    /// Of a body that is undeformed at the temperature 0.
     pub fn new(expansion: f64) -> Self {
         Self { expansion, reference: 0.0 }
     }

@@ -10,7 +10,7 @@
 //! α and β follow from the places at the start, so that a rigid plate is linear in the displacements of two of its nodes but for the
 //! length between them. Forces on c go to its leaders by Gᵀ: the work is the same.
 //!
-//! The reactions of loading plates are attributed here as well.
+//! Of loading plates it is here as well whose their reactions are.
 
 use nalgebra::{Matrix2, Vector2};
 

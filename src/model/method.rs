@@ -43,7 +43,7 @@ pub struct Chosen {
     pub points: usize,
     /// Why, if it was left open
     pub because: Option<&'static str>,
-    /// A known disadvantage, and the remedy
+    /// What is known to suffer, and the remedy
     pub concern: Option<&'static str>,
 }
 

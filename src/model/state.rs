@@ -37,7 +37,7 @@ pub struct State {
     /// One list a contact pair, one entry a slave point
     #[doc(hidden)]
     pub contacts: Vec<Vec<ContactState>>,
-    /// Internal variables of the materials, element by element ([`crate::model::Memories`])
+    /// What the materials remember, element by element ([`crate::model::Memories`])
     #[doc(hidden)]
     pub memory: Vec<f64>,
     /// Displacement increment of the last increment of this step; `None` at its start, and after explicit increments

@@ -2,7 +2,7 @@
 //!
 //! # Ends of steps
 //!
-//! Early end of a step: a reaction that reaches a value.
+//! What ends a step before its time: a reaction that reaches a value.
 //!
 //! ```text
 //! |F − F̄| ≤ tolerance max(|F̄|, |F₀|)                    F₀: at the start of the step
@@ -10,7 +10,7 @@
 //!
 //! An increment in which F passes F̄ on the straight way from old to new is repeated up to there, and one that comes near it is
 //! followed by one as long as it takes at the same rate. Where F jumps past F̄ in the shortest increment that the
-//! clock can resolve, the step ends behind the jump.
+//! clock can tell, the step ends behind the jump.
 
 use nalgebra::Vector2;
 

@@ -1,5 +1,5 @@
-//! Input that may be written as a number, a text, a list or an object, distinguished by the JSON type, so that a message about the inside
-//! of the object names its place.
+//! Input that may be written as a number, a text, a list or an object, told apart by the JSON type, so that a complaint about the inside of
+//! the object names its place.
 
 use std::marker::PhantomData;
 

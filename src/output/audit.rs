@@ -6,9 +6,9 @@
 //!
 //! The error is measured by the most that there was to be stored or dissipated: initial energy and external work.
 //!
-//! # Compliance of the penalties
+//! # How much contacts give way
 //!
-//! An exact contact stores nothing along its normal, and nothing while it sticks. What penalties store there, compared with the energy of
+//! An exact contact stores nothing along its normal, and nothing while it sticks. What penalties store there, beside the energy of
 //! bodies and contacts at the time when that was largest, tells how far the answer is off by them; as p²/2α_n it falls with the
 //! penalty.
 
@@ -37,7 +37,7 @@ pub struct Audit {
     steps: Vec<(String, f64, String)>,
     /// Possible work of round-off in the forces [F·L]
     noise: f64,
-    /// Compliance of the penalties
+    /// How much contacts give way
     pub give: Give,
 }
 
@@ -46,7 +46,7 @@ pub struct Audit {
 pub struct Give {
     /// Elastic energy [F·L]
     elastic: f64,
-    /// Its part in penalties [F·L]
+    /// What of it was in penalties [F·L]
     penalties: f64,
 }
 

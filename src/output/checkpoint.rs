@@ -1,4 +1,4 @@
-//! `checkpoint.bin`: what a run is resumed from, with bitwise identical results.
+//! `checkpoint.bin`: what a run can be taken up from, to the same bits.
 //!
 //! ```text
 //! "fecontact checkpoint\n"   version u32   length u64   crc32 u32   postcard of a Checkpoint       little-endian

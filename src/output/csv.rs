@@ -3,7 +3,7 @@
 //!
 //! # Memory
 //!
-//! State of observers, as bytes.
+//! What observers remember, as bytes.
 
 use std::fs::File;
 use std::io::{self, BufRead, Read, Seek, SeekFrom, Write};

@@ -17,11 +17,11 @@
 //!
 //! # Measures
 //!
-//! Measures of slip events.
+//! What events of slip amount to.
 //!
 //! # Passages
 //!
-//! History of the points of an interface: when fronts passed them, in which events.
+//! What the points of an interface did so far: when fronts passed them, in which events.
 //!
 //! # Wave speeds
 //!
@@ -46,7 +46,7 @@ pub(super) struct SlipEvent {
     pub over: bool,
     /// Energies of the model at the onset, and at `until`
     pub energies: [Energies; 2],
-    /// History of each point
+    /// What each point did
     pub courses: Vec<PointRecord>,
 }
 
@@ -228,7 +228,7 @@ pub(super) struct Arrival {
     pub time: f64,
     /// Number of the event of the contact, from 1; 0 outside of events
     pub event: usize,
-    /// External work less stored energy since the start of the run [F·L]
+    /// What loads and stored energies had given since the start of the run [F·L]
     pub given: f64,
 }
 

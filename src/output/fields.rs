@@ -32,7 +32,7 @@ pub struct Fields {
     rows: usize,
     /// Times of the frames so far [T]
     times: Vec<f64>,
-    /// Tasks of the writer; `None` when there are no more
+    /// What the writer is to do; `None` when there is no more
     frames: Option<SyncSender<Task>>,
     /// `None` when it has ended
     writer: Option<JoinHandle<Result<(), Error>>>,
@@ -54,7 +54,7 @@ pub struct Frames {
 pub enum Selection {
     /// Every n-th row of the history
     Rows(usize),
-    /// So many per step: the first row of the history at or after the end of each part of its duration
+    /// Of each step so many: the first row of the history at or after the end of each part of its duration
     Parts(usize),
     /// No others
     Named,

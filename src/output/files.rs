@@ -190,7 +190,7 @@ impl Lock {
     /// Lock a folder.
     ///
     /// # Errors
-    /// Which process holds it, or why the lock cannot be written.
+    /// Who is at work in it, or why the lock cannot be written.
     pub fn take(folder: &Path) -> Result<Self, String> {
         Self::beating(folder, BEAT)
     }

@@ -1,4 +1,4 @@
-//! Content of a frame: bodies, interfaces, integration points.
+//! What a frame shows of a state: bodies, interfaces, integration points.
 
 use nalgebra::Vector2;
 

@@ -1,4 +1,4 @@
-//! Results of a run: observers of every attempt, and the files they write.
+//! What a run leaves behind: observers of every attempt, and the files they write.
 
 mod csv;
 mod frames;

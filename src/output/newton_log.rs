@@ -1,6 +1,6 @@
-//! `newton.csv`: a row per linear solve, those of failed attempts included; an attempt that was rejected before its first
+//! `newton.csv`: a row per linear solve, those of failed attempts included; an attempt that was given up before its first
 //! solve has a row as well, its `iteration` 0. On how many contact points each aid acted in its tangent ([`Acted`]), what became
-//! of the attempt ([`crate::run::observer::Verdict`]) and why it was rejected ([`Attempt::reason`]) stand at the end.
+//! of the attempt ([`crate::run::observer::Verdict`]) and why it was given up ([`Attempt::reason`]) stand at the end.
 
 use super::csv::{Rows, Sheet, Table};
 use super::quantities::{NEWTON, VERDICT, names};

@@ -1,6 +1,6 @@
 //! `probes.csv`: what gauges at points of the bodies read, at the rows of the history.
 //!
-//! Readings of a gauge at a point of a body.
+//! What a gauge at a point of a body reads.
 
 use nalgebra::{Matrix2, Vector2};
 

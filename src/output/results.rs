@@ -1,4 +1,4 @@
-//! Contents of a folder of results as plain numbers, for programs that show them.
+//! What a folder of results holds, as plain numbers: for those who show it.
 //!
 //! Frames of bodies and interfaces: what a `.pvd` lists, and the VTU files behind it.
 //!

@@ -1,4 +1,4 @@
-//! Access to a run between its increments: groups, contacts and fields by their names, and prescribed displacements.
+//! What a caller may ask a run for, and lead, between its increments: groups, contacts and fields by their names.
 
 use nalgebra::Vector2;
 use thiserror::Error;

@@ -137,7 +137,7 @@ impl Simulation {
         self.without_iterations(1, length, accepted, increments, outcome)
     }
 
-    /// Outcome of an attempt that solved no equations.
+    /// What came of an attempt that solved no equations.
     fn without_iterations(
         &self,
         number: usize,

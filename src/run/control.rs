@@ -303,7 +303,7 @@ pub struct RunReport {
     pub cutbacks: usize,
     /// attempts that were solved, and repeated because their error was too large or they met an event of contact
     pub rejected: usize,
-    /// the same attempts, solved or not, by why they were rejected
+    /// the same attempts, solved or not, by why they were given up
     pub given_up: BTreeMap<String, usize>,
     /// times that a step turned to explicit increments because a contact slipped fast
     pub ruptures: usize,
@@ -320,7 +320,7 @@ pub struct RunReport {
 }
 
 impl RunReport {
-    /// Count an attempt if it was rejected.
+    /// Count an attempt if it was given up.
     pub(super) fn note(&mut self, outcome: &Outcome) {
         let (count, kind) = match outcome {
             Outcome::Rejected(why, _) => (&mut self.rejected, why.kind()),

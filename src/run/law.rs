@@ -7,7 +7,7 @@
 //!
 //! # Report
 //!
-//! Responses of a friction law driven alone, with peaks, holds and sums.
+//! What a friction law driven alone answered, and what its answers amount to.
 //!
 //! ```
 //! use fecontact::laws::friction::{SuperSubloading, SuperSubloadingParameters};
@@ -52,15 +52,15 @@ pub struct LawTest {
 }
 
 impl LawTest {
-    /// A law driven along a path from rest, under the pressure at its start.
+    /// A law led along a path from rest, under the pressure at its start.
     pub fn new(law: impl FrictionLaw + 'static, path: Vec<Phase>) -> Self {
         let pressure = path.first().map_or(0.0, |phase| phase.pressure(phase.start()));
         Self { start: law.initial_state(pressure, 0.0), law: Box::new(law), path }
     }
 
-    /// Drive the law along its path, recording every step. The report comes back from a stopped test as well.
+    /// Lead the law along its path, telling every step. The report comes back from a stopped test as well.
     ///
-    /// The first row is the start: the response to no slip in no time.
+    /// The first row is the start: what the law answers to no slip in no time.
     ///
     /// # Errors
     /// [`Error`] when the law cannot answer, or a row cannot be written.
@@ -208,7 +208,7 @@ impl Phase {
         })
     }
 
-    /// Times at which a step ends exactly: knots of tables, turning points, closure and separation, the end.
+    /// Times to step onto, never over: knots of tables, turning points, touch and parting, the end.
     fn find_stops(&self, knots: Vec<f64>) -> Result<Vec<f64>, Undefined> {
         let samples = self.samples(&knots);
         let mut found = knots;
@@ -364,9 +364,9 @@ pub struct LawRow {
     pub time: f64,
     /// total slip since the start [L]
     pub slip: f64,
-    /// response of the law
+    /// what the law answered
     pub response: FrictionResponse,
-    /// μ: peak friction coefficient [-]
+    /// μ: what the interface could carry over p [-]
     pub mu: f64,
 }
 
@@ -380,7 +380,7 @@ pub struct PathPoint {
     pub slip: f64,
     /// |q|/p: apparent friction coefficient [-]
     pub coefficient: f64,
-    /// μ: peak friction coefficient [-]
+    /// μ: what the interface could carry over p [-]
     pub mu: f64,
 }
 
@@ -440,7 +440,7 @@ impl Peaks {
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct LawReport {
-    /// steps
+    /// steps answered
     pub steps: usize,
     /// most evaluations of the law's scalar equation in one step
     pub most_evaluations: usize,

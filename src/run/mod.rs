@@ -43,7 +43,7 @@ pub fn run(model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> (RunRepor
     (simulation.report(), result.map(|()| simulation.state().clone()))
 }
 
-/// Continue a run to its end; observers see every attempt.
+/// Go on with a run to its end, and tell observers of every attempt.
 ///
 /// # Errors
 /// As [`run`].
@@ -137,7 +137,7 @@ impl SavedRun {
     /// A run and its observers as they are.
     ///
     /// # Errors
-    /// [`Error::Output`] when an observer cannot say what it has written.
+    /// [`Error::Output`] when an observer cannot tell what it has written.
     pub fn new(simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<Self, Error> {
         let memory = |observer: &mut &mut dyn Observer| observer.save().map(|memory| (observer.name().into(), memory));
         let observers = observers.iter_mut().map(memory).collect::<Result<_, _>>()?;

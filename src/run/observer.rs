@@ -1,11 +1,11 @@
-//! Observers of a run, and the attempts that they see.
+//! Those who watch a run, and what they are told.
 //!
 //! Which accepted increments are rows of the results: all of them or, with an interval, those that are at least so far apart in
 //! time. Events are never thinned away: where a point of a contact closes, opens, begins to slip or stops, the increments before
 //! and after are rows. So are the last ones of steps, those at the times asked for, and the outputs of explicit increments. It
 //! is decided once, by the run; all that is written over time goes by it.
 //!
-//! Why an attempt was rejected: in a sentence, and in so few words that they can be counted.
+//! Why an attempt was given up: in a sentence, and in so few words that they can be counted.
 //!
 //! ```
 //! use std::sync::Arc;

@@ -9,7 +9,7 @@
 //!
 //! [`Simulation::try_increment`] finds a [`Candidate`] and changes nothing; [`Simulation::apply`] goes on as it says: to its new
 //! state if it was accepted, else to another attempt. A candidate that is dropped has never been: the next attempt finds it
-//! again, bit by bit.
+//! again, to the same bits.
 //!
 //! # Saved runs
 //!
@@ -33,7 +33,7 @@ use crate::time::quasi_dynamic::QuasiDynamic;
 pub type Pause = Arc<dyn Fn() -> bool + Send + Sync>;
 
 /// A run under way; see the example at the head of the library. To have an increment that is rejected made shorter, drop its
-/// candidate and set `increments.max` of the step by [`Simulation::change`]: dropped alone it is found again, bit by bit.
+/// candidate and set `increments.max` of the step by [`Simulation::change`]: dropped alone it is found again, to the same bits.
 pub struct Simulation {
     pub(super) model: Arc<Model>,
     /// The step under way, as its caller may have changed it
@@ -344,7 +344,7 @@ impl Saved {
         postcard::to_allocvec(&run).map_err(|cause| Error::NotSaved(cause.to_string()))
     }
 
-    /// The run that the bytes describe. Steps that had not begun may have changed since, or have come after the last one.
+    /// The run that the bytes tell of. Steps that had not begun may have changed since, or have come after the last one.
     ///
     /// # Errors
     /// [`NotResumable`].

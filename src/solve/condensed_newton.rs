@@ -5,7 +5,7 @@
 //! accepted does not depend on how it was found. If it says no, another round starts from there, and after a few the increment
 //! is left to Newton's method on all equations. Switch `condense`; `aid_condense` is 1 in iterations on the contacts.
 //!
-//! Condensation is used where it costs less: where a dense LU of the nodes at contacts takes no more than
+//! That way is taken where it costs less: where a dense LU of the nodes at contacts takes no more than
 //! three times the operations of a factorization of the bodies: they are that much faster; and where most nodes are not
 //! at contacts. Where only half of the equations on the contacts vary, it may be that LU which takes so little, and an increment
 //! in which more of them vary is left to all equations if LU of the whole takes too much.

@@ -175,7 +175,7 @@ fn round(
         Ok(x) => round.follow(nodes, u, &x),
         Err(NewtonFailure::Linear(LinearFailure::Varies)) => return None,
         Err(failure) => {
-            // What floats is found from the tangent of all equations.
+            // What floats is told from the tangent of everything.
             assemble_all(trial, &all, work)?;
             return Some(Err(failure));
         }
@@ -221,7 +221,7 @@ impl Watch {
         acted: Acted,
         foreseen: &mut Vec<Vec<ContactState>>,
     ) {
-        // The start value goes on with the last increment; where there is none, the first linear solve decides.
+        // The start value goes on with the last increment; where there is none, the first linear solve tells.
         let foresight = if self.extrapolated { 0 } else { 1 };
         if self.begins && self.records.is_empty() && request == Request::Residual && self.tangents == foresight {
             foreseen.clone_from(&assembler.evaluation.contacts);
@@ -371,7 +371,7 @@ fn from_start_values(
     (iterations, result)
 }
 
-/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is rejected.
+/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
 const MOST_PASSES: usize = 100;
 
 /// A pass that leaves more than this share of the penetration is slow: the next one is stiffer.

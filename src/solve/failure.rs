@@ -2,7 +2,7 @@
 //!
 //! # Suspects
 //!
-//! Likely causes where no equilibrium was found: where the residual is largest, and which stiffnesses are out of
+//! Who is to blame where no equilibrium was found: where forces are farthest from balance, and which stiffnesses are out of
 //! proportion there.
 
 use thiserror::Error;
@@ -176,7 +176,7 @@ fn worst_node(model: &Model, step: &Step, residual: &[f64]) -> Option<usize> {
     (size(&worst) > 0.0).then_some(worst)
 }
 
-/// A penalty far above the stiffness of the bodies: their own forces are round-off compared with those of contact.
+/// A penalty far above the stiffness of the bodies: their own forces are round-off beside those of contact.
 fn penalty(pair: &ContactPair) -> Option<String> {
     let alpha_t = pair.laws.iter().map(|law| law.description.stiffness).fold(0.0, f64::max);
     let (name, value) = if alpha_t > pair.alpha_n { ("alpha_t", alpha_t) } else { ("alpha_n", pair.alpha_n) };

@@ -151,7 +151,7 @@ pub fn solve<E>(
                 Ok(()) => {}
                 Err(failure) if plan.factorized => return Err(NewtonFailure::Evaluation(failure)),
                 Err(_) => {
-                    // An old tangent misled: the next correction starts from where this one did.
+                    // An old tangent led astray: the next correction starts from where this one did.
                     course.old_tangent_serves = false;
                     u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= x);
                     evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;

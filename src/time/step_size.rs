@@ -21,7 +21,7 @@
 //! - An increment after a repeated one does not grow. Halves that are accepted thus walk up to the event and never jump
 //!   over it, and every attempt either moves on or halves the increment.
 //! - Where linear bodies are condensed on contacts, lengths are those of a ladder (below).
-//! - The shortest increment is accepted whatever its error, which is reported in a warning if it exceeds ε.
+//! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
 //!
 //! Nothing much larger than ε can be stepped over unseen: e is a fixed share, a quarter or more unless β is near 1/6, of
 //! what the new displacement differs from the one extrapolated with the old velocity and acceleration ((6) of
@@ -105,7 +105,7 @@ pub(super) fn can_shorten(step: &Step, old: &State, new: &State) -> bool {
 }
 
 /// Judge a solved increment from `old` to `new`, which took so many `tangents` in its hardest pass; `repeated` says that an
-/// attempt at it was rejected before.
+/// attempt at it was given up before.
 pub fn judge(model: &Model, step: &Step, states: [&State; 2], tangents: usize, repeated: bool) -> Judgement {
     let (dt, easy) = (states[1].dt, tangents <= EASY);
     match step.increments.error {

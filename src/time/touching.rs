@@ -8,7 +8,7 @@
 //! - Else the increment is made in parts: up to the touch that was foreseen if nothing of the contact was closed before, else
 //!   as far as few enough points touch; then on to where it should have ended. The contact's force is the largest of
 //!   all attempts at the increment.
-//! - The shortest increment is accepted whatever its doubt, which is reported in a warning.
+//! - The shortest increment is accepted whatever its doubt, which is told as a warning.
 //! - A point that touches and parts again within one increment is not seen.
 
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ pub struct Touching {
     whole: Option<(f64, f64)>,
     /// Largest force of each contact in an attempt [F]
     forces: Vec<f64>,
-    /// Rejected attempts
+    /// Attempts given up
     refused: usize,
     /// Whether the attempt is to end where a contact touches
     ends_in_touch: bool,

@@ -1,4 +1,4 @@
-//! Output settings of a case.
+//! What is written by a run, as a case asks for it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Work between two increments: checkpoints, an end requested by a signal, and the check that the folder still exists.
+//! What happens between two increments: checkpoints, the end that a signal asks for, and whether the folder is still there.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -3,7 +3,7 @@
 //! [`Job::open`] and [`Job::resume`] read, check and lock the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
 //! it hears warnings, shows progress and may end it ([`Callbacks`]).
 //!
-//! Who observes a run.
+//! Who watches a run.
 
 pub mod defect;
 mod keeper;
@@ -114,7 +114,7 @@ impl Job {
 
     /// Go on with the run in a folder: from its last checkpoint, or anew where the folder is absent or empty, or holds this
     /// case's own unfinished run without a checkpoint yet, so that a job that is queued again always says the same. The case is
-    /// opened at the checkpoint, or at its beginning; `warn` reports a checkpoint of another version.
+    /// opened at the checkpoint, or at its beginning; `warn` is told where another version has written the checkpoint.
     ///
     /// # Errors
     /// [`Refused`].

@@ -180,7 +180,7 @@ fn master(input: &Contact) -> String {
     }
 }
 
-/// The rigid body to which a rigid master belongs.
+/// What a rigid master moves with.
 fn moves(input: &Contact) -> String {
     input.rigid_body.as_ref().map_or(String::new(), |body| format!(", part of the rigid body {body}"))
 }

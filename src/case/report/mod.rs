@@ -1,4 +1,4 @@
-//! Report of `check`: how the case was understood.
+//! What `check` prints: how the case was understood.
 
 mod contact;
 mod steps;

@@ -138,7 +138,7 @@ fn on(place: &Place, model: &Model) -> String {
     place.settled(&model.mesh).map_or_else(|_| place.to_string(), |settled| settled.to_string())
 }
 
-/// A watched place by its name in results; with the tag of the node that is nearest to a point.
+/// What is watched, by its name in results; with the tag of the node that is nearest to a point.
 pub fn watched(place: &Place, model: &Model) -> String {
     match place {
         Place::Near(_) => format!("{} ({})", place.column(), on(place, model)),

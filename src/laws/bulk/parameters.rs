@@ -66,7 +66,7 @@ impl MaterialParameters {
 }
 
 impl ElasticConstants {
-    /// The parameters of a body without mass.
+    /// Of a body without mass.
     pub const fn new(young: f64, poisson: f64) -> Self {
         Self { young, poisson, density: 0.0 }
     }

@@ -29,7 +29,7 @@ pub struct ViscoelasticConstants {
 }
 
 impl ViscoelasticConstants {
-    /// The parameters of a body without mass.
+    /// Of a body without mass.
     pub const fn new(young: f64, poisson: f64, relaxing: f64, tau: f64) -> Self {
         Self { young, poisson, relaxing, tau, density: 0.0 }
     }

@@ -131,7 +131,7 @@ impl Offsets {
 pub struct ContactLaw {
     /// The law
     pub law: Box<dyn FrictionLaw>,
-    /// Description of the law, with the parts of the opening that the offsets change
+    /// What the law says of itself, with the parts of the opening that the offsets change
     pub description: Description,
     offsets: Offsets,
 }
@@ -174,7 +174,7 @@ impl ContactLaw {
     /// The answer to an increment, see [`FrictionLaw::respond`].
     ///
     /// # Errors
-    /// As for the law.
+    /// As of the law.
     pub fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         self.moved(old, sliding, self.law.respond(old, sliding))
     }

@@ -1,4 +1,4 @@
-//! Observables of friction that are particular to a law: the names come from the laws.
+//! What outputs show of friction beside what all laws have in common: the names come from the laws.
 
 use super::state::MOST_VARIABLES;
 use super::{Description, FrictionLaw, FrictionState};
@@ -45,11 +45,11 @@ const TAKEN: [&str; 28] = [
 /// Longest name: with that of its contact it is one of a file.
 const LONGEST: usize = 64;
 
-/// Whether the names that a law gives can be those of columns, arrays and files, and are its own. They differ by more than
-/// capitals, which not all systems distinguish in names of files.
+/// Whether the names that a law gives can be those of columns, arrays and files, and are its own. They are told apart by more than
+/// capitals, as not all systems tell files apart by them.
 ///
 /// # Errors
-/// The name that is wrong, why, and what to do.
+/// What is wrong with which name, and what to do.
 #[doc(hidden)]
 pub fn check_names(description: &Description) -> Result<(), String> {
     let Description { variables, opening, .. } = description;

@@ -75,7 +75,7 @@ impl FrictionParameters {
         Ok(self)
     }
 
-    /// The error of a law that nobody has registered.
+    /// What is wrong where it is a law that nobody has registered.
     pub fn unknown(&self) -> Option<String> {
         match self {
             Self::Registered(parameters) => parameters.unknown(),
@@ -209,7 +209,7 @@ impl RegisteredParameters {
         maker(&self.parameters, alpha_t)
     }
 
-    /// The error where nobody has registered the law.
+    /// What is wrong where nobody has registered the law.
     pub fn unknown(&self) -> Option<String> {
         let register = REGISTER.read().unwrap_or_else(PoisonError::into_inner);
         let known: Vec<&str> = register.keys().map(String::as_str).collect();

@@ -61,7 +61,7 @@ pub(super) struct Piece {
 /// Most pieces that are examined; many only where two roots are about to merge.
 const MOST_PIECES: usize = 1000;
 
-/// A bracket, up to the argument `end`, that holds the smallest root of f and no other unless they cannot be distinguished: pieces
+/// A bracket, up to the argument `end`, that holds the smallest root of f and no other unless they cannot be told apart: pieces
 /// narrower than `resolved` hold such; the last point that it came to if it is not to be found. f is positive at `left`, and
 /// not positive at `end` but for round-off.
 ///

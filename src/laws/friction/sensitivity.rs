@@ -15,7 +15,7 @@ pub struct Variation {
     pub variables: [f64; MOST_VARIABLES],
 }
 
-/// Direction of a derivative: variations of what the response depends on, pressure and time being given.
+/// What an answer is differentiated by: how that which it follows from varies, the pressure and the time being given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Direction {
@@ -44,7 +44,7 @@ pub trait SensitiveLaw: Debug + Send + Sync {
     /// Derivatives of the state at the end of an increment along two directions.
     ///
     /// # Errors
-    /// As for the answer itself.
+    /// As of the answer itself.
     fn vary(
         &self,
         old: &FrictionState,

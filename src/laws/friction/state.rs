@@ -1,4 +1,4 @@
-//! Internal variables of friction at one contact point.
+//! What friction remembers at one contact point.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +26,7 @@ pub struct FrictionState {
     pub wear: f64,
     /// Open, stick or slip by the law's last increment
     pub regime: Regime,
-    /// Further internal variables of the law, by the names of its [`variables`](super::Description::variables); the rest is 0
+    /// What else the law remembers, by the names of its [`variables`](super::Description::variables); the rest is 0
     pub variables: [f64; MOST_VARIABLES],
 }
 

@@ -102,7 +102,7 @@ impl Block {
         Self { grading, ..self }
     }
 
-    /// With another kind of elements.
+    /// Of another kind of elements.
     pub fn kind(self, kind: BlockKind) -> Self {
         Self { kind, ..self }
     }

@@ -196,7 +196,7 @@ fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &s
     }))
 }
 
-/// The error that a law has no such parameter, with the one that may be meant.
+/// That a law has no such parameter, and which one may be meant.
 fn unknown(UnknownParameter { name, known }: &UnknownParameter) -> String {
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let meant =

@@ -1,6 +1,6 @@
 //! Bodies and point masses: materials on groups of the mesh.
 //!
-//! Initial stress and temperatures of bodies.
+//! What is imposed on bodies: their initial stress, and their temperatures.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
-//! Incompatible settings, and settings out of range.
+//! What does not go together, and settings out of range.
 //!
-//! Requirements of quasi-dynamic steps on a model.
+//! What quasi-dynamic steps ask of a model.
 
 use std::collections::BTreeSet;
 

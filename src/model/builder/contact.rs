@@ -259,7 +259,7 @@ impl Contact {
         Self { smooth: true, ..self }
     }
 
-    /// A contact whose surfaces overlap at the start and are pressed apart over the first step.
+    /// Of surfaces that overlap at the start and are pressed apart over the first step.
     pub fn shrink_fit(self) -> Self {
         Self { shrink_fit: true, ..self }
     }
@@ -306,7 +306,7 @@ impl Contact {
         Self { fluid_pressure: Some(pressure.into()), ..self }
     }
 
-    /// A contact of a group of points, each of which represents an area [L].
+    /// Of a group of points, each of which stands for an area [L].
     pub fn area(self, area: f64) -> Self {
         Self { area: Some(area), ..self }
     }

@@ -1,4 +1,4 @@
-//! Errors of a model, with their place.
+//! What is wrong with a model, and where.
 //!
 //! Numbers that may be computed with.
 //!
@@ -23,7 +23,7 @@ pub struct ModelError {
     pub message: String,
 }
 
-/// Checked input, or the error in it.
+/// What is given, once it is found to be good.
 pub type Checked<T> = Result<T, ModelError>;
 
 impl ModelError {
@@ -144,7 +144,7 @@ pub fn check_line(place: &str, text: &str) -> Checked<()> {
     }
 }
 
-/// The error that there is no body of this name.
+/// That a body is not among those that there are.
 pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str) -> ModelError {
     let known: Vec<&str> = known.collect();
     ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))

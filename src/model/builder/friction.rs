@@ -24,7 +24,7 @@ use crate::model::boundary::Profile;
 #[derive(Clone)]
 #[must_use]
 pub struct Friction {
-    /// The parameters, as a case writes them; none for a law from code
+    /// What a case writes; none of a law from code
     parameters: Option<FrictionParameters>,
     /// Its own name within the contact, for messages
     name: String,
@@ -173,7 +173,7 @@ impl From<FrictionParameters> for Friction {
     }
 }
 
-/// All that converts to FrictionParameters converts to friction, too.
+/// What FrictionParameters are made from is friction too.
 macro_rules! friction_from {
     ($($parameters:ty),*) => {$(
         impl From<$parameters> for Friction {

@@ -108,7 +108,7 @@ pub fn group<'m>(mesh: &'m Mesh, name: &str, place: &str) -> Checked<&'m Group> 
     mesh.group(name).map_err(|error| ModelError::new(place, error))
 }
 
-/// Kind of a group's members.
+/// What a group is made of.
 pub fn kind(group: &Group) -> &'static str {
     match group {
         Group::Elements(_) => "solid elements",

@@ -123,12 +123,12 @@ pub struct SpringLoad {
 }
 
 impl SpringLoad {
-    /// A spring to the ground with the stiffness along x and along y [F/L].
+    /// Of the stiffness along x and along y, to the ground [F/L].
     pub fn new(kx: f64, ky: f64) -> Self {
         Self { kx, ky, driver: None }
     }
 
-    /// With a far end that moves: its displacement [L].
+    /// To a far end that moves: its displacement [L].
     pub fn driver(self, driver: impl Into<Components>) -> Self {
         Self { driver: Some(driver.into()), ..self }
     }
@@ -152,12 +152,12 @@ pub struct DashpotLoad {
 }
 
 impl DashpotLoad {
-    /// A dashpot to the ground with the coefficient along x and along y [F T/L].
+    /// Of the coefficient along x and along y, to the ground [F T/L].
     pub fn new(cx: f64, cy: f64) -> Self {
         Self { cx, cy, driver: None }
     }
 
-    /// With a far end that moves: its velocity [L/T].
+    /// To a far end that moves: its velocity [L/T].
     pub fn driver(self, driver: impl Into<Components>) -> Self {
         Self { driver: Some(driver.into()), ..self }
     }
@@ -207,7 +207,7 @@ impl Load {
         }
     }
 
-    /// Its action, where exactly one is given; without a value where the load ends.
+    /// What it does, where exactly one thing is given; without a value where that ends.
     #[doc(hidden)]
     pub fn action(&self) -> Option<Action<'_>> {
         let given = [
@@ -278,7 +278,7 @@ impl Load {
     }
 }
 
-/// Change of a support or a load in a step: a new value, or its end.
+/// What a step does to a support or a load: give it anew, or end it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change<T> {
     /// From now on it is this
@@ -288,7 +288,7 @@ pub enum Change<T> {
 }
 
 impl<T> Change<T> {
-    /// The value, if it does not end.
+    /// What is given, if it does not end.
     pub fn given(&self) -> Option<&T> {
         match self {
             Self::To(given) => Some(given),

@@ -95,17 +95,17 @@ impl From<f64> for IncrementSettings {
 }
 
 impl IncrementSettings {
-    /// Increments that are never cut below this [T].
+    /// Never cut below this [T].
     pub fn min(self, min: f64) -> Self {
         Self { min: Some(min), ..self }
     }
 
-    /// Increments that never grow beyond this [T].
+    /// Never growing beyond this [T].
     pub fn max(self, max: f64) -> Self {
         Self { max: Some(max), ..self }
     }
 
-    /// Increments as long as their estimated error stays below this [L].
+    /// As long as their estimated error stays below this [L].
     pub fn error(self, error: f64) -> Self {
         Self { error: Some(error), ..self }
     }
@@ -259,7 +259,7 @@ impl Support {
         Self { un: Some(un.into()), ..self }
     }
 
-    /// With a rotation of a rigid body about its reference point, counter-clockwise [rad].
+    /// Of a rigid body: with a rotation about its reference point, counter-clockwise [rad].
     pub fn angle(self, angle: impl Into<Change<Drive>>) -> Self {
         Self { angle: Some(angle.into()), ..self }
     }
@@ -286,13 +286,13 @@ impl LoadStep {
         Self { dt: Some(increments.into()), ..self }
     }
 
-    /// With bodies constrained until contact closes: by dashpots that fade over this static step, at its start as if this share of
+    /// Constrained until contact closes: by dashpots that fade over this static step, at its start as if this share of
     /// the bodies' stiffness moved them in the time of the step; 1e-3 is a good start [-].
     pub fn stabilize(self, share: f64) -> Self {
         Self { stabilize: Some(share), ..self }
     }
 
-    /// With explicit integration while a contact slips faster than this: a slip rate [L/T], or all settings.
+    /// Explicit integration while a contact slips faster than this: a slip rate [L/T], or all settings.
     pub fn rupture(self, rupture: impl Into<RuptureSettings>) -> Self {
         Self { rupture: Some(rupture.into()), ..self }
     }
@@ -303,7 +303,7 @@ impl LoadStep {
         self
     }
 
-    /// With an early end when the reaction of a place reaches a value, to a millionth of it [F].
+    /// Ending before its time when the reaction of a place comes to a value, met to a millionth of it [F].
     pub fn until(self, on: impl Into<Place>, part: ForceComponent, value: f64) -> Self {
         let [fx, fy, force] =
             [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));

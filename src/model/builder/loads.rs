@@ -90,7 +90,7 @@ fn action<'l>(load: &'l Load, place: &str) -> Checked<Action<'l>> {
 }
 
 impl LoadsInForce {
-    /// The loads in force in a step of a model: what it gave, and the steps before it.
+    /// Those of a step of a model: what it gave, and the steps before it.
     ///
     /// # Errors
     /// None of a model that was built from these steps.
@@ -107,7 +107,7 @@ impl LoadsInForce {
     /// Give a load anew, or end it, from the start of a span within a step on.
     ///
     /// # Errors
-    /// As for a load of a step.
+    /// As of a step.
     pub fn change_within(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let key = (
             load.on.settled(&model.mesh).unwrap_or_else(|_| load.on.clone()).to_string(),

@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A load step inherits what the one before gave: scheme, increments, supports and loads. An error names its
+//! A load step takes over what the one before gave: scheme, increments, supports and loads. What is wrong is told with its
 //! place, in the words of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
 mod along;
@@ -74,14 +74,14 @@ use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::linkage::Linkage;
 use crate::model::{Damping, Memories, Model, NewtonSettings, OutputRequests};
 
-/// Builder of a model; [`Builder::build`] checks all input and makes the model.
+/// What a model is made of; [`Builder::build`] checks it and makes the model.
 #[derive(Default)]
 #[must_use]
 pub struct Builder {
     pub(crate) mesh: Mesh,
     pub(crate) title: String,
     pub(crate) bodies: Vec<(String, BodyInput)>,
-    /// A body that is changed before it is given, if there is one
+    /// A body that is spoken of before it is given, if there is one
     pub(crate) unknown: Option<String>,
     pub(crate) point_masses: Vec<(String, PointMassInput)>,
     pub(crate) periodic: Vec<[String; 2]>,
@@ -105,12 +105,12 @@ impl Model {
 }
 
 impl Builder {
-    /// Title of the model, in a line.
+    /// What the model shows, in a line.
     pub fn title(self, title: impl Into<String>) -> Self {
         Self { title: title.into(), ..self }
     }
 
-    /// Plane strain, plane stress or axisymmetry; that of the mesh, plane strain, unless given.
+    /// What the plane stands for in space; that of the mesh, plane strain, unless given.
     pub fn section(mut self, section: Section) -> Self {
         self.mesh.section = section;
         self
@@ -172,20 +172,20 @@ impl Builder {
         self
     }
 
-    /// Periodic sides: two groups with matching nodes, which have equal displacements.
+    /// Two groups whose nodes lie alike and move alike: what leaves by one side comes in by the other.
     pub fn periodic(mut self, side: impl Into<String>, other: impl Into<String>) -> Self {
         self.periodic.push([side.into(), other.into()]);
         self
     }
 
-    /// A loading plate: all nodes of a group have equal displacements, as if glued to a rigid plate that does not rotate. Loads on
-    /// one of them act on the plate.
+    /// A loading plate: all nodes of a group move alike, as if glued to a rigid plate that does not turn. What acts on one of them
+    /// acts on the plate.
     pub fn plate(mut self, group: impl Into<String>) -> Self {
         self.plates.push(LoadingPlateInput::Group(group.into()));
         self
     }
 
-    /// A loading plate with another constraint.
+    /// A loading plate that moves in another way than as one.
     pub fn plate_moving(mut self, group: impl Into<String>, moves: Plate) -> Self {
         self.plates.push(LoadingPlateInput::Moving(MovingPlateInput { on: group.into(), moves }));
         self
@@ -198,7 +198,7 @@ impl Builder {
         self
     }
 
-    /// A rigid body that may rotate freely, with its centre of mass [L] and its moment of inertia about that [M L²]; its mass is a
+    /// A rigid body that may turn by itself, with its centre of mass [L] and its moment of inertia about that [M L²]; its mass is a
     /// [point mass](Self::point_mass) of its name.
     pub fn free_rigid_body(mut self, name: impl Into<String>, reference: [f64; 2], inertia: f64) -> Self {
         self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
@@ -234,13 +234,13 @@ impl Builder {
         Self { newton, ..self }
     }
 
-    /// A probe: a point, or points along a line, at which motion, strain and stress are recorded.
+    /// A point, or points along a line, at which motion, strain and stress are asked for.
     pub fn probe(mut self, gauge: Gauge) -> Self {
         self.gauges.push(gauge);
         self
     }
 
-    /// Times at which increments end, because fields are written then [T].
+    /// Times that increments end at, because fields are asked for then [T].
     pub fn times(self, times: impl Into<Vec<f64>>) -> Self {
         Self { times: times.into(), ..self }
     }

@@ -15,17 +15,17 @@
 //!
 //! # Penalties
 //!
-//! Default penalties: stiff compared with the elements that they hold, soft enough to be solved with.
+//! Default penalties: stiff beside the elements that they hold, soft enough to be solved with.
 //!
 //! ```text
 //! α_n = 10 (λ + 2G)/h,   α_t = α_n/2                                                             (1)
 //! ```
-//! λ + 2G is that of the softer side, which is the one that the penalty must be stiff compared with, h the depth of the element
+//! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, h the depth of the element
 //! behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges.
 //!
-//! # What points do not determine
+//! # What points do not tell
 //!
-//! What the points of a contact do not determine: nodes that no point represents, and how stiff the bodies are.
+//! What the points of a contact do not tell of themselves: nodes that no point stands for, and how stiff the bodies are.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -119,7 +119,7 @@ fn size(points: &[SlavePoint], model: &Model) -> f64 {
     points.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// The body of the slave's edge at its first point. Where two bodies meet a node belongs to both: the edge determines the body, not the node.
+/// The body of the slave's edge at its first point. Where two bodies meet a node is one of both: the edge tells, not the node.
 fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<usize> {
     let (node, _) = *first?.position.first()?;
     match model.mesh.group(&contact.slave) {
@@ -152,7 +152,7 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
 /// Gaps are differences of positions and displacements; of these, round-off of the size of the model is left.
 const OF_SIZE: f64 = 8.0 * f64::EPSILON;
 
-/// An allowed penetration must be above the round-off of gaps.
+/// A penetration must be one that gaps can tell.
 fn check_penetrations(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
     let least = OF_SIZE * mesh.diagonal();
     contacts.iter().try_for_each(|contact| check_penetration(contact, least))

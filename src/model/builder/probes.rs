@@ -90,7 +90,7 @@ impl Gauge {
 /// The probes of a model.
 ///
 /// # Errors
-/// The error of a place in no body, or in two without saying which is meant.
+/// A place that lies in no body, or in two without saying which is meant.
 pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     if gauges.is_empty() {
         return Ok(Vec::new());

@@ -1,4 +1,4 @@
-//! Rigid bodies as they are given: the rigid masters that belong to them, the supports that move them, and their free motions.
+//! Rigid bodies as they are given: what rigid masters are parts of, how supports move them, and what is free of them.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -82,7 +82,7 @@ fn unknown(name: &str, mesh: &Mesh) -> String {
     }
 }
 
-/// The rotation that a support prescribes for a rigid body: its dof, and its motion or none where it is released.
+/// What a support says of the rotation of a rigid body: the dof that carries it, and its motion or none where it is freed.
 pub fn angle(support: &Support, place: &str, span: Span, model: &Model) -> Checked<Option<(usize, Option<Motion>)>> {
     let Some(change) = &support.angle else { return Ok(None) };
     let place = format!("{place}.angle");
@@ -131,7 +131,7 @@ pub fn of_moment<'m>(on: &Place, model: &'m Model) -> Option<&'m RigidBody> {
     }
 }
 
-/// The rigid body and the key of the motion that a dof is; none for a dof of any other node.
+/// In words, what a dof that nothing holds or carries is of a rigid body; none of any other node.
 pub fn free_motion(mesh: &Mesh, dof: usize) -> Option<(&RigidBody, &'static str)> {
     let body = mesh.rigid_bodies.iter().find(|body| body.nodes().contains(&(dof / 2)))?;
     let along = if dof == 2 * body.turning { "angle" } else { ["ux", "uy"][dof % 2] };

@@ -44,7 +44,7 @@ pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
     given.iter().enumerate().map(|(k, step)| schedule.next(&format!("steps[{k}]"), step)).collect()
 }
 
-/// What a step inherits from the one before.
+/// What one step hands on to the next.
 struct Schedule<'m> {
     model: &'m Model,
     start: f64,
@@ -290,7 +290,7 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
     Ok(Some(Until { on: on.to_string(), held, part, value, tolerance }))
 }
 
-/// Refuse what is defined over the full duration of the step.
+/// What counts on the whole of the step.
 fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<()> {
     let refused = |message: &str| Err(ModelError::new(place, message));
     if matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. }) {
@@ -311,7 +311,7 @@ fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Chec
     check_ramps(place, step, model)
 }
 
-/// Refuse what reaches its value over the whole step, and would go on doing so in the next one.
+/// What comes to a value over the whole of the step would go on coming to it in the next one.
 fn check_ramps(place: &str, step: &Step, model: &Model) -> Checked<()> {
     let refused = |what: &str, instead: &str| {
         let message = format!("may end the step early, before {what} is fully applied: {instead}");

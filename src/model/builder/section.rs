@@ -1,4 +1,4 @@
-//! Requirements of a section on mesh, bodies, supports and loads.
+//! What a section asks of mesh, bodies, supports and loads, and what it has no meaning for.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Nodal shares of loads on sides and bodies.
+//! What a load on a side or a body leaves to each node.
 
 use std::collections::BTreeMap;
 
@@ -17,12 +17,12 @@ pub fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
     along_edges(mesh, edges, |along| along.norm())
 }
 
-/// Nodal shares of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its edges.
+/// Those of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its edges.
 pub fn pressure_shares(mesh: &Mesh, edges: &[Edge]) -> [Vec<Share>; 2] {
     [along_edges(mesh, edges, |along| -along.y), along_edges(mesh, edges, |along| along.x)]
 }
 
-/// Nodal shares of a force on all edges together, as a uniform traction: those of a traction over ∫ w |X'| dξ.
+/// Those of a force on all edges together, as an even traction: what a traction has, over ∫ w |X'| dξ.
 pub fn even_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
     let shares = edge_shares(mesh, edges);
     let total: f64 = shares.iter().map(|(_, share, _)| share).sum();
@@ -78,7 +78,7 @@ pub fn mass_shares(model: &Model, name: &str, place: &str) -> Checked<Vec<Share>
     Ok(shares)
 }
 
-/// Nodal coefficients of an absorbing side.
+/// What the nodes of an absorbing side have of it.
 pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
     for Edge { nodes, element } in edges {

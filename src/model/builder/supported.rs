@@ -1,9 +1,9 @@
-//! Unconstrained motions and missing masses, found before anything is solved: bodies with free rigid-body motions in a static step,
-//! bodies and nodes without mass in a dynamic one, and unconstrained nodes outside all bodies.
+//! What nothing holds or carries, found before anything is solved: bodies that float in a static step, bodies and nodes
+//! without mass in a dynamic one, and nodes outside all bodies that nothing holds.
 //!
 //! # Floating bodies
 //!
-//! Bodies with free rigid-body motions in a static step.
+//! Bodies that float in a static step.
 //!
 //! A shared node, a periodic copy, a follower of a plate, a support, a spring and a dashpot are equations between the rigid
 //! motions of the parts of a model, a row of numbers each. A motion at right angles to all of them meets no resistance.
@@ -199,7 +199,7 @@ impl<'m> Groups<'m> {
         resisted[group].add(sum, size);
     }
 
-    /// The first free motion in a step, in words.
+    /// What can move how in a step, in words.
     fn free_motion(&self, step: &Step) -> Option<String> {
         let mut resisted = self.resisted.clone();
         holding(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
@@ -264,7 +264,7 @@ impl<'m> Parts<'m> {
         Self { parts, model, of_node }
     }
 
-    /// The moving bodies or node, in words.
+    /// What is moved, in words: bodies, or a node.
     pub fn names(&self, part: usize) -> Vec<String> {
         let Part { bodies, nodes, .. } = &self.parts[part];
         match bodies.is_empty() {
@@ -313,7 +313,7 @@ impl<'m> Parts<'m> {
         rows
     }
 
-    /// Motions that a part resists by itself: hoops resist all but the motion along the axis, and a node does not turn.
+    /// What a part cannot do by itself: hoops resist all but the motion along the axis, and a node does not turn.
     fn of_shape(&self) -> Vec<Row> {
         let axisymmetric = self.model.mesh.section.is_axisymmetric();
         let of = |(part, Part { bodies, nodes, .. }): (usize, &Part)| {
@@ -398,7 +398,7 @@ impl Resisted {
         Self { size, basis: Vec::new() }
     }
 
-    /// Component of a vector at right angles to all that is resisted.
+    /// What of a vector is at right angles to all that is resisted.
     fn rest(&self, mut of: DVector<f64>) -> DVector<f64> {
         // Twice, as the first time leaves round-off.
         for known in self.basis.iter().chain(&self.basis) {

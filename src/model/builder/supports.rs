@@ -83,7 +83,7 @@ pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Sp
     Ok(())
 }
 
-/// The supports along inclined directions and normals, node by node.
+/// What a support says along inclined directions and normals, node by node.
 fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Model) -> Checked<Vec<Along<'s>>> {
     let mut all = Vec::new();
     if let (Some(direction), Some(change)) = (&support.along, &support.u) {

@@ -25,7 +25,7 @@ pub fn increments(newton: &Columns) -> Result<Vec<Range<usize>>, ReportError> {
     Ok(rows.collect())
 }
 
-/// Linear solves of an increment over the time at its end: an attempt rejected before its first solve has a row without one.
+/// Linear solves of an increment over the time at its end: an attempt given up before its first solve has a row without one.
 ///
 /// # Errors
 /// [`ReportError::Unreadable`] when a column is missing.
@@ -53,7 +53,7 @@ pub fn residuals(newton: &Columns, increments: &[Range<usize>]) -> Result<Vec<[f
     Ok(curve)
 }
 
-/// Most rejected attempts that are shown.
+/// Attempts that were given up and are shown at most.
 const MOST: usize = 500;
 
 /// Summary of the rows of one attempt.
@@ -118,7 +118,7 @@ impl<'a> Table<'a> {
         word(self.verdict?, rows.end - 1)
     }
 
-    /// Why an attempt was rejected, as the table says.
+    /// Why an attempt was given up, as the table says.
     fn why(&self, rows: &Range<usize>) -> &str {
         let reason = self.reason.and_then(|reason| word(reason, rows.end - 1)).filter(|reason| !reason.is_empty());
         reason.or_else(|| self.verdict(rows)).unwrap_or("not solved")
@@ -130,7 +130,7 @@ fn word<'a>((values, words): (&[f64], &'a [String]), row: usize) -> Option<&'a s
     words.get(values[row] as usize).map(String::as_str)
 }
 
-/// Every increment with its solves, and every rejected attempt with its reason.
+/// Every increment with its solves, and every attempt that was given up with what is known of why.
 pub fn attempts(newton: &Columns, complete: bool) -> Value {
     let Some(table) = Table::of(newton) else { return Value::Null };
     let mut attempts = table.attempts();

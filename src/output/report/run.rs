@@ -104,7 +104,7 @@ impl<'a> Run<'a> {
         table.sheet(&shown, pack)
     }
 
-    /// Residuals of the hardest increments, solves of all, and the rejected attempts.
+    /// Residuals of the hardest increments, solves of all, and the attempts that were given up.
     fn newton(&mut self, complete: bool, pack: &mut Pack) -> Value {
         let Some(newton) = read(&self.source.folder, "newton.csv", &mut self.notes) else { return Value::Null };
         self.convergence(&newton, complete, pack).unwrap_or_else(|fault| {

@@ -1,6 +1,6 @@
 //! Frames of bodies and of interfaces for the page: as many as there is room for.
 //!
-//! Quantities of interfaces over place and time, for the page.
+//! What interfaces did over place and time, for the page.
 
 use std::path::Path;
 

@@ -278,7 +278,7 @@ impl Packed {
         Self::of(values.iter().map(|value| [*value]), values.len())
     }
 
-    /// All first bytes, then all second ones, and so on: equal bytes next to each other.
+    /// All first bytes, then all second ones, and so on: alike bytes beside each other.
     fn of<const N: usize>(values: impl Iterator<Item = [u8; N]>, count: usize) -> Self {
         let mut bytes = Vec::with_capacity(N * count);
         values.for_each(|value| bytes.extend_from_slice(&value));

@@ -1,4 +1,4 @@
-//! Names and descriptions of the arrays of the store.
+//! What the arrays of the store are called, and what they are.
 
 use std::collections::{BTreeMap, BTreeSet};
 

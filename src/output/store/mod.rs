@@ -56,7 +56,7 @@ const SLIP_RATE: usize = 2;
 /// Time and quantities of all contacts, one after the other.
 type Record = Vec<Vec<f64>>;
 
-/// State that a checkpoint keeps: of the store, and of the records.
+/// What is remembered: of the store, and of the records.
 type Memory = (Saved, Option<Record>, (f64, Vec<Vec<f64>>));
 
 impl InterfaceStore {

@@ -164,9 +164,9 @@ impl Explicit {
         (self.step.scheme.safety() * self.care * longest).min(self.step.increments.max)
     }
 
-    /// Equal increments to a time, none longer than is stable. What is stored in motion and contacts is reported at the end only,
+    /// Equal increments to a time, none longer than is stable. What is stored in motion and contacts is told at the end only,
     /// the work and dissipation in between having been summed. A `pause` that is asked for ends it after an increment short of
-    /// that time; continuing from there gives bitwise identical results.
+    /// that time; going on from there leads to the same bits.
     ///
     /// # Errors
     /// [`IncrementFailure`] when an element inverts, a friction law fails, a load has no value, or the motion has none.

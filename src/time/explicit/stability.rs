@@ -1,7 +1,7 @@
 //! The longest stable increment, (1) to (4) of [`super`], and when it has to be found again.
 //!
 //! An element has its own bound until its shape has changed: a node moved, against its first one, by more than the share
-//! [`CHANGED`] of the element's size, which is its area over its diagonal. That is known before the increment in which it
+//! [`CHANGED`] of the element's size, which is its area over its diagonal. That is told before the increment in which it
 //! happens, from the displacements at its end, which are known. All elements are compared as soon as nodes may have moved
 //! so far against each other that one has changed by [`LATEST`]. What contacts add is found again when a point meets another segment.
 //!

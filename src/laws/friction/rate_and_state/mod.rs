@@ -342,7 +342,7 @@ impl RateAndState {
     /// end.
     ///
     /// # Errors
-    /// As for the answer itself.
+    /// As of the answer itself.
     pub(super) fn increment(
         &self,
         old: &FrictionState,

@@ -17,7 +17,7 @@ const SHORT: u64 = 1 << 10;
 /// ... which is to change tractions by at most this share of the tolerance.
 const SNAP: f64 = 1e-3;
 
-/// Attempts at sub-steps after which the increment fails: it is far too long.
+/// Attempts at sub-steps after which the increment is given up: it is far too long.
 const MOST_ATTEMPTS: usize = 20_000;
 
 /// A sub-step is taken by 1, 2, ... and at most so many increments of first order.
@@ -100,7 +100,7 @@ impl<'a> Ramp<'a> {
     /// Variations of the state at the end of the path.
     ///
     /// # Errors
-    /// As for the answer.
+    /// As of the answer.
     pub(super) fn variations(mut self) -> Result<[Variation; 2], LawFailure> {
         Ok(self.end()?.variations)
     }

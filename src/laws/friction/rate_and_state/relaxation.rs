@@ -51,7 +51,7 @@ impl Coefficients {
 /// G is right to this share of |q_tr|.
 const PRECISION: f64 = 1e-14;
 
-/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be distinguished.
+/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be told apart.
 const LEAST_PIECE: f64 = 1e-13;
 
 /// Exponents above it would overflow.

@@ -325,7 +325,7 @@ const LAST_STEP_OF_FIRST_ORDER: f64 = 1e-8;
 /// y below which Chebyshev's method from the start is no good guess, as U is too large.
 const SMALL_Y: f64 = 0.05;
 
-/// Pieces of the bracket narrower than this hold roots that cannot be distinguished.
+/// Pieces of the bracket narrower than this hold roots that cannot be told apart.
 const LEAST_PIECE: f64 = 1e-12;
 
 impl SlipEquation<'_> {

@@ -20,7 +20,7 @@ use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 
 impl SuperSubloading {
     /// The path of an increment in which slip may be plastic: from the start, or from where the traction passes 0; its first
-    /// state, and the sign of the traction, by which both are mirrored.
+    /// station, and the sign of the traction, by which both are mirrored.
     pub(super) fn lead(
         &self,
         old: &FrictionState,
@@ -52,7 +52,7 @@ impl SuperSubloading {
         (path, start, sign)
     }
 
-    /// Leave to the path what follows the share of the increment at which the traction passes 0; its first state.
+    /// Leave to the path what comes after the share of the increment at which the traction passes 0; its first station.
     fn pass_zero(&self, path: &mut LoadPath, old_mu: f64, trial: f64, share: f64, by: &Directions) -> PathState {
         let (alpha_t, slip, dt) = (self.alpha_t, path.slip, path.time);
         let dstiffness = [0, 1].map(|i| by.parameters.map_or(0.0, |shifts| shifts[i].alpha_t));
@@ -80,7 +80,7 @@ impl SuperSubloading {
 /// Sub-steps are halved at most so often: until slip, pressure and time no longer change in floating point.
 const MAX_HALVINGS: u32 = 48;
 
-/// Evaluations of the slip equation after which the increment fails: it is far too long.
+/// Evaluations of the slip equation after which the increment is given up: it is far too long.
 const MAX_EVALUATIONS: usize = 20_000;
 
 /// A sub-step in which q and μ p change by this share of the tolerance, but for a snap, is short enough to hold a snap.
@@ -89,7 +89,7 @@ const SNAP: f64 = 1e-3;
 /// Errors below this, relative to the tractions they come from, are round-off.
 const NOISE: f64 = 2e-13;
 
-/// The difference of two states over the error of the value extrapolated from them, where it converges slowly.
+/// The difference of two stations over the error of the value extrapolated from them, where it converges slowly.
 const CAUTION: f64 = 4.0;
 
 /// Errors in q, in μ p and in the work
@@ -125,7 +125,7 @@ impl LoadPath<'_> {
         self.refine(start, end, [0.0; 3], MAX_HALVINGS)
     }
 
-    /// The state at the x of `coarse`, which one sub-step from `from` has reached, to within the tolerance.
+    /// The station at the x of `coarse`, which one sub-step from `from` has reached, to within the tolerance.
     ///
     /// Two halves of the sub-step are compared with the whole and, where they differ too much, refined in their turn.
     /// As errors are proportional to the third power of the sub-step, the difference should then be an eighth: what it
@@ -204,7 +204,7 @@ impl LoadPath<'_> {
         [strength, strength, work + NOISE * self.energy(fine)]
     }
 
-    /// The finer of two states after plastic slip, extrapolated to vanishing sub-steps.
+    /// The finer of two stations after plastic slip, extrapolated to vanishing sub-steps.
     fn extrapolated(&self, halves: &Halves) -> PathState {
         let Halves { from, coarse, fine, .. } = *halves;
         let beyond = |fine: f64, coarse: f64| fine + (fine - coarse) / 3.0;

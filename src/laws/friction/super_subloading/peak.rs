@@ -6,7 +6,7 @@
 //!
 //! # Onset
 //!
-//! Fast slip after stationary contact: the peak, the drop after it, and the time of healing.
+//! What fast slip after rest does to friction, and rest after slip: the peak that is met, how far it falls and how soon it heals.
 
 use std::f64::consts::LN_2;
 

@@ -1,6 +1,6 @@
 //! Cauchy stress at the quadrature points and at the nodes.
 //!
-//! Reference geometry of an element.
+//! What the reference geometry of an element says.
 
 use std::sync::OnceLock;
 
