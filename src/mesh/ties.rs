@@ -3,7 +3,7 @@
 //! Every node of a side is a copy of its partner on the other, and all nodes of a plate are copies of one: u, v and a are those of
 //! that node, and what acts on a copy acts on it. The copy keeps its own position, so that the elements beside it know their shape.
 
-use super::disjoint_sets::DisjointSets;
+use super::joined::Joined;
 
 /// Copies and the nodes they move with.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,10 +19,10 @@ impl Ties {
         if joined.is_empty() {
             return Self::default();
         }
-        let mut all = DisjointSets::new(nodes);
-        joined.iter().for_each(|&[a, b]| all.union(a, b));
+        let mut all = Joined::new(nodes);
+        joined.iter().for_each(|&[a, b]| all.join(a, b));
         let copies = |group: Vec<usize>| group.clone().into_iter().skip(1).map(move |copy| (copy, group[0]));
-        let mut pairs: Vec<(usize, usize)> = all.sets().into_iter().flat_map(copies).collect();
+        let mut pairs: Vec<(usize, usize)> = all.groups().into_iter().flat_map(copies).collect();
         pairs.sort_unstable();
         Self { pairs }
     }

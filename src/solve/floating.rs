@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
 
 use crate::linear::{LinearSolver, Multifrontal, Pattern, SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;
-use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::joined::Joined;
 use crate::model::Model;
 
 /// Relative stiffness below which a motion counts as free: far above round-off, far below any contact penalty.
@@ -64,11 +64,11 @@ struct Parts {
 impl Parts {
     fn of(model: &Model) -> Self {
         let mut first: Vec<Option<usize>> = vec![None; model.mesh.nodes.len()];
-        let mut joined = DisjointSets::new(model.bodies.len());
+        let mut joined = Joined::new(model.bodies.len());
         for (body, nodes) in model.bodies.iter().map(|body| &body.nodes).enumerate() {
-            nodes.iter().for_each(|&node| joined.union(body, *first[node].get_or_insert(body)));
+            nodes.iter().for_each(|&node| joined.join(body, *first[node].get_or_insert(body)));
         }
-        let bodies = joined.sets();
+        let bodies = joined.groups();
         let mut part = vec![0; model.bodies.len()];
         bodies.iter().enumerate().for_each(|(k, bodies)| bodies.iter().for_each(|&body| part[body] = k));
         Self { of_node: first.into_iter().map(|body| body.map(|body| part[body])).collect(), bodies }
@@ -117,9 +117,9 @@ impl Resistance {
 
     /// Parts that are coupled, directly or through others.
     fn groups(&self) -> Vec<Vec<usize>> {
-        let mut joined = DisjointSets::new(self.parts);
-        self.blocks.keys().for_each(|&(row, column)| joined.union(row, column));
-        joined.sets()
+        let mut joined = Joined::new(self.parts);
+        self.blocks.keys().for_each(|&(row, column)| joined.join(row, column));
+        joined.groups()
     }
 
     /// Motion of the parts of a group, three numbers each, that meets no resistance: by singular values in a small group, by

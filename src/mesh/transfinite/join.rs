@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::grid::Grid;
 use super::{BlockError, Blocks};
 use crate::mesh::boxes::{Box2, Tree};
-use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::joined::Joined;
 
 /// Places nearer to each other than this share of the shortest side are the same.
 const SAME: f64 = 1e-6;
@@ -27,7 +27,7 @@ pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError>
         blocks,
         grids,
         apart: blocks.blocks.iter().map(|block| [0, 1, 2, 3].map(|side| is_apart(&block.sides[side]))).collect(),
-        same: DisjointSets::new(slots),
+        same: Joined::new(slots),
         partner: vec![[None; 4]; grids.len()],
     };
     let pairs = neighbours(blocks, grids);
@@ -73,7 +73,7 @@ struct Join<'b> {
     /// sides that are not to be joined
     apart: Vec<[bool; 4]>,
     /// slots of the same node
-    same: DisjointSets,
+    same: Joined,
     /// what each side is joined to
     partner: Vec<[Option<Side>; 4]>,
 }
@@ -116,7 +116,7 @@ impl Join<'_> {
             return Err(self.complain(one, other, "on the same side of it: the two overlap; remove one"));
         }
         self.partners(one, other)?;
-        a.into_iter().zip(b).for_each(|(a, b)| self.same.union(a, b));
+        a.into_iter().zip(b).for_each(|(a, b)| self.same.join(a, b));
         Ok(())
     }
 
@@ -158,12 +158,12 @@ impl Join<'_> {
     fn refuse_touching(&self, a: usize, b: usize) -> Result<(), BlockError> {
         let near = self.near(a, b);
         for corner in 0..4 {
-            let (slot, at) = (self.same.find(self.grids[a].side(corner)[0]), self.grids[a].corner(corner));
+            let (slot, at) = (self.same.lowest(self.grids[a].side(corner)[0]), self.grids[a].corner(corner));
             let touched: Vec<usize> = (0..4).filter(|side| self.grids[b].distance(*side, at) <= near).collect();
             let apart = |block: usize, sides: &[usize]| sides.iter().any(|side| self.apart[block][*side]);
             let Some(side) = touched.first() else { continue };
             let joined =
-                touched.iter().any(|side| self.grids[b].side(*side).iter().any(|&node| self.same.find(node) == slot));
+                touched.iter().any(|side| self.grids[b].side(*side).iter().any(|&node| self.same.lowest(node) == slot));
             if !(joined || apart(a, &[corner, (corner + 3) % 4]) || apart(b, &touched)) {
                 let message = format!(
                     "its corner {corner} lies on side {side} of blocks[{b}] and is not joined to it: blocks of a body are joined \
@@ -212,7 +212,7 @@ impl Join<'_> {
 
     /// Numbers in the order in which nodes come first.
     fn numbers(self) -> Vec<usize> {
-        let nodes = self.same.sets().into_iter().enumerate();
+        let nodes = self.same.groups().into_iter().enumerate();
         let mut slots: Vec<(usize, usize)> =
             nodes.flat_map(|(number, slots)| slots.into_iter().map(move |slot| (slot, number))).collect();
         slots.sort_unstable();

@@ -30,7 +30,7 @@ use super::rigid;
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::Surface;
-use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::joined::Joined;
 use crate::mesh::rigid::RigidBody;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
@@ -166,15 +166,15 @@ struct Groups<'m> {
 impl<'m> Groups<'m> {
     fn of(parts: &'m Parts<'m>) -> Self {
         let couplings = parts.couplings();
-        let mut joined = DisjointSets::new(parts.parts.len());
+        let mut joined = Joined::new(parts.parts.len());
         for row in &couplings {
-            row.windows(2).for_each(|two| joined.union(two[0].0, two[1].0));
+            row.windows(2).for_each(|two| joined.join(two[0].0, two[1].0));
         }
         let is_checked = |group: &Vec<usize>| {
             let has_bodies = group.iter().any(|&part| !parts.parts[part].bodies.is_empty());
             has_bodies && group.len() <= FEW_PARTS && !group.iter().any(|&part| parts.parts[part].on_rigid)
         };
-        let members: Vec<Vec<usize>> = joined.sets().into_iter().filter(is_checked).collect();
+        let members: Vec<Vec<usize>> = joined.groups().into_iter().filter(is_checked).collect();
         let mut place = vec![None; parts.parts.len()];
         for (g, group) in members.iter().enumerate() {
             group.iter().enumerate().for_each(|(slot, &part)| place[part] = Some((g, slot)));
@@ -353,16 +353,16 @@ fn owners(model: &Model) -> Vec<Vec<usize>> {
 
 /// Groups of owners that move as one.
 fn joined(model: &Model, owners: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    let mut joined = DisjointSets::new(1 + owners.iter().flatten().max().copied().unwrap_or(0));
-    bonded(model, owners).into_iter().for_each(|(a, b)| joined.union(a, b));
+    let mut joined = Joined::new(1 + owners.iter().flatten().max().copied().unwrap_or(0));
+    bonded(model, owners).into_iter().for_each(|(a, b)| joined.join(a, b));
     for pair in &model.contacts {
         let Master::Mesh(Surface { segments, .. }) = &pair.master else { continue };
         // A group of edges may run along several bodies.
         let nodes = pair.slave_nodes().chain(segments.iter().flat_map(|segment| segment.ends));
         let met: Vec<usize> = nodes.flat_map(|node| owners[node].iter().copied()).collect();
-        met.windows(2).for_each(|two| joined.union(two[0], two[1]));
+        met.windows(2).for_each(|two| joined.join(two[0], two[1]));
     }
-    joined.sets()
+    joined.groups()
 }
 
 /// Bodies that share nodes at two places.
