@@ -46,6 +46,8 @@ fn surfaces(n: usize) -> Surfaces {
         mortar: None,
         touch: 1e-9,
         penetration: None,
+        stick: None,
+        tied: false,
         radiation: 0.0,
         fluid: None,
     };

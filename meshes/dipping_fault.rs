@@ -6,8 +6,9 @@
 //!
 //! The fault goes from (0, 0) down under DIP degrees, through the whole domain; `hang` lies at larger x, `foot` at smaller. SENSE is 1
 //! for a thrust and -1 for a normal fault, SIZE the spacing of the nodes on it [m], REACH how far the domain goes to both sides and
-//! down [m]. FOLDER gets `bp3.msh` and `bp3.json`, which runs YEARS (of 365 days). The elements are bilinear, or with `q8`
-//! quadratic: better where a shallow dip shears them.
+//! down [m]. FOLDER gets `bp3.msh` and `bp3.json`, which runs YEARS (of 365 days). The elements are bilinear, or with `q8`, and below
+//! 45°, quadratic: bilinear ones that a shallow dip shears are too stiff at every size (at 30° the first event comes four years
+//! early, after 203 years instead of 206.8).
 //!
 //! ```text
 //! x = s cos δ ± d,   y = −s sin δ            rows of constant s, columns parallel to the fault
@@ -39,6 +40,8 @@ const PRESSURE: f64 = 50e6;
 /// b, f₀, V₀, D_c
 const LAW: [f64; 4] = [0.015, 0.6, 1e-6, 0.008];
 const YEAR: f64 = 365.0 * 86400.0;
+/// Dip below which bilinear elements are sheared too much [°]
+const SHALLOW: f64 = 45.0;
 
 #[allow(dead_code, reason = "tests call what it calls")]
 fn main() -> Result<(), Box<dyn Error>> {
@@ -55,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if !(dip > 0.0 && dip <= 90.0 && sense.abs() == 1.0 && size > 0.0 && reach > CREEP) {
         return Err("DIP is 0 to 90, SENSE 1 or -1, SIZE positive, REACH above 40 km".into());
     }
-    let fault = Fault { dip: dip.to_radians(), sense, size, reach, quadratic };
+    let fault = Fault { dip: dip.to_radians(), sense, size, reach, quadratic: quadratic || dip < SHALLOW };
     fs::create_dir_all(folder)?;
     fs::write(Path::new(folder).join("bp3.msh"), fault.mesh())?;
     fs::write(Path::new(folder).join("bp3.json"), fault.case(years, ""))?;

@@ -18,7 +18,7 @@ use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::model::builder::{Checked, ModelError};
+use crate::model::builder::{Checked, Contact, ModelError, is_explicit};
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::run::{Saved, SavedRun};
@@ -247,6 +247,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
     differences.retain(|difference| !difference.is_variant());
     refuse(differences, "this case cannot begin with the end of that run")?;
     join(document, steps(&before));
+    same_defaults(&before, document)?;
     Ok((file, checkpoint))
 }
 
@@ -262,7 +263,22 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
     for k in 0..begun {
         compare(format!("steps[{k}]"), steps(&before).get(k), steps(&now).get(k), &mut differences);
     }
-    refuse(differences, "the case has changed since its checkpoint was written")
+    refuse(differences, "the case has changed since its checkpoint was written")?;
+    same_defaults(&before, &now)
+}
+
+/// Penalties and methods that a case leaves open are other ones with an explicit step than without: the gaps of the run so far
+/// would be other pressures.
+fn same_defaults(before: &Value, now: &Value) -> Checked<()> {
+    let [Ok(before), Ok(now)] = [before, now].map(read::input::<Case>) else { return Ok(()) };
+    if is_explicit(&before.steps) == is_explicit(&now.steps) {
+        return Ok(());
+    }
+    let open = |contact: &&Contact| contact.area.is_none() && contact.normal.alpha_n.is_none();
+    let Some(open) = now.contacts.iter().find(|(_, contact)| open(contact)) else { return Ok(()) };
+    let message = "is left open, and is another one in a run with explicit steps than in one without, as the run before was \
+                   (or the other way round): give it in both cases; `fecontact check --resolved` prints what it was";
+    Err(ModelError::new(format!("contacts.{}.normal.alpha_n", open.0), message))
 }
 
 /// Parameters of friction that only the start of a run depends on, or that what is stored depends on.

@@ -22,7 +22,8 @@ pub fn resolved(case: &Case, model: &Model) -> String {
     if case.begin_with.is_none() {
         for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
             if let Some(contact) = case.contacts.get_mut(&pair.name) {
-                fill(contact, pair.alpha_n, chosen.as_ref());
+                let alpha_t = default_alpha_t(contact, model, &case.steps);
+                fill(contact, pair.alpha_n, chosen.as_ref(), alpha_t);
             }
         }
     }
@@ -30,14 +31,14 @@ pub fn resolved(case: &Case, model: &Model) -> String {
     serde_json::to_string_pretty(&case).unwrap_or_default()
 }
 
-fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>) {
+fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>, alpha_t: Option<f64>) {
     contact.normal.alpha_n = Some(alpha_n);
     let Some(Chosen { method, points, .. }) = chosen else { return };
     contact.method = Some(*method);
     if *method == Method::GaussToSegment {
         contact.points = Some(*points);
     }
-    let alpha_t = default_alpha_t(alpha_n);
+    let Some(alpha_t) = alpha_t else { return };
     if let Some(parameters) = contact.friction.parameters() {
         contact.friction = Friction::from(with_alpha_t(parameters, alpha_t));
     }

@@ -94,7 +94,7 @@ impl<'a> PointEvaluation<'a> {
         let alpha_n = pair.normal_stiffness(increment.during.stiffening);
         let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
         let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
-        let apart = place.closes && old.apart(pair.touch);
+        let apart = place.closes && !pair.tied && old.apart(pair.touch);
         let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
         let whole = kinematics.slip;
         let mut loading = Self {
@@ -131,7 +131,8 @@ impl<'a> PointEvaluation<'a> {
             let free = if self.free > 0.0 && !self.parts() { self.free } else { lifted };
             // What slip alone could lift is far more than what friction lets it.
             let first = if self.lift > 0.0 && before > 0.0 { free.min(before) } else { free };
-            self.load(carried(first, self.increment.presumption));
+            // A tie pulls as well.
+            self.load(if self.pair.tied { free } else { carried(first, self.increment.presumption) });
         }
         Ok(())
     }
@@ -175,11 +176,15 @@ impl<'a> PointEvaluation<'a> {
         let PointPlace { gap, foot, closes, fluid } = self.place;
         if !closes {
             let length = closed.push_open(self.kinematics, fluid).unwrap_or(self.old.length);
-            let parted = ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, ..*self.old };
+            let parted = ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, elastic_slip: 0.0, ..*self.old };
             return Ok(ContactState { friction: response.state, foot, gap, length, fluid, ..parted });
         }
         let (pressure, carried) = (self.agree(&mut response)?, self.sliding.pressure);
         let (share, dslip_dpressure) = self.counted(carried);
+        // To a node the point is held by α_n in either direction: where it was off the node by more than it goes in, no other
+        // tractions turn as its own do.
+        let at_node = foot.is_some_and(|foot| foot.xi == 1.0) && self.increment.presumption.astride.is_some();
+        let promised = self.increment.presumption.promised.filter(|_| !at_node);
         let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
         let stiffness = law.description.stiffness;
         if increment.presumption.presume == Presume::Stick {
@@ -206,7 +211,7 @@ impl<'a> PointEvaluation<'a> {
             vary(kinematics, alpha, alpha * response.dopening_dslip, counted, closed);
         }
         let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
-        closed.push(kinematics, &response, Beside { radiates, fluid }, increment.presumption.promised);
+        closed.push(kinematics, &response, Beside { radiates, fluid }, promised);
         Ok(ContactState {
             friction: response.state,
             foot,
@@ -217,6 +222,7 @@ impl<'a> PointEvaluation<'a> {
             radiated: old.radiated + 0.5 * (old.radiation + radiation) * sliding.slip,
             // The next increment begins with the same pressure, but the stiffness given.
             multiplier: old.multiplier - (alpha_n - pair.alpha_n) * clearance,
+            elastic_slip: pair.left_of_stick(law, old, response.state.traction),
             fluid,
         })
     }
@@ -325,7 +331,7 @@ pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactSta
     let clearance = gap - old.friction.opening;
     let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
     let presume = increment.presumption.presume;
-    kept || pressure > 0.0 || touches(pair, clearance, old, presume) || may_ride(pair, slave, old)
+    pair.tied && old.foot.is_some() || kept || pressure > 0.0 || touches(pair, clearance, old, presume) || may_ride(pair, slave, old)
 }
 
 /// Whether slip may keep a point closed, or part it, whatever its gap says: that is known once its slip is.

@@ -14,6 +14,7 @@ use super::point::ContactState;
 use super::search::Index;
 use super::small_sliding::{SmallPoint, SmallSliding};
 use super::surface::{SlavePoint, Weights};
+use crate::laws::friction::FrictionState;
 use crate::mesh::configuration::Configuration;
 
 /// Projection of a point on the master and its kinematics; `None` without a projection.
@@ -77,11 +78,15 @@ impl ContactPair {
         let state = |(k, (slave, met)): (usize, (&SlavePoint, Met))| {
             let given = self.initial.as_ref().map(|initial| initial[k]);
             let InitialTraction { pressure, traction } = given.unwrap_or_default();
-            let friction = self.law(slave).law.initial_state(pressure, traction);
+            let friction = match self.tied && met.is_none() {
+                true => FrictionState::default(),
+                false => self.law(slave).law.initial_state(pressure, traction),
+            };
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
             let (gap, foot) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };
             ContactState {
+                elastic_slip: 0.0,
                 friction,
                 foot,
                 length,
@@ -109,9 +114,24 @@ impl ContactPair {
 
     /// Switch to small sliding: every point keeps its projection in the configuration `x`.
     pub fn slide_little(&mut self, x: &Configuration) {
+        self.keep_feet(false, x);
+    }
+
+    /// Tie the surfaces as they lie in the configuration `x`: every point keeps its place on the master and its gap, in axes that
+    /// turn with the slave unless rotations are small.
+    pub fn tie(&mut self, small: bool, x: &Configuration) {
+        self.keep_feet(!small, x);
+        let met = self.meetings(x, false);
+        self.points.iter_mut().zip(&met).for_each(|(slave, met)| slave.touch = met.as_ref().map_or(0.0, |met| met.0.gap));
+        self.initial = Some(vec![InitialTraction::default(); met.len()]);
+    }
+
+    fn keep_feet(&mut self, turning: bool, x: &Configuration) {
         let met = self.meetings(x, false).into_iter().zip(&self.points);
-        let point =
-            |((met, k), slave): ((Meeting, Kinematics), &SlavePoint)| SmallPoint::new(met, &k, slave, &self.master, x);
+        let point = |((met, k), slave): ((Meeting, Kinematics), &SlavePoint)| {
+            let point = SmallPoint::new(met, &k, slave, &self.master, x);
+            if turning { point.turning_with(slave) } else { point }
+        };
         let points = met.map(|(met, slave)| Some(point((met?, slave))));
         self.small = Some(SmallSliding { points: points.collect() });
     }
@@ -156,7 +176,7 @@ impl ContactPair {
     /// that edge [-].
     pub fn deepest_master_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
         let Some(Reverse { nodes, slave: Master::Mesh(slave) }) = &self.reverse else { return None };
-        let closed = self.points.iter().zip(states).filter(|(_, state)| state.friction.pressure > 0.0);
+        let closed = self.points.iter().zip(states).filter(|(_, state)| state.is_closed());
         let closed =
             closed.flat_map(|(point, _)| &point.length).flat_map(|share| share.tangent.iter().map(|(node, _)| *node));
         let closed: BTreeSet<usize> = closed.collect();

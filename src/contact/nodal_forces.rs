@@ -293,7 +293,7 @@ impl ContactPair {
 
     /// The closed points with their kinematics and tractions.
     fn acting(&self, states: &[ContactState], x: &Configuration) -> Vec<Acting> {
-        let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].friction.pressure > 0.0).collect();
+        let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].is_closed()).collect();
         if closed.is_empty() {
             return Vec::new();
         }

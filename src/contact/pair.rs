@@ -32,7 +32,7 @@ use super::point::ContactState;
 pub use super::point::{ContactIncrement, Presumption};
 use super::small_sliding::SmallSliding;
 use super::surface::SlavePoint;
-use crate::laws::friction::{ContactLaw, FrictionState, LawFailure, Regime, Sliding, observables};
+use crate::laws::friction::{ContactLaw, Description, FrictionState, LawFailure, Regime, Sliding, observables};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::rigid::RigidBody;
 
@@ -44,6 +44,8 @@ const PART: usize = 64;
 pub struct ContactPair {
     /// Name in the case file
     pub name: String,
+    /// Whether the surfaces are held together whatever the pressure
+    pub tied: bool,
     /// Points of the slave surface, in order along it
     pub points: Vec<SlavePoint>,
     /// The master
@@ -60,6 +62,8 @@ pub struct ContactPair {
     pub touch: f64,
     /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
     pub penetration: Option<f64>,
+    /// Largest elastic slip left where the law knows none; plain penalty if not given [L]
+    pub stick: Option<f64>,
     /// η: radiation damping in static steps, 0 for none [F T/L³]
     pub radiation: f64,
     /// Fluid that acts on the surfaces in addition to the contact pressure
@@ -182,11 +186,25 @@ impl ContactPair {
         }
     }
 
-    /// Largest gap of a closed point that the multipliers of a pass leave, over the one allowed; 0 for the plain penalty.
-    pub fn excess(&self, trial: &[ContactState]) -> f64 {
-        let Some(tolerance) = self.penetration else { return 0.0 };
-        let closed = trial.iter().filter(|state| state.friction.pressure > 0.0);
-        closed.map(|state| state.clearance().abs() / tolerance).fold(0.0, f64::max)
+    /// Largest gap and elastic slip of a closed point that the multipliers of a pass leave, over the ones allowed; 0 for the plain
+    /// penalty.
+    pub fn excess(&self, trial: &[ContactState]) -> [f64; 2] {
+        let closed = || trial.iter().filter(|state| state.is_closed());
+        let over = |allowed: Option<f64>, left: fn(&ContactState) -> f64| {
+            let Some(allowed) = allowed else { return 0.0 };
+            closed().map(|state| left(state).abs() / allowed).fold(0.0, f64::max)
+        };
+        [over(self.penetration, ContactState::clearance), over(self.stick, |state| state.elastic_slip)]
+    }
+
+    /// e = e₀ + (q − q₀)/α_t at the end of an increment that starts with the traction q₀; 0 for the plain penalty, and where
+    /// elastic slip is a part of the law [L].
+    pub fn left_of_stick(&self, law: &ContactLaw, old: &ContactState, traction: f64) -> f64 {
+        let Description { stiffness, stiffness_is_penalty, .. } = law.description;
+        match self.stick {
+            Some(_) if stiffness_is_penalty => old.elastic_slip + (traction - old.friction.traction) / stiffness,
+            _ => 0.0,
+        }
     }
 
     /// α_n times what the iterations of an increment make it: more than one under the augmented Lagrangian alone, where answers
@@ -274,16 +292,27 @@ impl ContactPair {
         pressure / (1.0 + self.normal_stiffness(stiffening) * self.compliance)
     }
 
-    /// The committed states with the pressures of a pass as multipliers, p̄ ← p (Uzawa's method).
-    pub fn multiplied(&self, old: &[ContactState], trial: &[ContactState]) -> Vec<ContactState> {
-        let multiplier = |new: &ContactState| if self.penetration.is_some() { new.friction.pressure } else { 0.0 };
-        old.iter().zip(trial).map(|(old, new)| ContactState { multiplier: multiplier(new), ..*old }).collect()
+    /// The states that a pass began with, with multipliers from what it has `found` (Uzawa's method): p̄ ← p, and q₀ ← q₀ + α_t e,
+    /// the traction that the increment starts with where it sticks without elastic slip.
+    pub fn multiplied(&self, old: &[ContactState], found: &[ContactState]) -> Vec<ContactState> {
+        let points = self.points.iter().zip(old.iter().zip(found));
+        let again = |(slave, (old, new)): (&SlavePoint, (&ContactState, &ContactState))| {
+            let mut again = *old;
+            again.multiplier = if self.penetration.is_some() { new.friction.pressure } else { 0.0 };
+            again.friction.traction += self.law(slave).description.stiffness * new.elastic_slip;
+            again
+        };
+        points.map(again).collect()
     }
 
-    /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
-    pub fn elastic_slip(&self, slave: &SlavePoint, friction: &FrictionState) -> f64 {
-        let stiffness = self.law(slave).description.stiffness;
-        if stiffness > 0.0 { friction.traction / stiffness } else { 0.0 }
+    /// Elastic part of the slip, q/α_t, or what of it multipliers leave; 0 for a frictionless contact [L].
+    pub fn elastic_slip(&self, slave: &SlavePoint, state: &ContactState) -> f64 {
+        let Description { stiffness, stiffness_is_penalty, .. } = self.law(slave).description;
+        match stiffness > 0.0 {
+            true if stiffness_is_penalty && self.stick.is_some() => state.elastic_slip,
+            true => state.friction.traction / stiffness,
+            false => 0.0,
+        }
     }
 
     /// Ranges of points that follow each other along an unbroken surface.
@@ -406,14 +435,14 @@ pub fn field_values(pair: &ContactPair, states: &[ContactState], time: f64, dt: 
             "pressure" => friction.pressure,
             "traction" => friction.traction,
             "slip" => friction.plastic_slip,
-            "elastic_slip" => pair.elastic_slip(slave, friction),
-            "total_slip" => friction.plastic_slip + pair.elastic_slip(slave, friction),
+            "elastic_slip" => pair.elastic_slip(slave, state),
+            "total_slip" => friction.plastic_slip + pair.elastic_slip(slave, state),
             "slip_rate" => friction.plastic_increment * rate,
             "dissipation" => friction.dissipation,
             "fluid_pressure" => state.fluid,
             "state" => match pair.regime(slave, state) {
                 Regime::Open => 0.0,
-                Regime::Stick => 1.0,
+                Regime::Stick | Regime::Tied => 1.0,
                 Regime::Slip => 2.0,
             },
             _ => pair.observed(slave, name, friction, time),

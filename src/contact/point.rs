@@ -185,6 +185,8 @@ pub struct ContactState {
     pub radiated: f64,
     /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
     pub multiplier: f64,
+    /// e: elastic slip that the multiplier of the traction leaves, lowered until it is small enough; 0 for the plain penalty [L]
+    pub elastic_slip: f64,
     /// p_w: pressure of the fluid where the master faces the point [F/L²]
     pub fluid: f64,
 }
@@ -202,12 +204,17 @@ impl ContactState {
 
     /// Whether a point is open at a gap that counts, more than [`ContactPair::touch`](super::pair::ContactPair::touch).
     pub fn apart(&self, touch: f64) -> bool {
-        self.friction.pressure == 0.0 && self.clearance() > touch
+        !self.is_closed() && self.clearance() > touch
+    }
+
+    /// Whether the surfaces press on each other, or are tied.
+    pub fn is_closed(&self) -> bool {
+        self.friction.pressure > 0.0 || self.friction.regime == Regime::Tied
     }
 
     /// Open, stick or slip, as the law says; a point that only a promise keeps closed is open.
     pub fn regime(&self) -> Regime {
-        if self.friction.pressure > 0.0 { self.friction.regime } else { Regime::Open }
+        if self.is_closed() { self.friction.regime } else { Regime::Open }
     }
 }
 

@@ -24,7 +24,8 @@ use nalgebra::Vector2;
 
 use super::kinematics::{Kinematics, Lever, Meeting};
 use super::master::Master;
-use super::surface::{MasterPoint, Segment, SlavePoint};
+use super::projection::normal_of;
+use super::surface::{MasterPoint, Segment, SlavePoint, Weights};
 use crate::mesh::configuration::Configuration;
 
 /// The constant operators of a pair's points.
@@ -54,6 +55,8 @@ pub struct SmallPoint {
     pub weights: Vec<f64>,
     /// Lever of a rigid master that may rotate
     pub lever: Option<Lever>,
+    /// w_a of s J, of a point whose axes turn with the slave: none in small sliding
+    turning: Option<Weights>,
     /// n
     pub normal: Vector2<f64>,
     /// s
@@ -124,13 +127,27 @@ impl SmallPoint {
                 Against::Mesh { ends, spacing: own.fold(spacing((middle.is_some(), ends)), f64::min) }
             }
         };
-        Self { nodes, weights, lever, normal, tangent, gap, length, foot, against }
+        Self { nodes, weights, lever, turning: None, normal, tangent, gap, length, foot, against }
+    }
+
+    /// In axes that turn with the edges of the slave.
+    pub fn turning_with(mut self, slave: &SlavePoint) -> Self {
+        let shares = slave.length.iter();
+        let along: Weights =
+            shares.flat_map(|share| share.tangent.iter().map(|&(node, w)| (node, share.factor * w))).collect();
+        for &(node, _) in &along {
+            if !self.nodes.contains(&node) {
+                self.nodes.push(node);
+                self.weights.push(0.0);
+            }
+        }
+        Self { turning: Some(along), ..self }
     }
 
     /// The slave's node and the one of the master that it faces, or the slave's alone on a rigid master; none where the point
     /// is more than one node of either side, or the master may rotate.
     pub fn facing(&self) -> Option<(usize, Option<usize>)> {
-        if self.lever.is_some() {
+        if self.lever.is_some() || self.turning.is_some() {
             return None;
         }
         let counts = |&(_, w): &(&usize, &f64)| w.abs() > ROUND_OFF;
@@ -193,6 +210,33 @@ impl SmallPoint {
         self.relative(|node| x.displacement(node))
     }
 
+    /// As [`Self::meet`], in axes that turn with the slave:
+    ///
+    /// ```text
+    /// g = n·r,   Δu_t = s·r − (s·r)_before,   r = Σ w_a x_a
+    /// δg = n·δr − s·r δθ,   δΔu_t = s·δr + n·r δθ,   δθ = n·δ(J s)/J
+    /// ```
+    fn meet_turning(&self, along: &Weights, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Meeting {
+        let apart = |x: &Configuration| self.relative(|node| x.between(self.nodes[0], node));
+        let ([s, n], length) = axes(along, x);
+        let (r, [was_s, _]) = (apart(x), axes(along, before).0);
+        (k.normal, k.tangent) = (n, s);
+        k.slip = s.dot(&r) - was_s.dot(&apart(before));
+        if k.varied {
+            let Kinematics { drotation, dgap, dslip, .. } = k;
+            for &(node, w) in along {
+                let at = self.nodes.iter().position(|own| *own == node).unwrap_or_default();
+                (0..2).for_each(|i| drotation[2 * at + i] += w * n[i] / length);
+            }
+            for (dof, turn) in drotation.iter().enumerate() {
+                let w = self.weights[dof / 2];
+                dgap[dof] = w * n[dof % 2] - s.dot(&r) * turn;
+                dslip[dof] = w * s[dof % 2] + n.dot(&r) * turn;
+            }
+        }
+        Meeting { gap: n.dot(&r), foot: self.foot }
+    }
+
     /// Projection of the point on the master, with the slip since the configuration `before`.
     pub fn meet(&self, before: &Configuration, x: &Configuration, k: &mut Kinematics) -> Meeting {
         k.begin(self.normal);
@@ -204,11 +248,21 @@ impl SmallPoint {
             k.dlever.iter_mut().for_each(|row| row.resize(2 * self.nodes.len(), 0.0));
         }
         (k.tangent, k.length) = (self.tangent, self.length);
+        if let Some(along) = &self.turning {
+            return self.meet_turning(along, [before, x], k);
+        }
         k.slip = self.tangent.dot(&self.relative(|node| x.since(before, node)));
         k.dgap.iter_mut().zip(self.normal_row()).for_each(|(dgap, value)| *dgap = value);
         k.dslip.iter_mut().zip(self.tangent_row()).for_each(|(dslip, value)| *dslip = value);
         Meeting { gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
     }
+}
+
+/// Axes s and n along a direction Σ w_a x_a, and its length.
+fn axes(along: &Weights, x: &Configuration) -> ([Vector2<f64>; 2], f64) {
+    let direction = x.combine(along);
+    let s = direction.normalize();
+    ([s, normal_of(s)], direction.norm())
 }
 
 /// Ends of the edges that a slave point belongs to.

@@ -469,7 +469,8 @@ impl Jumps {
 
 /// The points of a pair whose own position is one node that faces the same for good.
 fn of_pair(pair: &ContactPair) -> impl Iterator<Item = Jump> {
-    let points = pair.small.iter().flat_map(|small| &small.points).zip(&pair.points);
+    let small = pair.small.iter().filter(|_| !pair.tied);
+    let points = small.flat_map(|small| &small.points).zip(&pair.points);
     points.filter_map(|(point, slave)| match slave.position[..] {
         [(node, _)] => jump(node, point.as_ref()?, pair.alpha_n),
         _ => None,

@@ -3,7 +3,7 @@
 use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
 use crate::contact::force::ContactState;
-use crate::contact::pair::{BadPressure, ContactIncrement, ContactPair, Presumption};
+use crate::contact::pair::{BadPressure, ContactIncrement, ContactPair, InitialTraction, Presumption};
 use crate::contact::response::PairResponse;
 use crate::equations::sums::TrialFailure;
 use crate::laws::friction::Description;
@@ -73,25 +73,40 @@ pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut 
 }
 
 /// Stored in the springs of a contact: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of its closed points.
+///
+/// What penalties give way by in a contact that starts closed under tractions p₀ and q₀ is what these have changed by.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
     /// All of it [F·L]
     pub stored: f64,
-    /// What is numerical: an exact contact would not give way there [F·L]
-    pub numerical: f64,
+    /// What is numerical, along the normal and the tangent: an exact contact would not give way there [F·L]
+    pub numerical: [f64; 2],
 }
 
 impl Springs {
     /// Those of a contact in some state.
     pub fn of(pair: &ContactPair, states: &[ContactState]) -> Self {
         let mut springs = Self::default();
-        for (point, state) in pair.points.iter().zip(states) {
-            let ContactState { friction, length, .. } = state;
-            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * state.clearance().powi(2) } else { 0.0 };
+        for (k, (point, state)) in pair.points.iter().zip(states).enumerate() {
+            let length = state.length;
+            let start = pair.initial.as_ref().map_or(InitialTraction::default(), |initial| initial[k]);
             let Description { stiffness, stiffness_is_penalty, .. } = pair.law(point).description;
-            let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
-            springs.stored += length * (normal + tangential);
-            springs.numerical += length * if stiffness_is_penalty { normal + tangential } else { normal };
+            let clearance = if state.is_closed() { state.clearance() } else { 0.0 };
+            let normal = |clearance: f64| 0.5 * pair.alpha_n * clearance.powi(2);
+            let tangential = |slip: f64| 0.5 * stiffness * slip.powi(2);
+            let slip = pair.elastic_slip(point, state);
+            springs.stored += length * (normal(clearance) + tangential(slip));
+            if !state.is_closed() {
+                continue;
+            }
+            let [given, held] = [pair.penetration, pair.stick].map(|allowed| allowed.is_none());
+            let [pressure, traction] = [start.pressure, start.traction];
+            let clearance = clearance + if given { pressure / pair.alpha_n } else { 0.0 };
+            springs.numerical[0] += length * normal(clearance);
+            if stiffness_is_penalty {
+                let slip = slip - if held { traction / stiffness } else { 0.0 };
+                springs.numerical[1] += length * tangential(slip);
+            }
         }
         springs
     }

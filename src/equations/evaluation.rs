@@ -72,7 +72,7 @@ impl ContactCounts {
         for regime in pairs.iter().zip(contacts).flat_map(regimes) {
             match regime {
                 Regime::Open => counts.open += 1,
-                Regime::Stick => counts.stick += 1,
+                Regime::Stick | Regime::Tied => counts.stick += 1,
                 Regime::Slip => counts.slip += 1,
             }
         }

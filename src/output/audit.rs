@@ -12,6 +12,8 @@
 //! bodies and contacts at the time when that was largest, tells how far the answer is off by them; as p²/2α_n it falls with the
 //! penalty.
 
+use crate::contact::pair::ContactPair;
+use crate::contact::point::ContactState;
 use crate::equations::contacts::Springs;
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
@@ -46,9 +48,31 @@ pub struct Audit {
 pub struct Give {
     /// Elastic energy [F·L]
     elastic: f64,
-    /// What of it was in penalties [F·L]
-    penalties: f64,
+    /// When that was [T]
+    time: f64,
+    /// What of it was in penalties, contact by contact
+    penalties: Vec<Penalties>,
 }
+
+/// What was in the penalties of a contact.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Penalties {
+    contact: String,
+    /// Along the normal, and the tangent [F·L]
+    energy: [f64; 2],
+    /// α_n and the least α_t [F/L³]
+    stiffness: [f64; 2],
+    /// Whether bodies are behind its points, that would give way instead
+    on_bodies: bool,
+    /// Whether a largest penetration may be asked for
+    by_steps: bool,
+}
+
+/// Share of the elastic energy in penalties that is worth a warning [-]
+const GIVES_WAY: f64 = 0.01;
+
+/// What is advised leaves this share of the energy in the penalties [-]
+const ADVISED: f64 = 0.004;
 
 impl Audit {
     /// Record a row, from the state before it.
@@ -69,8 +93,12 @@ impl Audit {
         self.noise += round_off(model, new) * ways.fold(0.0, f64::max);
     }
 
-    /// Warning at the end of a run, if the energies do not balance.
-    pub fn concern(&self) -> Option<String> {
+    /// Warnings at the end of a run: that the energies do not balance, or contacts give way.
+    pub fn concerns(&self) -> Vec<String> {
+        self.unbalanced().into_iter().chain(self.give.concerns()).collect()
+    }
+
+    fn unbalanced(&self) -> Option<String> {
         let (worst, time) = self.worst;
         if worst.abs() <= (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise) {
             return None;
@@ -92,17 +120,58 @@ impl Audit {
 impl Give {
     fn record(&mut self, model: &Model, state: &State) {
         let elastic = state.energy.strain + state.energy.contact_elastic;
-        if elastic > self.elastic {
-            let pairs = model.contacts.iter().zip(&state.contacts);
-            self.penalties = pairs.map(|(pair, states)| Springs::of(pair, states).numerical).sum();
-            self.elastic = elastic;
+        if elastic <= self.elastic {
+            return;
         }
+        let explicit = |step: &Step| matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. });
+        let solved = !model.steps.iter().any(|step| step.rupture.is_some() || explicit(step));
+        let of = |(pair, states): (&ContactPair, &Vec<ContactState>)| Penalties {
+            contact: pair.name.clone(),
+            energy: Springs::of(pair, states).numerical,
+            stiffness: [pair.alpha_n, pair.laws.iter().map(|law| law.description.stiffness).fold(f64::INFINITY, f64::min)],
+            on_bodies: pair.compliance > 0.0,
+            by_steps: solved,
+        };
+        self.penalties = model.contacts.iter().zip(&state.contacts).map(of).collect();
+        (self.elastic, self.time) = (elastic, state.time);
     }
 
     /// The share of the penalties, if anything was stored [-]
     pub fn share(&self) -> Option<f64> {
-        (self.elastic > 0.0).then(|| self.penalties / self.elastic)
+        let penalties: f64 = self.penalties.iter().flat_map(|of| of.energy).sum();
+        (self.elastic > 0.0).then(|| penalties / self.elastic)
     }
+
+    /// Warnings about contacts that give way, with what to give for less.
+    fn concerns(&self) -> Vec<String> {
+        let bodies = self.penalties.iter().filter(|of| of.on_bodies);
+        bodies.flat_map(|of| [0, 1].into_iter().filter_map(|way| self.concern(of, way))).collect()
+    }
+
+    fn concern(&self, Penalties { contact, energy, stiffness, by_steps, .. }: &Penalties, way: usize) -> Option<String> {
+        let share = energy[way] / self.elastic;
+        let advised = rounded_up(stiffness[way] * share / ADVISED);
+        let key = [format!("\"alpha_n\": {advised}"), format!("\"alpha_t\": {advised}")];
+        let or = ["penetration", "stick"].map(|key| if *by_steps { format!(", or `{key}`") } else { String::new() });
+        let what = ["lets the surfaces penetrate", "lets surfaces slip that should stick"];
+        (share > GIVES_WAY).then(|| {
+            format!(
+                "contact `{contact}`: at t = {} {:.1} % of the elastic energy is in its penalty, which {}: displacements \
+                 and forces are off by about as much; give it {}{}",
+                time_text(self.time),
+                100.0 * share,
+                what[way],
+                key[way],
+                or[way]
+            )
+        })
+    }
+}
+
+/// Rounded up to one digit.
+fn rounded_up(value: f64) -> String {
+    let unit = 10f64.powf(value.log10().floor());
+    format!("{:.0e}", (value / unit).ceil() * unit)
 }
 
 /// Round-off of the forces on a model [F].
@@ -129,7 +198,9 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
         Scheme::GeneralizedAlpha { rho_infinity } => rho_infinity == 1.0,
         Scheme::Wilson { .. } => false,
     };
-    let rings = !model.contacts.is_empty() && !model.massless.contains(&true);
+    let explicit = |step: &Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
+    let may_be_massless = model.contacts.iter().any(|pair| pair.compliance > 0.0 && !pair.tied);
+    let rings = may_be_massless && !model.massless.contains(&true) && !model.steps.iter().any(explicit);
     match (keeps_all, rings) {
         (true, true) => {
             "impact excites oscillations that the increments do not resolve: make the contact `massless`, take a \

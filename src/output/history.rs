@@ -193,8 +193,8 @@ fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len
         slipping += if pair.regime(point, state) == Regime::Slip { length } else { 0.0 };
         slip += length * friction.plastic_slip;
         penetration = penetration.max(-state.clearance());
-        largest_elastic = largest_elastic.max(pair.elastic_slip(point, friction).abs());
-        elastic += length * pair.elastic_slip(point, friction);
+        largest_elastic = largest_elastic.max(pair.elastic_slip(point, state).abs());
+        elastic += length * pair.elastic_slip(point, state);
     }
     let share = |part: f64| if closed > 0.0 { part / closed } else { 0.0 };
     [normal, tangential, closed, share(slipping), share(slip), penetration, largest_elastic, share(elastic)]

@@ -84,14 +84,14 @@ impl Observer for Warnings {
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
-            for (point, (old, contact)) in points.filter(|(_, (_, new))| new.friction.pressure > 0.0) {
+            for (point, (old, contact)) in points.filter(|(_, (_, new))| new.is_closed()) {
                 for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {
                     if self.given.insert((number, kind)) {
                         self.list.push(format!("{}: {message}", place(pair, point.at(&x), state.time)));
                     }
                 }
             }
-            if let Some(small) = &pair.small {
+            if let Some(small) = pair.small.as_ref().filter(|_| !pair.tied) {
                 self.no_small_sliding(number, pair, small, state.time, &x);
             }
             let fading = model.steps[0].span.share(state.time) < 1.0 && pair.points.iter().any(|p| p.overlap > 0.0);
@@ -115,7 +115,7 @@ impl Observer for Warnings {
             });
             self.list.push(format!("contact `{name}` has never closed: {near}"));
         }
-        self.list.extend(self.audit.concern());
+        self.list.extend(self.audit.concerns());
         self.report();
         Ok(())
     }
@@ -174,7 +174,7 @@ impl Warnings {
         if self.closed.contains(&number) || pair.is_own() {
             return;
         }
-        if states.iter().any(|state| state.friction.pressure > 0.0) {
+        if states.iter().any(ContactState::is_closed) {
             self.closed.insert(number);
             self.open.remove(&number);
             return;

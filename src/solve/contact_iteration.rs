@@ -90,7 +90,9 @@
 //! other segment. It is presumed to be the node between them. Switch `valley`; `aid_valley` counts the points.
 //!
 //! Source: in a concave corner the gap is the lesser of two, with a kink where they are the same. From the node the normal goes
-//! to the point, which lies between the normals of both sides, and Newton's method ends at the kink instead of crossing it.
+//! to the point, which lies between the normals of both sides, and Newton's method ends at the kink instead of crossing it. The force
+//! towards the node is that of a spring α_n in both directions, linear in the displacements with the tractions that the point has: promised
+//! ones would hold it far too softly along the surface.
 //!
 //! # The record
 //!
@@ -110,6 +112,8 @@ use crate::model::state::State;
 /// Data of one contact point from the linear solves of an increment so far.
 #[derive(Clone, Debug, Default)]
 struct Point {
+    /// Nothing is presumed of what cannot open or slide
+    tied: bool,
     slipping: Slipping,
     feet: Feet,
     presume: Presume,
@@ -124,6 +128,9 @@ struct Point {
 
 impl Point {
     fn presumption(&self, aids: Aids) -> Presumption {
+        if self.tied {
+            return Presumption::default();
+        }
         Presumption {
             presume: self.presume,
             promised: aids.promise.then_some(self.promised),
@@ -142,6 +149,9 @@ impl Point {
         old: &ContactState,
         acted: &mut Acted,
     ) {
+        if self.tied {
+            return;
+        }
         let presumption = self.presumption(aids);
         let sticks = self.presume == Presume::Stick;
         acted.promise += usize::from(promise_acts(&presumption, closed));
@@ -253,6 +263,7 @@ impl ContactIteration {
                     None if first && aids.pull => kept_at_start(pair, state, old),
                     None => Tractions::default(),
                 };
+                point.tied = pair.tied;
                 let closed = state.friction.pressure > 0.0;
                 point.limited = first && closed && point.promised.pressure < state.friction.pressure;
                 point.pulled = first && !closed && point.promised.pressure > 0.0;
@@ -270,7 +281,7 @@ impl ContactIteration {
             let rough = pair.points.iter().map(|slave| pair.law(slave).description.stiffness > 0.0);
             let answers = points.iter_mut().zip(&response.states);
             for ((point, state), _) in answers.zip(rough).filter(|(_, rough)| *rough) {
-                if point.slipping.sticks(&state.friction, point.promised) {
+                if !point.tied && point.slipping.sticks(&state.friction, point.promised) {
                     point.presume = Presume::Stick;
                     any = true;
                 }

@@ -34,7 +34,7 @@
 //!
 //! # Augmented Lagrangian
 //!
-//! The augmented Lagrangian: multipliers that leave no more penetration than allowed.
+//! The augmented Lagrangian: multipliers that leave no more penetration than allowed, nor more elastic slip.
 
 use super::condensed_newton::{CondensedNewton, Round, Rung};
 use super::contact_iteration::{Acted, Flips};
@@ -384,8 +384,8 @@ const STIFFER: f64 = 10.0;
 const STIFFEST: f64 = 1e4;
 
 /// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
-/// more penetration than allowed: Uzawa's method, with a penalty that is raised for the increment while passes gain little: without that a soft
-/// penalty takes passes by the dozen, each of which leaves nearly all of the penetration (switch `stiffening`;
+/// more penetration, and no more elastic slip, than allowed: Uzawa's method. α_n is raised for the increment while passes gain little:
+/// without that a soft penalty takes passes by the dozen, each of which leaves nearly all of the penetration (switch `stiffening`;
 /// `aid_stiffening` is 1 in iterations of a raised one).
 ///
 /// Source of the rule and its factors: Bertsekas (1982), Constrained Optimization and Lagrange Multiplier Methods, 2.2.
@@ -396,25 +396,30 @@ pub fn augment(
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
     let (mut iterations, mut result) = from_start_values(model, trial, work);
     let (mut stiffening, mut before) = (1.0, f64::INFINITY);
+    let mut begun: Option<State> = None;
     for pass in 1.. {
         let Ok(u) = &result else { break };
         let found = &work.assembler.evaluation.contacts;
-        let excess = model.contacts.iter().zip(found).map(|(pair, found)| pair.excess(found)).fold(0.0, f64::max);
-        if excess <= 1.0 {
+        let excess = model.contacts.iter().zip(found).map(|(pair, found)| pair.excess(found));
+        let [penetration, slip] = excess.fold([0.0f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);
+        if penetration.max(slip) <= 1.0 {
             break;
         }
         if pass == MOST_PASSES {
-            result = Err(IncrementFailure::Penetration { passes: pass });
+            result = Err(match penetration > 1.0 {
+                true => IncrementFailure::Penetration { passes: pass },
+                false => IncrementFailure::ElasticSlip { passes: pass },
+            });
             break;
         }
-        if model.aids.stiffening && excess > SLOW * before {
+        if model.aids.stiffening && penetration > 1.0 && penetration > SLOW * before {
             stiffening = (STIFFER * stiffening).min(STIFFEST);
         }
-        before = excess;
-        let multiplied = model.contacts.iter().zip(trial.old.contacts.iter().zip(found));
-        let contacts = multiplied.map(|(pair, (old, found))| pair.multiplied(old, found)).collect();
-        let old = State { contacts, ..trial.old.clone() };
-        let (more, again) = equilibrium(model, Trial { old: &old, stiffening, ..trial }, Some(u.clone()), work);
+        before = penetration;
+        let old = begun.get_or_insert_with(|| trial.old.clone());
+        let pairs = model.contacts.iter().zip(found);
+        pairs.zip(&mut old.contacts).for_each(|((pair, found), old)| *old = pair.multiplied(old, found));
+        let (more, again) = equilibrium(model, Trial { old, stiffening, ..trial }, Some(u.clone()), work);
         iterations.extend(more.into_iter().map(|iteration| IterationRecord { pass: pass + 1, ..iteration }));
         result = again;
     }

@@ -37,6 +37,12 @@ pub enum IncrementFailure {
         /// number of augmentations
         passes: usize,
     },
+    /// The augmented Lagrangian did not reach the allowed elastic slip.
+    #[error("the elastic slip is still too large after {passes} augmentations: raise alpha_t, or allow more (stick)")]
+    ElasticSlip {
+        /// number of augmentations
+        passes: usize,
+    },
     /// The velocities of an explicit run are not finite any more.
     #[error("the motion grows without bound: lower the safety of the explicit scheme, or check loads and supports")]
     Unbounded,
@@ -105,6 +111,7 @@ impl IncrementFailure {
             Self::Newton(NewtonFailure::Diverged { .. }) => "divergence",
             Self::Newton(NewtonFailure::TooManyIterations { .. }) => "too many iterations",
             Self::Penetration { .. } => "penetration",
+            Self::ElasticSlip { .. } => "elastic slip",
             Self::Unbounded => "unbounded motion",
             Self::Slip { .. } => "slip equations",
             Self::Floating(_) => "floating body",
@@ -117,7 +124,8 @@ impl IncrementFailure {
     pub fn is_retryable(&self) -> bool {
         match self {
             Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,
-            _ => matches!(self, Self::Newton(_) | Self::Penetration { .. } | Self::ContactLost(_)),
+            Self::Newton(_) | Self::Penetration { .. } | Self::ElasticSlip { .. } | Self::ContactLost(_) => true,
+            _ => false,
         }
     }
 }

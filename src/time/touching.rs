@@ -99,7 +99,7 @@ impl Touching {
             if all > 0.0 {
                 doubt = doubt.max(all / self.forces[k]);
                 let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
-                let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
+                let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| !state.is_closed());
                 let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
                 if most < share {
                     (share, meets) = (most, meets_first);

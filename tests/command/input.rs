@@ -1079,10 +1079,9 @@ fn check_tells_how_far_small_sliding_goes() {
         "{told}"
     );
     let [told, _] = outcome("check", &[("/mesh/nodes", json!(moved))]);
-    assert!(
-        told.contains("of the slave without a projection on the master") && !told.contains("small sliding"),
-        "{told}"
-    );
+    // In finite sliding they do no harm: `check` counts them, and nothing is warned of.
+    assert!(told.contains("point without a projection") || told.contains("points without a projection"), "{told}");
+    assert!(told.contains("warnings  none"), "{told}");
 }
 
 #[test]

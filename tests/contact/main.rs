@@ -5,6 +5,7 @@ mod common;
 
 mod along;
 mod contact;
+mod hard;
 mod moving;
 mod periodic;
 mod points;
@@ -13,5 +14,6 @@ mod rings;
 mod self_contact;
 mod small_sliding;
 mod stabilization;
+mod tied;
 mod validation;
 mod warned;

@@ -166,7 +166,7 @@ const INCREMENT: ContactIncrement =
     ContactIncrement { dt: 0.3, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
 
 /// Forces on all nodes, their derivative by the tangents of the points, and the states.
-fn answer(
+pub fn answer(
     pair: &ContactPair,
     x: &[Vector2<f64>],
     old: &[ContactState],

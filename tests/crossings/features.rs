@@ -49,6 +49,7 @@ pub const SLOTS: &[Slot] = &[
     ("radiation", &[("no", 6), ("given", 1), ("of_bodies", 1)]),
     ("shrink_fit", OPTION),
     ("massless", OPTION),
+    ("stick", OPTION),
     ("tractions", &[("no", 8), ("given", 1), ("balanced", 1), ("of_bodies", 1)]),
     ("stress", &[("no", 5), ("components", 2), ("geostatic", 1)]),
     ("heat", &[("no", 6), ("number", 1), ("table", 1), ("by_place", 1)]),
@@ -136,7 +137,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (
         &["scheme:explicit", "scheme:wilson", "rupture"],
-        &["normal:augmented"],
+        &["normal:augmented", "stick"],
         "multipliers need equilibrium at the end of an increment",
     ),
     (
@@ -146,6 +147,18 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (&["friction:frictionless", "friction:prescribed"], &["dilatancy", "wear"], "no slip that friction resists"),
     (&["friction:coulomb"], &["further_parameters"], "it has one parameter"),
+    (
+        &["stick"],
+        &[
+            "friction:super_subloading",
+            "friction:rate_and_state",
+            "friction:prescribed",
+            "friction:frictionless",
+            "friction:registered",
+            "varying:by_part",
+        ],
+        "elastic slip is part of the law, or there is none",
+    ),
     (&["friction:prescribed"], DYNAMIC, "slip is prescribed while nothing rings"),
     (
         &["friction:prescribed"],

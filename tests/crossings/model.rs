@@ -532,6 +532,9 @@ impl Writer<'_> {
             "of_bodies" => contact["radiation_damping"] = json!(true),
             _ => {}
         }
+        if self.has("stick") {
+            contact["stick"] = json!(self.write(Kind::Length, 1e-9));
+        }
         for key in ["shrink_fit", "massless"] {
             if self.has(key) {
                 contact[key] = json!(true);

@@ -77,7 +77,8 @@ impl<'a> Base<'a> {
         let tolerance = if is_dynamic(self.draft.of("scheme")) { tolerance.max(SAME_IN_MOTION) } else { tolerance };
         let is_explicit = self.draft.is("scheme", "explicit") || self.draft.has("rupture");
         let tolerance = if is_explicit { tolerance.max(SAME_EXPLICIT) } else { tolerance };
-        let tolerance = if self.draft.is("normal", "augmented") { tolerance.max(SAME_AUGMENTED) } else { tolerance };
+        let augmented = self.draft.is("normal", "augmented") || self.draft.has("stick");
+        let tolerance = if augmented { tolerance.max(SAME_AUGMENTED) } else { tolerance };
         // The lengths of increments follow from estimates, and rates are differences over them.
         let tolerance = if self.draft.has("error_control") { tolerance.max(SAME_IN_MOTION) } else { tolerance };
         let tolerance = if self.draft.has("until") { tolerance.max(SAME_UNTIL) } else { tolerance };

@@ -21,6 +21,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     (&["node", "near"], "other ways to name a node: tests/solver/boundary.rs"),
     (&["inertia"], "rigid bodies that move by themselves: tests/contact/rigid_bodies.rs"),
     (&["area"], "slaves that are points: tests/contact/contact.rs"),
+    (&["tied"], "surfaces that are held together: tests/contact/tied.rs"),
     (&["hole"], "the rim of a hole: tests/contact/contact.rs"),
     (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),
     (&["beta", "gamma", "rho_infinity"], "parameters of schemes: tests/time/time_integration.rs"),

@@ -63,6 +63,11 @@ fn stiff(name: &str, change: impl Fn(&mut Value)) -> Model {
     })
 }
 
+/// Up to where all points slip.
+fn without_slide(case: &mut Value) {
+    case["steps"].as_array_mut().expect("steps").truncate(2);
+}
+
 fn first_tenth(case: &mut Value) {
     shorten(case, 1, 0.1);
 }
@@ -201,7 +206,7 @@ const fn slow(name: &'static str, model: fn() -> Model) -> Case {
 const CASES: [Case; 26] = [
     slow("coulomb_drag_5k", || committed("coulomb_drag_5k", as_it_is)),
     slow("coulomb_drag_20k", || committed("coulomb_drag_20k", as_it_is)),
-    slow("block_on_ground", || committed("block_on_ground", |case| shorten(case, 1, 0.4))),
+    slow("block_on_ground", || committed("block_on_ground", without_slide)),
     quick("hertz_q4", || committed("validation/hertz_q4", as_it_is)),
     slow("hertz_q8_friction", || committed("validation/hertz_q8_friction", as_it_is)),
     slow("mindlin", || committed("validation/mindlin", |case| shorten(case, 1, 0.25))),

@@ -231,6 +231,7 @@ fn every_increment_of_committed_cases_can_be_redone_and_resumed() {
     }
     let (mut case, path) = repository("cases/block_on_ground.json");
     case["steps"][1]["duration"] = json!(2);
+    case["steps"].as_array_mut().expect("steps").truncate(2);
     check(&case, &path);
 }
 

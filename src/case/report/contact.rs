@@ -13,7 +13,7 @@ use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::{Dilatancy, Onset};
 use crate::model::Model;
 use crate::model::boundary::Profile;
-use crate::model::builder::{Contact, InitialTractions, MasterSide};
+use crate::model::builder::{Contact, InitialTractions, MasterSide, is_explicit};
 use crate::model::method::{Chosen, Method};
 use crate::model::text::{count, number};
 use crate::model::warnings::{farthest, gaps};
@@ -73,9 +73,11 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> String {
 
 fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chosen>) -> Vec<String> {
     let input = &case.contacts[&pair.name];
-    let alpha_n = match input.normal.alpha_n {
-        Some(_) => "given",
-        None => "10 (λ + 2G)/h of the softer body, h the depth of the slave's elements",
+    let alpha_n = match (input.normal.alpha_n, is_explicit(&case.steps)) {
+        (Some(_), _) => "given",
+        (None, false) if pair.tied => "1e4 (λ + 2G)/h of the softer body, h the depth of the slave's elements",
+        (None, false) => "300 (λ + 2G)/h of the softer body, h the depth of the slave's elements",
+        (None, true) => "10 (λ + 2G)/h of the softer body, h the depth of the slave's elements: a step is explicit",
     };
     let mut lines = vec![
         format!("slave {} against master {}{}", input.slave, master(input), moves(input)),
@@ -93,9 +95,22 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         lines.push("the slave's nodes carry no mass in dynamic steps".into());
     }
     if let Some(given) = gives_alpha_t(input) {
-        let chosen = if given { "given" } else { "alpha_n/2" };
+        let penalty = pair.laws.iter().all(|law| law.description.stiffness_is_penalty);
+        let chosen = match (given, input.normal.alpha_n) {
+            (true, _) => "given",
+            (false, Some(_)) => "alpha_n/2",
+            (false, None) => "5 (λ + 2G)/h",
+        };
+        let what = if penalty { "a penalty that holds what sticks" } else { "of the law, whose slip is elastic at first" };
         let alpha_t = range(pair.laws.iter().map(|law| law.description.stiffness));
-        lines.push(format!("alpha_t {alpha_t} ({chosen})"));
+        lines.push(format!("alpha_t {alpha_t} ({chosen}): {what}"));
+    }
+    if pair.tied {
+        let held = pair.points.iter().zip(pair.small.iter().flat_map(|small| &small.points));
+        let free = held.filter(|(_, point)| point.is_none()).count();
+        let free = if free > 0 { format!("; {} without a projection stay free", count(free, "point")) } else { String::new() };
+        lines.push(format!("tied: the surfaces neither part nor slide{free}"));
+        return lines;
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
     let vary = |along: &BTreeMap<String, Profile>| -> Option<String> {

@@ -24,6 +24,7 @@ pub mod sensitivity;
 mod slip_weakening;
 mod state;
 mod super_subloading;
+mod tie;
 
 use std::fmt::Debug;
 
@@ -39,6 +40,7 @@ pub use sensitivity::SensitiveLaw;
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
 pub use state::{FrictionState, MOST_VARIABLES, Regime};
 pub use super_subloading::{Approach, Integration, Onset, Rise, SuperSubloading, SuperSubloadingParameters};
+pub(crate) use tie::Tie;
 
 /// No law answers a tangent |∂q/∂Δu_t| above this many times α_t, or |∂q/∂p| above it. Where two roots of a law's equation
 /// of plastic slip merge the traction snaps, and just before it the derivative grows without bound, like the inverse of the

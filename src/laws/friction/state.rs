@@ -40,6 +40,8 @@ pub enum Regime {
     Stick,
     /// Pressed, and sliding
     Slip,
+    /// Held under any pressure, by a tie
+    Tied,
 }
 
 impl FrictionState {

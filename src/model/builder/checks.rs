@@ -79,30 +79,28 @@ pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
 /// without mass is. Wilson's equilibrium lies beyond the increment, and so do the multipliers found there.
 pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
     let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
-    let augmented = model.contacts.iter().find(|pair| pair.penetration.is_some());
+    let augmented = model.contacts.iter().find_map(|pair| match (pair.penetration, pair.stick) {
+        (Some(_), _) => Some((&pair.name, "normal.penetration", "alpha_n")),
+        (None, Some(_)) => Some((&pair.name, "stick", "alpha_t")),
+        (None, None) => None,
+    });
     let refused =
         |name: &str, key: &str, message: String| Err(ModelError::new(format!("contacts.{name}.{key}"), message));
-    if let (Some(pair), Some(step)) = (augmented, model.steps.iter().find(|step| step.scheme.theta() > 1.0)) {
+    if let (Some((name, key, _)), Some(step)) = (augmented, model.steps.iter().find(|step| step.scheme.theta() > 1.0)) {
         let message = format!(
             "the step `{}` solves for equilibrium beyond the end of its increments (Wilson-θ), where multipliers have \
              no meaning: leave it out, or take another scheme",
             step.name
         );
-        return refused(&pair.name, "normal.penetration", message);
+        return refused(name, key, message);
     }
     let Some(Step { name: step, .. }) = model.steps.iter().find(explicit) else { return Ok(()) };
     if let Some(contact) = contacts.iter().find(|contact| contact.massless) {
         let message = format!("the explicit step `{step}` needs the mass of every node: leave it out");
         return refused(&contact.name, "massless", message);
     }
-    match augmented {
-        Some(pair) => {
-            let message =
-                format!("the explicit step `{step}` takes the plain penalty: leave it out, and raise alpha_n");
-            refused(&pair.name, "normal.penetration", message)
-        }
-        None => Ok(()),
-    }
+    let Some((name, key, stiffness)) = augmented else { return Ok(()) };
+    refused(name, key, format!("the explicit step `{step}` takes the plain penalty: leave it out, and raise {stiffness}"))
 }
 
 /// Linear bodies, contacts in small sliding whose nodes face each other and whose slip rates follow from tractions, and nothing

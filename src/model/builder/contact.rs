@@ -36,8 +36,9 @@ pub struct Contact {
     /// Rigid body that a rigid master is a part of, and moves with: one of `rigid_bodies`. Without it the master is at rest
     pub rigid_body: Option<String>,
     /// Contact method. By default mortar where an edge of either side is quadratic or a side curved (its direction
-    /// turns by more than 1° between two corners of more than 45°); gauss_to_segment between straight linear edges,
-    /// with a `smooth` master, and where `points` are given
+    /// turns by more than 1° between two corners of more than 45°), and where nodes do not face nodes unless a step is explicit;
+    /// node_to_segment where a slave of straight linear edges meets a rigid circle or polyline, or a slave with a corner a rigid plane;
+    /// gauss_to_segment otherwise, with a `smooth` master, and where `points` are given
     pub method: Option<Method>,
     /// Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
     pub points: Option<usize>,
@@ -51,6 +52,10 @@ pub struct Contact {
     /// Normal contact
     #[serde(default)]
     pub normal: Normal,
+    /// Largest elastic slip allowed where surfaces stick [L], for laws that know none, whose alpha_t is a penalty (coulomb,
+    /// slip_weakening): the traction is adjusted until no elastic slip is larger, as `penetration` does it along the normal;
+    /// default: penalty only
+    pub stick: Option<f64>,
     /// Whether the initial overlap of the surfaces is applied gradually over the first step (shrink fit) instead of at
     /// once
     #[serde(default)]
@@ -59,7 +64,14 @@ pub struct Contact {
     /// does not excite spurious oscillation of these nodes and of the contact force
     #[serde(default)]
     pub massless: bool,
-    /// Friction law
+    /// Whether the surfaces are tied: they neither part nor slide, whatever pulls at them, however large the motion. Every
+    /// slave point keeps the place on the master that it faces in the mesh, across a gap as well (the finer side is the slave, by mortar
+    /// where nodes do not face nodes); points that face nothing stay free. Pressure and traction count per initial length.
+    /// Without `friction`
+    #[serde(default)]
+    pub tied: bool,
+    /// Friction law; only surfaces that are tied have none
+    #[serde(default = "Friction::tie", skip_serializing_if = "Friction::is_tie")]
     pub friction: Friction,
     /// Dilatancy: opening by plastic slip
     pub dilatancy: Option<Dilatancy>,
@@ -91,8 +103,9 @@ pub struct Contact {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Normal {
-    /// α_n: pressure per penetration [F/L³]; default 10 (λ + 2G)/h, with λ + 2G of the softer body and the depth h of
-    /// the slave's elements. A slave group of points has no elements and needs a number
+    /// α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body and the depth h of
+    /// the slave's elements; 10 (λ + 2G)/h where a step is explicit, quasi_dynamic or has `rupture`. A slave group of points
+    /// has no elements and needs a number
     pub alpha_n: Option<f64>,
     /// Largest penetration allowed [L]: the pressure is increased until no penetration is larger (augmented Lagrangian
     /// by Uzawa's method), so that the solution does not depend on alpha_n; default: penalty only
@@ -221,8 +234,10 @@ impl Contact {
             smooth: false,
             sliding: SlidingRange::Finite,
             normal: Normal::default(),
+            stick: None,
             shrink_fit: false,
             massless: false,
+            tied: false,
             friction: friction.into(),
             dilatancy: None,
             wear: None,
@@ -231,6 +246,11 @@ impl Contact {
             along: Along::default(),
             initial: None,
         }
+    }
+
+    /// Of surfaces that are tied.
+    pub fn tied(name: impl Into<String>, slave: impl Into<String>, master: impl Into<MasterSide>) -> Self {
+        Self { tied: true, ..Self::new(name, slave, master, Friction::tie()) }
     }
 
     /// With this normal penalty α_n [F/L³].
@@ -278,6 +298,11 @@ impl Contact {
     pub fn penetration(mut self, largest: f64) -> Self {
         self.normal.penetration = Some(largest);
         self
+    }
+
+    /// With the traction of what sticks adjusted until no elastic slip is larger (augmented Lagrangian) [L].
+    pub fn stick(self, largest: f64) -> Self {
+        Self { stick: Some(largest), ..self }
     }
 
     /// In small sliding: every point keeps its foot, the weights of both sides, its normal and its length

@@ -13,7 +13,7 @@ use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
     ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, Offsets, PrescribedSlipParameters,
-    RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, observables,
+    RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, Tie, observables,
 };
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::Mesh;
@@ -30,6 +30,8 @@ pub struct Friction {
     name: String,
     varying: Vec<(String, Profile)>,
     law: Arc<LawAt>,
+    /// Whether no law was given: the surfaces are tied
+    tie: bool,
     /// Other friction where a profile is positive, the first that is, with what stands before the profile in messages
     elsewhere: Vec<(String, Profile, Self)>,
 }
@@ -54,7 +56,18 @@ impl Friction {
         law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync + 'static,
     ) -> Self {
         let varying = profiles.into_iter().map(|(name, profile)| (name.into(), profile)).collect();
-        Self { parameters: None, name: "friction".into(), varying, law: Arc::new(law), elsewhere: Vec::new() }
+        Self { parameters: None, name: "friction".into(), varying, law: Arc::new(law), tie: false, elsewhere: Vec::new() }
+    }
+
+    /// Of surfaces that are tied.
+    pub(super) fn tie() -> Self {
+        let law = Self::varying::<String>([], |_, alpha_t| Ok(Box::new(Tie { alpha_t })));
+        Self { tie: true, ..law }
+    }
+
+    /// Whether it is none but that of surfaces that are tied.
+    pub(super) fn is_tie(&self) -> bool {
+        self.tie
     }
 
     /// The parameters of its law, where it is not one from code.

@@ -50,6 +50,7 @@ mod section;
 mod shares;
 mod supported;
 mod supports;
+mod tied;
 
 pub use along::{Along, LawChoice};
 pub use body::{BodyInput, BulkLaw, Formulation, PointMassInput};
@@ -64,6 +65,7 @@ pub use loads::LoadsInForce;
 pub use pair::default_alpha_t;
 pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
 pub use probes::Gauge;
+pub use schedule::is_explicit;
 pub use rigid::RigidBodyInput;
 
 use crate::laws::bulk::Material;
@@ -287,8 +289,10 @@ impl Builder {
         model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
         model.linkage = plates::linkage(&self.plates, &self.steps, &model)?;
-        model.contacts = pair::pairs(&self.contacts, &model)?;
-        model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh)).collect();
+        let explicit = schedule::is_explicit(&self.steps);
+        model.contacts = pair::pairs(&self.contacts, &model, explicit)?;
+        model.methods =
+            self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, explicit)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
         section::check_velocities(

@@ -24,6 +24,13 @@ use crate::model::step::{ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
+/// Whether some step takes explicit increments, or may: the defaults of penalties and methods are other ones then.
+#[doc(hidden)]
+pub fn is_explicit(steps: &[LoadStep]) -> bool {
+    let explicit = |scheme: Scheme| matches!(scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. });
+    steps.iter().any(|step| step.rupture.is_some() || step.scheme.is_some_and(explicit))
+}
+
 /// The steps of a run.
 pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
     if given.is_empty() {

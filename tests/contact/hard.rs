@@ -1,0 +1,195 @@
+//! Contact that is hard without thinking: what penalties that nobody gives leave of an answer, the elastic slip that `stick` takes away, the
+//! method that surfaces choose, and what is told where a contact gives way.
+
+use std::sync::Arc;
+
+use fecontact::model::method::Method;
+use fecontact::output::warnings::Warnings;
+use serde_json::{Value, json};
+
+use crate::common::{self, Blocks, Finished, close, finish};
+
+fn body() -> Value {
+    json!({"material": {"model": "linear", "E": 1000, "nu": 0.3}})
+}
+
+/// Two rings in r and z of one element through the wall, the inner one under pressure.
+fn rings(n: [usize; 2]) -> Value {
+    let mesh = Blocks::default().rectangle("inner", [n[0], 1], [1.0, 0.0], [2.0, 1.0]).rectangle("outer", [n[1], 1], [2.0, 0.0], [3.0, 1.0]);
+    let ends = ["inner_bottom", "inner_top", "outer_bottom", "outer_top"];
+    json!({
+        "section": "axisymmetric", "mesh": mesh.json(), "bodies": {"inner": body(), "outer": body()},
+        "contacts": {"fit": {"slave": "outer_left", "master": "inner_right", "friction": {"law": "frictionless"}}},
+        "newton": {"tolerance": 1e-11},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1}, "supports": ends.map(|on| json!({"on": on, "uy": 0})),
+                   "loads": [{"on": "inner_left", "pressure": 10}]}]
+    })
+}
+
+/// Two flat rings on each other, one element each, pressed along the axis.
+fn stacked() -> Value {
+    let mesh = Blocks::default().rectangle("lower", [3, 1], [1.0, 0.0], [2.0, 0.5]).rectangle("upper", [4, 1], [1.0, 0.5], [2.0, 1.0]);
+    json!({
+        "section": "axisymmetric", "mesh": mesh.json(), "bodies": {"lower": body(), "upper": body()},
+        "contacts": {"fit": {"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "frictionless"}}},
+        "newton": {"tolerance": 1e-11},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "lower_bottom", "uy": 0}],
+                   "loads": [{"on": "upper_top", "pressure": 10}]}]
+    })
+}
+
+/// A press fit of two quarters of rings.
+fn press_fit() -> Value {
+    let ring = |inner: f64, outer: f64| {
+        move |s: f64, t: f64| {
+            let (radius, angle) = (inner + s * (outer - inner), t * std::f64::consts::FRAC_PI_2);
+            [radius * angle.cos(), radius * angle.sin()]
+        }
+    };
+    json!({
+        "mesh": Blocks::default().block("inner", [2, 8], ring(1.0, 2.001)).block("outer", [2, 8], ring(2.0, 3.0)).json(),
+        "bodies": {"inner": body(), "outer": body()},
+        "contacts": {"fit": {"slave": "outer_left", "master": "inner_right", "shrink_fit": true, "friction": {"law": "frictionless"}}},
+        "newton": {"tolerance": 1e-11},
+        "steps": [{"name": "fit", "duration": 1, "dt": {"initial": 0.5},
+                   "supports": [{"on": "inner_bottom", "uy": 0}, {"on": "inner_top", "ux": 0},
+                                {"on": "outer_bottom", "uy": 0}, {"on": "outer_top", "ux": 0}]}]
+    })
+}
+
+/// With penalties that nobody gives, displacements and forces are within 2e-3 of those of contact that lets nothing penetrate (the
+/// augmented Lagrangian on the same mesh), even between bodies of one element each; with those of explicit steps some are off by percents.
+#[test]
+fn defaults_are_as_good_as_hard() {
+    for (name, case) in [("rings", rings([1, 1])), ("rings", rings([3, 4])), ("stacked", stacked()), ("press fit", press_fit())] {
+        let with = |normal: Value| {
+            let mut case = case.clone();
+            case["contacts"]["fit"]["normal"] = normal;
+            finish(&case)
+        };
+        let (hard, default) = (with(json!({"penetration": 1e-9})), with(json!({})));
+        let soft = with(json!({"alpha_n": default.model.contacts[0].alpha_n / 30.0}));
+        let size = hard.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+        let off = |run: &Finished| common::distance(&run.last().displacement, &hard.last().displacement) / size;
+        let force = |run: &Finished| (run.contact_force(run.last())[0] / hard.contact_force(hard.last())[0] - 1.0).abs();
+        println!("{name}: displacements {:.1e} ({:.1e}), force {:.1e} ({:.1e})", off(&default), off(&soft), force(&default), force(&soft));
+        assert!(off(&default) < 2e-3 && force(&default) < 2e-3, "{name}");
+    }
+}
+
+/// A block that is pressed and pushed below μ p: what sticks moves as what is tied.
+fn pushed(contact: &Value) -> Finished {
+    let mesh = Blocks::default().rectangle("ground", [5, 1], [0.0, -1.0], [2.0, 0.0]).rectangle("block", [3, 1], [0.5, 0.0], [1.5, 1.0]);
+    let mut contact = contact.clone();
+    (contact["slave"], contact["master"]) = (json!("block_bottom"), json!("ground_top"));
+    finish(&json!({
+        "mesh": mesh.json(), "bodies": {"ground": body(), "block": body()}, "contacts": {"base": contact},
+        "newton": {"tolerance": 1e-11},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}],
+                   "loads": [{"on": "block_top", "traction": {"y": -5}}]},
+                  {"name": "push", "duration": 1, "dt": {"initial": 0.25}, "loads": [{"on": "block_top", "traction": {"x": 0.2, "y": -5}}]}]
+    }))
+}
+
+/// A soft α_t lets a block creep that should stick, by ten times its shear; with `stick` it moves as what is tied does, the elastic slip of
+/// all increments together is below what is allowed, and the tractions are those of the load.
+#[test]
+fn what_sticks_does_not_creep() {
+    let friction = |alpha_t: Option<f64>| json!({"law": "coulomb", "mu": 0.9, "alpha_t": alpha_t});
+    let tied = pushed(&json!({"tied": true, "sliding": "small"}));
+    let top = |run: &Finished| {
+        let nodes = run.nodes("block_top");
+        let mean = |state: &fecontact::model::state::State| nodes.iter().map(|node| state.displacement[2 * node]).sum::<f64>() / nodes.len() as f64;
+        mean(run.last()) - mean(run.at(1.0))
+    };
+    let normal = json!({"penetration": 1e-8});
+    let soft = pushed(&json!({"normal": normal, "sliding": "small", "friction": friction(Some(20.0))}));
+    let stuck = pushed(&json!({"normal": normal, "sliding": "small", "friction": friction(Some(2000.0)), "stick": 1e-7}));
+    let default = pushed(&json!({"sliding": "small", "friction": friction(None)}));
+    let expected = top(&tied);
+    println!("tied {expected:.6e}, stick {:.6e}, default {:.6e}, soft {:.6e}", top(&stuck), top(&default), top(&soft));
+    assert!(top(&soft) > 5.0 * expected);
+    close("stick", top(&stuck) / expected, 1.0, 1e-3);
+    for state in &stuck.last().contacts[0] {
+        assert!(state.elastic_slip.abs() <= 1e-7, "{state:?}");
+    }
+    let [_, along] = stuck.contact_force(stuck.last());
+    close("traction", along, 0.2, 1e-8);
+    close("audit", stuck.last().energy.error(), 0.0, 1e-4 * stuck.last().energy.supplied());
+}
+
+/// μ p is borne once all slides, with `stick` or without, there and back; what is dissipated is μ p times the way.
+#[test]
+fn what_slides_is_as_before() {
+    let run = |stick: Option<f64>| {
+        finish(&json!({
+            "mesh": Blocks::default().rectangle("block", [3, 2], [0.0, 0.0], [1.0, 0.5]).json(), "bodies": {"block": body()},
+            "contacts": {"base": {"slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "stick": stick,
+                                  "friction": {"law": "coulomb", "mu": 0.3}}},
+            "newton": {"tolerance": 1e-11},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "block_top", "ux": 0, "uy": -0.01}]},
+                      {"name": "there", "duration": 1, "dt": {"initial": 0.25}, "supports": [{"on": "block_top", "ux": 0.1}]},
+                      {"name": "back", "duration": 1, "supports": [{"on": "block_top", "ux": 0}]}]
+        }))
+    };
+    for stick in [None, Some(1e-8)] {
+        let run = run(stick);
+        for (time, sign) in [(2.0, 1.0), (3.0, -1.0)] {
+            let [normal, along] = run.contact_force(run.at(time));
+            close("slides", along, sign * 0.3 * normal, 1e-6 * normal);
+        }
+        let (energy, [normal, _]) = (&run.last().energy, run.contact_force(run.last()));
+        close("dissipated", energy.friction_dissipation, 0.3 * normal * 0.2, 0.05 * 0.3 * normal * 0.2);
+        close("audit", energy.error(), 0.0, 0.01 * energy.supplied());
+    }
+}
+
+fn method(slave: &str, master: Value, n: [usize; 2], explicit: bool) -> Method {
+    let mesh = Blocks::default().rectangle("lower", [n[0], 1], [0.0, -1.0], [1.0, 0.0]).rectangle("upper", [n[1], 2], [0.0, 0.0], [1.0, 1.0]);
+    let mut mesh = mesh.json();
+    let edges = |side: &str| mesh["edges"][format!("upper_{side}")].as_array().expect("edges").clone();
+    mesh["edges"]["skin"] = json!([edges("bottom"), edges("right")].concat());
+    let mut dense = body();
+    dense["material"]["density"] = json!(1);
+    let model = common::model(&json!({
+        "mesh": mesh, "bodies": {"lower": dense, "upper": dense},
+        "contacts": {"base": {"slave": slave, "master": master, "friction": {"law": "frictionless"}}},
+        "steps": [{"name": "press", "duration": 1, "scheme": if explicit { json!({"explicit": {}}) } else { json!("static") },
+                   "supports": [{"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": 0, "uy": -0.01}]}]
+    }));
+    model.methods[0].as_ref().expect("a contact of edges").method
+}
+
+/// Straight edges take Gauss points where nodes face nodes, mortar where they do not and nothing is explicit; a slave with a corner is
+/// held at its nodes by a rigid master.
+#[test]
+fn surfaces_choose_the_method() {
+    let (ground, plane) = (json!("lower_top"), json!({"plane": {"point": [0, 0], "normal": [0, 1]}}));
+    assert_eq!(method("upper_bottom", ground.clone(), [4, 4], false), Method::GaussToSegment);
+    assert_eq!(method("upper_bottom", ground.clone(), [4, 5], false), Method::Mortar);
+    assert_eq!(method("upper_bottom", ground, [4, 5], true), Method::GaussToSegment);
+    assert_eq!(method("upper_bottom", plane.clone(), [4, 4], false), Method::GaussToSegment);
+    assert_eq!(method("skin", plane, [4, 4], false), Method::NodeToSegment);
+}
+
+/// A column on a penalty is two springs in series: half of the energy is in the penalty, and that is told with a number, with which it
+/// is not. A point mass on a spring of its own is meant.
+#[test]
+fn contacts_that_give_way_are_told() {
+    let told = |alpha_n: f64| {
+        let case = json!({
+            "mesh": Blocks::default().rectangle("column", [1, 4], [0.0, 0.0], [1.0, 2.0]).json(),
+            "bodies": {"column": {"material": {"model": "linear", "E": 100, "nu": 0}}},
+            "contacts": {"base": {"slave": "column_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                                  "friction": {"law": "frictionless"}, "normal": {"alpha_n": alpha_n}}},
+            "steps": [{"name": "press", "duration": 1, "supports": [{"on": "column_top", "ux": 0, "uy": -1e-3}]}]
+        });
+        let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(&case)));
+        fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
+        warnings.list
+    };
+    let soft = told(50.0);
+    assert!(soft.len() == 1 && soft[0].contains("contact `base`: at t = 1 50.0 % of the elastic energy is in its penalty"), "{soft:?}");
+    let number = soft[0].split("\"alpha_n\": ").nth(1).and_then(|rest| rest.split(',').next()).expect("a number");
+    assert_eq!(told(number.parse().expect("a number")), Vec::<String>::new());
+}
