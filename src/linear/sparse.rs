@@ -135,7 +135,7 @@ pub struct SparseMatrix {
     /// Values, column by column
     pub values: Vec<f64>,
     /// Whether each dof is held: see [`SparseMatrix::hold`]
-    pub(super) held: Vec<bool>,
+    pub held: Vec<bool>,
 }
 
 impl SparseMatrix {
