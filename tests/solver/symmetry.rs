@@ -131,10 +131,17 @@ fn contributions_say_whether_they_are_symmetric() {
     let fading = held().stabilize(1e-3);
     check("stabilized", Term::Stabilization, block().step(fading), false);
     // Equations that are not those of forces.
-    let inclined = step().support(Support::on("upper_top").along([0.6, 0.8], 0.01)).support(Support::on("upper_left").ux(0.0));
+    let inclined =
+        step().support(Support::on("upper_top").along([0.6, 0.8], 0.01)).support(Support::on("upper_left").ux(0.0));
     check("inclined", Term::Solids, block().step(inclined), false);
-    check("plate", Term::Solids, block().plate("upper_top").step(step().load(Load::spring("upper_right", [5.0, 5.0]))), false);
-    let rigid = block().plate_moving("upper_top", Plate::Rigid).step(step().load(Load::spring("upper_right", [5.0, 5.0])));
+    check(
+        "plate",
+        Term::Solids,
+        block().plate("upper_top").step(step().load(Load::spring("upper_right", [5.0, 5.0]))),
+        false,
+    );
+    let rigid =
+        block().plate_moving("upper_top", Plate::Rigid).step(step().load(Load::spring("upper_right", [5.0, 5.0])));
     check("rigid plate", Term::Solids, rigid, false);
     check("periodic", Term::Solids, block().periodic("lower_left", "lower_right").step(held()), false);
     let moving = block().periodic("upper_left", "upper_right").step(dynamic().fix("upper_top"));
@@ -150,7 +157,9 @@ fn symmetrize(matrix: &mut SparseMatrix) {
     let pattern = matrix.pattern.clone();
     for column in 0..pattern.nodes() {
         for &row in pattern.neighbours(column).iter().filter(|&&row| row >= column) {
-            let [(Some(below), Some(above))] = [(pattern.block(row, column), pattern.block(column, row))] else { continue };
+            let [(Some(below), Some(above))] = [(pattern.block(row, column), pattern.block(column, row))] else {
+                continue;
+            };
             for (i, j) in (0..2).flat_map(|i| (0..2).map(move |j| (i, j))) {
                 if !(pattern.skew()[row] && pattern.skew()[column]) {
                     matrix.values[above.value(j, i)] = matrix.values[below.value(i, j)];
@@ -399,7 +408,8 @@ fn a_column_loses_its_stability_at_eulers_load() {
         .dt(most / 220.0)
         .fix("column_left")
         .load(Load::total_force("column_right", [common::expression("-t"), 0.0.into()]));
-    let model = Model::builder(mesh.build().expect("a mesh")).body("column", material).step(press).build().expect("a model");
+    let model =
+        Model::builder(mesh.build().expect("a mesh")).body("column", material).step(press).build().expect("a model");
     let mut pivots = Pivots::default();
     fecontact::run::run(&Arc::new(model), &mut [&mut pivots]).1.expect("it stays straight");
     for k in [1, 2] {

@@ -90,12 +90,12 @@ impl Multifrontal {
         Ok(())
     }
 
-    /// Bytes that a factorization takes at its largest: factors, waiting contributions, the scaled values and their places. Known once the pattern is analysed, before any of the factors is.
+    /// Bytes that a factorization takes at its largest: factors, waiting contributions, the scaled values and their places. Known
+    /// once the pattern is analysed, before any of the factors is.
     pub fn memory(&self) -> usize {
         self.symbolic.as_ref().map_or(0, |symbolic| {
-            let values = symbolic.values()
-                + symbolic.contributions(rayon::current_num_threads())
-                + 4 * symbolic.entries.len();
+            let values =
+                symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + 4 * symbolic.entries.len();
             size_of::<f64>() * values + size_of::<Entry>() * symbolic.entries.len()
         })
     }

@@ -55,41 +55,47 @@ impl NullaryFnOnce for Find<'_> {
         scales.resize(n, 0.0);
         let skew = matrix.pattern.skew();
         let symmetric = !matrix.pattern.is_all_skew();
-        for (column, nodes, values) in columns(matrix).filter(|(column, ..)| !matrix.held[*column]) {
+        each_column(matrix, |column, nodes, values| {
+            if matrix.held[column] {
+                return;
+            }
             if symmetric {
                 rows[column] = largest(values).max(rows[column]);
             }
-            if !symmetric || skew[column / 2] {
-                for (&row, pair) in nodes.iter().zip(values.chunks_exact(2)).filter(|(row, _)| skew[**row]) {
+            if skew[column / 2] {
+                for (&row, pair) in nodes.iter().zip(values.as_chunks::<2>().0).filter(|(row, _)| skew[**row]) {
                     let sizes = &mut rows[2 * row..2 * row + 2];
                     sizes[0] = pair[0].abs().max(sizes[0]);
                     sizes[1] = pair[1].abs().max(sizes[1]);
                 }
             }
-        }
+        });
         if symmetric {
             rows.iter_mut().for_each(|size| *size = inverse_root_of_two(*size));
             return scales.copy_from_slice(rows);
         }
         rows.iter_mut().for_each(|size| *size = inverse_power_of_two(*size));
-        for (column, nodes, values) in columns(matrix) {
+        each_column(matrix, |column, nodes, values| {
             let mut most = [0.0f64; 2];
-            for (&row, pair) in nodes.iter().zip(values.chunks_exact(2)) {
+            for (&row, pair) in nodes.iter().zip(values.as_chunks::<2>().0) {
                 most[0] = (pair[0] * rows[2 * row]).abs().max(most[0]);
                 most[1] = (pair[1] * rows[2 * row + 1]).abs().max(most[1]);
             }
             scales[column] = inverse_power_of_two(most[0].max(most[1]));
-        }
+        });
     }
 }
 
-/// The columns with the nodes of their rows and their values.
-fn columns(matrix: &SparseMatrix) -> impl Iterator<Item = (usize, &[usize], &[f64])> {
+/// Visit the columns with the nodes of their rows and their values.
+#[inline(always)]
+fn each_column(matrix: &SparseMatrix, mut visit: impl FnMut(usize, &[usize], &[f64])) {
     let mut rest = &matrix.values[..];
-    (0..matrix.size()).map(move |column| {
-        let rows = matrix.pattern.neighbours(column / 2);
-        (column, rows, rest.split_off(..2 * rows.len()).unwrap_or_default())
-    })
+    for node in 0..matrix.pattern.nodes() {
+        let rows = matrix.pattern.neighbours(node);
+        for column in [2 * node, 2 * node + 1] {
+            visit(column, rows, rest.split_off(..2 * rows.len()).unwrap_or_default());
+        }
+    }
 }
 
 /// The power of two that brings `size` into [1, 2); 1 for zero and for what is not finite.

@@ -148,7 +148,8 @@ impl SymmetricPanel<'_> {
         let beneath = (row + 1..pivots).map(|i| at(self.lower, i, row));
         let beside = to_the_left.chain(beneath).fold(0.0, f64::max);
         // What is no number stays where it is.
-        if row == j || !(own * beside < ALPHA * most * most) {
+        let moves = row != j && own * beside < ALPHA * most * most;
+        if !moves {
             self.exchanges[j] = j as u32;
             self.eliminate_one(j);
             return j + 1;
@@ -263,10 +264,11 @@ impl NullaryFnOnce for Block<'_> {
             let (left, right) = columns.split_at_mut((k + 1) * size);
             let column = &mut left[k * size..];
             let (own, most) = (column[j].abs(), largest(&column[j + 1..pivots]));
+            let serves = own > VANISHED && own >= THRESHOLD * most;
             if own.max(most) <= VANISHED {
                 column[j] = REPLACEMENT.copysign(column[j]);
                 found.replaced += 1;
-            } else if !(own > VANISHED && own >= THRESHOLD * most) {
+            } else if !serves {
                 return j;
             }
             *exchanged = j as u32;
