@@ -132,6 +132,13 @@ impl ContactPair {
         matches!(&self.master, Master::Mesh(surface) if surface.own_depth.is_some())
     }
 
+    /// Whether its tangent is symmetric: without friction, where surfaces neither turn nor stretch. In finite sliding a pressure acts
+    /// on the current length, and turns with it, as a load that follows the surface does.
+    pub fn is_symmetric(&self) -> bool {
+        let smooth = |law: &Arc<ContactLaw>| law.description.is_frictionless && law.description.opening.is_empty();
+        self.small.is_some() && self.laws.iter().all(smooth)
+    }
+
     /// Friction of a slave point at the start of the run.
     pub fn law(&self, slave: &SlavePoint) -> &ContactLaw {
         &self.laws[slave.law]

@@ -21,7 +21,7 @@ use crate::equations::evolving::Evolving;
 use crate::equations::inertia::{self, Inertia};
 use crate::equations::solids::Solids;
 use crate::equations::sums::{Sums, TrialFailure};
-use crate::equations::term::Term;
+use crate::equations::term::{self, Term};
 use crate::equations::trial::Trial;
 use crate::equations::{contacts, damping, links, loads, supports};
 use crate::linear::SparseMatrix;
@@ -75,7 +75,7 @@ impl Assembler {
         let solids = Solids::new(model);
         Self {
             model: model.clone(),
-            layout: Layout::new(model),
+            layout: Layout::new(model, term::skew(model)),
             evolving: Evolving::new(model, solids.constant()),
             solids,
             mass: None,
@@ -215,7 +215,7 @@ impl Assembler {
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
         if let Some(tangent) = &mut tangent {
             match solids.constant_stiffness(layout).filter(|_| terms.contains(&Term::Solids)) {
-                Some(constant) => tangent.values.copy_from_slice(&constant.values),
+                Some(constant) => tangent.copy_values(constant),
                 None => tangent.clear(),
             }
         }
@@ -277,7 +277,8 @@ impl Assembler {
 
     /// Make room in the pattern for all contact points.
     fn cover(&mut self, trial: Trial, responses: &[PairResponse]) {
-        if self.layout.cover(responses, trial.old) {
+        let marked = self.layout.mark(&term::skew_of(&self.model, trial.step));
+        if self.layout.cover(responses, trial.old) || marked {
             (self.mass, self.damping_mass) = (None, None);
         }
     }

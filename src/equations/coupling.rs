@@ -37,11 +37,22 @@ impl Coupling {
     }
 }
 
+/// Nodes between which the tangent is not symmetric: see [`Pattern::symmetric_but`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Skew {
+    /// Nodes that such contributions couple with each other
+    pub nodes: Vec<usize>,
+    /// Nodes whose equations are not those of their forces, or no more: these and all they couple with
+    pub around: Vec<usize>,
+}
+
 /// The pattern of a model's tangent, and where each element is in it.
 pub(super) struct Layout {
     model: Arc<Model>,
     /// what is coupled at present
     pub coupling: Arc<Coupling>,
+    /// what is not symmetric beside contact
+    skew: Skew,
     /// the pattern
     pub pattern: Arc<Pattern>,
     /// Position of the block of every node pair of every element, in the current pattern
@@ -56,7 +67,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// The nodes of every element, load and pair of tied nodes.
-    pub fn new(model: &Arc<Model>) -> Self {
+    pub fn new(model: &Arc<Model>, skew: Skew) -> Self {
         let starts = std::iter::once(0).chain(model.mesh.elements.iter().scan(0, |sum, element| {
             *sum += element.nodes.len().pow(2);
             Some(*sum)
@@ -64,6 +75,7 @@ impl Layout {
         let mut layout = Self {
             model: model.clone(),
             coupling: Arc::new(Coupling { groups: Vec::new(), ahead: 1 }),
+            skew,
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             starts: starts.collect(),
@@ -92,13 +104,45 @@ impl Layout {
         let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
         let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
         let tied = self.tied(all.clone());
-        self.pattern = Arc::new(Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..]))));
+        let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
+        let skew = self.all_skew(&pattern);
+        self.pattern = Arc::new(pattern.symmetric_but(skew));
         let mut blocks = std::mem::take(&mut self.blocks);
         blocks.clear();
         model.mesh.elements.iter().for_each(|element| blocks.extend(self.blocks_between(&element.nodes)));
         self.blocks = blocks;
         self.contacts.clear();
         self.contact_blocks.clear();
+    }
+
+    /// Flags of all nodes between which the tangent is not symmetric.
+    fn all_skew(&self, pattern: &Pattern) -> Vec<bool> {
+        let (model, Skew { nodes, around }) = (&*self.model, &self.skew);
+        let mut skew = vec![false; pattern.nodes()];
+        nodes.iter().for_each(|&node| skew[self.original(node)] = true);
+        around.iter().flat_map(|&node| pattern.neighbours(node)).for_each(|&node| skew[node] = true);
+        // A copy's equation is that it moves with its original.
+        model.ties.pairs().iter().for_each(|&(copy, original)| (skew[copy], skew[original]) = (true, true));
+        let mut slides = vec![false; pattern.nodes()];
+        let skew_pairs = model.contacts.iter().filter(|pair| !pair.is_symmetric());
+        skew_pairs.flat_map(|pair| pair.nodes()).for_each(|node| slides[node] = true);
+        let groups = self.coupling.groups.iter().flatten();
+        groups.filter(|node| slides[**node]).for_each(|&node| skew[self.original(node)] = true);
+        skew
+    }
+
+    /// Take what is not symmetric in a step that has been changed; whether it was not known yet.
+    pub fn mark(&mut self, skew: &Skew) -> bool {
+        let known = self.pattern.skew();
+        let around = skew.around.iter().flat_map(|&node| self.pattern.neighbours(node));
+        let mut all = skew.nodes.iter().map(|&node| self.original(node)).chain(around.copied());
+        let new = all.any(|node| !known[node]);
+        if new {
+            self.skew.nodes.extend(&skew.nodes);
+            self.skew.around.extend(&skew.around);
+            self.set();
+        }
+        new
     }
 
     /// The groups that have copies in them, as the nodes that those move with, and every copy with its own.

@@ -53,6 +53,13 @@ pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
     }
 }
 
+/// Nodes of the bodies whose viscous stress is not that of a constant stiffness: its tangent is not symmetric.
+pub(super) fn skew(model: &Model, step: &Step) -> Vec<usize> {
+    let viscous = model.bodies.iter().zip(model.dampings(step)).filter(|(_, damping)| damping.retardation > 0.0);
+    let skew = viscous.filter(|(body, _)| !damps_by_stiffness(&*body.material));
+    skew.flat_map(|(body, _)| body.nodes.iter().copied()).collect()
+}
+
 /// η of the bodies, and η M.
 pub(super) type ByMass = (Vec<f64>, SparseMatrix);
 

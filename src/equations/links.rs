@@ -113,6 +113,11 @@ pub fn relieved<'a>(model: &Model, u: &[f64], force: &'a [f64]) -> Cow<'a, [f64]
     force
 }
 
+/// Nodes that follow or lead: followers' equations are summed up, and their columns are not.
+pub(super) fn skew(model: &Model) -> Vec<usize> {
+    model.linkage.nodes()
+}
+
 /// Before supports replace equations: those of leaders sum up what their followers have.
 pub fn gather_rows(model: &Model, matrix: &mut SparseMatrix) {
     for follower in &model.linkage.followers {

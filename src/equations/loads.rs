@@ -19,6 +19,11 @@ pub(super) fn dependence(step: &Step) -> Dependence {
     }
 }
 
+/// Nodes of the pressures, whose tangent is not symmetric: that of an edge by itself.
+pub(super) fn skew(step: &Step) -> Vec<usize> {
+    step.loads.pressures.iter().flat_map(|load| load.edges.iter().flatten().copied()).collect()
+}
+
 /// Whether a step has any.
 fn any(model: &Model, step: &Step) -> bool {
     let loads = &step.loads;

@@ -32,6 +32,11 @@ pub fn fixed(model: &Model, step: &Step) -> Vec<bool> {
     fixed
 }
 
+/// Nodes held along an inclined direction: their equations are turned, and their columns are not.
+pub(super) fn skew(step: &Step) -> Vec<usize> {
+    step.supports.iter().filter(|support| support.at.inclined.is_some()).map(|support| support.at.node()).collect()
+}
+
 /// The residual of the equations of forces, 0 at all other dofs.
 pub fn free(model: &Model, step: &Step, residual: &[f64]) -> Vec<f64> {
     residual.iter().zip(fixed(model, step)).map(|(&residual, fixed)| if fixed { 0.0 } else { residual }).collect()
@@ -96,7 +101,7 @@ pub fn turn(at: Direction, own: f64, values: &mut [f64]) {
 /// Replace the equation of a held direction by w d·u, and the other of an inclined one by what is across.
 pub fn hold(at: Direction, weight: f64, matrix: &mut SparseMatrix) {
     match at.across() {
-        None => matrix.replace_row(at.dof, weight),
+        None => matrix.hold(at.dof, weight),
         Some(across) => matrix.turn_rows(at.dof, (at.vector() * weight).into(), across.vector().into()),
     }
 }

@@ -1,7 +1,8 @@
 //! The terms of the equations.
 
+use super::coupling::Skew;
 use super::sums::Dependence;
-use super::{contacts, damping, inertia, loads, solids};
+use super::{contacts, damping, inertia, links, loads, solids, supports};
 use crate::model::{Model, Step};
 
 /// A term of the equations.
@@ -40,4 +41,24 @@ impl Term {
             Self::Inertia => inertia::dependence(step),
         }
     }
+}
+
+/// Where the tangent of a step is not symmetric beside contacts, as those say who add to it; inertia, dashpots and dead loads always are.
+pub(super) fn skew_of(model: &Model, step: &Step) -> Skew {
+    let mut nodes = loads::skew(step);
+    nodes.extend(damping::skew(model, step));
+    let mut around = supports::skew(step);
+    around.extend(links::skew(model));
+    Skew { nodes, around }
+}
+
+/// The same in all steps of a model.
+pub(super) fn skew(model: &Model) -> Skew {
+    let mut all = Skew { nodes: solids::skew(model), around: Vec::new() };
+    for step in &model.steps {
+        let Skew { nodes, around } = skew_of(model, step);
+        all.nodes.extend(nodes);
+        all.around.extend(around);
+    }
+    all
 }

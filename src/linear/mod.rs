@@ -56,6 +56,12 @@ pub trait LinearSolver: Send {
         false
     }
 
+    /// Number of negative eigenvalues of the last matrix, if it was factorized as a symmetric one: by Sylvester's law of inertia
+    /// that of D.
+    fn negative_pivots(&self) -> Option<usize> {
+        None
+    }
+
     /// Pivots of the last factorization that vanished and were replaced: what [`solve`](Self::solve) gives needs
     /// refinement then, and may not satisfy the equations even so.
     fn perturbed_pivots(&self) -> usize {
@@ -73,6 +79,8 @@ pub struct Solution {
     pub backward_error: f64,
     /// Pivots that vanished and were replaced
     pub perturbed_pivots: usize,
+    /// Negative eigenvalues of A, if all of it was factorized as symmetric
+    pub negative_pivots: Option<usize>,
     /// Whether [`SparseLu`] took over because refinement stalled
     pub fallback: bool,
 }
@@ -112,8 +120,8 @@ pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) ->
         if other.factorize(matrix).is_ok() {
             let second = refined(&mut other, matrix, b, REFINEMENTS);
             if second.backward_error < solution.backward_error || solution.backward_error.is_nan() {
-                let perturbed_pivots = solution.perturbed_pivots;
-                solution = Solution { perturbed_pivots, fallback: true, ..second };
+                let Solution { perturbed_pivots, negative_pivots, .. } = solution;
+                solution = Solution { perturbed_pivots, negative_pivots, fallback: true, ..second };
             }
         }
     }
@@ -153,7 +161,9 @@ fn refined(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64], most
         (x, residual, backward_error) = (refined, new_residual, new_error);
     }
     let perturbed_pivots = solver.perturbed_pivots();
-    Solution { x, residual: relative(&residual, b), backward_error, perturbed_pivots, fallback: false }
+    let negative_pivots = solver.negative_pivots();
+    let residual = relative(&residual, b);
+    Solution { x, residual, backward_error, perturbed_pivots, negative_pivots, fallback: false }
 }
 
 /// The solution of a stable solver as it is.
@@ -161,7 +171,7 @@ fn stable(matrix: &SparseMatrix, x: Vec<f64>, b: &[f64]) -> Solution {
     let residual = relative(&matrix.residual(&x, b), b);
     // What is no number has no backward error either, and another solver takes over.
     let backward_error = if residual.is_finite() { 0.0 } else { f64::NAN };
-    Solution { x, residual, backward_error, perturbed_pivots: 0, fallback: false }
+    Solution { x, residual, backward_error, perturbed_pivots: 0, negative_pivots: None, fallback: false }
 }
 
 /// ‖r‖/‖b‖, 0 for b = 0

@@ -1,14 +1,22 @@
 //! Compressed-column matrix with 2×2 blocks: each node has two unknowns, and the pattern is symmetric.
+//!
+//! # Symmetry of the values
+//!
+//! A pattern knows which nodes' values may be unsymmetric, as those say who add them: A_ij = A_ji wherever one of i and j is not
+//! among them. Values are never compared. A held dof has an equation of its own, A_dd x_d = b_d; what its column has elsewhere counts
+//! as on the right-hand side, and spoils no symmetry.
 
 use std::sync::Arc;
 
-/// Sparsity pattern by nodes. Row and column nodes are the same set: the pattern is symmetric, the values are not.
+/// Sparsity pattern by nodes. Row and column nodes are the same set: the pattern is symmetric, the values only where it says so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     /// Start of each column node's list in `rows`; length nodes + 1
     starts: Vec<usize>,
     /// Row nodes coupled with each column node, ascending, the node itself included
     rows: Vec<usize>,
+    /// Whether values between each node and others of this kind, or its own, may be unsymmetric
+    skew: Vec<bool>,
 }
 
 /// Position of the 2×2 block of a (row node, column node) pair in the values.
@@ -26,7 +34,8 @@ impl BlockPosition {
 }
 
 impl Pattern {
-    /// Pattern of a set of node groups: all nodes of a group are coupled with each other.
+    /// Pattern of a set of node groups: all nodes of a group are coupled with each other. Nothing is known of the symmetry of the
+    /// values.
     pub fn new<'a>(nodes: usize, groups: impl Iterator<Item = &'a [usize]> + Clone) -> Self {
         let mut counts = vec![1; nodes];
         for group in groups.clone() {
@@ -51,7 +60,22 @@ impl Pattern {
             rows.extend_from_slice(list);
             starts.push(rows.len());
         }
-        Self { starts, rows }
+        Self { starts, rows, skew: vec![true; nodes] }
+    }
+
+    /// The same for values that are symmetric but between these nodes.
+    pub fn symmetric_but(self, skew: Vec<bool>) -> Self {
+        Self { skew, ..self }
+    }
+
+    /// Flags of the nodes between which values may be unsymmetric.
+    pub fn skew(&self) -> &[bool] {
+        &self.skew
+    }
+
+    /// Whether values may be unsymmetric between all nodes.
+    pub(super) fn is_all_skew(&self) -> bool {
+        !self.skew.contains(&false)
     }
 
     /// Number of nodes.
@@ -110,13 +134,16 @@ pub struct SparseMatrix {
     pub pattern: Arc<Pattern>,
     /// Values, column by column
     pub values: Vec<f64>,
+    /// Whether each dof is held: see [`SparseMatrix::hold`]
+    pub held: Vec<bool>,
 }
 
 impl SparseMatrix {
     /// The zero matrix on a pattern.
     pub fn zero(pattern: Arc<Pattern>) -> Self {
         let values = vec![0.0; pattern.values()];
-        Self { pattern, values }
+        let held = vec![false; 2 * pattern.nodes()];
+        Self { pattern, values, held }
     }
 
     /// Number of rows and columns.
@@ -124,9 +151,16 @@ impl SparseMatrix {
         2 * self.pattern.nodes()
     }
 
-    /// Set every value to zero.
+    /// Set every value to zero; nothing is held.
     pub fn clear(&mut self) {
         self.values.fill(0.0);
+        self.held.fill(false);
+    }
+
+    /// Take the values of a matrix on the same pattern; nothing is held.
+    pub fn copy_values(&mut self, other: &SparseMatrix) {
+        self.values.copy_from_slice(&other.values);
+        self.held.fill(false);
     }
 
     /// Add `value` times the identity to the block of one dof: A_ii += value.
@@ -182,9 +216,17 @@ impl SparseMatrix {
         }
     }
 
-    /// Replace the row of `dof` by `diagonal` on the diagonal and zeros elsewhere.
+    /// Hold a dof: its equation becomes `diagonal` x = b, and stays so.
+    pub fn hold(&mut self, dof: usize, diagonal: f64) {
+        self.replace_row(dof, diagonal);
+        self.held[dof] = true;
+    }
+
+    /// Replace the row of `dof` by `diagonal` on the diagonal and zeros elsewhere, to which others may be added: what its column
+    /// has is skew then.
     pub fn replace_row(&mut self, dof: usize, diagonal: f64) {
         let (node, d) = (dof / 2, dof % 2);
+        self.held[dof] = false;
         // The pattern is symmetric: the columns that meet this row are the neighbours of its node.
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
@@ -214,6 +256,7 @@ impl SparseMatrix {
     /// both as they are.
     pub fn turn_rows(&mut self, dof: usize, own: [f64; 2], across: [f64; 2]) {
         let (node, d) = (dof / 2, dof % 2);
+        self.held[2 * node..2 * node + 2].fill(false);
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
             let Some(block) = self.pattern.block(node, column) else { continue };

@@ -41,12 +41,12 @@ impl Rows for NewtonRows {
             table.count(*flips);
             table.count(*pass);
             acted.counts().into_iter().for_each(|count| table.count(count));
-            end_row(table, attempt, &reason)?;
+            end_row(table, attempt, &reason, newton.negative_pivots)?;
         }
         if attempt.iterations.is_empty() && attempt.verdict != Verdict::Accepted {
             begin_row(table, attempt, 0);
             NOTHING.iter().chain(&["0"; Acted::COLUMNS.len()]).for_each(|cell| table.text(cell));
-            end_row(table, attempt, &reason)?;
+            end_row(table, attempt, &reason, None)?;
         }
         Ok(())
     }
@@ -59,9 +59,10 @@ fn begin_row(table: &mut Table, attempt: &Attempt, iteration: usize) {
     table.number(attempt.old.time + attempt.dt);
 }
 
-/// The last cells: what became of the attempt. A comma would end the cell.
-fn end_row(table: &mut Table, attempt: &Attempt, reason: &str) -> Result<(), Error> {
+/// The last cells: what became of the attempt, and the negative eigenvalues of its matrix, if they are known. A comma would end the cell.
+fn end_row(table: &mut Table, attempt: &Attempt, reason: &str, negative: Option<usize>) -> Result<(), Error> {
     table.text(attempt.verdict.name());
     table.text(reason);
+    table.text(&negative.map_or_else(String::new, |count| count.to_string()));
     table.end_row()
 }

@@ -321,9 +321,10 @@ pub const NEWTON: [Quantity; 15] = [
 ];
 
 /// ... which are these.
-pub const VERDICT: [Quantity; 2] = [
+pub const VERDICT: [Quantity; 3] = [
     q("verdict", NONE, "outcome of the attempt (below)"),
     q("reason", NONE, "why it was rejected; empty where accepted, commas as semicolons"),
+    q("negative_pivots", NONE, "negative eigenvalues of the matrix, where all of it is symmetric; else empty"),
 ];
 
 /// Arrays of the frames of bodies.

@@ -63,6 +63,8 @@ pub struct Iteration {
     pub factorized: bool,
     /// Pivots of K that vanished and were replaced
     pub perturbed_pivots: usize,
+    /// Negative eigenvalues of K, where all of it was factorized as symmetric
+    pub negative_pivots: Option<usize>,
     /// Whether the fronts of K were not exact enough, and another solver took over
     pub fallback: bool,
     /// Whether a line search was made along the correction
@@ -181,6 +183,7 @@ impl Plan {
             linear_residual: solution.residual,
             factorized: self.factorized,
             perturbed_pivots: solution.perturbed_pivots,
+            negative_pivots: solution.negative_pivots,
             fallback: solution.fallback,
             searched: self.searched,
         }

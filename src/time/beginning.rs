@@ -225,7 +225,7 @@ fn start_dynamics(
     // Nodes without mass are in equilibrium from the first increment on.
     let without = |dof: &usize| model.massless[dof / 2] && mass.diagonal()[*dof] == 0.0;
     for dof in (0..model.dofs()).filter(without).collect::<Vec<_>>() {
-        mass.replace_row(dof, scale);
+        mass.hold(dof, scale);
         right[dof] = 0.0;
     }
     for support in &step.supports {

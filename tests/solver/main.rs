@@ -25,5 +25,6 @@ mod plates;
 mod sections;
 mod simulation;
 mod spinning;
+mod symmetry;
 mod terms;
 mod turning;

@@ -53,7 +53,7 @@ impl Condensation {
         room_for(size_of::<f64>() * (symbolic.values() + contributions), 0).ok()?;
         factors.reserve(symbolic).ok()?;
         scaling.compute(matrix);
-        factors.compute(symbolic, &mut scaling.values);
+        factors.compute(symbolic, matrix, scaling);
         factors.settle();
         if factors.replaced() > 0 {
             return None;

@@ -7,16 +7,16 @@ use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, NullaryFnOnce};
 
 /// Columns that are eliminated one by one; more are halved, so that most of the work is a matrix product.
-const NARROW: usize = 8;
+pub const NARROW: usize = 8;
 
 /// Operations of a product that is not worth sharing out.
-const SMALL_PRODUCT: usize = 1 << 22;
+pub const SMALL_PRODUCT: usize = 1 << 22;
 
 /// A pivot of a matrix scaled to 1 that is nothing but round-off.
-const VANISHED: f64 = 64.0 * f64::EPSILON;
+pub const VANISHED: f64 = 64.0 * f64::EPSILON;
 
 /// Replacement of a zero pivot: √ε, so that the error it makes and the growth it causes are alike.
-const REPLACEMENT: f64 = 1.490_116_119_384_765_6e-8;
+pub const REPLACEMENT: f64 = 1.490_116_119_384_765_6e-8;
 
 /// The rows and columns of the pivots in a front.
 pub struct Panel<'a> {
@@ -187,6 +187,33 @@ pub fn subtract(y: &mut [f64], column: &[f64], value: f64) {
     }
 }
 
+/// a·b in eight sums, so that the processor can work on several at once.
+#[inline(always)]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    for (a, b) in a.iter().zip(b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+/// The largest |v|, eight of them at a time; what is no number is passed over.
+#[inline(always)]
+pub fn largest(values: &[f64]) -> f64 {
+    let mut most = [0.0f64; 8];
+    let (chunks, rest) = values.as_chunks::<8>();
+    for chunk in chunks {
+        for (most, value) in most.iter_mut().zip(chunk) {
+            *most = if value.abs() > *most { value.abs() } else { *most };
+        }
+    }
+    most.iter().chain(rest).fold(0.0, |most, value| if value.abs() > most { value.abs() } else { most })
+}
+
 /// Apply the row exchanges in the order in which they were made; both count from row `first` of the front.
 pub fn exchange(column: &mut [f64], exchanges: &[u32], first: usize) {
     for (j, &other) in exchanges.iter().enumerate() {
@@ -195,7 +222,7 @@ pub fn exchange(column: &mut [f64], exchanges: &[u32], first: usize) {
 }
 
 /// c ← c − a b, or c ← −a b
-fn subtract_product(c: MatMut<'_, f64>, accum: Accum, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+pub fn subtract_product(c: MatMut<'_, f64>, accum: Accum, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
     let (rows, columns) = (c.nrows(), c.ncols());
     if rows * columns * a.ncols() <= SMALL_PRODUCT {
         return matmul(c, accum, a, b, -1.0, Par::Seq);

@@ -13,13 +13,20 @@
 //! factorization from scratch, and so the same bits.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
+use super::super::SparseMatrix;
 use super::dense::Panel;
 use super::front::{Forest, Front, Run, Stacks};
+use super::scale::Scaling;
 use super::symbolic::{Entry, Symbolic};
+use super::symmetric::{Found, SymmetricPanel, mirror};
+
+/// Fronts whose values one thread takes at a time.
+const FEW_FRONTS: usize = 256;
 
 /// L and U of all fronts.
 #[derive(Default)]
@@ -28,11 +35,11 @@ pub struct Factors {
     pub values: Vec<f64>,
     /// Row exchanges, in the order of elimination, counted from the front's first row
     pub exchanges: Vec<u32>,
-    /// Pivots that vanished and were replaced, front by front
-    replaced: Vec<usize>,
+    /// Pivots that vanished and were replaced, and negative ones of symmetric fronts, front by front
+    found: Vec<Found>,
     /// Fronts that the last factorization eliminated
     pub eliminated: usize,
-    /// The values that were factorized
+    /// The scaled values that were factorized, four an entry
     a: Vec<f64>,
     /// What fronts that stay pass on to those that do not, by the number of the front
     kept: HashMap<u32, Vec<f64>>,
@@ -44,7 +51,7 @@ pub struct Factors {
 struct FrontBlock<'a> {
     values: &'a mut [f64],
     exchanges: &'a mut [u32],
-    replaced: &'a mut [usize],
+    found: &'a mut [Found],
 }
 
 impl<'a> FrontBlock<'a> {
@@ -55,7 +62,7 @@ impl<'a> FrontBlock<'a> {
         FrontBlock {
             values: self.values.split_off_mut(..values).unwrap_or_default(),
             exchanges: self.exchanges.split_off_mut(..pivots).unwrap_or_default(),
-            replaced: self.replaced.split_off_mut(..fronts.len()).unwrap_or_default(),
+            found: self.found.split_off_mut(..fronts.len()).unwrap_or_default(),
         }
     }
 }
@@ -73,20 +80,24 @@ impl Factors {
 
     /// Number of pivots that vanished and were replaced.
     pub fn replaced(&self) -> usize {
-        self.replaced.iter().sum()
+        self.found.iter().map(|found| found.replaced).sum()
     }
 
-    /// Factorize the values `a` (scaled to 1) on the pattern of `symbolic`, which is that of the last ones unless they were
-    /// settled; they are taken, and the last ones left in their place. The storage is used again, and so are fronts whose values
-    /// have not changed.
-    pub fn compute(&mut self, symbolic: &Symbolic, a: &mut Vec<f64>) {
-        let before = (self.a.len() == a.len()).then_some(&self.a[..]);
-        let actions = actions(symbolic, before, a, &self.kept);
+    /// Number of negative eigenvalues of D.
+    pub fn negative(&self) -> usize {
+        self.found.iter().map(|found| found.negative).sum()
+    }
+
+    /// Factorize a matrix, scaled to 1, on the pattern of `symbolic`, which is that of the last one unless it was settled. The
+    /// storage is used again, and so are fronts whose values have not changed.
+    pub fn compute(&mut self, symbolic: &Symbolic, matrix: &SparseMatrix, scaling: &Scaling) {
+        let changed = self.gather(symbolic, matrix, scaling);
+        let actions = actions(symbolic, &changed, &self.kept);
         self.values.resize(symbolic.values(), 0.0);
         self.exchanges.resize(2 * symbolic.nodes.len(), 0);
-        self.replaced.resize(symbolic.fronts.len(), 0);
-        let Self { values, exchanges, replaced, .. } = self;
-        let mut rest = FrontBlock { values, exchanges, replaced };
+        self.found.resize(symbolic.fronts.len(), Found::default());
+        let Self { values, exchanges, found, a, .. } = self;
+        let mut rest = FrontBlock { values, exchanges, found };
         let job = Job::new(symbolic, |fronts| rest.take(fronts));
         let rooms = std::mem::take(&mut self.rooms);
         let (waiting, new) = (Waiting::default(), Waiting::default());
@@ -97,8 +108,42 @@ impl Factors {
         self.eliminated = actions.iter().filter(|action| action.eliminates()).count();
         self.kept.retain(|&front, _| !actions[front as usize].eliminates());
         self.kept.extend(new.into_inner());
-        std::mem::swap(&mut self.a, a);
     }
+
+    /// Take the scaled values of a matrix; whether those of each front are others than before.
+    fn gather(&mut self, symbolic: &Symbolic, matrix: &SparseMatrix, scaling: &Scaling) -> Vec<bool> {
+        let anew = self.a.len() != 4 * symbolic.entries.len();
+        self.a.resize(4 * symbolic.entries.len(), 0.0);
+        let mut rest = &mut self.a[..];
+        let own = |front: &Front| {
+            let entries = &symbolic.entries[front.lower.start..front.upper.end];
+            (entries, rest.split_off_mut(..4 * entries.len()).unwrap_or_default())
+        };
+        let fronts: Vec<(&[Entry], &mut [f64])> = symbolic.fronts.iter().map(own).collect();
+        let fronts = fronts.into_par_iter().with_min_len(FEW_FRONTS);
+        fronts.map(|(entries, values)| take_values(entries, values, matrix, scaling) || anew).collect()
+    }
+}
+
+/// Write the scaled values of some entries over others; whether they differ.
+fn take_values(entries: &[Entry], values: &mut [f64], matrix: &SparseMatrix, scaling: &Scaling) -> bool {
+    let mut differ = false;
+    for (&Entry { block, row, column, .. }, values) in entries.iter().zip(values.as_chunks_mut::<4>().0) {
+        let [rows, columns] = [(&scaling.rows, row), (&scaling.columns, column)]
+            .map(|(scales, node)| [0, 1].map(|i| scales[2 * node as usize + i]));
+        let mut new = [0.0; 4];
+        for (j, (pair, scale)) in new.as_chunks_mut::<2>().0.iter_mut().zip(columns).enumerate() {
+            let column = &matrix.values[block.value(0, j)..][..2];
+            *pair = [column[0] * rows[0] * scale, column[1] * rows[1] * scale];
+        }
+        if row == column {
+            // What is held is solved by itself.
+            (0..2).filter(|&i| rows[i] == 0.0).for_each(|i| new[3 * i] = 1.0);
+        }
+        differ |= new.map(f64::to_bits) != values.map(f64::to_bits);
+        *values = new;
+    }
+    differ
 }
 
 /// A factorization at work.
@@ -120,7 +165,7 @@ impl Numeric<'_> {
         let fronts = &self.symbolic.fronts;
         let mut room = lock(&self.rooms).pop().unwrap_or_default();
         room.resize(room.len().max(forest.room), 0.0);
-        let mut stacks = Stacks::new(room);
+        let (mut stacks, mut weighted) = (Stacks::new(room), Vec::new());
         for (number, front) in forest.fronts.clone().map(|number| (number, &fronts[number])) {
             let part = rest.take(std::slice::from_ref(front));
             match self.actions[number] {
@@ -139,7 +184,7 @@ impl Numeric<'_> {
                     (child, passed_on.split_off(..child.below() * child.below()).unwrap_or_default())
                 })
                 .collect();
-            self.eliminate(front, part, &children, below);
+            self.eliminate(front, part, &children, below, &mut weighted);
             self.keep(number, below);
             stacks.pop(front, fronts);
         }
@@ -176,7 +221,7 @@ impl Numeric<'_> {
             .map(|(&child, values)| (&fronts[child as usize], &values[..]))
             .collect();
         let mut below = vec![0.0; front.below() * front.below()];
-        self.eliminate(front, part, &children, &mut below);
+        self.eliminate(front, part, &children, &mut below, &mut Vec::new());
         self.keep(number as usize, &below);
         self.waiting.put(number, below);
     }
@@ -189,7 +234,14 @@ impl Numeric<'_> {
     }
 
     /// Sum up a front, eliminate its pivots, and write what it passes on over `below`.
-    fn eliminate(&self, front: &Front, part: FrontBlock, children: &[(&Front, &[f64])], below: &mut [f64]) {
+    fn eliminate(
+        &self,
+        front: &Front,
+        part: FrontBlock,
+        children: &[(&Front, &[f64])],
+        below: &mut [f64],
+        room: &mut Vec<f64>,
+    ) {
         let (lower, upper) = part.values.split_at_mut(front.size() * front.pivots);
         lower.fill(0.0);
         upper.fill(0.0);
@@ -200,11 +252,25 @@ impl Numeric<'_> {
         if front.open {
             return;
         }
-        let mut panel = Panel { lower, upper, pivots: front.pivots, below: front.below(), exchanges: part.exchanges };
-        part.replaced[0] = panel.factorize();
+        let (pivots, exchanges) = (front.pivots, part.exchanges);
+        if front.symmetric {
+            let mut panel = SymmetricPanel { lower, pivots, below: front.below(), exchanges, room };
+            part.found[0] = panel.factorize();
+            if !below.is_empty() {
+                panel.contribution(below);
+            }
+        } else {
+            let mut panel = Panel { lower, upper, pivots, below: front.below(), exchanges };
+            part.found[0] = Found { replaced: panel.factorize(), negative: 0 };
+            if !below.is_empty() {
+                panel.contribution(below);
+            }
+        }
         if !below.is_empty() {
-            panel.contribution(below);
             children.iter().for_each(|(child, values)| add_below(front, below, child, values));
+        }
+        if front.mirrors {
+            mirror(below, front.below());
         }
     }
 }
@@ -214,27 +280,28 @@ struct Sums<'a> {
     front: &'a Front,
     /// F₁₁ over F₂₁
     lower: &'a mut [f64],
-    /// F₁₂ transposed
+    /// F₁₂ transposed; nothing in a symmetric front
     upper: &'a mut [f64],
 }
 
 impl Sums<'_> {
+    /// Add the values of A, which stand there in the order of the entries.
     fn add_matrix(&mut self, entries: &[Entry], a: &[f64]) {
         let size = self.front.size();
-        for &Entry { block, target } in &entries[self.front.lower.clone()] {
-            for j in 0..2 {
-                let column = &mut self.lower[target as usize + j * size..][..2];
-                let values = &a[block.value(0, j)..][..2];
+        let own = |range: &Range<usize>| entries[range.clone()].iter().zip(a.as_chunks::<4>().0[range.clone()].iter());
+        for (entry, values) in own(&self.front.lower) {
+            for (j, values) in values.as_chunks::<2>().0.iter().enumerate() {
+                let column = &mut self.lower[entry.target as usize + j * size..][..2];
                 column[0] += values[0];
                 column[1] += values[1];
             }
         }
         let below = self.front.below();
-        for &Entry { block, target } in &entries[self.front.upper.clone()] {
+        for (entry, values) in own(&self.front.upper) {
             for i in 0..2 {
-                let row = &mut self.upper[target as usize + i * below..][..2];
-                row[0] += a[block.value(i, 0)];
-                row[1] += a[block.value(i, 1)];
+                let row = &mut self.upper[entry.target as usize + i * below..][..2];
+                row[0] += values[i];
+                row[1] += values[2 + i];
             }
         }
     }
@@ -246,12 +313,17 @@ impl Sums<'_> {
         let (inner, outer) = child.runs.split_at(child.inner_runs);
         let columns =
             |run: &Run| contribution[run.from as usize * rows..][..run.length as usize * rows].chunks_exact(rows);
-        for run in inner {
-            for (target, column) in self.lower[run.to as usize * size..].chunks_exact_mut(size).zip(columns(run)) {
-                add_rows(target, column, &child.runs, 0);
+        for (number, run) in inner.iter().enumerate() {
+            let targets = self.lower[run.to as usize * size..].chunks_exact_mut(size);
+            for (k, (target, column)) in targets.zip(columns(run)).enumerate() {
+                if self.front.symmetric {
+                    add_lower(target, column, &child.runs[number..], k, 0);
+                } else {
+                    add_rows(target, column, &child.runs, 0);
+                }
             }
         }
-        for run in outer {
+        for run in outer.iter().filter(|_| !self.front.symmetric) {
             for (k, column) in columns(run).enumerate() {
                 let row = run.to as usize - pivots + k;
                 for run in inner {
@@ -269,13 +341,26 @@ impl Sums<'_> {
 fn add_below(front: &Front, below: &mut [f64], child: &Front, contribution: &[f64]) {
     let (target_rows, rows) = (front.below(), child.below().max(1));
     let outer = &child.runs[child.inner_runs..];
-    for run in outer {
+    for (number, run) in outer.iter().enumerate() {
         let columns = contribution[run.from as usize * rows..][..run.length as usize * rows].chunks_exact(rows);
         let targets = below[(run.to as usize - front.pivots) * target_rows..].chunks_exact_mut(target_rows);
-        for (target, column) in targets.zip(columns) {
-            add_rows(target, column, outer, front.pivots);
+        for (k, (target, column)) in targets.zip(columns).enumerate() {
+            if front.symmetric {
+                add_lower(target, column, &outer[number..], k, front.pivots);
+            } else {
+                add_rows(target, column, outer, front.pivots);
+            }
         }
     }
+}
+
+/// Add column `k` of the first run from the diagonal on.
+fn add_lower(target: &mut [f64], column: &[f64], runs: &[Run], k: usize, offset: usize) {
+    let Some((first, others)) = runs.split_first() else { return };
+    let (from, to, length) = (first.from as usize, first.to as usize - offset, first.length as usize);
+    let rows = target[to + k..to + length].iter_mut().zip(&column[from + k..from + length]);
+    rows.for_each(|(target, value)| *target += value);
+    add_rows(target, column, others, offset);
 }
 
 /// Add the runs of a column at their places; `offset` is the place of the first target.
@@ -401,20 +486,18 @@ impl Action {
     }
 }
 
-/// Treatment of every front when the values `new` follow those `before`, if any, and this is `kept`.
-pub fn actions(symbolic: &Symbolic, before: Option<&[f64]>, new: &[f64], kept: &HashMap<u32, Vec<f64>>) -> Vec<Action> {
+/// Treatment of every front when the values of some have `changed`, and this is `kept`.
+pub fn actions(symbolic: &Symbolic, changed: &[bool], kept: &HashMap<u32, Vec<f64>>) -> Vec<Action> {
     let fronts = &symbolic.fronts;
-    let Some(before) = before else { return vec![Action::Eliminate; fronts.len()] };
-    let mut changed: Vec<bool> = Vec::with_capacity(fronts.len());
-    for front in fronts {
-        let below = front.children.iter().any(|&child| changed[child as usize]);
-        changed.push(below || values_changed(front, &symbolic.entries, before, new));
+    let mut eliminated: Vec<bool> = Vec::with_capacity(fronts.len());
+    for (front, changed) in fronts.iter().zip(changed) {
+        eliminated.push(*changed || front.children.iter().any(|&child| eliminated[child as usize]));
     }
     // Nothing wants what a root passes on.
     let mut wanted = vec![false; fronts.len()];
     let mut actions = vec![Action::Rest; fronts.len()];
     for (number, front) in fronts.iter().enumerate().rev() {
-        actions[number] = match (changed[number], wanted[number]) {
+        actions[number] = match (eliminated[number], wanted[number]) {
             (true, _) => Action::Eliminate,
             (false, false) => Action::Rest,
             (false, true) if kept.contains_key(&(number as u32)) => Action::PassOn,
@@ -423,11 +506,4 @@ pub fn actions(symbolic: &Symbolic, before: Option<&[f64]>, new: &[f64], kept: &
         front.children.iter().for_each(|&child| wanted[child as usize] = actions[number].eliminates());
     }
     actions
-}
-
-/// Whether the values of A in a front are others than before.
-fn values_changed(front: &Front, entries: &[Entry], before: &[f64], new: &[f64]) -> bool {
-    let blocks = entries[front.lower.start..front.upper.end].iter().map(|entry| entry.block);
-    let mut columns = blocks.flat_map(|block| [block.value(0, 0), block.value(0, 1)]);
-    columns.any(|first| (0..2).any(|i| before[first + i].to_bits() != new[first + i].to_bits()))
 }

@@ -13,8 +13,8 @@ use std::ops::Range;
 /// A dense front: `pivots` unknowns are eliminated, `below` unknowns get the contribution.
 ///
 /// ```text
-/// [F₁₁ F₁₂]   pivots        F₁₁ = P L₁₁ U₁₁
-/// [F₂₁ F₂₂]   below         F₂₂ − L₂₁ U₁₂ goes to the parent
+/// [F₁₁ F₁₂]   pivots        F₁₁ = P L₁₁ U₁₁                        symmetric: P L₁₁ D L₁₁ᵀ Pᵀ
+/// [F₂₁ F₂₂]   below         F₂₂ − L₂₁ U₁₂ goes to the parent       F₂₂ − L₂₁ D L₂₁ᵀ, of which the lower half
 /// ```
 pub struct Front {
     /// First unknown eliminated here, in the order of elimination
@@ -31,11 +31,16 @@ pub struct Front {
     pub inner_runs: usize,
     /// The fronts whose contributions are added to this one
     pub children: Vec<u32>,
+    /// Whether its values and those that its children pass on are symmetric
+    pub symmetric: bool,
+    /// Whether it is symmetric and passes on both halves of a symmetric contribution, because its parent is not
+    pub mirrors: bool,
     /// Whether the depth in the tree is odd
     pub odd: bool,
     /// Whether its unknowns are only summed up: those that are kept when all others are eliminated
     pub open: bool,
-    /// Where the factors lie: L₁₁ over L₂₁ (all rows × pivots), then U₁₂ transposed (below × pivots), by columns
+    /// Where the factors lie: L₁₁ over L₂₁ (all rows × pivots), then U₁₂ transposed (below × pivots) unless it is symmetric, by
+    /// columns
     pub values: Range<usize>,
     /// The blocks of A that go to the columns of the pivots
     pub lower: Range<usize>,
@@ -54,13 +59,19 @@ impl Front {
         self.pivots + self.below()
     }
 
-    /// Floating-point operations: LU of the pivots, both panels, the contribution.
+    /// Number of values of its factors.
+    pub fn length(&self) -> usize {
+        self.pivots * if self.symmetric { self.size() } else { self.size() + self.below() }
+    }
+
+    /// Floating-point operations: LU of the pivots, both panels, the contribution; half of them where it is symmetric.
     pub fn work(&self) -> f64 {
         if self.open {
             return 0.0;
         }
         let (k, r) = (self.pivots as f64, self.below() as f64);
-        2.0 / 3.0 * k * k * k + 2.0 * k * k * r + 2.0 * k * r * r
+        let half = if self.symmetric { 0.5 } else { 1.0 };
+        half * (2.0 / 3.0 * k * k * k + 2.0 * k * k * r + 2.0 * k * r * r)
     }
 }
 

@@ -1,8 +1,11 @@
-//! Sparse LU for unsymmetric values on a symmetric pattern: a tree of dense fronts.
+//! Sparse factors on a symmetric pattern: a tree of dense fronts.
 //!
 //! ```text
 //! R A C = L U      R, C: powers of two;  rows exchanged inside a front only
 //! ```
+//!
+//! A front whose own values are symmetric, as the pattern says, and those that its children pass on, is factorized as L D Lᵀ
+//! (`symmetric.rs`), with half the operations and half the memory; any other, and all above it, as L U.
 //!
 //! The order of elimination, the tree and the place of every value follow from the node graph, and stay while the
 //! pattern stands. A front sums up the values of A and what its children pass on, eliminates its pivots with dense
@@ -19,6 +22,7 @@ mod front;
 mod scale;
 mod solve;
 mod symbolic;
+mod symmetric;
 
 use std::sync::Arc;
 
@@ -35,8 +39,42 @@ pub struct Multifrontal {
     symbolic: Option<Symbolic>,
     scaling: Scaling,
     factors: Factors,
+    /// Dofs with an equation of their own
+    held: Vec<Held>,
     /// Right-hand side in the order of elimination
     ordered: Vec<f64>,
+}
+
+/// A dof with an equation of its own, A_dd x_d = b_d, and its column in the others.
+struct Held {
+    dof: usize,
+    diagonal: f64,
+    column: Vec<f64>,
+}
+
+impl Held {
+    /// All of a matrix.
+    fn of(matrix: &SparseMatrix) -> Vec<Self> {
+        let one = |dof: usize| {
+            let blocks = matrix.pattern.column(dof / 2);
+            let column = blocks.flat_map(|block| [0, 1].map(|i| matrix.values[block.value(i, dof % 2)])).collect();
+            let own = matrix.pattern.block(dof / 2, dof / 2);
+            let diagonal = own.map_or(0.0, |own| matrix.values[own.value(dof % 2, dof % 2)]);
+            Self { dof, diagonal, column }
+        };
+        (0..matrix.size()).filter(|&dof| matrix.held[dof]).map(one).collect()
+    }
+
+    /// Its x, whose effect goes to the right-hand side.
+    fn solve(&self, pattern: &Pattern, b: &mut [f64]) -> f64 {
+        let x = b[self.dof] / self.diagonal;
+        if x != 0.0 {
+            for (&row, pair) in pattern.neighbours(self.dof / 2).iter().zip(self.column.as_chunks::<2>().0) {
+                (0..2).for_each(|i| b[2 * row + i] -= pair[i] * x);
+            }
+        }
+        x
+    }
 }
 
 impl Multifrontal {
@@ -52,20 +90,19 @@ impl Multifrontal {
         Ok(())
     }
 
-    /// Bytes that a factorization takes at its largest: factors, waiting contributions, places of the values and the
-    /// scaled matrix. Known once the pattern is analysed, before any of the factors is.
+    /// Bytes that a factorization takes at its largest: factors, waiting contributions, the scaled values and their places. Known
+    /// once the pattern is analysed, before any of the factors is.
     pub fn memory(&self) -> usize {
         self.symbolic.as_ref().map_or(0, |symbolic| {
-            let values = symbolic.values()
-                + symbolic.contributions(rayon::current_num_threads())
-                + 2 * symbolic.pattern.values();
+            let values =
+                symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + 4 * symbolic.entries.len();
             size_of::<f64>() * values + size_of::<Entry>() * symbolic.entries.len()
         })
     }
 
     /// Refuse what does not fit, and make room for what does.
     fn make_room(&mut self, size: usize) -> Result<(), LinearFailure> {
-        let held = size_of::<f64>() * (self.factors.values.capacity() + self.scaling.values.capacity());
+        let held = size_of::<f64>() * self.factors.values.capacity();
         let (needed, symbolic) = (self.memory(), self.symbolic.as_ref());
         let too_large = |NoRoom { needed, available }| LinearFailure::TooLarge { size, needed, available };
         room_for(needed, held).map_err(too_large)?;
@@ -92,14 +129,16 @@ impl LinearSolver for Multifrontal {
         self.make_room(matrix.size())?;
         if let Some(symbolic) = &self.symbolic {
             self.scaling.compute(matrix);
-            self.factors.compute(symbolic, &mut self.scaling.values);
+            self.factors.compute(symbolic, matrix, &self.scaling);
+            self.held = Held::of(matrix);
         }
         Ok(())
     }
 
     fn solve(&mut self, b: &mut [f64]) {
         let Some(symbolic) = &self.symbolic else { return b.fill(f64::NAN) };
-        let Scaling { rows, columns, .. } = &self.scaling;
+        let Scaling { rows, columns } = &self.scaling;
+        let held: Vec<f64> = self.held.iter().map(|held| held.solve(&symbolic.pattern, b)).collect();
         self.ordered.clear();
         let dofs = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         self.ordered.extend(dofs().map(|dof| rows[dof] * b[dof]));
@@ -108,9 +147,15 @@ impl LinearSolver for Multifrontal {
         for (dof, x) in dofs().zip(&self.ordered) {
             b[dof] = columns[dof] * x;
         }
+        self.held.iter().zip(held).for_each(|(held, x)| b[held.dof] = x);
     }
 
     fn perturbed_pivots(&self) -> usize {
         self.factors.replaced()
+    }
+
+    fn negative_pivots(&self) -> Option<usize> {
+        let symbolic = self.symbolic.as_ref()?;
+        symbolic.fronts.iter().all(|front| front.symmetric).then(|| self.factors.negative())
     }
 }

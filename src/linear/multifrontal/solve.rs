@@ -2,10 +2,11 @@
 
 use pulp::{Arch, NullaryFnOnce};
 
-use super::dense::{exchange, subtract};
+use super::dense::{dot, exchange, subtract};
 use super::factor::{Factors, Job, Waiting};
 use super::front::{Forest, Front};
 use super::symbolic::Symbolic;
+use super::symmetric;
 
 /// x ← L⁻¹ x in the order of elimination.
 pub fn forward(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {
@@ -110,8 +111,12 @@ impl Substitution<'_> {
         if front.open {
             return;
         }
-        exchange(y, &self.factors.exchanges[front.first..front.first + front.pivots], 0);
+        let exchanges = &self.factors.exchanges[front.first..front.first + front.pivots];
         let lower = &self.factors.values[front.values.clone()][..front.size() * front.pivots];
+        if front.symmetric {
+            return Arch::new().dispatch(symmetric::Forward { lower, exchanges, y });
+        }
+        exchange(y, exchanges, 0);
         Arch::new().dispatch(Forward { lower, y });
     }
 
@@ -119,6 +124,11 @@ impl Substitution<'_> {
     fn backward(&self, front: &Front, y: &mut [f64]) {
         if front.open {
             return;
+        }
+        if front.symmetric {
+            let exchanges = &self.factors.exchanges[front.first..front.first + front.pivots];
+            let lower = &self.factors.values[front.values.clone()];
+            return Arch::new().dispatch(symmetric::Backward { lower, exchanges, y });
         }
         let (lower, upper) = self.factors.values[front.values.clone()].split_at(front.size() * front.pivots);
         let (own, below) = y.split_at_mut(front.pivots);
@@ -180,18 +190,4 @@ impl NullaryFnOnce for Backward<'_> {
             subtract(rest, column, done[0]);
         }
     }
-}
-
-/// a·b in eight sums, so that the processor can work on several at once.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
-    for (a, b) in a.iter().zip(b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
 }

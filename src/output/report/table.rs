@@ -16,7 +16,7 @@ use super::source::ReportError;
 use crate::output::store::codec::{rounded, shuffled};
 
 /// Columns of words; their values are the numbers of the words.
-const WORDS: [&str; 4] = ["step", "contact", "verdict", "reason"];
+const WORDS: [&str; 5] = ["step", "contact", "verdict", "reason", "negative_pivots"];
 
 /// Columns in which single precision would not tell rows apart.
 const EXACT: [&str; 6] = ["time", "onset", "arrival", "place", "position", "increment"];
