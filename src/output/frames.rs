@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::recovery::nodal_stresses;
 use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
@@ -78,7 +79,7 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
         // An element without an answer never occurs in an accepted state.
         let none = || (0..model.solids[e].quadrature_points()).map(|_| CauchyStress::default()).collect();
         let found = model.solids[e].stresses(material, memory, &u).unwrap_or_else(|_| none());
-        for (k, (point, stress)) in element.kind.quadrature().iter().zip(found).enumerate() {
+        for (k, (point, stress)) in model.solids[e].quadrature().iter().zip(found).enumerate() {
             let values = element.kind.values(point.at);
             places.push(element.nodes.iter().zip(&values).map(|(&node, n)| model.mesh.nodes[node] * *n).sum());
             let at: Vector2<f64> = u.iter().zip(&values).map(|(u, n)| u * *n).sum();
@@ -106,32 +107,6 @@ fn add_stresses(grid: &mut Grid, stresses: &[CauchyStress]) {
     grid.at_points("stress", 4, stresses.iter().flat_map(|s| [s.xx, s.yy, s.zz, s.xy]));
     grid.at_points("von_mises", 1, stresses.iter().map(CauchyStress::von_mises));
     grid.at_points("pressure", 1, stresses.iter().map(CauchyStress::pressure));
-}
-
-/// Cauchy stress at the nodes, averaged over the elements that meet there. An element that the
-/// material law cannot answer leaves no trace: it never occurs in an accepted state.
-fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    let elements = &model.mesh.elements;
-    let stresses_of = |e: usize| {
-        let u = model.mesh.vectors(e, &state.displacement);
-        let material = &*model.bodies[model.body_of_element[e]].material;
-        model.solids[e].nodal_stresses(material, model.memories.of(e, &state.memory), &u)
-    };
-    let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
-    for (element, stresses) in elements.iter().zip((0..elements.len()).map(stresses_of)) {
-        for (stress, &node) in stresses.into_iter().flatten().zip(&element.nodes) {
-            let (sum, count) = &mut sums[node];
-            for (sum, part) in sum.iter_mut().zip([stress.xx, stress.yy, stress.zz, stress.xy]) {
-                *sum += part;
-            }
-            *count += 1.0;
-        }
-    }
-    let mean = |(sum, count): ([f64; 4], f64)| {
-        let [xx, yy, zz, xy] = sum.map(|s| if count > 0.0 { s / count } else { 0.0 });
-        CauchyStress { xx, yy, zz, xy }
-    };
-    sums.into_iter().map(mean).collect()
 }
 
 /// The interfaces: a polyline through the contact points along each slave surface.

@@ -6,6 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::csv::{Rows, Sheet, Table};
 use super::quantities::{HOOP, PROBE, names};
+use super::recovery::Recovery;
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
@@ -22,14 +23,14 @@ pub type Probes = Sheet<ProbeRows>;
 
 /// The rows of `probes.csv`.
 #[derive(Debug)]
-pub struct ProbeRows;
+pub struct ProbeRows(Recovery);
 
 impl Rows for ProbeRows {
     const NAME: &'static str = "probes";
 
     fn new(model: &Model) -> (Self, Vec<String>) {
         let columns = model.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
-        (Self, std::iter::once("time".into()).chain(columns).collect())
+        (Self(Recovery::new(model)), std::iter::once("time".into()).chain(columns).collect())
     }
 
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
@@ -37,7 +38,7 @@ impl Rows for ProbeRows {
         table.number(state.time);
         for probe in &model.probes {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
-                Reading::of(probe, model, state);
+                Reading::by(&self.0, probe, model, state);
             let CauchyStress { xx, yy, zz, xy } = stress;
             let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
@@ -53,7 +54,7 @@ impl Rows for ProbeRows {
 /// u = Σ N_a u_a,  v likewise                    by the shape functions of the element
 /// E = ½ (FᵀF − 1)                               Green–Lagrange; of `linear` materials ε = sym grad u
 /// ```
-/// Strain and Cauchy stress are the (bi)linear functions of the element nearest to their values at the integration points.
+/// Strain and Cauchy stress are recovered from the elements around ([`super::recovery`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
     /// u [L]
@@ -72,37 +73,42 @@ impl Reading {
     /// Reading of a probe in a state. Stress and strain are NaN where the material law fails, which it does not in an
     /// accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
-        let (element, solid) = (&model.mesh.elements[probe.element], &model.solids[probe.element]);
-        let nodal = |values: &[f64]| model.mesh.vectors(probe.element, values);
-        let values = element.kind.values(probe.at);
-        let mean = |of: &[Vector2<f64>]| of.iter().zip(&values).map(|(of, n)| of * *n).sum::<Vector2<f64>>();
-        let (u, v) = (nodal(&state.displacement), nodal(&state.velocity));
+        Self::by(&Recovery::new(model), probe, model, state)
+    }
+
+    /// The same with what is known of the mesh.
+    fn by(recovery: &Recovery, probe: &Probe, model: &Model, state: &State) -> Self {
+        let element = &model.mesh.elements[probe.element];
+        let shares = element.kind.values(probe.at);
+        let mean = |of: &[Vector2<f64>]| of.iter().zip(&shares).map(|(of, n)| of * *n).sum::<Vector2<f64>>();
+        let nodal = |values: &[f64]| mean(&model.mesh.vectors(probe.element, values));
         let material = &*model.bodies[model.body_of_element[probe.element]].material;
-        let memory = model.memories.of(probe.element, &state.memory);
         let strain = |f: &Matrix2<f64>| {
             let gradient = f - Matrix2::identity();
             let square = if material.is_linear() { Matrix2::zeros() } else { gradient.transpose() * gradient };
             let strain = 0.5 * (gradient + gradient.transpose() + square);
             [strain.m11, strain.m22, strain.m12]
         };
-        let strains: Vec<[f64; 3]> = solid.deformations(&u).iter().map(strain).collect();
-        let hoop_strain = |h: &f64| match material.is_linear() {
-            true => [h - 1.0],
-            false => [0.5 * (h - 1.0) * (h + 1.0)],
+        let hoop_strain = |h: f64| if material.is_linear() { h - 1.0 } else { 0.5 * (h - 1.0) * (h + 1.0) };
+        let of_element = |e: usize| {
+            let (solid, u) = (&model.solids[e], model.mesh.vectors(e, &state.displacement));
+            let stresses = solid.stresses(material, model.memories.of(e, &state.memory), &u).ok()?;
+            let (deformations, hoops) = (solid.deformations(&u), solid.hoops(&u));
+            let hoop = |k: usize| hoops.as_ref().map_or(0.0, |hoops| hoop_strain(hoops[k]));
+            let at = |(k, (s, f)): (usize, (&CauchyStress, &Matrix2<f64>))| {
+                let [xx, yy, xy] = strain(f);
+                [s.xx, s.yy, s.zz, s.xy, xx, yy, xy, hoop(k)]
+            };
+            Some(stresses.iter().zip(&deformations).enumerate().map(at).collect())
         };
-        let hoops: Option<Vec<[f64; 1]>> = solid.hoops(&u).map(|hoops| hoops.iter().map(hoop_strain).collect());
-        let stress = solid.stresses(material, memory, &u).map(|stresses| {
-            let all: Vec<[f64; 4]> = stresses.iter().map(|s| [s.xx, s.yy, s.zz, s.xy]).collect();
-            let [xx, yy, zz, xy] = solid.fitted(&all, probe.at);
-            CauchyStress { xx, yy, zz, xy }
-        });
-        let none = CauchyStress { xx: f64::NAN, yy: f64::NAN, zz: f64::NAN, xy: f64::NAN };
+        let found = recovery.at(model, of_element, probe.element, mean(&model.mesh.places(probe.element)));
+        let [xx, yy, zz, xy, strain @ .., hoop_strain] = found.unwrap_or([f64::NAN; 8]);
         Self {
-            displacement: mean(&u),
-            velocity: mean(&v),
-            strain: solid.fitted(&strains, probe.at),
-            hoop_strain: hoops.map_or(0.0, |hoops| solid.fitted(&hoops, probe.at)[0]),
-            stress: stress.unwrap_or(none),
+            displacement: nodal(&state.displacement),
+            velocity: nodal(&state.velocity),
+            strain,
+            hoop_strain,
+            stress: CauchyStress { xx, yy, zz, xy },
         }
     }
 }

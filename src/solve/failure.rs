@@ -13,6 +13,7 @@ use crate::contact::pair::ContactPair;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::free;
 use crate::linear::LinearFailure;
+use crate::model::element::Formulation;
 use crate::model::text::number;
 use crate::model::{Body, Model, Step};
 
@@ -195,10 +196,11 @@ fn penalty(pair: &ContactPair) -> Option<String> {
 fn locking(model: &Model, body: &Body) -> Option<String> {
     let [wave, shear] = [body.material.p_wave_modulus(), body.material.shear_modulus()];
     let poisson = (wave - 2.0 * shear) / (2.0 * (wave - shear));
-    let locks = poisson >= LOCKS && body.elements.iter().any(|&element| !model.solids[element].is_f_bar());
+    let locks = poisson >= LOCKS
+        && body.elements.iter().any(|&element| model.solids[element].formulation() == Formulation::Displacement);
     locks.then(|| {
         format!(
-            "nu = {} of body `{}` is near 1/2, where its elements lock: give it \"element\": \"f_bar\" (Q4)",
+            "nu = {} of body `{}` is near 1/2, where its elements lock: give it \"element\": \"f_bar\" (Q4) or \"reduced\" (Q8)",
             number(poisson),
             body.name
         )

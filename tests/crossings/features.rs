@@ -11,7 +11,7 @@ pub type Slot = (&'static str, &'static [(&'static str, u64)]);
 
 const LAWS: &[(&str, u64)] =
     &[("linear", 3), ("neo_hookean", 2), ("saint_venant_kirchhoff", 1), ("hencky", 1), ("viscoelastic", 2)];
-const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("q9", 1)];
+const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("reduced", 1), ("q9", 1)];
 const OPTION: &[(&str, u64)] = &[("no", 5), ("yes", 1)];
 
 /// All features.
@@ -131,7 +131,14 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (
         &["smooth"],
-        &["method:mortar", "method:chosen", "ground_element:t6", "ground_element:q8", "ground_element:q9"],
+        &[
+            "method:mortar",
+            "method:chosen",
+            "ground_element:t6",
+            "ground_element:q8",
+            "ground_element:reduced",
+            "ground_element:q9",
+        ],
         "a spline runs through straight edges",
     ),
     (
@@ -248,9 +255,11 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "friction:registered",
             "ground_element:t6",
             "ground_element:q8",
+            "ground_element:reduced",
             "ground_element:q9",
             "block_element:t6",
             "block_element:q8",
+            "block_element:reduced",
             "block_element:q9",
             "shrink_fit",
             "second_contact",

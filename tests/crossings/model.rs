@@ -416,8 +416,8 @@ impl Writer<'_> {
     fn body(&self, name: &str, young: f64) -> Value {
         let poisson = self.pick(&format!("{name} nu"), &[0.0, 0.3, 0.3, 0.45]);
         let mut body = json!({"material": self.material(self.draft.of(&format!("{name}_law")), young, poisson)});
-        if self.draft.of(&format!("{name}_element")) == "f_bar" {
-            body["element"] = json!("f_bar");
+        if let element @ ("f_bar" | "reduced") = self.draft.of(&format!("{name}_element")) {
+            body["element"] = json!(element);
         }
         match self.draft.of("stress") {
             "components" => body["initial_stress"] = self.stress([-1.0, -4.0, 0.0]),
