@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use super::balance;
 use super::text::{count, number};
+use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
@@ -37,6 +38,7 @@ impl Model {
         };
         let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self)).chain(many_increments(self));
         let of_model = of_model.chain(idle_radiation(self)).chain(uncertain_times(self)).chain(balance::concerns(self));
+        let of_model = of_model.chain(unfit::concerns(self));
         let concerns = self.told_of_methods(|chosen| chosen.concern.map(String::from));
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
     }

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::recovery::nodal_stresses;
+use super::recovery::nodal_fields;
 use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
 use crate::contact::pair::ContactPair;
-use crate::laws::bulk::CauchyStress;
+use crate::laws::bulk::{CauchyStress, principal_values};
 use crate::mesh::Element;
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
@@ -31,8 +31,8 @@ impl Shown {
 }
 
 /// Fills the grid of the bodies. Rigid bodies have no cells, and what their nodes carry is no field.
-pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) {
-    let stresses = nodal_stresses(model, state);
+pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, derived: bool, grid: &mut Grid) {
+    let fields = nodal_fields(model, state);
     let nodes = model.mesh.own_nodes();
     // A body has one material, and a material serves one body: the two ids agree.
     let body = || model.body_of_element.iter().map(|&body| body as i32);
@@ -45,7 +45,7 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid:
     grid.vectors("acceleration", &state.acceleration[..2 * nodes]);
     grid.vectors("reaction", &state.reaction[..2 * nodes]);
     grid.vectors("contact_force", &contact_forces[..2 * nodes]);
-    add_stresses(grid, &stresses[..nodes]);
+    add_fields(grid, &fields[..nodes], derived);
     grid.at_cells("body", body());
     grid.at_cells("material", body());
 }
@@ -63,7 +63,7 @@ fn contact_forces(model: &Model, state: &State) -> Vec<f64> {
 }
 
 /// The integration points of the bodies, with their stresses and what the materials remember there.
-pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
+pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, grid: &mut Grid) {
     let elements = &model.mesh.elements;
     let mut names: Vec<&str> = Vec::new();
     for name in model.bodies.iter().flat_map(|body| body.material.variables()) {
@@ -72,20 +72,24 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
         }
     }
     let (mut places, mut moved, mut body) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut stresses, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
+    let (mut fields, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
     for (e, element) in elements.iter().enumerate() {
         let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
         // An element without an answer never occurs in an accepted state.
-        let none = || (0..model.solids[e].quadrature_points()).map(|_| CauchyStress::default()).collect();
-        let found = model.solids[e].stresses(material, memory, &u).unwrap_or_else(|_| none());
-        for (k, (point, stress)) in model.solids[e].quadrature().iter().zip(found).enumerate() {
+        let count = model.solids[e].quadrature_points();
+        let stresses = model.solids[e].stresses(material, memory, &u);
+        let stresses = stresses.unwrap_or_else(|_| (0..count).map(|_| CauchyStress::default()).collect());
+        let strains = model.solids[e].log_strains(material, memory, &u);
+        let strains = strains.unwrap_or_else(|_| (0..count).map(|_| [0.0; 4]).collect());
+        for (k, (point, both)) in model.solids[e].quadrature().iter().zip(stresses.into_iter().zip(strains)).enumerate()
+        {
             let values = element.kind.values(point.at);
             places.push(element.nodes.iter().zip(&values).map(|(&node, n)| model.mesh.nodes[node] * *n).sum());
             let at: Vector2<f64> = u.iter().zip(&values).map(|(u, n)| u * *n).sum();
             moved.extend([at.x, at.y]);
             body.push(number as i32);
-            stresses.push(stress);
+            fields.push(both);
             let own = material.variables();
             for (name, list) in names.iter().zip(&mut variables) {
                 let place = own.iter().position(|other| other == name);
@@ -98,15 +102,23 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
         (places, cells)
     });
     grid.vectors("displacement", &moved);
-    add_stresses(grid, &stresses);
+    add_fields(grid, &fields, derived);
     names.iter().zip(variables).for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
     grid.at_cells("body", body.into_iter());
 }
 
-fn add_stresses(grid: &mut Grid, stresses: &[CauchyStress]) {
-    grid.at_points("stress", 4, stresses.iter().flat_map(|s| [s.xx, s.yy, s.zz, s.xy]));
-    grid.at_points("von_mises", 1, stresses.iter().map(CauchyStress::von_mises));
-    grid.at_points("pressure", 1, stresses.iter().map(CauchyStress::pressure));
+/// Stress and logarithmic strain, and on request what follows from them.
+fn add_fields(grid: &mut Grid, fields: &[(CauchyStress, [f64; 4])], derived: bool) {
+    let (stresses, strains) = (|| fields.iter().map(|(stress, _)| stress), || fields.iter().map(|(_, strain)| *strain));
+    grid.at_points("stress", 4, stresses().flat_map(CauchyStress::components));
+    grid.at_points("von_mises", 1, stresses().map(CauchyStress::von_mises));
+    grid.at_points("pressure", 1, stresses().map(CauchyStress::pressure));
+    grid.at_points("log_strain", 4, strains().flatten());
+    if derived {
+        grid.at_points("principal_stress", 3, stresses().flat_map(|stress| principal_values(stress.components())));
+        grid.at_points("principal_strain", 3, strains().flat_map(principal_values));
+        grid.at_points("stretch_zz", 1, strains().map(|[_, _, zz, _]| zz.exp()));
+    }
 }
 
 /// The interfaces: a polyline through the contact points along each slave surface.

@@ -2,11 +2,13 @@
 //!
 //! What a gauge at a point of a body reads.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::{Matrix2, Vector2};
 
 use super::csv::{Rows, Sheet, Table};
 use super::quantities::{HOOP, PROBE, names};
-use super::recovery::Recovery;
+use super::recovery::{Recovery, Stencil};
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
@@ -23,22 +25,24 @@ pub type Probes = Sheet<ProbeRows>;
 
 /// The rows of `probes.csv`.
 #[derive(Debug)]
-pub struct ProbeRows(Recovery);
+pub struct ProbeRows(Vec<Stencil>);
 
 impl Rows for ProbeRows {
     const NAME: &'static str = "probes";
 
     fn new(model: &Model) -> (Self, Vec<String>) {
         let columns = model.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
-        (Self(Recovery::new(model)), std::iter::once("time".into()).chain(columns).collect())
+        let stencils = stencils(model, &model.probes);
+        (Self(stencils), std::iter::once("time".into()).chain(columns).collect())
     }
 
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         table.number(state.time);
-        for probe in &model.probes {
+        let values = values(model, state, &self.0);
+        for (probe, stencil) in model.probes.iter().zip(&self.0) {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
-                Reading::by(&self.0, probe, model, state);
+                Reading::by((stencil, &values), probe, model, state);
             let CauchyStress { xx, yy, zz, xy } = stress;
             let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
@@ -73,36 +77,17 @@ impl Reading {
     /// Reading of a probe in a state. Stress and strain are NaN where the material law fails, which it does not in an
     /// accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
-        Self::by(&Recovery::new(model), probe, model, state)
+        let stencils = stencils(model, std::slice::from_ref(probe));
+        Self::by((&stencils[0], &values(model, state, &stencils)), probe, model, state)
     }
 
-    /// The same with what is known of the mesh.
-    fn by(recovery: &Recovery, probe: &Probe, model: &Model, state: &State) -> Self {
-        let element = &model.mesh.elements[probe.element];
-        let shares = element.kind.values(probe.at);
-        let mean = |of: &[Vector2<f64>]| of.iter().zip(&shares).map(|(of, n)| of * *n).sum::<Vector2<f64>>();
-        let nodal = |values: &[f64]| mean(&model.mesh.vectors(probe.element, values));
-        let material = &*model.bodies[model.body_of_element[probe.element]].material;
-        let strain = |f: &Matrix2<f64>| {
-            let gradient = f - Matrix2::identity();
-            let square = if material.is_linear() { Matrix2::zeros() } else { gradient.transpose() * gradient };
-            let strain = 0.5 * (gradient + gradient.transpose() + square);
-            [strain.m11, strain.m22, strain.m12]
-        };
-        let hoop_strain = |h: f64| if material.is_linear() { h - 1.0 } else { 0.5 * (h - 1.0) * (h + 1.0) };
-        let of_element = |e: usize| {
-            let (solid, u) = (&model.solids[e], model.mesh.vectors(e, &state.displacement));
-            let stresses = solid.stresses(material, model.memories.of(e, &state.memory), &u).ok()?;
-            let (deformations, hoops) = (solid.deformations(&u), solid.hoops(&u));
-            let hoop = |k: usize| hoops.as_ref().map_or(0.0, |hoops| hoop_strain(hoops[k]));
-            let at = |(k, (s, f)): (usize, (&CauchyStress, &Matrix2<f64>))| {
-                let [xx, yy, xy] = strain(f);
-                [s.xx, s.yy, s.zz, s.xy, xx, yy, xy, hoop(k)]
-            };
-            Some(stresses.iter().zip(&deformations).enumerate().map(at).collect())
-        };
-        let found = recovery.at(model, of_element, probe.element, mean(&model.mesh.places(probe.element)));
-        let [xx, yy, zz, xy, strain @ .., hoop_strain] = found.unwrap_or([f64::NAN; 8]);
+    /// The same with the values at the quadrature points of the elements around.
+    fn by((stencil, values): (&Stencil, &Values), probe: &Probe, model: &Model, state: &State) -> Self {
+        let shares = model.mesh.elements[probe.element].kind.values(probe.at);
+        let nodal = |of: &[f64]| model.mesh.vectors(probe.element, of).iter().zip(&shares).map(|(of, n)| of * *n).sum();
+        let mut sums = [0.0; 8];
+        stencil.sum(&mut sums, |e| &values[&e]);
+        let [xx, yy, zz, xy, strain @ .., hoop_strain] = sums;
         Self {
             displacement: nodal(&state.displacement),
             velocity: nodal(&state.velocity),
@@ -111,4 +96,45 @@ impl Reading {
             stress: CauchyStress { xx, yy, zz, xy },
         }
     }
+}
+
+/// Values of elements at their quadrature points.
+type Values = BTreeMap<usize, Vec<f64>>;
+
+/// The stencils of some probes.
+fn stencils(model: &Model, probes: &[Probe]) -> Vec<Stencil> {
+    let recovery = Recovery::new(model);
+    let stencil = |probe: &Probe| {
+        let shares = model.mesh.elements[probe.element].kind.values(probe.at);
+        let place = model.mesh.places(probe.element).iter().zip(&shares).map(|(x, n)| x * *n).sum();
+        recovery.at(model, probe.element, place)
+    };
+    probes.iter().map(stencil).collect()
+}
+
+/// Stress, strain and hoop strain at the quadrature points of the elements that stencils need.
+fn values(model: &Model, state: &State, stencils: &[Stencil]) -> Values {
+    let elements: BTreeSet<usize> = stencils.iter().flat_map(Stencil::elements).copied().collect();
+    elements.into_iter().map(|e| (e, stress_and_strain(model, state, e))).collect()
+}
+
+fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
+    let (solid, u) = (&model.solids[e], model.mesh.vectors(e, &state.displacement));
+    let material = &*model.bodies[model.body_of_element[e]].material;
+    let strain = |f: &Matrix2<f64>| {
+        let gradient = f - Matrix2::identity();
+        let square = if material.is_linear() { Matrix2::zeros() } else { gradient.transpose() * gradient };
+        let strain = 0.5 * (gradient + gradient.transpose() + square);
+        [strain.m11, strain.m22, strain.m12]
+    };
+    let hoop_strain = |h: f64| if material.is_linear() { h - 1.0 } else { 0.5 * (h - 1.0) * (h + 1.0) };
+    let Ok(stresses) = solid.stresses(material, model.memories.of(e, &state.memory), &u) else {
+        return vec![f64::NAN; 8 * solid.quadrature_points()];
+    };
+    let (deformations, hoops) = (solid.deformations(&u), solid.hoops(&u));
+    let hoop = |k: usize| hoops.as_ref().map_or(0.0, |hoops| hoop_strain(hoops[k]));
+    let at = |(k, (stress, f)): (usize, (&CauchyStress, &Matrix2<f64>))| {
+        stress.components().into_iter().chain(strain(f)).chain([hoop(k)])
+    };
+    stresses.iter().zip(&deformations).enumerate().flat_map(at).collect()
 }

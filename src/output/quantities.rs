@@ -327,26 +327,38 @@ pub const VERDICT: [Quantity; 2] = [
 ];
 
 /// Arrays of the frames of bodies.
-const SOLID: [Quantity; 10] = [
+const SOLID: [Quantity; 14] = [
     q("displacement", LENGTH, "u of the nodes"),
     q("velocity", VELOCITY, "v"),
     q("acceleration", ACCELERATION, "a"),
     q("reaction", FORCE, "forces of the supports on the nodes"),
     q("contact_force", FORCE, "forces of the contacts on the nodes"),
-    q("stress", STRESS, "Cauchy stress xx, yy, zz, xy, averaged over the elements at a node"),
-    q("von_mises", STRESS, "von Mises stress"),
-    q("pressure", STRESS, "−tr σ/3"),
+    q("stress", STRESS, "Cauchy stress xx, yy, zz, xy, recovered from the elements around a node (below)"),
+    q("von_mises", STRESS, "von Mises stress, q = √(3/2) ‖dev σ‖"),
+    q("pressure", STRESS, "mean stress p = −tr σ/3"),
     q("body", NONE, "number of the body of an element"),
     q("material", NONE, "number of its material"),
+    q("log_strain", NONE, "logarithmic strain ln V: xx, yy, zz, xy; of `linear` materials sym grad u"),
+    q(
+        "principal_stress",
+        STRESS,
+        "principal Cauchy stresses, the largest first; with `derived`, on the page and in Python",
+    ),
+    q("principal_strain", NONE, "principal logarithmic strains, the largest first; as above"),
+    q("stretch_zz", NONE, "stretch across the plane, exp(ln V_zz): thickness of a plate, hoops of rings; as above"),
 ];
 
 /// Arrays of the frames of integration points; internal variables of materials follow, by their names.
-const INTEGRATION_POINTS: [Quantity; 5] = [
+const INTEGRATION_POINTS: [Quantity; 9] = [
     SOLID[0],
     q("stress", STRESS, "Cauchy stress xx, yy, zz, xy"),
     SOLID[6],
     SOLID[7],
     q("body", NONE, "number of the body"),
+    SOLID[10],
+    SOLID[11],
+    SOLID[12],
+    SOLID[13],
 ];
 
 /// Quantities, and whose they are: what stands before the dot in a name.
@@ -403,6 +415,8 @@ pub fn spoken(name: &str) -> String {
         "traction" => "traction q".into(),
         "state" => "state (0 open, 1 stick, 2 slip)".into(),
         "von_mises" => "von Mises stress".into(),
+        "log_strain" => "logarithmic strain".into(),
+        "stretch_zz" => "stretch across the plane".into(),
         _ => name.replace('_', " "),
     }
 }

@@ -6,9 +6,9 @@
 //! ```text
 //! σ*(X) = Σ c_k P_k(X),   P = 1, x, y, x², xy, y²,   Σ_s |X_s − X₀|⁻⁴ (σ*(X_s) − σ_s)² → min,   σ(X₀) = σ*(X₀)       (1)
 //! ```
-//! X are places of the undeformed body. The patch is the elements around X₀, their neighbours, and of linear elements the neighbours of these as well,
-//! so that at a surface there are the three layers that a parabola needs. The weights let the nearest values count most; the neighbours
-//! only tell how the field bends.
+//! X are places of the undeformed body. The patch is the elements around X₀ and, layer by layer, their neighbours: one layer at most of quadratic
+//! elements, two of linear ones, so that at a surface there are the three layers that a parabola needs; inside fewer will do. The weights let the
+//! nearest values count most; the others only tell how the field bends.
 //!
 //! A linear field is met exactly, a smooth one at a surface to the third order in the size of the elements. Where the samples do not tell
 //! a term, it is left out, the shorter direction of the patch first: σ(X₀) is a weighted sum of samples, and the magnitudes of these
@@ -23,21 +23,21 @@
 use nalgebra::{Rotation2, Vector2};
 
 use crate::laws::bulk::CauchyStress;
-use crate::mesh::few::Few;
+use crate::mesh::shape::QuadraturePoint;
 use crate::model::Model;
 use crate::model::state::State;
 
 /// The largest sum of magnitudes of the weights of samples: above it errors of the samples would be amplified.
 const AMPLIFIED: f64 = 10.0;
 
+/// The same sum from which a patch needs no further layer: less than that of an extrapolation, which has 2 at least.
+const INSIDE: f64 = 1.9;
+
 /// Distance from a sample, in parts of the size of the patch, below which weights do not grow any more.
 const NEAREST: f64 = 1e-3;
 
 /// Part of a term that must be new beside the terms before it.
 const NEW: f64 = 1e-6;
-
-/// Values of an element at its quadrature points: nothing where it has no answer.
-pub type Values<const N: usize> = Option<Few<[f64; N], 9>>;
 
 /// The elements around every node.
 #[derive(Debug)]
@@ -47,13 +47,39 @@ pub struct Recovery {
     elements: Vec<usize>,
 }
 
+/// A value at a place as a weighted sum of the values at the quadrature points of some elements.
+#[derive(Debug)]
+pub struct Stencil {
+    elements: Vec<usize>,
+    /// of the quadrature points of each element, one after the other
+    weights: Vec<f64>,
+}
+
+impl Stencil {
+    /// The elements.
+    pub fn elements(&self) -> &[usize] {
+        &self.elements
+    }
+
+    /// The sums, component by component. `values` are those of an element: all components at its first quadrature point, then at
+    /// its second, …
+    pub fn sum<'v>(&self, sums: &mut [f64], values: impl Fn(usize) -> &'v [f64]) {
+        let mut weights = self.weights.iter();
+        for &e in &self.elements {
+            let points = values(e).chunks_exact(sums.len());
+            for (point, weight) in points.zip(&mut weights) {
+                combine(sums, *weight, point);
+            }
+        }
+    }
+}
+
 impl Recovery {
     /// Of the mesh of a model.
     pub fn new(model: &Model) -> Self {
         let mut starts = vec![0; model.mesh.nodes.len() + 1];
-        let all = || {
-            model.mesh.elements.iter().enumerate().flat_map(|(e, element)| element.nodes.iter().map(move |&n| (e, n)))
-        };
+        let elements = || model.mesh.elements.iter().enumerate();
+        let all = || elements().flat_map(|(e, element)| element.nodes.iter().map(move |&node| (e, node)));
         all().for_each(|(_, node)| starts[node + 1] += 1);
         (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
         let (mut next, mut elements) = (starts.clone(), vec![0; starts[starts.len() - 1]]);
@@ -68,134 +94,127 @@ impl Recovery {
         &self.elements[self.starts[node]..self.starts[node + 1]]
     }
 
-    /// Values at all nodes; 0 at nodes without elements.
-    pub fn at_nodes<const N: usize>(&self, model: &Model, values: impl Fn(usize) -> Values<N>) -> Vec<[f64; N]> {
-        let at_node = |node: usize| {
-            let mut bodies: Vec<usize> = self.around(node).iter().map(|&e| model.body_of_element[e]).collect();
-            bodies.sort_unstable();
-            bodies.dedup();
-            let own = bodies.iter().filter_map(|&body| {
-                let seeds = self.around(node).iter().copied().filter(|&e| model.body_of_element[e] == body).collect();
-                self.fitted(model, &values, seeds, model.mesh.nodes[node])
-            });
-            let found: Vec<[f64; N]> = own.collect();
-            let mut mean = [0.0; N];
-            found.iter().for_each(|own| add(&mut mean, 1.0 / found.len() as f64, own));
-            mean
+    /// The stencils at a node, one for each body there, with its number.
+    pub fn at_node(&self, model: &Model, node: usize) -> Vec<(usize, Stencil)> {
+        let mut bodies: Vec<usize> = self.around(node).iter().map(|&e| model.body_of_element[e]).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let of_body = |body: usize| {
+            let seeds = self.around(node).iter().copied().filter(|&e| model.body_of_element[e] == body).collect();
+            (body, self.stencil(model, seeds, model.mesh.nodes[node]))
         };
-        (0..model.mesh.nodes.len()).map(at_node).collect()
+        bodies.into_iter().map(of_body).collect()
     }
 
-    /// Values at a place of the undeformed body in an element; nothing where no element has an answer.
-    pub fn at<const N: usize>(
-        &self,
-        model: &Model,
-        values: impl Fn(usize) -> Values<N>,
-        element: usize,
-        place: Vector2<f64>,
-    ) -> Option<[f64; N]> {
-        self.fitted(model, &values, vec![element], place)
+    /// The stencil at a place of the undeformed body in an element.
+    pub fn at(&self, model: &Model, element: usize, place: Vector2<f64>) -> Stencil {
+        self.stencil(model, vec![element], place)
     }
 
-    /// The seeds and their neighbours in the same body, ascending.
-    fn patch(&self, model: &Model, seeds: Vec<usize>) -> Vec<usize> {
+    /// (1) at a place of a body, from some of its elements on.
+    fn stencil(&self, model: &Model, seeds: Vec<usize>, place: Vector2<f64>) -> Stencil {
+        let (fit, elements) = self.patch(model, seeds, place);
+        if fit.terms < 2 {
+            // Samples in a row.
+            let all = places(model, &elements, |e| model.solids[e].quadrature());
+            return Stencil { weights: Fit::new(&all, place, 2).weights, elements };
+        }
+        let mut weights = Vec::new();
+        let mut of_samples = fit.weights.iter();
+        for &e in &elements {
+            let shares = model.solids[e].reduced();
+            let first = weights.len();
+            weights.resize(first + shares.ncols(), 0.0);
+            for (row, weight) in shares.row_iter().zip(&mut of_samples) {
+                weights[first..].iter_mut().zip(row.iter()).for_each(|(sum, share)| *sum += weight * share);
+            }
+        }
+        Stencil { elements, weights }
+    }
+
+    /// The seeds with as many layers of neighbours in the same body as a fit needs, ascending, and the fit.
+    fn patch(&self, model: &Model, seeds: Vec<usize>, place: Vector2<f64>) -> (Fit, Vec<usize>) {
         let is_quadratic = |&e: &usize| {
             let kind = model.mesh.elements[e].kind;
             kind.nodes() > kind.corners()
         };
-        let Some(&first) = seeds.first() else { return seeds };
         let layers = if seeds.iter().any(is_quadratic) { 1 } else { 2 };
-        let body = model.body_of_element[first];
-        let mut patch = seeds;
+        let fit = |patch: &[usize]| {
+            let samples = places(model, patch, |e| model.mesh.elements[e].kind.reduced_quadrature());
+            Fit::new(&samples, place, 5)
+        };
+        let mut found = (fit(&seeds), seeds);
         for _ in 0..layers {
-            let mut nodes: Vec<usize> =
-                patch.iter().flat_map(|&e| model.mesh.elements[e].nodes.iter().copied()).collect();
-            nodes.sort_unstable();
-            nodes.dedup();
-            patch = nodes.iter().flat_map(|&node| self.around(node).iter().copied()).collect();
-            patch.retain(|&e| model.body_of_element[e] == body);
-            patch.sort_unstable();
-            patch.dedup();
+            if found.0.terms == 5 && found.0.amplified <= INSIDE {
+                break;
+            }
+            let patch = self.with_neighbours(model, &found.1);
+            found = (fit(&patch), patch);
         }
-        patch
+        found
     }
 
-    /// (1) at a place.
-    fn fitted<const N: usize>(
-        &self,
-        model: &Model,
-        values: &impl Fn(usize) -> Values<N>,
-        seeds: Vec<usize>,
-        place: Vector2<f64>,
-    ) -> Option<[f64; N]> {
-        let patch = self.patch(model, seeds);
-        let samples = samples(model, values, &patch, Points::Reduced);
-        let fit = Fit::new(&samples, place, 5)?;
-        if fit.terms >= 2 {
-            return Some(fit.sum(&samples));
-        }
-        let samples = self::samples(model, values, &patch, Points::All);
-        Fit::new(&samples, place, 2).map(|fit| fit.sum(&samples))
+    /// Elements and their neighbours in the same body, ascending.
+    fn with_neighbours(&self, model: &Model, elements: &[usize]) -> Vec<usize> {
+        let of = |&e: &usize| model.mesh.elements[e].nodes.iter().copied();
+        let mut nodes: Vec<usize> = elements.iter().flat_map(of).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut all: Vec<usize> = nodes.iter().flat_map(|&node| self.around(node).iter().copied()).collect();
+        let body = elements.first().map(|&e| model.body_of_element[e]);
+        all.retain(|&e| Some(model.body_of_element[e]) == body);
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 }
 
 /// Cauchy stress at the nodes.
 pub fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    let stresses_of = |e: usize| {
-        let u = model.mesh.vectors(e, &state.displacement);
-        let material = &*model.bodies[model.body_of_element[e]].material;
-        let found = model.solids[e].stresses(material, model.memories.of(e, &state.memory), &u).ok()?;
-        Some(found.iter().map(|s| [s.xx, s.yy, s.zz, s.xy]).collect())
+    nodal_fields(model, state).into_iter().map(|(stress, _)| stress).collect()
+}
+
+/// Cauchy stress, and logarithmic strain xx, yy, zz, xy, at the nodes; 0 at nodes without elements. An element that the material law
+/// cannot answer counts as free of both: it never occurs in an accepted state.
+pub fn nodal_fields(model: &Model, state: &State) -> Vec<(CauchyStress, [f64; 4])> {
+    let all: Vec<Vec<f64>> = (0..model.mesh.elements.len()).map(|e| stress_and_strain(model, state, e)).collect();
+    let recovery = Recovery::new(model);
+    let at_node = |node: usize| {
+        let stencils = recovery.at_node(model, node);
+        let mut sums = [0.0; 8];
+        stencils.iter().for_each(|(_, stencil)| stencil.sum(&mut sums, |e| &all[e]));
+        let [xx, yy, zz, xy, strain @ ..] = sums.map(|sum| sum / stencils.len().max(1) as f64);
+        (CauchyStress { xx, yy, zz, xy }, strain)
     };
-    let all: Vec<Values<4>> = (0..model.mesh.elements.len()).map(stresses_of).collect();
-    let at_nodes = Recovery::new(model).at_nodes(model, |e| all[e]);
-    at_nodes.into_iter().map(|[xx, yy, zz, xy]| CauchyStress { xx, yy, zz, xy }).collect()
+    (0..model.mesh.nodes.len()).map(at_node).collect()
 }
 
-/// A place and the values there.
-struct Sample<const N: usize> {
-    place: Vector2<f64>,
-    values: [f64; N],
+/// Stress and logarithmic strain at the quadrature points of an element, as [`Stencil::sum`] takes them.
+fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
+    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
+    let (material, memory) = (&*model.bodies[model.body_of_element[e]].material, model.memories.of(e, &state.memory));
+    let both = solid.stresses(material, memory, &u).and_then(|stresses| {
+        let strains = solid.log_strains(material, memory, &u)?;
+        Ok(stresses
+            .iter()
+            .zip(&strains)
+            .flat_map(|(stress, strain)| stress.components().into_iter().chain(*strain))
+            .collect())
+    });
+    both.unwrap_or_else(|_| vec![0.0; 8 * solid.quadrature_points()])
 }
 
-/// The points of an element at which it is sampled.
-#[derive(Clone, Copy, PartialEq)]
-enum Points {
-    /// Those of the quadrature one order lower
-    Reduced,
-    /// Its quadrature points
-    All,
-}
-
-/// Samples of the elements of a patch.
-fn samples<const N: usize>(
-    model: &Model,
-    values: impl Fn(usize) -> Values<N>,
-    patch: &[usize],
-    points: Points,
-) -> Vec<Sample<N>> {
-    let mut samples = Vec::new();
-    for &e in patch {
-        let (Some(values), element, solid) = (values(e), &model.mesh.elements[e], &model.solids[e]) else { continue };
-        let place = |at: [f64; 2]| {
-            let shares = element.kind.values(at);
+/// Places of the undeformed bodies at points of some elements.
+fn places(model: &Model, elements: &[usize], points: impl Fn(usize) -> Vec<QuadraturePoint>) -> Vec<Vector2<f64>> {
+    let of_element = |&e: &usize| {
+        let element = &model.mesh.elements[e];
+        let place = move |point: QuadraturePoint| {
+            let shares = element.kind.values(point.at);
             element.nodes.iter().zip(shares).map(|(&node, share)| model.mesh.nodes[node] * share).sum()
         };
-        match points {
-            Points::All => samples.extend(
-                solid.quadrature().iter().zip(values).map(|(at, values)| Sample { place: place(at.at), values }),
-            ),
-            Points::Reduced => samples.extend(
-                element
-                    .kind
-                    .reduced_quadrature()
-                    .iter()
-                    .zip(solid.reduced(&values))
-                    .map(|(at, values)| Sample { place: place(at.at), values }),
-            ),
-        }
-    }
-    samples
+        points(e).into_iter().map(place)
+    };
+    elements.iter().flat_map(of_element).collect()
 }
 
 /// A value as a weighted sum of samples.
@@ -203,25 +222,27 @@ struct Fit {
     weights: Vec<f64>,
     /// number of terms besides the constant: 2 are a linear field
     terms: usize,
+    /// sum of the magnitudes of the weights
+    amplified: f64,
 }
 
 impl Fit {
-    /// The fit at a place with the constant and so many terms at most; nothing without samples.
+    /// The fit at a place with the constant and so many terms at most.
     ///
     /// The weighted constant is made orthogonal to the other weighted terms, one after the other; the value at the place is then
     /// the projection of the samples on what is left of it.
-    fn new<const N: usize>(samples: &[Sample<N>], place: Vector2<f64>, most: usize) -> Option<Self> {
-        let arms: Vec<Vector2<f64>> = samples.iter().map(|sample| sample.place - place).collect();
-        let turned = long_axis(&arms)?.inverse();
+    fn new(samples: &[Vector2<f64>], place: Vector2<f64>, most: usize) -> Self {
+        let arms: Vec<Vector2<f64>> = samples.iter().map(|sample| sample - place).collect();
         let size = arms.iter().map(|arm| arm.norm()).fold(0.0, f64::max);
         if size == 0.0 {
-            return Some(Self { weights: vec![1.0 / arms.len() as f64; arms.len()], terms: 0 });
+            return Self { weights: vec![1.0 / arms.len() as f64; arms.len()], terms: 0, amplified: 1.0 };
         }
+        let turned = long_axis(&arms).inverse();
         let own: Vec<Vector2<f64>> = arms.iter().map(|arm| turned * arm / size).collect();
         let near: Vec<f64> = own.iter().map(|x| 1.0 / x.norm_squared().max(NEAREST * NEAREST)).collect();
         let terms: [fn(&Vector2<f64>) -> f64; 5] = [|x| x.x, |x| x.y, |x| x.x * x.x, |x| x.x * x.y, |x| x.y * x.y];
         let mut rest = near.clone();
-        let mut fit = Self { weights: projection(&near, &rest), terms: 0 };
+        let mut fit = Self { weights: projection(&near, &rest), terms: 0, amplified: 1.0 };
         let mut directions: Vec<Vec<f64>> = Vec::new();
         for (k, term) in terms.iter().take(most).enumerate() {
             let mut column: Vec<f64> = own.iter().zip(&near).map(|(x, near)| near * term(x)).collect();
@@ -232,7 +253,7 @@ impl Fit {
                 combine(&mut column, share, direction);
             }
             let new = dot(&column, &column);
-            if !(new > NEW * NEW * whole) {
+            if new.is_nan() || new <= NEW * NEW * whole {
                 break;
             }
             column.iter_mut().for_each(|value| *value /= new.sqrt());
@@ -240,18 +261,13 @@ impl Fit {
             combine(&mut rest, share, &column);
             directions.push(column);
             let weights = projection(&near, &rest);
-            if !(weights.iter().map(|weight| weight.abs()).sum::<f64>() <= AMPLIFIED) {
+            let amplified: f64 = weights.iter().map(|weight| weight.abs()).sum();
+            if amplified.is_nan() || amplified > AMPLIFIED {
                 break;
             }
-            fit = Self { weights, terms: k + 1 };
+            fit = Self { weights, terms: k + 1, amplified };
         }
-        Some(fit)
-    }
-
-    fn sum<const N: usize>(&self, samples: &[Sample<N>]) -> [f64; N] {
-        let mut sum = [0.0; N];
-        self.weights.iter().zip(samples).for_each(|(weight, sample)| add(&mut sum, *weight, &sample.values));
-        sum
+        fit
     }
 }
 
@@ -261,8 +277,8 @@ fn projection(near: &[f64], rest: &[f64]) -> Vec<f64> {
     near.iter().zip(rest).map(|(near, rest)| near * rest / square).collect()
 }
 
-/// The rotation from the x axis to the direction in which places extend farthest; nothing if there are none.
-fn long_axis(arms: &[Vector2<f64>]) -> Option<Rotation2<f64>> {
+/// The rotation from the x axis to the direction in which places extend farthest.
+fn long_axis(arms: &[Vector2<f64>]) -> Rotation2<f64> {
     let mean = arms.iter().sum::<Vector2<f64>>() / arms.len() as f64;
     let [mut xx, mut yy, mut xy] = [0.0; 3];
     for arm in arms {
@@ -271,17 +287,13 @@ fn long_axis(arms: &[Vector2<f64>]) -> Option<Rotation2<f64>> {
         yy += from_mean.y * from_mean.y;
         xy += from_mean.x * from_mean.y;
     }
-    (!arms.is_empty()).then(|| Rotation2::new(0.5 * f64::atan2(2.0 * xy, xx - yy)))
+    Rotation2::new(0.5 * f64::atan2(2.0 * xy, xx - yy))
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn combine(sum: &mut [f64], share: f64, of: &[f64]) {
-    sum.iter_mut().zip(of).for_each(|(sum, of)| *sum += share * of);
-}
-
-fn add<const N: usize>(sum: &mut [f64; N], share: f64, of: &[f64; N]) {
-    combine(sum, share, of);
+fn combine(sums: &mut [f64], share: f64, of: &[f64]) {
+    sums.iter_mut().zip(of).for_each(|(sum, of)| *sum += share * of);
 }

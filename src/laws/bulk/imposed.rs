@@ -197,6 +197,16 @@ impl Material for Imposed {
         }
     }
 
+    fn stretch_across(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<f64, MaterialFailure> {
+        if !self.flat {
+            return Ok(1.0);
+        }
+        let heat = self.names.len().saturating_sub(TEMPERATURE.len());
+        let strain = self.expansion.map_or(0.0, |alpha| alpha * old[heat]);
+        let elastic = self.elastic(&Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old }, strain);
+        self.law.stretch_across(&elastic.deformation, elastic.old).map(|own| own + strain)
+    }
+
     fn spatial(&self) -> Option<&dyn Spatial> {
         (!self.flat).then_some(self)
     }

@@ -109,7 +109,44 @@ pub struct CauchyStress {
     pub xy: f64,
 }
 
+/// Principal values of a symmetric tensor with the components xx, yy, zz, xy, the largest first.
+///
+/// ```text
+/// ½ (xx + yy) ± √(¼ (xx − yy)² + xy²),  zz
+/// ```
+pub fn principal_values([xx, yy, zz, xy]: [f64; 4]) -> [f64; 3] {
+    let (middle, radius) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+    let mut values = [middle + radius, middle - radius, zz];
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
+}
+
+/// ln V at F: logarithmic strain along the axes of now, xx, yy, zz, xy. zz is ln F₃₃.
+///
+/// ```text
+/// ln V = ½ ln b = ½ ln(det F) 1 + atanh(x)/(2 x m) (b − m 1),   b = F Fᵀ in plane, with eigenvalues m (1 ± x)
+/// ```
+pub fn log_strain(deformation: &Matrix2<f64>, stretch: f64) -> [f64; 4] {
+    let b = deformation * deformation.transpose();
+    let (middle, apart) = (0.5 * (b.m11 + b.m22), 0.5 * (b.m11 - b.m22));
+    let radius = apart.hypot(b.m12);
+    let (area, share) = (deformation.determinant(), radius / middle);
+    // ½ ln(β₁/β₂)/(2 r), whose limit at r = 0 is 1/(2 m)
+    let shear = match share {
+        share if share < 1e-3 => 0.5 / middle * (1.0 + share * share * (1.0 / 3.0 + share * share / 5.0)),
+        share if share < 0.5 => 0.5 / middle * share.atanh() / share,
+        _ => 0.5 * ((middle + radius) / area).ln() / radius,
+    };
+    let mean = 0.5 * spatial::ln_stretch(area);
+    [mean + shear * apart, mean - shear * apart, spatial::ln_stretch(stretch), shear * b.m12]
+}
+
 impl CauchyStress {
+    /// Its components xx, yy, zz, xy.
+    pub fn components(&self) -> [f64; 4] {
+        [self.xx, self.yy, self.zz, self.xy]
+    }
+
     /// p = −tr σ / 3, positive in compression [F/L²]
     pub fn pressure(&self) -> f64 {
         -(self.xx + self.yy + self.zz) / 3.0
@@ -196,6 +233,14 @@ pub trait Material: Debug + Send + Sync {
     /// The law in a plate, which has no out-of-plane stress; none unless it is known.
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
         None
+    }
+
+    /// F₃₃ at F in plane, with the variables that the law remembers there: 1 in plane strain, the stretch of the thickness in a plate.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn stretch_across(&self, _deformation: &Matrix2<f64>, _old: &[f64]) -> Result<f64, MaterialFailure> {
+        Ok(1.0)
     }
 
     /// The law with an out-of-plane stretch, as rings have it; none unless it is known.

@@ -219,6 +219,11 @@ impl<L: Spatial> Material for PlaneStress<L> {
         })
     }
 
+    fn stretch_across(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<f64, MaterialFailure> {
+        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+        self.solved(&now, &mut old.to_vec()).map(|(h, _)| h)
+    }
+
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
         let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
         let (h, answer) = self.solved(&now, &mut old.to_vec())?;

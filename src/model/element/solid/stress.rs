@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::ring::Hoop;
 use super::{SolidElement, deformation_gradient};
-use crate::laws::bulk::{CauchyStress, Material, MaterialFailure};
+use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, log_strain};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
 use crate::mesh::shape::{ElementKind, QuadraturePoint};
@@ -42,6 +42,35 @@ impl SolidElement {
             .collect()
     }
 
+    /// Logarithmic strain xx, yy, zz, xy at each quadrature point, as the law sees it (F̄ of F-bar); of a linear law sym F − 1.
+    ///
+    /// # Errors
+    /// [`MaterialFailure`] of the law at a quadrature point.
+    pub fn log_strains(
+        &self,
+        material: &dyn Material,
+        memory: &[f64],
+        u: &[Vector2<f64>],
+    ) -> Result<Few<[f64; 4], 9>, MaterialFailure> {
+        let strain = |f: &Matrix2<f64>, across: f64| match material.is_linear() {
+            true => [f.m11 - 1.0, f.m22 - 1.0, across - 1.0, 0.5 * (f.m12 + f.m21)],
+            false => log_strain(f, across),
+        };
+        if self.hoop.is_some() {
+            return Ok(self.ring_deformations(u)?.iter().map(|(f, hoop)| strain(f, *hoop)).collect());
+        }
+        let (centre, count) = (self.centre(u)?, material.variables().len());
+        self.points()
+            .enumerate()
+            .map(|(k, (gradients, _))| {
+                let deformation = deformation_gradient(gradients, u);
+                let seen = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))? * deformation;
+                let across = material.stretch_across(&seen, &memory[k * count..(k + 1) * count])?;
+                Ok(strain(&seen, across))
+            })
+            .collect()
+    }
+
     /// F at each quadrature point.
     pub fn deformations(&self, u: &[Vector2<f64>]) -> Vec<Matrix2<f64>> {
         self.points().map(|(gradients, _)| deformation_gradient(gradients, u)).collect()
@@ -52,18 +81,10 @@ impl SolidElement {
         self.hoop.is_some().then(|| self.hoop_stretches(u))
     }
 
-    /// Values at the points of the quadrature one order lower, from those at the quadrature points: where it is the lower one already
-    /// they are the same; of a full one they are projected on the polynomials with as many terms.
-    pub fn reduced<const N: usize>(&self, values: &[[f64; N]]) -> Vec<[f64; N]> {
-        let shares = shares(self.kind, self.formulation);
-        let at = |point: usize| {
-            let mut sum = [0.0; N];
-            for (k, values) in values.iter().enumerate() {
-                sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += shares[(point, k)] * value);
-            }
-            sum
-        };
-        (0..shares.nrows()).map(at).collect()
+    /// Shares of its quadrature points in the values at the points of the quadrature one order lower, a row for each of these: the same
+    /// values where it is the lower one already, of a full one their projection on the polynomials with as many terms.
+    pub fn reduced(&self) -> &'static DMatrix<f64> {
+        shares(self.kind, self.formulation)
     }
 }
 
