@@ -8,7 +8,8 @@
 //! ```
 //! X are places of the undeformed body. The patch is the elements around X₀ and, layer by layer, their neighbours: one layer at most of quadratic
 //! elements, two of linear ones, so that at a surface there are the three layers that a parabola needs; inside fewer will do. The weights let the
-//! nearest values count most; the others only tell how the field bends.
+//! nearest values count most; the others only tell how the field bends. Those of T3 count alike: single ones err either way, and only many together
+//! are right.
 //!
 //! A linear field is met exactly, a smooth one at a surface to the third order in the size of the elements. Where the samples do not tell
 //! a term, it is left out, the shorter direction of the patch first: σ(X₀) is a weighted sum of samples, and the magnitudes of these
@@ -23,7 +24,7 @@
 use nalgebra::{Rotation2, Vector2};
 
 use crate::laws::bulk::CauchyStress;
-use crate::mesh::shape::QuadraturePoint;
+use crate::mesh::shape::{ElementKind, QuadraturePoint};
 use crate::model::Model;
 use crate::model::state::State;
 
@@ -117,7 +118,7 @@ impl Recovery {
         if fit.terms < 2 {
             // Samples in a row.
             let all = places(model, &elements, |e| model.solids[e].quadrature());
-            return Stencil { weights: Fit::new(&all, place, 2).weights, elements };
+            return Stencil { weights: Fit::new(&all, place, (2, Nearness::Counts)).weights, elements };
         }
         let mut weights = Vec::new();
         let mut of_samples = fit.weights.iter();
@@ -139,9 +140,11 @@ impl Recovery {
             kind.nodes() > kind.corners()
         };
         let layers = if seeds.iter().any(is_quadratic) { 1 } else { 2 };
+        let is_t3 = |&e: &usize| model.mesh.elements[e].kind == ElementKind::T3;
+        let nearness = if seeds.iter().all(is_t3) { Nearness::IsNothing } else { Nearness::Counts };
         let fit = |patch: &[usize]| {
             let samples = places(model, patch, |e| model.mesh.elements[e].kind.reduced_quadrature());
-            Fit::new(&samples, place, 5)
+            Fit::new(&samples, place, (5, nearness))
         };
         let mut found = (fit(&seeds), seeds);
         for _ in 0..layers {
@@ -217,6 +220,13 @@ fn places(model: &Model, elements: &[usize], points: impl Fn(usize) -> Vec<Quadr
     elements.iter().flat_map(of_element).collect()
 }
 
+/// Whether near samples count more.
+#[derive(Clone, Copy)]
+enum Nearness {
+    Counts,
+    IsNothing,
+}
+
 /// A value as a weighted sum of samples.
 struct Fit {
     weights: Vec<f64>,
@@ -231,7 +241,7 @@ impl Fit {
     ///
     /// The weighted constant is made orthogonal to the other weighted terms, one after the other; the value at the place is then
     /// the projection of the samples on what is left of it.
-    fn new(samples: &[Vector2<f64>], place: Vector2<f64>, most: usize) -> Self {
+    fn new(samples: &[Vector2<f64>], place: Vector2<f64>, (most, nearness): (usize, Nearness)) -> Self {
         let arms: Vec<Vector2<f64>> = samples.iter().map(|sample| sample - place).collect();
         let size = arms.iter().map(|arm| arm.norm()).fold(0.0, f64::max);
         if size == 0.0 {
@@ -239,7 +249,11 @@ impl Fit {
         }
         let turned = long_axis(&arms).inverse();
         let own: Vec<Vector2<f64>> = arms.iter().map(|arm| turned * arm / size).collect();
-        let near: Vec<f64> = own.iter().map(|x| 1.0 / x.norm_squared().max(NEAREST * NEAREST)).collect();
+        let near = |x: &Vector2<f64>| match nearness {
+            Nearness::Counts => 1.0 / x.norm_squared().max(NEAREST * NEAREST),
+            Nearness::IsNothing => 1.0,
+        };
+        let near: Vec<f64> = own.iter().map(near).collect();
         let terms: [fn(&Vector2<f64>) -> f64; 5] = [|x| x.x, |x| x.y, |x| x.x * x.x, |x| x.x * x.y, |x| x.y * x.y];
         let mut rest = near.clone();
         let mut fit = Self { weights: projection(&near, &rest), terms: 0, amplified: 1.0 };

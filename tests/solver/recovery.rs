@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::common::{self, Blocks, Finished, close, finish, half_way, half_way_round, quadratic};
+use crate::common::{self, Blocks, Finished, close, finish, half_way, quadratic};
 use fecontact::laws::bulk::CauchyStress;
-use fecontact::output::recovery::{Recovery, nodal_stresses};
+use fecontact::output::recovery::nodal_stresses;
 use serde_json::{Value, json};
 
 const E: f64 = 200.0;
@@ -132,6 +132,66 @@ fn ring_case(kind: &str, elements: [usize; 2], p: f64) -> Value {
     case
 }
 
+/// The same ring of triangles, two to a quadrilateral, their diagonals to and fro.
+fn ring_of_triangles([columns, rows]: [usize; 2], p: f64) -> Value {
+    let map = |s: f64, t: f64| {
+        let angle = FRAC_PI_2 * t;
+        [(1.0 + s) * if t == 1.0 { 0.0 } else { angle.cos() }, (1.0 + s) * angle.sin()]
+    };
+    let mut mesh = Blocks::default().block("body", [columns, rows], map);
+    let split = |(k, q): (usize, &Vec<usize>)| match (k % columns + k / columns) % 2 {
+        0 => [vec![q[0], q[1], q[2]], vec![q[0], q[2], q[3]]],
+        _ => [vec![q[0], q[1], q[3]], vec![q[1], q[2], q[3]]],
+    };
+    let triangles: Vec<Vec<usize>> = mesh.elements["body"].iter().enumerate().flat_map(split).collect();
+    mesh.elements.insert("body".into(), triangles);
+    let loads = json!([{"on": "body_left", "pressure": p}]);
+    let mut case = case(&Value::Null, mesh.json(), linear(), loads);
+    case["steps"][0]["supports"].as_array_mut().expect("supports").push(json!({"on": "body_top", "ux": 0}));
+    case
+}
+
+/// A beam one element thick is bent: what the integration points know is seen at both surfaces; and bodies that share nodes
+/// do not look into each other.
+#[test]
+fn bending_of_one_layer_and_the_jump_between_materials_are_seen() {
+    let mesh = Blocks::default().rectangle("body", [12, 1], [0.0, -0.5], [12.0, 0.5]).json();
+    let (kappa, modulus) = (1e-3, E * (1.0 - NU) / ((1.0 + NU) * (1.0 - 2.0 * NU)));
+    for mesh in [mesh.clone(), quadratic(&mesh, half_way)] {
+        let model = common::model(&case(&Value::Null, mesh, linear(), json!([])));
+        let mut state = model.initial_state();
+        for (node, at) in model.mesh.nodes.iter().enumerate() {
+            state.displacement[2 * node] = -kappa * at.x * at.y;
+            state.displacement[2 * node + 1] = 0.5 * kappa * at.x * at.x;
+        }
+        for (at, stress) in model.mesh.nodes.iter().zip(nodal_stresses(&model, &state)) {
+            close("bending", stress.xx, -modulus * kappa * at.y, 1e-12);
+        }
+    }
+
+    // Stretched side by side, the strain is the same and the stress jumps.
+    let block = |body: &str, y: f64| json!({"body": body, "corners": [[0, y], [3, y], [3, y + 1.0], [0, y + 1.0]], "elements": [6, 4]});
+    let material = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0}});
+    let bonded = json!({
+        "mesh": {"blocks": [block("soft", 0.0), block("stiff", 1.0)], "joined": [["soft", "stiff"]]},
+        "bodies": {"soft": material(10.0), "stiff": material(30.0)},
+        "steps": [{"name": "hold", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "soft", "ux": 0, "uy": 0}]}]
+    });
+    let model = common::model(&bonded);
+    let mut state = model.initial_state();
+    for (node, at) in model.mesh.nodes.iter().enumerate() {
+        state.displacement[2 * node] = 1e-3 * at.x;
+    }
+    for (at, stress) in model.mesh.nodes.iter().zip(nodal_stresses(&model, &state)) {
+        let young = match at.y {
+            y if y < 1.0 => 10.0,
+            y if y > 1.0 => 30.0,
+            _ => 20.0,
+        };
+        close("side by side", stress.xx, 1e-3 * young, 1e-14);
+    }
+}
+
 /// Lamé's tube and sphere under a pressure inside, b = 2 a: both stresses at both surfaces, as shares of the hoop stress inside.
 #[test]
 fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
@@ -185,5 +245,9 @@ fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
             surface_errors(&finish(&ring), ["inside", "outside"], tube, false),
             bound,
         );
+    }
+    for (elements, bound) in [([9, 16], 0.07), ([18, 32], 0.03)] {
+        let run = finish(&ring_of_triangles(elements, p));
+        told(&format!("tube, T3 {elements:?}"), surface_errors(&run, ["body_left", "body_right"], tube, false), bound);
     }
 }
