@@ -45,6 +45,9 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid:
     grid.vectors("reaction", &state.reaction[..2 * nodes]);
     grid.vectors("contact_force", &contact_forces[..2 * nodes]);
     add_stresses(grid, &stresses[..nodes]);
+    for (name, values) in nodal_shown(model, state) {
+        grid.at_points(name, 1, values.into_iter().take(nodes));
+    }
     grid.at_cells("body", body());
     grid.at_cells("material", body());
 }
@@ -72,12 +75,16 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
     }
     let (mut places, mut moved, mut body) = (Vec::new(), Vec::new(), Vec::new());
     let (mut stresses, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
+    // Some of what a law shows it remembers.
+    let shown: Vec<&str> = shown_names(model).into_iter().filter(|name| !names.contains(name)).collect();
+    let mut further = vec![Vec::new(); shown.len()];
     for (e, element) in elements.iter().enumerate() {
         let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
         // An element without an answer never occurs in an accepted state.
         let none = || (0..model.solids[e].quadrature_points()).map(|_| CauchyStress::default()).collect();
         let found = model.solids[e].stresses(material, memory, &u).unwrap_or_else(|_| none());
+        let seen = model.solids[e].shown(material, memory, &u).unwrap_or_default();
         for (k, (point, stress)) in element.kind.quadrature().iter().zip(found).enumerate() {
             let values = element.kind.values(point.at);
             places.push(element.nodes.iter().zip(&values).map(|(&node, n)| model.mesh.nodes[node] * *n).sum());
@@ -90,6 +97,11 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
                 let place = own.iter().position(|other| other == name);
                 list.push(place.map_or(f64::NAN, |place| memory[k * own.len() + place]));
             }
+            for (name, list) in shown.iter().zip(&mut further) {
+                let place = material.shown().iter().position(|other| other == name);
+                let value = place.and_then(|place| seen.get(k * material.shown().len() + place));
+                list.push(value.copied().unwrap_or(f64::NAN));
+            }
         }
     }
     grid.begin(|| {
@@ -98,7 +110,11 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
     });
     grid.vectors("displacement", &moved);
     add_stresses(grid, &stresses);
-    names.iter().zip(variables).for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
+    names
+        .iter()
+        .chain(&shown)
+        .zip(variables.into_iter().chain(further))
+        .for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
     grid.at_cells("body", body.into_iter());
 }
 
@@ -132,6 +148,38 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
         CauchyStress { xx, yy, zz, xy }
     };
     sums.into_iter().map(mean).collect()
+}
+
+/// Names of what the laws of the bodies show.
+fn shown_names(model: &Model) -> Vec<&'static str> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in model.bodies.iter().flat_map(|body| body.material.shown()) {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// What the laws show at the nodes, averaged over the elements of these laws that meet there; NaN where there are none.
+fn nodal_shown(model: &Model, state: &State) -> Vec<(&'static str, Vec<f64>)> {
+    let of_name = |name: &'static str| {
+        let mut sums = vec![(0.0, 0.0); model.mesh.nodes.len()];
+        for (e, element) in model.mesh.elements.iter().enumerate() {
+            let material = &*model.bodies[model.body_of_element[e]].material;
+            let Some(place) = material.shown().iter().position(|own| *own == name) else { continue };
+            let u = model.mesh.vectors(e, &state.displacement);
+            let Ok(values) = model.solids[e].shown(material, model.memories.of(e, &state.memory), &u) else { continue };
+            let own: Vec<[f64; 1]> = values.chunks_exact(material.shown().len()).map(|point| [point[place]]).collect();
+            for (&node, [value]) in element.nodes.iter().zip(model.solids[e].nodal(&own)) {
+                let (sum, count) = &mut sums[node];
+                *sum += value;
+                *count += 1.0;
+            }
+        }
+        (name, sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { f64::NAN }).collect())
+    };
+    shown_names(model).into_iter().map(of_name).collect()
 }
 
 /// The interfaces: a polyline through the contact points along each slave surface.

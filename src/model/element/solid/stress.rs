@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::ring::Hoop;
 use super::{SolidElement, deformation_gradient};
-use crate::laws::bulk::{CauchyStress, Material, MaterialFailure};
+use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, Straining};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
@@ -76,18 +76,28 @@ impl SolidElement {
         u: &[Vector2<f64>],
     ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
         let stresses = self.stresses(material, memory, u)?;
+        let of_points: Vec<[f64; 4]> = stresses.iter().map(|s| [s.xx, s.yy, s.zz, s.xy]).collect();
+        let stress = |[xx, yy, zz, xy]: [f64; 4]| CauchyStress { xx, yy, zz, xy };
+        Ok(self.nodal(&of_points).into_iter().map(stress).collect())
+    }
+
+    /// Values at each node: the (bi)linear function nearest to those at the quadrature points.
+    pub fn nodal<const N: usize>(&self, of_points: &[[f64; N]]) -> Few<[f64; N], 9>
+    where
+        [f64; N]: Default,
+    {
         let fit = corner_fit(self.kind);
-        let mut corners = [[0.0; 4]; 4];
+        let mut corners = [[0.0; N]; 4];
         for (a, corner) in corners.iter_mut().enumerate().take(fit.nrows()) {
-            for (point, &CauchyStress { xx, yy, zz, xy }) in stresses.iter().enumerate() {
+            for (point, values) in of_points.iter().enumerate() {
                 let weight = fit[(a, point)];
-                corner.iter_mut().zip([xx, yy, zz, xy]).for_each(|(sum, stress)| *sum += weight * stress);
+                corner.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
             }
         }
         let at = |values: &[usize]| {
-            let mean =
-                |component: usize| values.iter().map(|&a| corners[a][component]).sum::<f64>() / values.len() as f64;
-            CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
+            std::array::from_fn(|component| {
+                values.iter().map(|&a| corners[a][component]).sum::<f64>() / values.len() as f64
+            })
         };
         let n = self.kind.corners();
         let node = |a: usize| match a {
@@ -95,7 +105,32 @@ impl SolidElement {
             a if a < n => at(&[a]),
             a => at(&self.kind.edge(a - n).0),
         };
-        Ok((0..self.kind.nodes()).map(node).collect())
+        (0..self.kind.nodes()).map(node).collect()
+    }
+
+    /// What a material [shows](Material::shown) at each quadrature point, one behind the other.
+    ///
+    /// # Errors
+    /// [`MaterialFailure`] of the law at a quadrature point.
+    pub fn shown(
+        &self,
+        material: &dyn Material,
+        memory: &[f64],
+        u: &[Vector2<f64>],
+    ) -> Result<Vec<f64>, MaterialFailure> {
+        let (count, own) = (material.variables().len(), material.shown().len());
+        let mut values = vec![0.0; own * self.quadrature_points()];
+        if self.hoop.is_some() {
+            self.ring_shown(material, memory, u, &mut values)?;
+            return Ok(values);
+        }
+        let centre = self.centre(u)?;
+        for (k, ((gradients, _), values)) in self.points().zip(values.chunks_exact_mut(own.max(1))).enumerate() {
+            let deformation = deformation_gradient(gradients, u);
+            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
+            material.show(&Straining::new(r * deformation, &memory[k * count..(k + 1) * count]), values)?;
+        }
+        Ok(values)
     }
 }
 
