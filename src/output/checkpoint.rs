@@ -27,7 +27,7 @@ pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
 /// Version of the file's content; every change of it gets a new number.
-pub const VERSION: u32 = 8;
+pub const VERSION: u32 = 9;
 const HEAD: usize = MAGIC.len() + 16;
 
 /// A run as it was, and what it belongs to.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::recovery::nodal_fields;
+use super::recovery::{nodal_fields, shown_names};
 use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
@@ -45,7 +45,10 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, deriv
     grid.vectors("acceleration", &state.acceleration[..2 * nodes]);
     grid.vectors("reaction", &state.reaction[..2 * nodes]);
     grid.vectors("contact_force", &contact_forces[..2 * nodes]);
-    add_fields(grid, &fields[..nodes], derived);
+    add_fields(grid, &fields.tensors[..nodes], derived);
+    for (name, values) in fields.shown {
+        grid.at_points(name, 1, values.into_iter().take(nodes));
+    }
     grid.at_cells("body", body());
     grid.at_cells("material", body());
 }
@@ -73,6 +76,9 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
     }
     let (mut places, mut moved, mut body) = (Vec::new(), Vec::new(), Vec::new());
     let (mut fields, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
+    // Some of what a law shows it remembers.
+    let shown: Vec<&str> = shown_names(model).into_iter().filter(|name| !names.contains(name)).collect();
+    let mut further = vec![Vec::new(); shown.len()];
     for (e, element) in elements.iter().enumerate() {
         let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
@@ -82,6 +88,7 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
         let stresses = stresses.unwrap_or_else(|_| (0..count).map(|_| CauchyStress::default()).collect());
         let strains = model.solids[e].log_strains(material, memory, &u);
         let strains = strains.unwrap_or_else(|_| (0..count).map(|_| [0.0; 4]).collect());
+        let seen = model.solids[e].shown(material, memory, &u).unwrap_or_default();
         for (k, (point, both)) in model.solids[e].quadrature().iter().zip(stresses.into_iter().zip(strains)).enumerate()
         {
             let values = element.kind.values(point.at);
@@ -95,6 +102,11 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
                 let place = own.iter().position(|other| other == name);
                 list.push(place.map_or(f64::NAN, |place| memory[k * own.len() + place]));
             }
+            for (name, list) in shown.iter().zip(&mut further) {
+                let place = material.shown().iter().position(|other| other == name);
+                let value = place.and_then(|place| seen.get(k * material.shown().len() + place));
+                list.push(value.copied().unwrap_or(f64::NAN));
+            }
         }
     }
     grid.begin(|| {
@@ -103,7 +115,11 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
     });
     grid.vectors("displacement", &moved);
     add_fields(grid, &fields, derived);
-    names.iter().zip(variables).for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
+    names
+        .iter()
+        .chain(&shown)
+        .zip(variables.into_iter().chain(further))
+        .for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
     grid.at_cells("body", body.into_iter());
 }
 

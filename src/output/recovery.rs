@@ -172,24 +172,67 @@ impl Recovery {
     }
 }
 
-/// Cauchy stress at the nodes.
-pub fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    nodal_fields(model, state).into_iter().map(|(stress, _)| stress).collect()
+/// Fields of the bodies at all nodes.
+#[derive(Debug)]
+pub struct NodalFields {
+    /// Cauchy stress [F/L²], and logarithmic strain xx, yy, zz, xy [-]; 0 at nodes without elements
+    pub tensors: Vec<(CauchyStress, [f64; 4])>,
+    /// what laws show, by its names: NaN where no law shows it
+    pub shown: Vec<(&'static str, Vec<f64>)>,
 }
 
-/// Cauchy stress, and logarithmic strain xx, yy, zz, xy, at the nodes; 0 at nodes without elements. An element that the material law
-/// cannot answer counts as free of both: it never occurs in an accepted state.
-pub fn nodal_fields(model: &Model, state: &State) -> Vec<(CauchyStress, [f64; 4])> {
-    let all: Vec<Vec<f64>> = (0..model.mesh.elements.len()).map(|e| stress_and_strain(model, state, e)).collect();
-    let recovery = Recovery::new(model);
-    let at_node = |node: usize| {
+/// Cauchy stress at the nodes.
+pub fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
+    nodal_fields(model, state).tensors.into_iter().map(|(stress, _)| stress).collect()
+}
+
+/// Fields at the nodes. An element that the material law cannot answer counts as 0: it never occurs in an accepted state.
+pub fn nodal_fields(model: &Model, state: &State) -> NodalFields {
+    let elements = 0..model.mesh.elements.len();
+    let tensors: Vec<Vec<f64>> = elements.clone().map(|e| stress_and_strain(model, state, e)).collect();
+    let shown: Vec<Vec<f64>> = elements.map(|e| shown(model, state, e)).collect();
+    let (recovery, names) = (Recovery::new(model), shown_names(model));
+    let nodes = model.mesh.nodes.len();
+    let mut fields = NodalFields {
+        tensors: Vec::with_capacity(nodes),
+        shown: names.iter().map(|name| (*name, Vec::with_capacity(nodes))).collect(),
+    };
+    for node in 0..nodes {
         let stencils = recovery.at_node(model, node);
         let mut sums = [0.0; 8];
-        stencils.iter().for_each(|(_, stencil)| stencil.sum(&mut sums, |e| &all[e]));
+        stencils.iter().for_each(|(_, stencil)| stencil.sum(&mut sums, |e| &tensors[e]));
         let [xx, yy, zz, xy, strain @ ..] = sums.map(|sum| sum / stencils.len().max(1) as f64);
-        (CauchyStress { xx, yy, zz, xy }, strain)
-    };
-    (0..model.mesh.nodes.len()).map(at_node).collect()
+        fields.tensors.push((CauchyStress { xx, yy, zz, xy }, strain));
+        let of_bodies: Vec<(&[&str], Vec<f64>)> = stencils
+            .iter()
+            .map(|(body, stencil)| {
+                let names = model.bodies[*body].material.shown();
+                let mut sums = vec![0.0; names.len()];
+                if !names.is_empty() {
+                    stencil.sum(&mut sums, |e| &shown[e]);
+                }
+                (names, sums)
+            })
+            .collect();
+        for (name, values) in &mut fields.shown {
+            let own = |(names, sums): &(&[&str], Vec<f64>)| Some(sums[names.iter().position(|own| own == name)?]);
+            let found: Vec<f64> = of_bodies.iter().filter_map(own).collect();
+            let mean = found.iter().sum::<f64>() / found.len() as f64;
+            values.push(if found.is_empty() { f64::NAN } else { mean });
+        }
+    }
+    fields
+}
+
+/// Names of what the laws of the bodies show.
+pub fn shown_names(model: &Model) -> Vec<&'static str> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in model.bodies.iter().flat_map(|body| body.material.shown()) {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// Stress and logarithmic strain at the quadrature points of an element, as [`Stencil::sum`] takes them.
@@ -205,6 +248,14 @@ fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
             .collect())
     });
     both.unwrap_or_else(|_| vec![0.0; 8 * solid.quadrature_points()])
+}
+
+/// What the law of an element shows at its quadrature points, as [`Stencil::sum`] takes it.
+fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
+    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
+    let material = &*model.bodies[model.body_of_element[e]].material;
+    let found = solid.shown(material, model.memories.of(e, &state.memory), &u);
+    found.unwrap_or_else(|_| vec![0.0; material.shown().len() * solid.quadrature_points()])
 }
 
 /// Places of the undeformed bodies at points of some elements.

@@ -9,8 +9,16 @@ use std::collections::BTreeMap;
 /// A choice, with how often each value is drawn; the first is the plain one.
 pub type Slot = (&'static str, &'static [(&'static str, u64)]);
 
-const LAWS: &[(&str, u64)] =
-    &[("linear", 3), ("neo_hookean", 2), ("saint_venant_kirchhoff", 1), ("hencky", 1), ("viscoelastic", 2)];
+const LAWS: &[(&str, u64)] = &[
+    ("linear", 3),
+    ("neo_hookean", 2),
+    ("saint_venant_kirchhoff", 1),
+    ("hencky", 1),
+    ("viscoelastic", 2),
+    ("von_mises", 1),
+    ("drucker_prager", 1),
+    ("mohr_coulomb", 1),
+];
 const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("reduced", 1), ("q9", 1)];
 const OPTION: &[(&str, u64)] = &[("no", 5), ("yes", 1)];
 
@@ -101,6 +109,11 @@ pub const SLOTS: &[Slot] = &[
 /// the plain one.
 pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["section:plane_stress"], &["ground_element:f_bar", "block_element:f_bar"], "a plate does not lock"),
+    (
+        &["section:plane_stress"],
+        &["ground_law:drucker_prager", "block_law:drucker_prager", "ground_law:mohr_coulomb", "block_law:mohr_coulomb"],
+        "soil is no plate",
+    ),
     (&["ground_law:linear"], &["ground_element:f_bar"], "F-bar is for large strains"),
     (&["block_law:linear"], &["block_element:f_bar"], "F-bar is for large strains"),
     (

@@ -8,7 +8,7 @@
 //! | [`Hencky`] | G ‖ln V‖² + λ/2 (ln J)² |
 //!
 //! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
-//! beside a Maxwell arm that relaxes.
+//! beside a Maxwell arm that relaxes. Laws that yield stand in [`plasticity`].
 //!
 //! Laws are written in plane strain, F₃₃ = 1. One that also covers an out-of-plane stretch is [`Spatial`], and can be
 //! that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
@@ -37,6 +37,7 @@ mod isotropic;
 mod linear;
 mod neo_hookean;
 mod parameters;
+pub mod plasticity;
 mod saint_venant_kirchhoff;
 pub(crate) mod spatial;
 mod viscoelastic;
@@ -46,6 +47,10 @@ pub use imposed::{INITIAL_STRESS, Imposed, TEMPERATURE};
 pub use linear::Linear;
 pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
+pub use plasticity::{
+    BackStress, DruckerPrager, DruckerPragerParameters, Elastoplastic, Matching, MohrCoulomb, MohrCoulombParameters,
+    ReturnMap, Returned, Softening, VonMises, VonMisesParameters,
+};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use spatial::{PlaneStress, Spatial, Stretched};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
@@ -170,13 +175,37 @@ pub enum MaterialFailure {
         jacobian: f64,
     },
     /// The equations of the law were not solved, such as those of a return to its yield surface.
-    #[error("the material law did not converge: residual {rest:.3e} of the stress {stress:.3e}")]
+    #[error("`{law}` did not converge: residual {rest:.3e} of the stress {stress:.3e}")]
     NotConverged {
+        /// the law
+        law: &'static str,
         /// what is left out of balance [F/L²]
         rest: f64,
         /// the stress that it is to be compared with [F/L²]
         stress: f64,
     },
+    /// The increment leads out of the range in which the law is accurate.
+    #[error("`{law}`: {quantity} is {value:.3e}, more than {limit}")]
+    OutOfRange {
+        /// the law
+        law: &'static str,
+        /// what is out of range
+        quantity: &'static str,
+        /// its value
+        value: f64,
+        /// the most that it may be
+        limit: f64,
+    },
+}
+
+/// How the volume of a body changes while it yields: what its elements must be able to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Flow {
+    /// It stays
+    Isochoric,
+    /// It grows with the shear
+    Dilating,
 }
 
 /// J = det F, known to be positive and finite.
@@ -260,6 +289,43 @@ pub trait Material: Debug + Send + Sync {
     /// Whether an increment changes what the law remembers.
     fn evolves(&self) -> bool {
         !self.variables().is_empty()
+    }
+
+    /// How it flows if it yields; none if it does not. What a law that yields dissipates is plastic work, and damping that of others.
+    fn flow(&self) -> Option<Flow> {
+        None
+    }
+
+    /// What is to be told of the law before anything is solved.
+    fn concern(&self) -> Option<String> {
+        None
+    }
+
+    /// Whether an initial stress is the law's own, which [`initial_state`](Self::initial_state) makes it remember; it stands beside
+    /// the law ([`Imposed`]) otherwise.
+    fn holds_initial_stress(&self) -> bool {
+        false
+    }
+
+    /// Whether a body of this law can have an initial stress.
+    ///
+    /// # Errors
+    /// Why it cannot, and what to do.
+    fn admits(&self, _stress: &CauchyStress) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Names of what the law shows besides stress, at a point in any state.
+    fn shown(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Write what it [shows](Self::shown) where it remembers `straining.old`.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn show(&self, _straining: &Straining, _values: &mut [f64]) -> Result<(), MaterialFailure> {
+        Ok(())
     }
 
     /// Whether ∂P/∂F is symmetric, as it is where P has a potential: half of the tangent is the mirror image of the other.

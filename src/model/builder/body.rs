@@ -168,13 +168,14 @@ pub fn with_imposed(
         check_finite(&format!("{place}.thermal.expansion"), [expansion])?;
         check_finite(&format!("{place}.thermal.reference"), [reference])?;
     }
-    if stress.is_none() && thermal.is_none() {
+    let stressed = stress.is_some() && !given.holds_initial_stress();
+    if !stressed && thermal.is_none() {
         return Ok(given);
     }
-    match Imposed::new(given, stress.is_some(), thermal.map(|thermal| thermal.expansion)) {
+    match Imposed::new(given, stressed, thermal.map(|thermal| thermal.expansion)) {
         Some(imposed) => Ok(Arc::new(imposed)),
         None => {
-            let key = if stress.is_some() { "initial_stress" } else { "thermal" };
+            let key = if stressed { "initial_stress" } else { "thermal" };
             let message = "needs a law with an out-of-plane stretch: take another material, or leave it out";
             Err(ModelError::new(format!("{place}.{key}"), message))
         }

@@ -291,6 +291,7 @@ impl Builder {
             times: Vec::new(),
             probes: Vec::new(),
         };
+        initial::check_stresses(&model)?;
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.plates = plates::plates(&self.plates, &model.mesh)?;
         model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;

@@ -120,6 +120,23 @@ impl SolidElement {
         self.ring_points().map(seen).collect()
     }
 
+    /// What a material shows at each quadrature point, written over `values`.
+    pub(super) fn ring_shown(
+        &self,
+        material: &dyn Material,
+        memory: &[f64],
+        u: &[Vector2<f64>],
+        values: &mut [f64],
+    ) -> Result<(), MaterialFailure> {
+        let (count, own) = (material.variables().len(), material.shown().len().max(1));
+        let centre = self.ring_centre(u)?;
+        for (k, ((at, _), values)) in self.ring_points().zip(values.chunks_exact_mut(own)).enumerate() {
+            let seen = at.seen(centre.as_ref(), u)?;
+            material.show(&seen.straining(0.0, &memory[k * count..(k + 1) * count]), values)?;
+        }
+        Ok(())
+    }
+
     /// F₃₃ at each quadrature point.
     pub(super) fn hoop_stretches(&self, u: &[Vector2<f64>]) -> Vec<f64> {
         self.ring_points().map(|(at, _)| at.deformation(u)[4]).collect()

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::ring::Hoop;
 use super::{SolidElement, deformation_gradient};
-use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, log_strain};
+use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, Straining, log_strain};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
 use crate::mesh::shape::{ElementKind, QuadraturePoint};
@@ -85,6 +85,31 @@ impl SolidElement {
     /// values where it is the lower one already, of a full one their projection on the polynomials with as many terms.
     pub fn reduced(&self) -> &'static DMatrix<f64> {
         shares(self.kind, self.formulation)
+    }
+
+    /// What a material [shows](Material::shown) at each quadrature point, one behind the other.
+    ///
+    /// # Errors
+    /// [`MaterialFailure`] of the law at a quadrature point.
+    pub fn shown(
+        &self,
+        material: &dyn Material,
+        memory: &[f64],
+        u: &[Vector2<f64>],
+    ) -> Result<Vec<f64>, MaterialFailure> {
+        let (count, own) = (material.variables().len(), material.shown().len());
+        let mut values = vec![0.0; own * self.quadrature_points()];
+        if self.hoop.is_some() {
+            self.ring_shown(material, memory, u, &mut values)?;
+            return Ok(values);
+        }
+        let centre = self.centre(u)?;
+        for (k, ((gradients, _), values)) in self.points().zip(values.chunks_exact_mut(own.max(1))).enumerate() {
+            let deformation = deformation_gradient(gradients, u);
+            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
+            material.show(&Straining::new(r * deformation, &memory[k * count..(k + 1) * count]), values)?;
+        }
+        Ok(values)
     }
 }
 
