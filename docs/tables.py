@@ -1,6 +1,7 @@
 """Writes the tables of the documentation in place: python3 docs/tables.py [--check] [PROGRAM] [NAME …].
 
-A table stands in a page between `<!-- table: NAME -->` and `<!-- end -->`. Those of the quick tier (docs/problems.py, docs/closed_forms.py, docs/choosing.py) come from runs of
+A table stands in a page between `<!-- table: NAME -->` and `<!-- end -->`. Those of the quick tier (docs/problems.py, docs/closed_forms.py, docs/choosing.py,
+docs/limit_loads.py) come from runs of
 seconds; with --check nothing is written, and the exit code is 1 where a number is not the committed one: texts must be equal (but for the cost of iterations),
 numbers may differ by one in the last digit. Those of the slow tier are printed by tests of minutes:
 
@@ -20,6 +21,7 @@ import sys
 
 from choosing import CHOOSING
 from closed_forms import CLOSED
+from limit_loads import LIMIT
 from problems import COST, QUICK
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -32,7 +34,7 @@ FRONTS = "cargo test --release --test published -- --nocapture fronts_run"
 LABORATORY = """cargo run --release -- run cases/laboratory/fault_4m.json &&
     python3 docs/figures/laboratory.py out/fault_4m docs/figures/laboratory.svg"""
 # Of the quick tier: the function that makes it.
-TABLES = {**QUICK, **CLOSED, **CHOOSING}
+TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT}
 # Written, but not compared: iterations that do not converge hang on the last digit, which differs between processors.
 LOOSE = {"cut_back"}
 # Of the slow tier: the command that prints it, and which of the tables that it prints.

@@ -714,6 +714,9 @@ class Output(dict[str, Any]):
         checkpoint: Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume`
             continues with bitwise identical results, however the run ended; the last one is written at the end.
             Default 5; null or 0 for none
+        derived: Whether the fields also have what follows from stress and logarithmic strain:
+            `principal_stress`, `principal_strain` and `stretch_zz`, for ParaView. The page and Python compute
+            these themselves
         every: Fields are written with every n-th row of the history, and at the end of each step; default:
             about 30 times in the run, equally often in each step at equal parts of its duration, or only at
             `times` and ends of steps where `times` are given
@@ -737,6 +740,7 @@ class Output(dict[str, Any]):
         self,
         *,
         checkpoint: float | None | Given = NOT_GIVEN,
+        derived: bool | Given = NOT_GIVEN,
         every: int | None | Given = NOT_GIVEN,
         exact: bool | Given = NOT_GIVEN,
         fields: bool | Given = NOT_GIVEN,
@@ -746,7 +750,7 @@ class Output(dict[str, Any]):
         report: bool | Given = NOT_GIVEN,
         times: Vector | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"checkpoint": checkpoint, "every": every, "exact": exact, "fields": fields, "fronts": fronts, "interval": interval, "points": points, "report": report, "times": times}))
+        super().__init__(_given({"checkpoint": checkpoint, "derived": derived, "every": every, "exact": exact, "fields": fields, "fronts": fronts, "interval": interval, "points": points, "report": report, "times": times}))
 
 
 class Fronts(dict[str, Any]):
@@ -1262,7 +1266,7 @@ class Until(dict[str, Any]):
 Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic]
 
 # How the elements of a body are integrated.
-Formulation = Union[Literal["displacement"], Literal["f_bar"]]
+Formulation = Union[Literal["displacement"], Literal["f_bar"], Literal["reduced"]]
 
 # Initial stress of a body. Displacements and strains are measured from the initial state, stresses are total. The run
 # reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
@@ -1311,7 +1315,7 @@ Amount = Union[float, str]
 Grading = Union[float, str, Middle]
 
 # Elements of a block.
-BlockKind = Union[Literal["Q4"], Literal["Q8"]]
+BlockKind = Union[Literal["Q4"], Literal["Q8"], Literal["T6"]]
 
 # Criterion for the arrival of a front at a point.
 Arrival = Union[ArrivalR, ArrivalMu]

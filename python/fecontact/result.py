@@ -197,7 +197,8 @@ def labelled(result: Result, column: str) -> str:
 
 
 class Fields(Sequence[Any]):
-    """Grids of PyVista over time; each is read when it is asked for."""
+    """Grids of PyVista over time; each is read when it is asked for, and has principal stresses and strains (``principal_stress``,
+    ``principal_strain``, the largest first) and the stretch across the plane (``stretch_zz``) as well."""
 
     def __init__(self, folder: Path, kind: str) -> None:
         self._folder, self._kind = folder, kind
@@ -240,10 +241,28 @@ class Fields(Sequence[Any]):
             import pyvista
         except ImportError as error:
             raise ImportError("fields need PyVista: pip install 'fecontact[fields]'") from error
-        return pyvista.read(self._frames[k][1])
+        return _with_derived(pyvista.read(self._frames[k][1]))
 
     def __repr__(self) -> str:
         return f"<{len(self)} grids of {self._kind}>"
+
+
+def _principal_values(tensors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Principal values of symmetric tensors, shape (..., 4) with the components xx, yy, zz, xy: shape (..., 3), the largest first."""
+    xx, yy, zz, xy = np.moveaxis(np.asarray(tensors, dtype=float), -1, 0)
+    middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    return np.sort(np.stack([middle + radius, middle - radius, zz], axis=-1), axis=-1)[..., ::-1]
+
+
+def _with_derived(grid: Any) -> Any:
+    """The grid with what follows from its stress and logarithmic strain, where it has them and the run did not write it."""
+    of = grid.point_data
+    for name, tensor in (("principal_stress", "stress"), ("principal_strain", "log_strain")):
+        if tensor in of and name not in of:
+            of[name] = _principal_values(of[tensor])
+    if "log_strain" in of and "stretch_zz" not in of:
+        of["stretch_zz"] = np.exp(of["log_strain"][:, 2])
+    return grid
 
 
 class _Interfaces(Mapping[str, "xr.Dataset"]):

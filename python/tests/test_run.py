@@ -123,6 +123,13 @@ def test_fields(result: fc.Result) -> None:
     assert grid.n_points == len(inline()["nodes"]) and grid.point_data["displacement"].shape[1] == 3
     assert fields.at(0.9).point_data["displacement"][:, 1].min() == pytest.approx(-0.02, rel=0.2)
     assert result.fields.contact[-1].n_points > 0 and result.fields.points[-1].n_points > 0
+    of = grid.point_data
+    xx, yy, zz, xy = of["stress"].T
+    assert of["principal_stress"].shape == (grid.n_points, 3) and (np.diff(of["principal_stress"], axis=1) <= 0).all()
+    assert of["principal_stress"].sum(axis=1) == pytest.approx(xx + yy + zz, rel=1e-5, abs=1e-5)
+    tensors = np.array([[[x, s, 0], [s, y, 0], [0, 0, z]] for x, y, z, s in zip(xx, yy, zz, xy)])
+    assert of["principal_stress"][:, ::-1] == pytest.approx(np.linalg.eigvalsh(tensors), rel=1e-5, abs=1e-5)
+    assert of["principal_strain"].shape == (grid.n_points, 3) and of["stretch_zz"] == pytest.approx(1.0)
 
 
 def test_open_and_report(result: fc.Result, tmp_path: Path) -> None:

@@ -155,6 +155,10 @@ fn most_first(given_up: &BTreeMap<String, usize>) -> String {
 /// Prints the energy balance of a dynamic run; `supplied` is the largest initial energy + external work.
 fn audit(energy: &Energy, supplied: f64) {
     let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
+    let yielded = match energy.plastic_dissipation > 0.0 {
+        true => format!(", {:.6e} by yielding", energy.plastic_dissipation),
+        false => String::new(),
+    };
     let radiated = if energy.radiated > 0.0 { format!(", {:.6e} radiated", energy.radiated) } else { String::new() };
     say!("energy: {:.6e} initial, {:.6e} external work", energy.initial, energy.external_work);
     say!(
@@ -164,7 +168,7 @@ fn audit(energy: &Energy, supplied: f64) {
         energy.contact_elastic
     );
     say!(
-        "        {:.6e} dissipated by friction, {:.6e} by damping{radiated}, {:.1e} ({share:.4} %) unaccounted for",
+        "        {:.6e} dissipated by friction, {:.6e} by damping{yielded}{radiated}, {:.1e} ({share:.4} %) unaccounted for",
         energy.friction_dissipation,
         energy.damping_dissipation,
         energy.error()

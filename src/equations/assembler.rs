@@ -209,8 +209,18 @@ impl Assembler {
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
         let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
-        let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, heating, .. } =
-            evaluation;
+        let Evaluation {
+            force,
+            loads,
+            damping,
+            stabilization,
+            memory,
+            strain_energy,
+            dissipated,
+            plastic,
+            heating,
+            ..
+        } = evaluation;
         [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
         if let Some(tangent) = &mut tangent {
@@ -226,7 +236,7 @@ impl Assembler {
                     let elastic = solids.add(u, v, &mut sums)?;
                     let evolved = evolving.add(model, trial, u, memory, &mut sums)?;
                     *strain_energy = elastic + evolved.stored;
-                    (*dissipated, *heating) = (evolved.dissipated, evolved.heating);
+                    (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
                 Term::Interfaces => contacts::add(responses, &mut sums),
                 Term::Loads => {

@@ -43,8 +43,10 @@ pub struct Evaluation {
     pub memory: Vec<f64>,
     /// ∫ W dV [F·L]
     pub strain_energy: f64,
-    /// What the materials dissipated in the increment [F·L]
+    /// What the materials dissipated in the increment by viscosity [F·L]
     pub dissipated: f64,
+    /// What they dissipated by yielding [F·L]
+    pub plastic: f64,
     /// Work of the temperatures that changed in the increment [F·L]
     pub heating: f64,
 }

@@ -51,7 +51,8 @@ impl Evolving {
             model.write_temperatures(trial.step, trial.moment(), e, old, new);
             let found = evolve(model, e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted);
             let found = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
-            Ok((found, model.heating(e, [old, new])))
+            let yields = model.bodies[model.body_of_element[e]].material.flow().is_some();
+            Ok((found, model.heating(e, [old, new]), yields))
         };
         let elements = model.memories.each_mut(memory).enumerate().zip(&self.0);
         let mut own = elements.filter_map(|(element, own)| own.then_some(element));
@@ -62,9 +63,9 @@ impl Evolving {
             }
             let answers: Vec<Result<_, TrialFailure>> = batch.into_par_iter().map(one).collect();
             for answer in answers {
-                let (([stored, dissipated], contribution), work) = answer?;
+                let (([stored, lost], contribution), work, yields) = answer?;
                 all.stored += stored;
-                all.dissipated += dissipated;
+                *(if yields { &mut all.plastic } else { &mut all.dissipated }) += lost;
                 all.heating += work;
                 sums.contribute(&contribution);
             }
@@ -78,8 +79,10 @@ impl Evolving {
 pub struct Evolved {
     /// ∫ W dV at its end
     pub stored: f64,
-    /// Dissipation
+    /// Dissipation of those that do not yield
     pub dissipated: f64,
+    /// Dissipation of those that do
+    pub plastic: f64,
     /// Work of their temperatures
     pub heating: f64,
 }

@@ -173,7 +173,7 @@ impl TrialFailure {
         let (element, body, at) = named(model, e);
         match cause {
             MaterialFailure::Inverted { jacobian } => Self::Inverted { element, body, at, jacobian },
-            MaterialFailure::NotConverged { .. } => Self::Material { element, body, at, cause },
+            _ => Self::Material { element, body, at, cause },
         }
     }
 

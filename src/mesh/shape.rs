@@ -141,7 +141,8 @@ impl ElementKind {
         }
     }
 
-    /// Quadrature of the stiffness (full integration: T3 1, T6 3, Q4 4, Q8 and Q9 9 points).
+    /// Quadrature of the stiffness (full integration: T3 1, T6 3, Q4 4, Q8 and Q9 9 points). A Q8 may have 2 × 2 of them instead
+    /// ([`reduced`](Self::reduced_quadrature)).
     #[doc(hidden)]
     pub fn quadrature(self) -> Vec<QuadraturePoint> {
         match self {
@@ -149,6 +150,16 @@ impl ElementKind {
             Self::T6 => triangle_rule(&[(1.0 / 6.0, 1.0 / 6.0)]),
             Self::Q4 => square_rule(2),
             Self::Q8 | Self::Q9 => square_rule(3),
+        }
+    }
+
+    /// Quadrature of quadrilaterals one order lower: 2 × 2 points of a Q8, 1 of a Q4.
+    #[doc(hidden)]
+    pub fn reduced_quadrature(self) -> Vec<QuadraturePoint> {
+        match self {
+            Self::T3 | Self::T6 => self.quadrature(),
+            Self::Q4 => square_rule(1),
+            Self::Q8 | Self::Q9 => square_rule(2),
         }
     }
 

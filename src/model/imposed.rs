@@ -156,8 +156,8 @@ impl Model {
 
     /// Reference positions of an element's quadrature points.
     pub fn quadrature_positions(&self, element: usize) -> impl Iterator<Item = Vector2<f64>> {
-        let element = &self.mesh.elements[element];
-        element.kind.quadrature().into_iter().map(move |point| {
+        let (element, points) = (&self.mesh.elements[element], self.solids[element].quadrature());
+        points.into_iter().map(move |point| {
             element.nodes.iter().zip(element.kind.values(point.at)).map(|(&node, n)| self.mesh.nodes[node] * n).sum()
         })
     }

@@ -6,6 +6,7 @@ pub mod boundary;
 pub mod builder;
 mod expression;
 mod requests;
+mod unfit;
 pub(crate) mod written;
 
 cfg_if::cfg_if! {

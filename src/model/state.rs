@@ -106,8 +106,10 @@ pub struct Energy {
     pub contact_elastic: f64,
     /// ∫ q v^p ds dt
     pub friction_dissipation: f64,
-    /// ∫ c (v_driver − v)² dt of the dashpots, and what bodies turned into heat
+    /// ∫ c (v_driver − v)² dt of the dashpots, and what viscous bodies turned into heat
     pub damping_dissipation: f64,
+    /// plastic work of the bodies that yield, less what back stresses store
+    pub plastic_dissipation: f64,
     /// ∫ η v² ds dt: what slip radiates where contacts have a radiation damping
     pub radiated: f64,
     /// ∫ c v² dt of the dashpots that stabilize floating bodies, a part of the damping dissipation
@@ -128,6 +130,6 @@ impl Energy {
     pub fn error(&self) -> f64 {
         self.external_work + self.initial
             - (self.kinetic + self.strain + self.contact_elastic)
-            - (self.friction_dissipation + self.damping_dissipation + self.radiated)
+            - (self.friction_dissipation + self.damping_dissipation + self.plastic_dissipation + self.radiated)
     }
 }

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::balance;
 use super::text::{count, number};
+use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
@@ -13,7 +14,7 @@ use crate::mesh::shape::ElementKind;
 use crate::mesh::{Element, Mesh};
 use crate::model::method::Chosen;
 use crate::model::scheme::Scheme;
-use crate::model::{Model, Step};
+use crate::model::{Body, Model, Step};
 
 /// Round-off of a gap, as a share of the positions that it is the difference of.
 const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
@@ -40,7 +41,8 @@ impl Model {
         };
         let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self)).chain(many_increments(self));
         let of_model = of_model.chain(idle_radiation(self)).chain(uncertain_times(self)).chain(balance::concerns(self));
-        let of_model = of_model.chain(sheared_beside_faults(self));
+        let of_model = of_model.chain(sheared_beside_faults(self)).chain(unfit::concerns(self));
+        let of_model = of_model.chain(self.bodies.iter().filter_map(concern_of_law));
         let concerns = self.about_methods(|chosen| chosen.concern.map(String::from));
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
     }
@@ -57,6 +59,11 @@ impl Model {
             .filter_map(|(pair, chosen)| Some(format!("contact `{}`: {}", pair.name, message(chosen.as_ref()?)?)))
             .collect()
     }
+}
+
+/// What the law of a body has to say before anything is solved.
+fn concern_of_law(body: &Body) -> Option<String> {
+    body.material.concern().map(|concern| format!("body `{}`: {concern}", body.name))
 }
 
 /// Output times that a step ending early may shift.

@@ -47,6 +47,8 @@ pub struct Frames {
     pub points: bool,
     /// Whether values are written in double precision
     pub exact: bool,
+    /// Whether what follows from stress and strain is written, too
+    pub derived: bool,
 }
 
 /// The states that have frames, besides the first, those at times that the model names, and the last of each step.
@@ -88,6 +90,8 @@ struct Collection {
     /// Number of frames listed in the index, and the time of that listing
     listed: (usize, Option<Instant>),
     grid: Grid,
+    /// Whether what follows from stress and strain is written, too
+    derived: bool,
 }
 
 impl Fields {
@@ -109,7 +113,7 @@ impl Fields {
         let (frames_of, rows) = (frames, 0);
         let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
         let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
-        let collection = |name: &&'static str| Collection::create(folder, name, frames_of.exact);
+        let collection = |name: &&'static str| Collection::create(folder, name, frames_of);
         let collections = names.iter().map(collection).collect::<Result<_, _>>()?;
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
         let (room, writer) = (Room::of(folder, &model), std::thread::Builder::new().name("frames".into()));
@@ -240,10 +244,11 @@ fn file(series: &str, number: usize) -> String {
 }
 
 impl Collection {
-    fn create(folder: &Path, name: &'static str, exact: bool) -> Result<Self, Error> {
+    fn create(folder: &Path, name: &'static str, asked: Frames) -> Result<Self, Error> {
         let frames = folder.join(name);
         files::folder(&frames).map_err(|cause| failed(&frames, &cause))?;
-        Ok(Self { folder: folder.to_owned(), name, times: Vec::new(), listed: (0, None), grid: Grid::new(exact) })
+        let (folder, grid) = (folder.to_owned(), Grid::new(asked.exact));
+        Ok(Self { folder, name, times: Vec::new(), listed: (0, None), grid, derived: asked.derived })
     }
 
     fn file(&self, number: usize) -> String {
@@ -253,12 +258,11 @@ impl Collection {
     /// Write one frame and list it, so that a running or killed run can be looked at.
     fn show(&mut self, model: &Model, shown: &Shown) -> Result<(), Error> {
         let path = self.folder.join(self.file(self.times.len()));
-        let frame = match self.name {
-            "solid" => solid_frame,
-            "points" => points_frame,
-            _ => contact_frame,
-        };
-        frame(model, shown, &mut self.grid);
+        match self.name {
+            "solid" => solid_frame(model, shown, self.derived, &mut self.grid),
+            "points" => points_frame(model, shown, self.derived, &mut self.grid),
+            _ => contact_frame(model, shown, &mut self.grid),
+        }
         let written = self.grid.write(&path);
         if written.is_err() {
             // Half a frame is of no use.

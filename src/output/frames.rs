@@ -2,11 +2,12 @@
 
 use nalgebra::Vector2;
 
+use super::recovery::{nodal_fields, shown_names};
 use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
 use crate::contact::pair::ContactPair;
-use crate::laws::bulk::CauchyStress;
+use crate::laws::bulk::{CauchyStress, principal_values};
 use crate::mesh::Element;
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
@@ -30,8 +31,8 @@ impl Shown {
 }
 
 /// Fills the grid of the bodies. Rigid bodies have no cells, and what their nodes carry is no field.
-pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) {
-    let stresses = nodal_stresses(model, state);
+pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, derived: bool, grid: &mut Grid) {
+    let fields = nodal_fields(model, state);
     let nodes = model.mesh.own_nodes();
     // A body has one material, and a material serves one body: the two ids agree.
     let body = || model.body_of_element.iter().map(|&body| body as i32);
@@ -44,7 +45,10 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid:
     grid.vectors("acceleration", &state.acceleration[..2 * nodes]);
     grid.vectors("reaction", &state.reaction[..2 * nodes]);
     grid.vectors("contact_force", &contact_forces[..2 * nodes]);
-    add_stresses(grid, &stresses[..nodes]);
+    add_fields(grid, &fields.tensors[..nodes], derived);
+    for (name, values) in fields.shown {
+        grid.at_points(name, 1, values.into_iter().take(nodes));
+    }
     grid.at_cells("body", body());
     grid.at_cells("material", body());
 }
@@ -62,7 +66,7 @@ fn contact_forces(model: &Model, state: &State) -> Vec<f64> {
 }
 
 /// The integration points of the bodies, with their stresses and what the materials remember there.
-pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
+pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, grid: &mut Grid) {
     let elements = &model.mesh.elements;
     let mut names: Vec<&str> = Vec::new();
     for name in model.bodies.iter().flat_map(|body| body.material.variables()) {
@@ -71,24 +75,37 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
         }
     }
     let (mut places, mut moved, mut body) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut stresses, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
+    let (mut fields, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
+    // Some of what a law shows it remembers.
+    let shown: Vec<&str> = shown_names(model).into_iter().filter(|name| !names.contains(name)).collect();
+    let mut further = vec![Vec::new(); shown.len()];
     for (e, element) in elements.iter().enumerate() {
         let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
         // An element without an answer never occurs in an accepted state.
-        let none = || (0..model.solids[e].quadrature_points()).map(|_| CauchyStress::default()).collect();
-        let found = model.solids[e].stresses(material, memory, &u).unwrap_or_else(|_| none());
-        for (k, (point, stress)) in element.kind.quadrature().iter().zip(found).enumerate() {
+        let count = model.solids[e].quadrature_points();
+        let stresses = model.solids[e].stresses(material, memory, &u);
+        let stresses = stresses.unwrap_or_else(|_| (0..count).map(|_| CauchyStress::default()).collect());
+        let strains = model.solids[e].log_strains(material, memory, &u);
+        let strains = strains.unwrap_or_else(|_| (0..count).map(|_| [0.0; 4]).collect());
+        let seen = model.solids[e].shown(material, memory, &u).unwrap_or_default();
+        for (k, (point, both)) in model.solids[e].quadrature().iter().zip(stresses.into_iter().zip(strains)).enumerate()
+        {
             let values = element.kind.values(point.at);
             places.push(element.nodes.iter().zip(&values).map(|(&node, n)| model.mesh.nodes[node] * *n).sum());
             let at: Vector2<f64> = u.iter().zip(&values).map(|(u, n)| u * *n).sum();
             moved.extend([at.x, at.y]);
             body.push(number as i32);
-            stresses.push(stress);
+            fields.push(both);
             let own = material.variables();
             for (name, list) in names.iter().zip(&mut variables) {
                 let place = own.iter().position(|other| other == name);
                 list.push(place.map_or(f64::NAN, |place| memory[k * own.len() + place]));
+            }
+            for (name, list) in shown.iter().zip(&mut further) {
+                let place = material.shown().iter().position(|other| other == name);
+                let value = place.and_then(|place| seen.get(k * material.shown().len() + place));
+                list.push(value.copied().unwrap_or(f64::NAN));
             }
         }
     }
@@ -97,41 +114,27 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
         (places, cells)
     });
     grid.vectors("displacement", &moved);
-    add_stresses(grid, &stresses);
-    names.iter().zip(variables).for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
+    add_fields(grid, &fields, derived);
+    names
+        .iter()
+        .chain(&shown)
+        .zip(variables.into_iter().chain(further))
+        .for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
     grid.at_cells("body", body.into_iter());
 }
 
-fn add_stresses(grid: &mut Grid, stresses: &[CauchyStress]) {
-    grid.at_points("stress", 4, stresses.iter().flat_map(|s| [s.xx, s.yy, s.zz, s.xy]));
-    grid.at_points("von_mises", 1, stresses.iter().map(CauchyStress::von_mises));
-    grid.at_points("pressure", 1, stresses.iter().map(CauchyStress::pressure));
-}
-
-/// Cauchy stress at the nodes, averaged over the elements that meet there. An element that the
-/// material law cannot answer leaves no trace: it never occurs in an accepted state.
-fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    let elements = &model.mesh.elements;
-    let stresses_of = |e: usize| {
-        let u = model.mesh.vectors(e, &state.displacement);
-        let material = &*model.bodies[model.body_of_element[e]].material;
-        model.solids[e].nodal_stresses(material, model.memories.of(e, &state.memory), &u)
-    };
-    let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
-    for (element, stresses) in elements.iter().zip((0..elements.len()).map(stresses_of)) {
-        for (stress, &node) in stresses.into_iter().flatten().zip(&element.nodes) {
-            let (sum, count) = &mut sums[node];
-            for (sum, part) in sum.iter_mut().zip([stress.xx, stress.yy, stress.zz, stress.xy]) {
-                *sum += part;
-            }
-            *count += 1.0;
-        }
+/// Stress and logarithmic strain, and on request what follows from them.
+fn add_fields(grid: &mut Grid, fields: &[(CauchyStress, [f64; 4])], derived: bool) {
+    let (stresses, strains) = (|| fields.iter().map(|(stress, _)| stress), || fields.iter().map(|(_, strain)| *strain));
+    grid.at_points("stress", 4, stresses().flat_map(CauchyStress::components));
+    grid.at_points("von_mises", 1, stresses().map(CauchyStress::von_mises));
+    grid.at_points("pressure", 1, stresses().map(CauchyStress::pressure));
+    grid.at_points("log_strain", 4, strains().flatten());
+    if derived {
+        grid.at_points("principal_stress", 3, stresses().flat_map(|stress| principal_values(stress.components())));
+        grid.at_points("principal_strain", 3, strains().flat_map(principal_values));
+        grid.at_points("stretch_zz", 1, strains().map(|[_, _, zz, _]| zz.exp()));
     }
-    let mean = |(sum, count): ([f64; 4], f64)| {
-        let [xx, yy, zz, xy] = sum.map(|s| if count > 0.0 { s / count } else { 0.0 });
-        CauchyStress { xx, yy, zz, xy }
-    };
-    sums.into_iter().map(mean).collect()
 }
 
 /// The interfaces: a polyline through the contact points along each slave surface.

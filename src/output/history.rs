@@ -10,7 +10,8 @@ use super::csv;
 use super::csv::{Rows, Sheet, Table};
 use super::friction_history::FrictionHistory;
 use super::quantities::{
-    BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, RIGID, WATCHED, names,
+    BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, PLASTIC, Quantity, RADIATED, RESULTANT, RIGID,
+    WATCHED, names,
 };
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
@@ -77,6 +78,7 @@ impl Rows for HistoryRows {
         header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
         header.extend(model.mesh.rigid_bodies.iter().flat_map(|body| of(&body.name, &RIGID)));
+        header.extend(yields(model).then(|| PLASTIC.name.into()));
         let undeformed = model.mesh.undeformed();
         let rows = Self {
             observed,
@@ -141,6 +143,7 @@ impl Rows for HistoryRows {
         for body in &model.mesh.rigid_bodies {
             table.numbers([body.angle(&x), body.radius * state.reaction[2 * body.turning]]);
         }
+        table.numbers(yields(model).then_some(state.energy.plastic_dissipation));
         table.end_row_as(attempt.row)
     }
 
@@ -164,6 +167,11 @@ impl History {
 /// Whether slip radiates, and the energies have a column for it.
 fn radiates(model: &Model) -> bool {
     model.contacts.iter().any(|pair| pair.radiation > 0.0)
+}
+
+/// Whether some body yields, and the energies have a column for it.
+fn yields(model: &Model) -> bool {
+    model.bodies.iter().any(|body| body.material.flow().is_some())
 }
 
 fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {

@@ -22,6 +22,7 @@ cfg_if::cfg_if! {
         pub mod newton_log;
         pub mod probes;
         pub mod quantities;
+        pub mod recovery;
         pub mod report;
         pub mod summary;
         pub mod vtu;
@@ -42,6 +43,7 @@ cfg_if::cfg_if! {
         pub(crate) mod newton_log;
         pub(crate) mod probes;
         pub(crate) mod quantities;
+        pub(crate) mod recovery;
         pub(crate) mod report;
         pub(crate) mod summary;
         pub(crate) mod vtu;

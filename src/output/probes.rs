@@ -2,10 +2,13 @@
 //!
 //! What a gauge at a point of a body reads.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::{Matrix2, Vector2};
 
 use super::csv::{Rows, Sheet, Table};
 use super::quantities::{HOOP, PROBE, names};
+use super::recovery::{Recovery, Stencil};
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
@@ -22,23 +25,24 @@ pub type Probes = Sheet<ProbeRows>;
 
 /// The rows of `probes.csv`.
 #[derive(Debug)]
-pub struct ProbeRows;
+pub struct ProbeRows(Vec<Stencil>);
 
 impl Rows for ProbeRows {
     const NAME: &'static str = "probes";
 
     fn new(model: &Model) -> (Self, Vec<String>) {
-        let columns =
-            model.requests.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
-        (Self, std::iter::once("time".into()).chain(columns).collect())
+        let columns = model.requests.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
+        let stencils = stencils(model, &model.requests.probes);
+        (Self(stencils), std::iter::once("time".into()).chain(columns).collect())
     }
 
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         table.number(state.time);
-        for probe in &model.requests.probes {
+        let values = values(model, state, &self.0);
+        for (probe, stencil) in model.requests.probes.iter().zip(&self.0) {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
-                Reading::of(probe, model, state);
+                Reading::by((stencil, &values), probe, model, state);
             let CauchyStress { xx, yy, zz, xy } = stress;
             let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
@@ -54,7 +58,7 @@ impl Rows for ProbeRows {
 /// u = Σ N_a u_a,  v likewise                    by the shape functions of the element
 /// E = ½ (FᵀF − 1)                               Green–Lagrange; of `linear` materials ε = sym grad u
 /// ```
-/// Strain and Cauchy stress are the (bi)linear functions of the element nearest to their values at the integration points.
+/// Strain and Cauchy stress are recovered from the elements around ([`super::recovery`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
     /// u [L]
@@ -73,37 +77,64 @@ impl Reading {
     /// Reading of a probe in a state. Stress and strain are NaN where the material law fails, which it does not in an
     /// accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
-        let (element, solid) = (&model.mesh.elements[probe.element], &model.solids[probe.element]);
-        let nodal = |values: &[f64]| model.mesh.vectors(probe.element, values);
-        let values = element.kind.values(probe.at);
-        let mean = |of: &[Vector2<f64>]| of.iter().zip(&values).map(|(of, n)| of * *n).sum::<Vector2<f64>>();
-        let (u, v) = (nodal(&state.displacement), nodal(&state.velocity));
-        let material = &*model.bodies[model.body_of_element[probe.element]].material;
-        let memory = model.memories.of(probe.element, &state.memory);
-        let strain = |f: &Matrix2<f64>| {
-            let gradient = f - Matrix2::identity();
-            let square = if material.is_linear() { Matrix2::zeros() } else { gradient.transpose() * gradient };
-            let strain = 0.5 * (gradient + gradient.transpose() + square);
-            [strain.m11, strain.m22, strain.m12]
-        };
-        let strains: Vec<[f64; 3]> = solid.deformations(&u).iter().map(strain).collect();
-        let hoop_strain = |h: &f64| match material.is_linear() {
-            true => [h - 1.0],
-            false => [0.5 * (h - 1.0) * (h + 1.0)],
-        };
-        let hoops: Option<Vec<[f64; 1]>> = solid.hoops(&u).map(|hoops| hoops.iter().map(hoop_strain).collect());
-        let stress = solid.stresses(material, memory, &u).map(|stresses| {
-            let all: Vec<[f64; 4]> = stresses.iter().map(|s| [s.xx, s.yy, s.zz, s.xy]).collect();
-            let [xx, yy, zz, xy] = solid.fitted(&all, probe.at);
-            CauchyStress { xx, yy, zz, xy }
-        });
-        let none = CauchyStress { xx: f64::NAN, yy: f64::NAN, zz: f64::NAN, xy: f64::NAN };
+        let stencils = stencils(model, std::slice::from_ref(probe));
+        Self::by((&stencils[0], &values(model, state, &stencils)), probe, model, state)
+    }
+
+    /// The same with the values at the quadrature points of the elements around.
+    fn by((stencil, values): (&Stencil, &Values), probe: &Probe, model: &Model, state: &State) -> Self {
+        let shares = model.mesh.elements[probe.element].kind.values(probe.at);
+        let nodal = |of: &[f64]| model.mesh.vectors(probe.element, of).iter().zip(&shares).map(|(of, n)| of * *n).sum();
+        let mut sums = [0.0; 8];
+        stencil.sum(&mut sums, |e| &values[&e]);
+        let [xx, yy, zz, xy, strain @ .., hoop_strain] = sums;
         Self {
-            displacement: mean(&u),
-            velocity: mean(&v),
-            strain: solid.fitted(&strains, probe.at),
-            hoop_strain: hoops.map_or(0.0, |hoops| solid.fitted(&hoops, probe.at)[0]),
-            stress: stress.unwrap_or(none),
+            displacement: nodal(&state.displacement),
+            velocity: nodal(&state.velocity),
+            strain,
+            hoop_strain,
+            stress: CauchyStress { xx, yy, zz, xy },
         }
     }
+}
+
+/// Values of elements at their quadrature points.
+type Values = BTreeMap<usize, Vec<f64>>;
+
+/// The stencils of some probes.
+fn stencils(model: &Model, probes: &[Probe]) -> Vec<Stencil> {
+    let recovery = Recovery::new(model);
+    let stencil = |probe: &Probe| {
+        let shares = model.mesh.elements[probe.element].kind.values(probe.at);
+        let place = model.mesh.places(probe.element).iter().zip(&shares).map(|(x, n)| x * *n).sum();
+        recovery.at(model, probe.element, place)
+    };
+    probes.iter().map(stencil).collect()
+}
+
+/// Stress, strain and hoop strain at the quadrature points of the elements that stencils need.
+fn values(model: &Model, state: &State, stencils: &[Stencil]) -> Values {
+    let elements: BTreeSet<usize> = stencils.iter().flat_map(Stencil::elements).copied().collect();
+    elements.into_iter().map(|e| (e, stress_and_strain(model, state, e))).collect()
+}
+
+fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
+    let (solid, u) = (&model.solids[e], model.mesh.vectors(e, &state.displacement));
+    let material = &*model.bodies[model.body_of_element[e]].material;
+    let strain = |f: &Matrix2<f64>| {
+        let gradient = f - Matrix2::identity();
+        let square = if material.is_linear() { Matrix2::zeros() } else { gradient.transpose() * gradient };
+        let strain = 0.5 * (gradient + gradient.transpose() + square);
+        [strain.m11, strain.m22, strain.m12]
+    };
+    let hoop_strain = |h: f64| if material.is_linear() { h - 1.0 } else { 0.5 * (h - 1.0) * (h + 1.0) };
+    let Ok(stresses) = solid.stresses(material, model.memories.of(e, &state.memory), &u) else {
+        return vec![f64::NAN; 8 * solid.quadrature_points()];
+    };
+    let (deformations, hoops) = (solid.deformations(&u), solid.hoops(&u));
+    let hoop = |k: usize| hoops.as_ref().map_or(0.0, |hoops| hoop_strain(hoops[k]));
+    let at = |(k, (stress, f)): (usize, (&CauchyStress, &Matrix2<f64>))| {
+        stress.components().into_iter().chain(strain(f)).chain([hoop(k)])
+    };
+    stresses.iter().zip(&deformations).enumerate().flat_map(at).collect()
 }

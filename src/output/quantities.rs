@@ -115,13 +115,17 @@ pub const ENERGIES: [Quantity; 7] = [
     q("strain", ENERGY, "strain energy of the bodies, ∫ W dV"),
     q("contact_elastic", ENERGY, "∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed contact points"),
     q("friction_dissipation", ENERGY, "dissipated by friction so far, ∫∫ q v^p ds dt"),
-    q("damping_dissipation", ENERGY, "dissipated by dashpots, absorbing sides, viscosity and the materials so far"),
+    q("damping_dissipation", ENERGY, "dissipated by dashpots, absorbing sides and viscosity so far"),
     q("external_work", ENERGY, "work of loads, supports, drivers and changes of temperature so far"),
     q("energy_error", ENERGY, "initial energy + external work − stored − dissipated − radiated: 0 if all is resolved"),
 ];
 
 /// Column of runs with radiation damping.
 pub const RADIATED: Quantity = q("radiated", ENERGY, "radiated by slip so far, ∫∫ η v² ds dt");
+
+/// Column of runs with bodies that yield.
+pub const PLASTIC: Quantity =
+    q("plastic_dissipation", ENERGY, "dissipated by yielding so far, ∫∫ τ:dε_p dV less what back stresses store");
 
 /// Means and sums of a contact; means are taken over the closed length.
 pub const CONTACT: [Quantity; 8] = [
@@ -328,26 +332,49 @@ pub const VERDICT: [Quantity; 3] = [
 ];
 
 /// Arrays of the frames of bodies.
-const SOLID: [Quantity; 10] = [
+const SOLID: [Quantity; 14] = [
     q("displacement", LENGTH, "u of the nodes"),
     q("velocity", VELOCITY, "v"),
     q("acceleration", ACCELERATION, "a"),
     q("reaction", FORCE, "forces of the supports on the nodes"),
     q("contact_force", FORCE, "forces of the contacts on the nodes"),
-    q("stress", STRESS, "Cauchy stress xx, yy, zz, xy, averaged over the elements at a node"),
-    q("von_mises", STRESS, "von Mises stress"),
-    q("pressure", STRESS, "−tr σ/3"),
+    q("stress", STRESS, "Cauchy stress xx, yy, zz, xy, recovered from the elements around a node (below)"),
+    q("von_mises", STRESS, "von Mises stress, q = √(3/2) ‖dev σ‖"),
+    q("pressure", STRESS, "mean stress p = −tr σ/3"),
     q("body", NONE, "number of the body of an element"),
     q("material", NONE, "number of its material"),
+    q("log_strain", NONE, "logarithmic strain ln V: xx, yy, zz, xy; of `linear` materials sym grad u"),
+    q(
+        "principal_stress",
+        STRESS,
+        "principal Cauchy stresses, the largest first; with `derived`, on the page and in Python",
+    ),
+    q("principal_strain", NONE, "principal logarithmic strains, the largest first; as above"),
+    q("stretch_zz", NONE, "stretch across the plane, exp(ln V_zz): thickness of a plate, hoops of rings; as above"),
+];
+
+/// What bodies that yield show, in frames.
+pub const OF_YIELDING: [Quantity; 3] = [
+    q(
+        "equivalent_plastic_strain",
+        NONE,
+        "ε̄_p = ∫ √(2/3 dε_p:dε_p) of the deviator, of bodies that yield; NaN elsewhere",
+    ),
+    q("plastic_volume_strain", NONE, "∫ tr dε_p, positive where a body dilates"),
+    q("yield_indicator", STRESS, "f: 0 where it yields, less where it does not"),
 ];
 
 /// Arrays of the frames of integration points; internal variables of materials follow, by their names.
-const INTEGRATION_POINTS: [Quantity; 5] = [
+const INTEGRATION_POINTS: [Quantity; 9] = [
     SOLID[0],
     q("stress", STRESS, "Cauchy stress xx, yy, zz, xy"),
     SOLID[6],
     SOLID[7],
     q("body", NONE, "number of the body"),
+    SOLID[10],
+    SOLID[11],
+    SOLID[12],
+    SOLID[13],
 ];
 
 /// Quantities, and whose they are: what stands before the dot in a name.
@@ -370,10 +397,11 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("CONTACT", &[FLUID_FORCE]),
             ("CONTACT", &HEAT),
             ("RIGID", &RIGID),
+            ("", &[PLASTIC]),
         ],
     ),
     ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),
-    ("solid.pvd", &[("", &SOLID)]),
+    ("solid.pvd", &[("", &SOLID), ("", &OF_YIELDING)]),
     (
         "contact.pvd",
         &[
@@ -383,7 +411,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("", &[q("contact", NONE, "number of the contact of a line")]),
         ],
     ),
-    ("points.pvd", &[("", &INTEGRATION_POINTS)]),
+    ("points.pvd", &[("", &INTEGRATION_POINTS), ("", &OF_YIELDING)]),
     ("probes.csv", &[("", &[INCREMENT[0]]), ("PROBE", &PROBE), ("PROBE", &[HOOP])]),
     ("fronts.csv", &[("", &FRONTS)]),
     ("events.csv", &[("", &EVENTS)]),
@@ -404,6 +432,8 @@ pub fn spoken(name: &str) -> String {
         "traction" => "traction q".into(),
         "state" => "state (0 open, 1 stick, 2 slip)".into(),
         "von_mises" => "von Mises stress".into(),
+        "log_strain" => "logarithmic strain".into(),
+        "stretch_zz" => "stretch across the plane".into(),
         _ => name.replace('_', " "),
     }
 }

@@ -15,7 +15,7 @@ use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::model::step::{Until, UntilStatus};
 use crate::solve::IterationRecord;
-use crate::solve::failure::{IncrementFailure, suspicion};
+use crate::solve::failure::{IncrementFailure, limit, suspicion};
 use crate::time::beginning::{after_change, begin, go_on};
 use crate::time::explicit::Explicit;
 use crate::time::increment::advance;
@@ -89,8 +89,9 @@ impl Simulation {
             return Outcome::Cut(cause, self.rupture());
         }
         let (step, time, min) = (name.clone(), self.state.time, increments.min);
+        let limit = limit(&self.step, &self.state, &cause);
         let (suspicion, cause) = (suspicion(&self.model, &self.step, &self.work, &cause), Box::new(cause));
-        Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause, suspicion })
+        Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, limit, cause, suspicion })
     }
 
     /// Start of explicit increments within an implicit step.

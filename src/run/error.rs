@@ -15,7 +15,7 @@ pub use crate::solve::newton::NewtonFailure;
 #[non_exhaustive]
 pub enum Error {
     /// An increment cannot be made small enough.
-    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", time_text(*time))]
+    #[error("step `{step}` stopped at time {}: {limit}{cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", time_text(*time))]
     IncrementTooSmall {
         /// step
         step: String,
@@ -25,6 +25,8 @@ pub enum Error {
         dt: f64,
         /// smallest allowed increment
         min: f64,
+        /// that it may be a limit point, with the loads reached, before a semicolon; empty unless there is a sign of one
+        limit: String,
         /// why it failed
         cause: Box<IncrementFailure>,
         /// what may be to blame, behind a semicolon; empty if nothing is suspected

@@ -5,6 +5,7 @@
 //! Who is to blame where no equilibrium was found: where forces are farthest from balance, and which stiffnesses are out of
 //! proportion there.
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::Workspace;
@@ -12,7 +13,9 @@ use super::newton::NewtonFailure;
 use crate::contact::pair::ContactPair;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::free;
-use crate::linear::LinearFailure;
+use crate::linear::{LinearFailure, norm};
+use crate::model::element::Formulation;
+use crate::model::state::State;
 use crate::model::text::number;
 use crate::model::{Body, Model, Step};
 
@@ -176,6 +179,53 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
     causes.map(|cause| format!("; {cause}")).collect()
 }
 
+/// Growth of the rate of displacement over its mean in the step, from which it has begun to run away.
+const RUNS_AWAY: f64 = 2.0;
+
+/// That a static step under forces may have come to a limit point, with what its loads had reached, before a semicolon; empty unless
+/// displacements have begun to run away from the loads.
+pub fn limit(step: &Step, state: &State, cause: &IncrementFailure) -> String {
+    if !matches!(cause, IncrementFailure::Newton(_)) || step.scheme.is_dynamic() {
+        return String::new();
+    }
+    let loads = growing_loads(step, state.time);
+    let Some(last) = state.last_increment.as_ref().filter(|_| !loads.is_empty()) else { return String::new() };
+    let so_far = state.displacement.iter().zip(&state.step_start.displacement).map(|(u, before)| (u - before).powi(2));
+    let mean = so_far.sum::<f64>().sqrt() / (state.time - step.span.start);
+    if norm(&last.displacement) / last.dt < RUNS_AWAY * mean {
+        return String::new();
+    }
+    format!(
+        "this may be a limit point, the most that the structure bears, since displacements grow ever faster than the loads: {} had been \
+         reached; prescribe displacements instead of forces to go on; ",
+        loads.join(" and ")
+    )
+}
+
+/// What the loads that vary in a step are at a time, and what they were to become: of each kind the one that varies most.
+fn growing_loads(step: &Step, time: f64) -> Vec<String> {
+    let loads = &step.loads;
+    let dead = loads.dead.iter().filter_map(|load| {
+        let place = load.shares.first()?.2;
+        Some((["load along x", "load along y"][load.component], &load.amplitude, place))
+    });
+    let pressures = loads.pressures.iter().map(|load| ("pressure", &load.amplitude, Vector2::zeros()));
+    let moments = loads.moments.iter().map(|load| ("moment", &load.amplitude, Vector2::zeros()));
+    let mut most: Vec<(&str, [f64; 2])> = Vec::new();
+    for (kind, amplitude, place) in dead.chain(pressures).chain(moments) {
+        let [start, now, end] = [step.span.start, time, step.span.end].map(|time| amplitude.value(place, time));
+        if start == end || !(end - start).is_finite() {
+            continue;
+        }
+        match most.iter_mut().find(|(known, _)| *known == kind) {
+            None => most.push((kind, [now, end])),
+            Some((_, values)) if end.abs() > values[1].abs() => *values = [now, end],
+            Some(_) => {}
+        }
+    }
+    most.iter().map(|(kind, [now, end])| format!("{kind} {} of {}", number(*now), number(*end))).collect()
+}
+
 /// The free node with the largest force out of balance.
 fn worst_node(model: &Model, step: &Step, residual: &[f64]) -> Option<usize> {
     let free = free(model, step, residual);
@@ -203,10 +253,11 @@ fn penalty(pair: &ContactPair) -> Option<String> {
 fn locking(model: &Model, body: &Body) -> Option<String> {
     let [wave, shear] = [body.material.p_wave_modulus(), body.material.shear_modulus()];
     let poisson = (wave - 2.0 * shear) / (2.0 * (wave - shear));
-    let locks = poisson >= LOCKS && body.elements.iter().any(|&element| !model.solids[element].is_f_bar());
+    let locks = poisson >= LOCKS
+        && body.elements.iter().any(|&element| model.solids[element].formulation() == Formulation::Displacement);
     locks.then(|| {
         format!(
-            "nu = {} of body `{}` is near 1/2, where its elements lock: give it \"element\": \"f_bar\" (Q4)",
+            "nu = {} of body `{}` is near 1/2, where its elements lock: give it \"element\": \"f_bar\" (Q4) or \"reduced\" (Q8)",
             number(poisson),
             body.name
         )

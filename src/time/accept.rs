@@ -17,6 +17,7 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     let flows = Flows::between(model, step, state, time, u, found);
     state.energy.external_work += flows.work + found.heating;
     state.energy.damping_dissipation += flows.damping + found.dissipated;
+    state.energy.plastic_dissipation += found.plastic;
     state.energy.stabilization += flows.stabilization;
     state.energy.friction_dissipation += flows.friction;
     state.energy.radiated += flows.radiated;

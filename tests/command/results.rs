@@ -341,7 +341,7 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
         folder.path(),
         model.clone(),
         &model.initial_state(),
-        Frames { of: Selection::Rows(1), points: false, exact: true },
+        Frames { of: Selection::Rows(1), points: false, exact: true, derived: false },
     )
     .unwrap();
     let mut record = Record::default();

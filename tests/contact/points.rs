@@ -628,7 +628,7 @@ fn points_are_written_and_warned_of() {
         folder.path(),
         model.clone(),
         &model.initial_state(),
-        Frames { of: Selection::Rows(1), points: false, exact: true },
+        Frames { of: Selection::Rows(1), points: false, exact: true, derived: false },
     )
     .unwrap();
     let mut warnings = Warnings::default();

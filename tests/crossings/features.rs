@@ -9,9 +9,17 @@ use std::collections::BTreeMap;
 /// A choice, with how often each value is drawn; the first is the plain one.
 pub type Slot = (&'static str, &'static [(&'static str, u64)]);
 
-const LAWS: &[(&str, u64)] =
-    &[("linear", 3), ("neo_hookean", 2), ("saint_venant_kirchhoff", 1), ("hencky", 1), ("viscoelastic", 2)];
-const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("q9", 1)];
+const LAWS: &[(&str, u64)] = &[
+    ("linear", 3),
+    ("neo_hookean", 2),
+    ("saint_venant_kirchhoff", 1),
+    ("hencky", 1),
+    ("viscoelastic", 2),
+    ("von_mises", 1),
+    ("drucker_prager", 1),
+    ("mohr_coulomb", 1),
+];
+const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("reduced", 1), ("q9", 1)];
 const OPTION: &[(&str, u64)] = &[("no", 5), ("yes", 1)];
 
 /// All features.
@@ -102,6 +110,11 @@ pub const SLOTS: &[Slot] = &[
 /// the plain one.
 pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["section:plane_stress"], &["ground_element:f_bar", "block_element:f_bar"], "a plate does not lock"),
+    (
+        &["section:plane_stress"],
+        &["ground_law:drucker_prager", "block_law:drucker_prager", "ground_law:mohr_coulomb", "block_law:mohr_coulomb"],
+        "soil is no plate",
+    ),
     (&["ground_law:linear"], &["ground_element:f_bar"], "F-bar is for large strains"),
     (&["block_law:linear"], &["block_element:f_bar"], "F-bar is for large strains"),
     (
@@ -132,7 +145,14 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (
         &["smooth"],
-        &["method:mortar", "method:chosen", "ground_element:t6", "ground_element:q8", "ground_element:q9"],
+        &[
+            "method:mortar",
+            "method:chosen",
+            "ground_element:t6",
+            "ground_element:q8",
+            "ground_element:reduced",
+            "ground_element:q9",
+        ],
         "a spline runs through straight edges",
     ),
     (
@@ -261,9 +281,11 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "friction:registered",
             "ground_element:t6",
             "ground_element:q8",
+            "ground_element:reduced",
             "ground_element:q9",
             "block_element:t6",
             "block_element:q8",
+            "block_element:reduced",
             "block_element:q9",
             "shrink_fit",
             "second_contact",

@@ -34,7 +34,7 @@ pub fn dyadic(x: f64) -> f64 {
 }
 
 pub fn is_quadratic(element: &str) -> bool {
-    matches!(element, "t6" | "q8" | "q9")
+    matches!(element, "t6" | "q8" | "reduced" | "q9")
 }
 
 impl Sheet {
@@ -81,7 +81,7 @@ impl Sheet {
                                 let m = at(i + 1, j + 1);
                                 elements.extend([vec![c[0], c[1], c[2], b, right, m], vec![c[0], c[2], c[3], m, t, l]]);
                             }
-                            "q8" => elements.push(vec![c[0], c[1], c[2], c[3], b, right, t, l]),
+                            "q8" | "reduced" => elements.push(vec![c[0], c[1], c[2], c[3], b, right, t, l]),
                             _ => elements.push(vec![c[0], c[1], c[2], c[3], b, right, t, l, at(i + 1, j + 1)]),
                         }
                     }

@@ -410,14 +410,43 @@ impl Writer<'_> {
             material["E_1"] = json!(0.5 * young);
             material["tau"] = json!(self.write(Kind::Time, 0.7 * self.duration()));
         }
+        self.strengths(law, &mut material);
         material
+    }
+
+    /// Strengths above the initial stress, which the contact surpasses here and there.
+    fn strengths(&self, law: &str, material: &mut Value) {
+        let stress = |value: f64| json!(self.write(Kind::Stress, value));
+        let (cone, soil) = (law == "drucker_prager", law == "mohr_coulomb");
+        if law == "von_mises" {
+            (material["sigma_y"], material["H"]) = (stress(7.0), stress(40.0));
+            match self.draft.count("hardening", 0, 2) {
+                0 => (material["Q"], material["b"]) = (stress(3.0), json!(50.0)),
+                1 => material["back_stresses"] = json!([{"C": stress(60.0), "gamma": 20.0}, {"C": stress(20.0)}]),
+                _ => {}
+            }
+        } else if cone || soil {
+            (material["c"], material["phi"], material["psi"]) = (stress(4.0), json!(25), json!(25));
+            material["tension"] = stress(5.0);
+        } else {
+            return;
+        }
+        if cone {
+            material["matching"] = json!(["plane_strain", "compression"][self.draft.count("matching", 0, 1)]);
+        }
+        if soil {
+            material["softening"] = json!({"c": stress(3.5), "phi": 24, "psi": 20, "strain": 0.1});
+        }
+        if self.draft.count("slow yielding", 0, 1) == 1 {
+            material["viscosity"] = json!(self.write(Kind::Time, 0.02 * self.duration()));
+        }
     }
 
     fn body(&self, name: &str, young: f64) -> Value {
         let poisson = self.pick(&format!("{name} nu"), &[0.0, 0.3, 0.3, 0.45]);
         let mut body = json!({"material": self.material(self.draft.of(&format!("{name}_law")), young, poisson)});
-        if self.draft.of(&format!("{name}_element")) == "f_bar" {
-            body["element"] = json!("f_bar");
+        if let element @ ("f_bar" | "reduced") = self.draft.of(&format!("{name}_element")) {
+            body["element"] = json!(element);
         }
         match self.draft.of("stress") {
             "components" => body["initial_stress"] = self.stress([-1.0, -4.0, 0.0]),

@@ -270,6 +270,7 @@ fn form(column: &str, header: &[&str]) -> Form {
         | "contact_elastic"
         | "friction_dissipation"
         | "damping_dissipation"
+        | "plastic_dissipation"
         | "external_work"
         | "energy_error"
         | "radiated"

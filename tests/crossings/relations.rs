@@ -220,8 +220,15 @@ fn begun_with(base: &Base) -> Outcome {
     let record = run(&model::case(base.draft, &base.ways), &base.ways, Lead::Begun);
     // It counts its own energies; the turns of bodies begin anew as well.
     let counted = |column: &str| {
-        ["friction_dissipation", "damping_dissipation", "external_work", "energy_error", "radiated"].contains(&column)
-            || column.ends_with("frictional_heat")
+        let totals = [
+            "friction_dissipation",
+            "damping_dissipation",
+            "plastic_dissipation",
+            "external_work",
+            "energy_error",
+            "radiated",
+        ];
+        totals.contains(&column) || column.ends_with("frictional_heat")
     };
     base.as_before(&record, SAME, &counted)
 }
@@ -586,7 +593,8 @@ fn simple(draft: &Draft) -> Option<Draft> {
             draft.with(slot, plain(slot))
         }
     })?;
-    let remembers = [plainer.of("ground_law"), plainer.of("block_law")].contains(&"viscoelastic");
+    let elastic = ["linear", "neo_hookean", "saint_venant_kirchhoff", "hencky"];
+    let remembers = ["ground_law", "block_law"].iter().any(|slot| !elastic.contains(&plainer.of(slot)));
     let apart = model::starts_apart(&plainer) || plainer.of("section").starts_with("rings");
     (!remembers && !apart).then_some(plainer)
 }

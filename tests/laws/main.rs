@@ -24,5 +24,6 @@ mod imposed;
 mod integration;
 mod materials;
 mod offset;
+mod plasticity;
 mod random;
 mod yielding;

@@ -11,6 +11,7 @@ mod cycles;
 mod faults;
 mod fracture;
 mod healing;
+mod limit_loads;
 mod paper;
 mod published;
 mod rupture;

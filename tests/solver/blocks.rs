@@ -113,6 +113,26 @@ fn nodes_of_quadratic_elements_lie_in_the_middle() {
     }
 }
 
+/// Two triangles fill each cell, with nodes in the middle of straight edges, whichever way round the corners run; diagonals alternate.
+#[test]
+fn triangles_fill_blocks() {
+    let corners = [[0.0, 0.0], [3.0, 0.5], [2.5, 2.0], [-0.5, 1.0]];
+    for corners in [corners, [corners[0], corners[3], corners[2], corners[1]]] {
+        let block = Block { kind: BlockKind::T6, ..Block::new("b", corners, [4, 4]) };
+        let mesh = mesh(&[block], &[]).unwrap();
+        assert_eq!((mesh.nodes.len(), mesh.elements.len()), (9 * 9, 32));
+        close("area", area(&mesh), 4.125, 1e-13);
+        let inner = |node: usize| mesh.elements.iter().filter(|element| element.nodes[..3].contains(&node)).count();
+        // Of alternating diagonals 8 or 4 elements meet inside.
+        let meet: Vec<usize> = (0..mesh.nodes.len()).map(inner).filter(|count| *count > 4).collect();
+        assert!(!meet.is_empty() && meet.iter().all(|count| *count == 8), "{meet:?}");
+        for element in &mesh.elements {
+            let at = |k: usize| mesh.nodes[element.nodes[k]];
+            (0..3).for_each(|k| assert!((at(3 + k) - 0.5 * (at(k) + at((k + 1) % 3))).norm() < 0.06));
+        }
+    }
+}
+
 /// With straight edges a quarter ring of n sectors has the area n/2 sin(π/2n) (b² − a²).
 #[test]
 fn arcs_are_circles() {
@@ -273,9 +293,9 @@ fn bar() -> Value {
 /// Linear displacements are exact whatever the mesh (patch test): ε = 0.001, σ = E/(1 − ν²) ε in plane strain.
 #[test]
 fn joined_blocks_carry_constant_stress() {
-    for kind in ["Q4", "Q8"] {
+    for kinds in [["Q4"; 2], ["Q8"; 2], ["T6"; 2], ["Q8", "T6"]] {
         let mut case = bar();
-        (0..2).for_each(|b| case["mesh"]["blocks"][b]["kind"] = json!(kind));
+        (0..2).for_each(|b| case["mesh"]["blocks"][b]["kind"] = json!(kinds[b]));
         let run = finish(&case);
         let [force, _] = run.reaction("right", run.last());
         close("force", force, 100.0 / (1.0 - 0.0625) * 1e-3, 1e-12);

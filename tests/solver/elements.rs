@@ -9,19 +9,21 @@ use fecontact::laws::bulk::{
 };
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::{ElementKind, edge_values, gauss};
+use fecontact::model::element::Formulation::{self, Displacement, FBar, Reduced};
 use fecontact::model::element::{ElementError, Memory, SolidElement, consistent_mass, lumped_mass};
 use nalgebra::{DMatrix, DVector, Matrix2, Rotation2, Vector2};
 
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];
 
-/// Every kind, and Q4 with F-bar.
-const VARIANTS: [(ElementKind, bool); 6] = [
-    (ElementKind::T3, false),
-    (ElementKind::T6, false),
-    (ElementKind::Q4, false),
-    (ElementKind::Q4, true),
-    (ElementKind::Q8, false),
-    (ElementKind::Q9, false),
+/// Every kind, Q4 with F-bar, and Q8 with reduced integration.
+const VARIANTS: [(ElementKind, Formulation); 7] = [
+    (ElementKind::T3, Displacement),
+    (ElementKind::T6, Displacement),
+    (ElementKind::Q4, Displacement),
+    (ElementKind::Q4, FBar),
+    (ElementKind::Q8, Displacement),
+    (ElementKind::Q8, Reduced),
+    (ElementKind::Q9, Displacement),
 ];
 
 const MODELS: [fn(ElasticConstants) -> MaterialParameters; 4] = [
@@ -62,7 +64,7 @@ pub fn lattices(kind: ElementKind) -> Vec<Vec<[usize; 2]>> {
 /// A structured mesh of the unit square, mapped anywhere.
 struct Patch {
     kind: ElementKind,
-    f_bar: bool,
+    formulation: Formulation,
     nodes: Vec<Vector2<f64>>,
     /// (s, t) in the unit square of each node
     square: Vec<Vector2<f64>>,
@@ -71,17 +73,33 @@ struct Patch {
 
 impl Patch {
     /// n × n cells, each one quadrilateral or two triangles.
-    fn new(kind: ElementKind, f_bar: bool, n: usize, map: impl Fn(f64, f64) -> Vector2<f64>) -> Self {
-        let mut patch = Self { kind, f_bar, nodes: vec![], square: vec![], elements: vec![] };
+    fn new(kind: ElementKind, formulation: Formulation, n: usize, map: impl Fn(f64, f64) -> Vector2<f64>) -> Self {
+        Self::of_cells((kind, formulation), Section::PlaneStrain, [n, n], map)
+    }
+
+    /// Square cells of side 1, from x = 1 on.
+    fn rectangle(kind: ElementKind, formulation: Formulation, section: Section, [columns, rows]: [usize; 2]) -> Self {
+        let map = |s: f64, t: f64| Vector2::new(1.0 + columns as f64 * s, rows as f64 * t);
+        Self::of_cells((kind, formulation), section, [columns, rows], map)
+    }
+
+    /// Columns and rows of cells of the unit square, mapped.
+    fn of_cells(
+        (kind, formulation): (ElementKind, Formulation),
+        section: Section,
+        [columns, rows]: [usize; 2],
+        map: impl Fn(f64, f64) -> Vector2<f64>,
+    ) -> Self {
+        let mut patch = Self { kind, formulation, nodes: vec![], square: vec![], elements: vec![] };
         let mut numbers = HashMap::new();
         let halves = lattices(kind);
-        for (cell, lattice) in (0..n * n).flat_map(|cell| halves.iter().map(move |half| (cell, half))) {
+        for (cell, lattice) in (0..columns * rows).flat_map(|cell| halves.iter().map(move |half| (cell, half))) {
             let connectivity: Vec<usize> = lattice
                 .iter()
                 .map(|[i, j]| {
-                    let at = [2 * (cell % n) + i, 2 * (cell / n) + j];
+                    let at = [2 * (cell % columns) + i, 2 * (cell / columns) + j];
                     *numbers.entry(at).or_insert_with(|| {
-                        let [s, t] = at.map(|k| k as f64 / (2 * n) as f64);
+                        let [s, t] = [at[0] as f64 / (2 * columns) as f64, at[1] as f64 / (2 * rows) as f64];
                         patch.square.push(Vector2::new(s, t));
                         patch.nodes.push(map(s, t));
                         patch.nodes.len() - 1
@@ -89,16 +107,14 @@ impl Patch {
                 })
                 .collect();
             let positions: Vec<_> = connectivity.iter().map(|&a| patch.nodes[a]).collect();
-            patch
-                .elements
-                .push((SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap(), connectivity));
+            patch.elements.push((SolidElement::new(kind, formulation, section, &positions).unwrap(), connectivity));
         }
         patch
     }
 
     /// The unit square with its inside shaken and, for quadratic elements, its edges curved.
-    fn distorted(kind: ElementKind, f_bar: bool) -> Self {
-        Self::new(kind, f_bar, 2, |s, t| {
+    fn distorted(kind: ElementKind, formulation: Formulation) -> Self {
+        Self::new(kind, formulation, 2, |s, t| {
             let bubble = (PI * s).sin() * (PI * t).sin();
             Vector2::new(s + 0.11 * bubble + 0.05 * t * (1.0 - t), t - 0.08 * bubble + 0.06 * s * (1.0 - s))
         })
@@ -139,7 +155,7 @@ fn rotation(angle: f64) -> Matrix2<f64> {
 
 /// Nodes of one distorted element, with curved sides if it has middle nodes.
 fn distorted_element(kind: ElementKind) -> Vec<Vector2<f64>> {
-    let patch = Patch::distorted(kind, false);
+    let patch = Patch::distorted(kind, Displacement);
     patch.elements[0].1.iter().map(|&a| patch.nodes[a]).collect()
 }
 
@@ -159,8 +175,8 @@ fn homogeneous_deformation_passes_the_patch_test() {
         Matrix2::new(1.1, 0.2, -0.05, 0.95),
         rotation(2.0) * Matrix2::new(1.8, 0.5, 0.1, 0.6),
     ];
-    for (kind, f_bar) in VARIANTS {
-        let patch = Patch::distorted(kind, f_bar);
+    for (kind, formulation) in VARIANTS {
+        let patch = Patch::distorted(kind, formulation);
         for material in materials() {
             for f in &deformations {
                 let u: Vec<_> = patch.nodes.iter().map(|x| (f - Matrix2::identity()) * x).collect();
@@ -171,17 +187,19 @@ fn homogeneous_deformation_passes_the_patch_test() {
                     // Rounding of F = 1 + H is E × 1e-16, whatever the size of H.
                     assert!(
                         residual < 1e-12 * largest.max(1e-3 * E),
-                        "{kind:?} f_bar {f_bar} {material:?}: {residual}"
+                        "{kind:?} {formulation:?} {material:?}: {residual}"
                     );
                 }
                 let expected = material.cauchy_stress(f, &[]).unwrap();
                 for (element, connectivity) in &patch.elements {
                     let u: Vec<_> = connectivity.iter().map(|&a| u[a]).collect();
                     let at_points = element.stresses(&*material, &[], &u).unwrap();
-                    let at_nodes = element.nodal_stresses(&*material, &[], &u).unwrap();
-                    assert_eq!((at_points.len(), at_nodes.len()), (kind.quadrature().len(), kind.nodes()));
-                    for stress in at_points.iter().chain(&at_nodes) {
-                        assert!(differs(stress, &expected) < 1e-13 * E, "{kind:?} {f_bar} {material:?} {stress:?}");
+                    assert_eq!(at_points.len(), element.quadrature().len());
+                    for stress in &at_points {
+                        assert!(
+                            differs(stress, &expected) < 1e-13 * E,
+                            "{kind:?} {formulation:?} {material:?} {stress:?}"
+                        );
                     }
                 }
             }
@@ -192,30 +210,30 @@ fn homogeneous_deformation_passes_the_patch_test() {
 #[test]
 fn the_inside_of_a_patch_follows_its_boundary() {
     let f = Matrix2::new(1.2, 0.3, -0.1, 0.8);
-    for (kind, f_bar) in VARIANTS {
-        let patch = Patch::distorted(kind, f_bar);
+    for (kind, formulation) in VARIANTS {
+        let patch = Patch::distorted(kind, formulation);
         let exact: Vec<_> = patch.nodes.iter().map(|x| (f - Matrix2::identity()) * x).collect();
         let mut u: Vec<_> =
             (0..exact.len()).map(|a| if patch.is_inside(a) { 0.8 * exact[a] } else { exact[a] }).collect();
         let fixed = |a: usize, _| !patch.is_inside(a);
         solve(&patch, &*neo_hookean(E, 0.3), &DVector::zeros(2 * u.len()), fixed, &mut u);
         let error = u.iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        assert!(error < 1e-13, "{kind:?} f_bar {f_bar}: {error}");
+        assert!(error < 1e-13, "{kind:?} {formulation:?}: {error}");
     }
 }
 
 #[test]
 fn rigid_motion_causes_no_force() {
-    for (kind, f_bar) in VARIANTS {
+    for (kind, formulation) in VARIANTS {
         let positions = distorted_element(kind);
-        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap();
+        let element = SolidElement::new(kind, formulation, Section::PlaneStrain, &positions).unwrap();
         for material in materials().skip(1) {
             for angle in [0.0, 1e-8, 0.3, PI / 2.0, 3.0, -2.2] {
                 let u: Vec<_> = positions.iter().map(|x| rotation(angle) * x - x + Vector2::new(5.0, -3.0)).collect();
                 let mut force = vec![f64::NAN; 2 * kind.nodes()];
                 let energy = element.force(&*material, &u, &mut force).unwrap();
                 // u of size 5 rounds F − 1 to about 1e-15.
-                assert!(force.iter().all(|f| f.abs() < 1e-13 * E), "{kind:?} f_bar {f_bar} at {angle}: {force:?}");
+                assert!(force.iter().all(|f| f.abs() < 1e-13 * E), "{kind:?} {formulation:?} at {angle}: {force:?}");
                 assert!(energy.abs() < 1e-26 * E, "{energy}");
             }
         }
@@ -224,8 +242,8 @@ fn rigid_motion_causes_no_force() {
 
 #[test]
 fn tangent_and_energy_agree_with_the_force_by_differences() {
-    for (kind, f_bar) in VARIANTS {
-        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &distorted_element(kind)).unwrap();
+    for (kind, formulation) in VARIANTS {
+        let element = SolidElement::new(kind, formulation, Section::PlaneStrain, &distorted_element(kind)).unwrap();
         let (nodes, h) = (kind.nodes(), 1e-6);
         let u = wild(nodes, 0.04);
         for material in materials() {
@@ -247,10 +265,10 @@ fn tangent_and_energy_agree_with_the_force_by_differences() {
                     let (exact, difference) = (tangent[row + column * 2 * nodes], (hi[row] - lo[row]) / (2.0 * h));
                     assert!(
                         (exact - difference).abs() < 1e-8 * E,
-                        "{kind:?} f_bar {f_bar} {material:?}: {exact} {difference}"
+                        "{kind:?} {formulation:?} {material:?}: {exact} {difference}"
                     );
                 }
-                if !f_bar {
+                if formulation != FBar {
                     assert!((force[column] - (energy_hi - energy_lo) / (2.0 * h)).abs() < 1e-9 * E);
                 }
             }
@@ -261,9 +279,9 @@ fn tangent_and_energy_agree_with_the_force_by_differences() {
 #[test]
 fn forces_balance_and_turn_with_the_element() {
     let q = rotation(1.1);
-    for (kind, f_bar) in VARIANTS {
+    for (kind, formulation) in VARIANTS {
         let positions = distorted_element(kind);
-        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap();
+        let element = SolidElement::new(kind, formulation, Section::PlaneStrain, &positions).unwrap();
         let u = wild(kind.nodes(), 0.04);
         let turned: Vec<_> = u.iter().zip(&positions).map(|(u, x)| q * (x + u) - x).collect();
         for material in materials().skip(1) {
@@ -273,11 +291,11 @@ fn forces_balance_and_turn_with_the_element() {
             let (mut sum, mut moment) = (Vector2::zeros(), 0.0);
             for a in 0..kind.nodes() {
                 let (f, g) = (Vector2::new(here[2 * a], here[2 * a + 1]), Vector2::new(there[2 * a], there[2 * a + 1]));
-                assert!((q * f - g).norm() < 1e-14 * E, "{kind:?} f_bar {f_bar}");
+                assert!((q * f - g).norm() < 1e-14 * E, "{kind:?} {formulation:?}");
                 sum += f;
                 moment += (positions[a] + u[a]).perp(&f);
             }
-            assert!(sum.norm() < 1e-14 * E && moment.abs() < 1e-14 * E, "{kind:?} f_bar {f_bar}: {sum} {moment}");
+            assert!(sum.norm() < 1e-14 * E && moment.abs() < 1e-14 * E, "{kind:?} {formulation:?}: {sum} {moment}");
         }
     }
 }
@@ -285,9 +303,9 @@ fn forces_balance_and_turn_with_the_element() {
 /// Σ_a f_a ⊗ x_a = ∫ σ dv over the current element, whatever the stress field.
 #[test]
 fn stresses_are_those_that_cause_the_forces() {
-    for (kind, f_bar) in VARIANTS {
+    for (kind, formulation) in VARIANTS {
         let positions = distorted_element(kind);
-        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap();
+        let element = SolidElement::new(kind, formulation, Section::PlaneStrain, &positions).unwrap();
         let u = wild(kind.nodes(), 0.04);
         let x: Vec<_> = positions.iter().zip(&u).map(|(x, u)| x + u).collect();
         for material in materials().skip(1) {
@@ -297,49 +315,54 @@ fn stresses_are_those_that_cause_the_forces() {
                 force.chunks(2).zip(&x).map(|(f, x)| Vector2::new(f[0], f[1]) * x.transpose()).sum();
             let stresses = element.stresses(&*material, &[], &u).unwrap();
             let mut integral = Matrix2::zeros();
-            for (point, stress) in kind.quadrature().iter().zip(stresses) {
+            for (point, stress) in element.quadrature().iter().zip(stresses) {
                 let derivatives = kind.derivatives(point.at).into_iter().map(Vector2::from);
                 let map: Matrix2<f64> = x.iter().zip(derivatives).map(|(x, d)| x * d.transpose()).sum();
                 let sigma = Matrix2::new(stress.xx, stress.xy, stress.xy, stress.yy);
                 integral += point.weight * map.determinant() * sigma;
             }
-            assert!((virial - integral).amax() < 1e-14 * E, "{kind:?} f_bar {f_bar}: {virial} {integral}");
+            assert!((virial - integral).amax() < 1e-14 * E, "{kind:?} {formulation:?}: {virial} {integral}");
         }
     }
 }
 
 #[test]
 fn only_the_three_rigid_motions_are_free() {
-    for (kind, f_bar) in VARIANTS {
+    for (kind, formulation) in VARIANTS {
         let nodes = kind.nodes();
-        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &distorted_element(kind)).unwrap();
+        let element = SolidElement::new(kind, formulation, Section::PlaneStrain, &distorted_element(kind)).unwrap();
         let (mut force, mut tangent) = (vec![0.0; 2 * nodes], vec![0.0; 4 * nodes * nodes]);
         let at_rest = vec![Vector2::zeros(); nodes];
         element.force_and_tangent(&*neo_hookean(E, 0.3), &at_rest, &mut force, &mut tangent).unwrap();
         let singular = DMatrix::from_vec(2 * nodes, 2 * nodes, tangent).singular_values();
-        let (largest, rank) = (singular.max(), 2 * nodes - 3);
+        // A reduced element has a motion of its own that costs nothing, until it shares an edge (below).
+        let free = if formulation == Reduced { 4 } else { 3 };
+        let (largest, rank) = (singular.max(), 2 * nodes - free);
         assert_eq!(
             singular.iter().filter(|s| **s > 1e-3 * largest).count(),
             rank,
-            "{kind:?} f_bar {f_bar}: {singular}"
+            "{kind:?} {formulation:?}: {singular}"
         );
-        assert_eq!(singular.iter().filter(|s| **s < 1e-13 * largest).count(), 3, "{kind:?} f_bar {f_bar}: {singular}");
+        assert_eq!(
+            singular.iter().filter(|s| **s < 1e-13 * largest).count(),
+            free,
+            "{kind:?} {formulation:?}: {singular}"
+        );
     }
 }
 
+/// Reduced elements that share edges have no motions besides the rigid ones that cost nothing; rings have one of these.
 #[test]
-fn nodal_stresses_continue_a_linear_field() {
-    // On an undistorted element u_x = x²/2 and xy give strains, hence linear stresses, that vary linearly.
-    let material = MODELS[0](ElasticConstants { young: E, poisson: 0.0, density: 0.0 }).build().unwrap();
-    for kind in [ElementKind::T6, ElementKind::Q8, ElementKind::Q9] {
-        let patch = Patch::new(kind, false, 1, |s, t| Vector2::new(2.0 * s, t));
-        for (element, connectivity) in &patch.elements {
-            let positions = connectivity.iter().map(|&a| patch.nodes[a]);
-            let u: Vec<_> = positions.clone().map(|x| Vector2::new(0.01 * x.x * x.x, 0.02 * x.x * x.y)).collect();
-            for (x, stress) in positions.zip(element.nodal_stresses(&*material, &[], &u).unwrap()) {
-                let exact = CauchyStress { xx: E * 0.02 * x.x, yy: E * 0.02 * x.x, zz: 0.0, xy: E * 0.01 * x.y };
-                assert!(differs(&stress, &exact) < 1e-14 * E, "{kind:?} at {x}: {stress:?}");
-            }
+fn patches_of_reduced_elements_have_no_motion_without_forces() {
+    for (section, rigid) in [(Section::PlaneStrain, 3), (Section::Axisymmetric, 1)] {
+        for [columns, rows] in [[2, 1], [1, 3], [2, 2], [4, 1]] {
+            let patch = Patch::rectangle(ElementKind::Q8, Reduced, section, [columns, rows]);
+            let at_rest = vec![Vector2::zeros(); patch.nodes.len()];
+            let (_, tangent) = patch.forces_and_tangent(&*neo_hookean(E, 0.3), &at_rest).unwrap();
+            let singular = tangent.singular_values();
+            let free = singular.iter().filter(|s| **s < 1e-12 * singular.max()).count();
+            let soft = singular.iter().filter(|s| **s < 1e-6 * singular.max()).count();
+            assert_eq!((free, soft), (rigid, rigid), "{columns} x {rows} {section:?}: {singular}");
         }
     }
 }
@@ -349,7 +372,7 @@ fn mass_is_complete_and_carries_rigid_motion() {
     let density = 7.8;
     for kind in KINDS {
         let positions = distorted_element(kind);
-        let total = density * SolidElement::new(kind, false, Section::PlaneStrain, &positions).unwrap().volume();
+        let total = density * SolidElement::new(kind, Displacement, Section::PlaneStrain, &positions).unwrap().volume();
         let consistent = consistent_mass(kind, Section::PlaneStrain, &positions, density).unwrap();
         let lumped = lumped_mass(kind, Section::PlaneStrain, &positions, density).unwrap();
         assert!((consistent.sum() - total).abs() < 1e-14 * total, "{kind:?}");
@@ -367,7 +390,7 @@ fn rotating_rectangle_has_its_kinetic_energy() {
     let (density, a, b) = (2.0, 3.0, 2.0);
     let exact = density * a * b * (a * a + b * b) / 6.0;
     for kind in KINDS {
-        let patch = Patch::new(kind, false, 2, |s, t| Vector2::new(a * s, b * t));
+        let patch = Patch::new(kind, Displacement, 2, |s, t| Vector2::new(a * s, b * t));
         let mut energy = 0.0;
         for (_, connectivity) in &patch.elements {
             let positions: Vec<_> = connectivity.iter().map(|&a| patch.nodes[a]).collect();
@@ -386,17 +409,21 @@ fn what_cannot_be_is_reported() {
     let mut clockwise = square;
     clockwise.reverse();
     for (positions, jacobian) in [(clockwise, -0.5), ([Vector2::zeros(); 4], 0.0)] {
-        let error = SolidElement::new(ElementKind::Q4, false, Section::PlaneStrain, &positions).unwrap_err();
+        let error = SolidElement::new(ElementKind::Q4, Displacement, Section::PlaneStrain, &positions).unwrap_err();
         assert_eq!(error, ElementError::Degenerate { jacobian });
         assert!(consistent_mass(ElementKind::Q4, Section::PlaneStrain, &positions, 1.0).is_err());
     }
     for kind in [ElementKind::T3, ElementKind::T6, ElementKind::Q8, ElementKind::Q9] {
-        let error = SolidElement::new(kind, true, Section::PlaneStrain, &distorted_element(kind)).unwrap_err();
+        let error = SolidElement::new(kind, FBar, Section::PlaneStrain, &distorted_element(kind)).unwrap_err();
         assert_eq!(error, ElementError::FBarNeedsQ4 { kind });
     }
+    for kind in [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q9] {
+        let error = SolidElement::new(kind, Reduced, Section::PlaneStrain, &distorted_element(kind)).unwrap_err();
+        assert_eq!(error, ElementError::ReducedNeedsQ8 { kind });
+    }
     let mirrored: Vec<_> = square.iter().map(|x| Vector2::new(-2.5 * x.x, 0.0)).collect();
-    for f_bar in [false, true] {
-        let element = SolidElement::new(ElementKind::Q4, f_bar, Section::PlaneStrain, &square).unwrap();
+    for formulation in [Displacement, FBar] {
+        let element = SolidElement::new(ElementKind::Q4, formulation, Section::PlaneStrain, &square).unwrap();
         let failure = element.force(&*neo_hookean(E, 0.3), &mirrored, &mut [0.0; 8]).unwrap_err();
         let MaterialFailure::Inverted { jacobian } = failure else { panic!("{failure}") };
         assert!((jacobian + 1.5).abs() < 1e-14, "{jacobian}");
@@ -430,13 +457,13 @@ fn solve(
             *u += correction.fixed_rows::<2>(2 * a);
         }
     }
-    panic!("Newton has not converged for {:?} f_bar {}", patch.kind, patch.f_bar);
+    panic!("Newton has not converged for {:?} {:?}", patch.kind, patch.formulation);
 }
 
 /// Cook's membrane, clamped on the left, sheared upwards on the right with the total force 100:
 /// rise of the upper right corner.
-fn cook(kind: ElementKind, f_bar: bool, n: usize, material: &dyn Material) -> f64 {
-    let patch = Patch::new(kind, f_bar, n, |s, t| Vector2::new(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)));
+fn cook(kind: ElementKind, formulation: Formulation, n: usize, material: &dyn Material) -> f64 {
+    let patch = Patch::new(kind, formulation, n, |s, t| Vector2::new(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)));
     let mut load = DVector::<f64>::zeros(2 * patch.nodes.len());
     for (_, connectivity) in &patch.elements {
         for edge in 0..kind.corners() {
@@ -466,9 +493,9 @@ fn cook(kind: ElementKind, f_bar: bool, n: usize, material: &dyn Material) -> f6
 #[test]
 fn f_bar_cures_locking_of_cooks_membrane() {
     let material = neo_hookean(240.565, 0.4999);
-    let quadratic = cook(ElementKind::Q9, false, 8, &*material);
-    let locked = cook(ElementKind::Q4, false, 8, &*material);
-    let cured = cook(ElementKind::Q4, true, 8, &*material);
+    let quadratic = cook(ElementKind::Q9, Displacement, 8, &*material);
+    let locked = cook(ElementKind::Q4, Displacement, 8, &*material);
+    let cured = cook(ElementKind::Q4, FBar, 8, &*material);
     println!("Q9 {quadratic}, Q4 {locked}, F-bar {cured}");
     assert!(locked < 0.4 * quadratic, "Q4 {locked}, Q9 {quadratic}");
     assert!(quadratic < cured && cured < 1.04 * quadratic, "F-bar {cured}, Q9 {quadratic}");
@@ -478,12 +505,12 @@ fn f_bar_cures_locking_of_cooks_membrane() {
 #[test]
 fn all_kinds_converge_to_the_same_compressible_solution() {
     let material = neo_hookean(240.565, 0.3);
-    let converged = cook(ElementKind::Q9, false, 8, &*material);
-    for (kind, f_bar) in VARIANTS {
-        let error = |n| (cook(kind, f_bar, n, &*material) - converged).abs() / converged;
+    let converged = cook(ElementKind::Q9, Displacement, 8, &*material);
+    for (kind, formulation) in VARIANTS {
+        let error = |n| (cook(kind, formulation, n, &*material) - converged).abs() / converged;
         let (coarse, fine) = (error(4), error(8));
-        println!("{kind:?} {f_bar}: {coarse} {fine}");
-        assert!(fine < 0.6 * coarse, "{kind:?} f_bar {f_bar}: {coarse} {fine}");
+        println!("{kind:?} {formulation:?}: {coarse} {fine}");
+        assert!(fine < 0.6 * coarse, "{kind:?} {formulation:?}: {coarse} {fine}");
     }
 }
 
@@ -522,8 +549,8 @@ impl Material for Turning {
 fn the_tangent_of_memory_and_of_laws_without_a_potential_equals_differences() {
     let constants = ViscoelasticConstants { young: E, poisson: 0.3, relaxing: 2.0 * E, tau: 0.7, density: 0.0 };
     let laws: [Box<dyn Material>; 2] = [Box::new(Viscoelastic::new(&constants).unwrap()), Box::new(Turning)];
-    for (kind, f_bar) in VARIANTS {
-        let patch = Patch::distorted(kind, f_bar);
+    for (kind, formulation) in VARIANTS {
+        let patch = Patch::distorted(kind, formulation);
         for (material, (element, nodes)) in laws.iter().zip([&patch.elements[0], &patch.elements[0]]) {
             let count = element.quadrature_points() * material.variables().len();
             let motion = |share: f64| -> Vec<Vector2<f64>> {
@@ -551,10 +578,10 @@ fn the_tangent_of_memory_and_of_laws_without_a_potential_equals_differences() {
                     answer(&u).0
                 };
                 let error = ((moved(h) - moved(-h)) / (2.0 * h) - tangent.column(column)).amax();
-                assert!(error < 1e-7 * tangent.amax(), "{kind:?} f_bar {f_bar} {material:?}: {error}");
+                assert!(error < 1e-7 * tangent.amax(), "{kind:?} {formulation:?} {material:?}: {error}");
             }
             let skew = (&tangent - tangent.transpose()).amax() / tangent.amax();
-            assert_eq!(skew < 1e-12, material.is_symmetric() && !f_bar, "{kind:?} {material:?}: {skew}");
+            assert_eq!(skew < 1e-12, material.is_symmetric() && formulation != FBar, "{kind:?} {material:?}: {skew}");
         }
     }
 }
@@ -562,8 +589,8 @@ fn the_tangent_of_memory_and_of_laws_without_a_potential_equals_differences() {
 /// A body of a law without memory is answered the same on the way of those with memory.
 #[test]
 fn both_ways_through_an_element_agree() {
-    for (kind, f_bar) in VARIANTS {
-        let patch = Patch::distorted(kind, f_bar);
+    for (kind, formulation) in VARIANTS {
+        let patch = Patch::distorted(kind, formulation);
         let (element, nodes) = &patch.elements[0];
         let n = 2 * nodes.len();
         let u: Vec<_> = nodes.iter().map(|&a| 0.1 * patch.nodes[a].map(|x| x * x)).collect();
@@ -590,8 +617,8 @@ fn ring_positions(kind: ElementKind, r: f64) -> Vec<Vector2<f64>> {
 /// Force and tangent of rings by differences of energy and force, of all laws and kinds; elements on the axis, too.
 #[test]
 fn tangent_and_energy_of_rings_agree_with_the_force_by_differences() {
-    for ((kind, f_bar), r) in VARIANTS.into_iter().flat_map(|variant| [0.0, 0.7].map(|r| (variant, r))) {
-        let element = SolidElement::new(kind, f_bar, Section::Axisymmetric, &ring_positions(kind, r)).unwrap();
+    for ((kind, formulation), r) in VARIANTS.into_iter().flat_map(|variant| [0.0, 0.7].map(|r| (variant, r))) {
+        let element = SolidElement::new(kind, formulation, Section::Axisymmetric, &ring_positions(kind, r)).unwrap();
         let (nodes, h) = (kind.nodes(), 1e-6);
         let u = wild(nodes, 0.01);
         for material in materials() {
@@ -612,10 +639,10 @@ fn tangent_and_energy_of_rings_agree_with_the_force_by_differences() {
                     let (exact, difference) = (tangent[row + column * 2 * nodes], (hi[row] - lo[row]) / (2.0 * h));
                     assert!(
                         (exact - difference).abs() < 1e-8 * largest,
-                        "{kind:?} f_bar {f_bar} at {r} {material:?}: {exact} {difference}"
+                        "{kind:?} {formulation:?} at {r} {material:?}: {exact} {difference}"
                     );
                 }
-                if !f_bar {
+                if formulation != FBar {
                     let work = (energy_hi - energy_lo) / (2.0 * h);
                     assert!((force[column] - work).abs() < 1e-9 * largest, "{kind:?} {work} {}", force[column]);
                 }
@@ -628,7 +655,7 @@ fn tangent_and_energy_of_rings_agree_with_the_force_by_differences() {
 #[test]
 fn viscous_forces_of_rings_agree_with_differences() {
     for kind in KINDS {
-        let element = SolidElement::new(kind, false, Section::Axisymmetric, &ring_positions(kind, 0.2)).unwrap();
+        let element = SolidElement::new(kind, Displacement, Section::Axisymmetric, &ring_positions(kind, 0.2)).unwrap();
         let (nodes, h, tau) = (kind.nodes(), 1e-6, 0.3);
         let (u, v) = (wild(nodes, 0.01), wild(nodes, 0.5));
         let rates: Vec<f64> = (0..2 * nodes).map(|dof| 2.0 + (dof as f64).sin()).collect();
@@ -662,9 +689,9 @@ fn viscous_forces_of_rings_agree_with_differences() {
 #[test]
 fn a_homogeneous_stretch_of_rings_passes_the_patch_test() {
     let (a, b) = (0.08, -0.05);
-    for ((kind, f_bar), r) in VARIANTS.into_iter().flat_map(|variant| [0.0, 0.7].map(|r| (variant, r))) {
+    for ((kind, formulation), r) in VARIANTS.into_iter().flat_map(|variant| [0.0, 0.7].map(|r| (variant, r))) {
         let positions = ring_positions(kind, r);
-        let element = SolidElement::new(kind, f_bar, Section::Axisymmetric, &positions).unwrap();
+        let element = SolidElement::new(kind, formulation, Section::Axisymmetric, &positions).unwrap();
         let u: Vec<_> = positions.iter().map(|x| Vector2::new(a * x.x, b * x.y + 3.0)).collect();
         for material in materials() {
             let law = material.spatial().unwrap();
@@ -672,7 +699,7 @@ fn a_homogeneous_stretch_of_rings_passes_the_patch_test() {
             let straining = fecontact::laws::bulk::Straining { deformation, stretch: 1.0 + a, dt: 0.0, old: &[] };
             let (sigma, piola) = (law.cauchy(&straining).unwrap(), law.stretched(&straining, &mut []).unwrap());
             for stress in element.stresses(&*material, &[], &u).unwrap() {
-                assert!(differs(&stress, &sigma) < 1e-13 * E, "{kind:?} f_bar {f_bar}: {stress:?} for {sigma:?}");
+                assert!(differs(&stress, &sigma) < 1e-13 * E, "{kind:?} {formulation:?}: {stress:?} for {sigma:?}");
                 assert!((stress.xx - stress.zz).abs() < 1e-13 * E);
             }
             let mut force = vec![0.0; 2 * kind.nodes()];

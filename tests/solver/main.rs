@@ -22,6 +22,7 @@ mod memory;
 mod mesh;
 mod newton;
 mod plates;
+mod recovery;
 mod sections;
 mod simulation;
 mod spinning;

@@ -8,6 +8,7 @@ use fecontact::linear::{Multifrontal, Pattern, SparseMatrix};
 use fecontact::model::builder::{Contact, IncrementSettings, Load, LoadStep, Support};
 use fecontact::model::method::Method;
 use fecontact::model::{Model, NewtonSettings};
+use fecontact::run::Simulation;
 use fecontact::solve::newton::{Iterated, NewtonFailure, Settings, solve};
 use serde_json::{Value, json};
 
@@ -270,4 +271,46 @@ fn loads_far_from_the_origin_are_solved_for() {
     let pressure = near.iter().map(|[p, _]| 2.5 * p).sum::<f64>();
     assert!((pressure / 2000.0 - 1.0).abs() < 0.1, "the bottom carries most of 40 × 50: {pressure}");
     close("tractions", difference(&near, &tractions(2f64.powi(38))), 0.0, 1e-9);
+}
+
+/// A shallow arch that snaps through: by displacements its reaction passes a greatest value; under a force that grows beyond it the
+/// run stops there and says that this may be a limit point, with the load that it had reached.
+#[test]
+fn a_run_that_meets_a_limit_point_under_forces_says_so() {
+    let arch = |s: f64, t: f64| [10.0 * s, 0.2 * t + 2.4 * s * (1.0 - s)];
+    let mesh = common::quadratic(&Blocks::default().block("arch", [16, 1], arch).json(), common::half_way);
+    let held = json!([{"on": "arch_left", "ux": 0, "uy": 0}, {"on": "arch_right", "ux": 0, "uy": 0}]);
+    let case = |supports: Value, loads: Value| {
+        json!({
+            "mesh": mesh, "bodies": {"arch": {"material": {"model": "hencky", "E": 1000, "nu": 0.3}}},
+            "steps": [{"name": "push", "duration": 1, "dt": {"initial": 0.05, "min": 1e-4, "max": 0.05}, "supports": supports, "loads": loads}]
+        })
+    };
+    let crown = json!({"near": [5.0, 0.8]});
+    let mut led = held.as_array().expect("supports").clone();
+    led.push(json!({"on": crown, "uy": -0.9}));
+    let run = common::finish(&case(led.into(), json!([])));
+    let node = (0..run.model.mesh.nodes.len())
+        .min_by(|&a, &b| {
+            let from = |node: usize| (run.model.mesh.nodes[node] - nalgebra::Vector2::new(5.0, 0.8)).norm();
+            from(a).total_cmp(&from(b))
+        })
+        .expect("a node");
+    let greatest = run.states.iter().map(|state| -state.reaction[2 * node + 1]).fold(0.0, f64::max);
+    let after = -run.last().reaction[2 * node + 1];
+    assert!(greatest > 0.0 && after < 0.98 * greatest, "the arch does not snap: {greatest} {after}");
+
+    let model = common::model(&case(held, json!([{"on": crown, "force": {"y": -2.0 * greatest}}])));
+    let mut run = Simulation::new(model);
+    let stopped = loop {
+        match run.next_increment() {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("an arch bears twice what it bears"),
+            Err(stopped) => break stopped.to_string(),
+        }
+    };
+    let (_, reached) = stopped.split_once("load along y ").expect(&stopped);
+    let reached: f64 = reached.split(' ').next().expect("a number").parse().expect("a number");
+    assert!(stopped.contains("this may be a limit point"), "{stopped}");
+    assert!((-reached / greatest - 1.0).abs() < 0.01, "{reached} of {greatest}: {stopped}");
 }

@@ -492,7 +492,7 @@ fn observers_go_back_with_the_run() {
         folder.path(),
         model.clone(),
         &start,
-        Frames { of: Selection::Rows(2), points: false, exact: true },
+        Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
     )
     .expect("frames");
     let mut fronts = Fronts::new(folder.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None });
@@ -534,7 +534,7 @@ fn observers_go_back_with_the_run() {
                 straight.path(),
                 model.clone(),
                 &start,
-                Frames { of: Selection::Rows(2), points: false, exact: true },
+                Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
             )
             .expect("frames"),
         ),

@@ -8,7 +8,7 @@ use fecontact::laws::bulk::{Material, MaterialParameters};
 use fecontact::linear::SparseLu;
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::ElementKind;
-use fecontact::model::element::SolidElement;
+use fecontact::model::element::{Formulation, SolidElement};
 use fecontact::model::state::Energy;
 use fecontact::solve::Workspace;
 use fecontact::time::beginning::begin;
@@ -27,7 +27,11 @@ fn material(model: &str) -> Box<dyn Material> {
 /// A distorted Q4 element, and nodal vectors of a size that are all different.
 fn element() -> (SolidElement, [Vector2<f64>; 4]) {
     let positions = [[0.0, 0.0], [1.1, 0.1], [1.3, 0.9], [-0.1, 1.2]].map(Vector2::from);
-    (SolidElement::new(ElementKind::Q4, false, Section::PlaneStrain, &positions).expect("a good element"), positions)
+    (
+        SolidElement::new(ElementKind::Q4, Formulation::Displacement, Section::PlaneStrain, &positions)
+            .expect("a good element"),
+        positions,
+    )
 }
 
 fn vectors(size: f64, phase: f64) -> Vec<Vector2<f64>> {

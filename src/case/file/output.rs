@@ -31,6 +31,9 @@ pub struct OutputInput {
     pub times: Vec<f64>,
     /// Whether stresses at the integration points are written with the fields (points.pvd)
     pub points: bool,
+    /// Whether the fields also have what follows from stress and logarithmic strain: `principal_stress`, `principal_strain` and
+    /// `stretch_zz`, for ParaView. The page and Python compute these themselves
+    pub derived: bool,
     /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` continues with bitwise
     /// identical results, however the run ended; the last one is written at the end. Default 5; null or 0 for none
     pub checkpoint: Option<f64>,
@@ -48,7 +51,8 @@ impl OutputInput {
             true => Selection::Parts((FRAMES / steps.max(1)).max(1)),
             false => Selection::Named,
         };
-        Frames { of: self.every.map_or(some, Selection::Rows), points: self.points, exact: self.exact }
+        let of = self.every.map_or(some, Selection::Rows);
+        Frames { of, points: self.points, exact: self.exact, derived: self.derived }
     }
 }
 
@@ -61,6 +65,7 @@ impl Default for OutputInput {
             interval: None,
             times: Vec::new(),
             points: false,
+            derived: false,
             checkpoint: Some(5.0),
             fronts: None,
             report: true,

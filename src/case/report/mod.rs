@@ -130,14 +130,18 @@ fn extent(model: &Model, nodes: &[usize]) -> String {
 
 fn bodies(case: &Case) -> Vec<String> {
     let row = |(name, input): (&String, &BodyInput)| {
-        let f_bar = if input.element == Formulation::FBar { ", f_bar elements" } else { "" };
+        let element = match input.element {
+            Formulation::Displacement => "",
+            Formulation::FBar => ", f_bar elements",
+            Formulation::Reduced => ", reduced integration",
+        };
         let Damping { mass, retardation } = input.damping;
         let damping = match mass > 0.0 || retardation > 0.0 {
             true => format!(", damping: mass {}, stiffness {}", number(mass), number(retardation)),
             false => String::new(),
         };
         let imposed = imposed(input);
-        [name.clone(), format!("{}{f_bar}{damping}{imposed}", parameters(&input.material, "model", &[]))]
+        [name.clone(), format!("{}{element}{damping}{imposed}", parameters(&input.material, "model", &[]))]
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
     for (name, [vx, vy]) in &case.initial_velocity {

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
 use super::spatial::plane;
-use super::{CauchyStress, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched};
+use super::{
+    CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+};
 
 /// Names of the initial stress among the variables of a law.
 pub const INITIAL_STRESS: [&str; 4] = ["initial_xx", "initial_yy", "initial_xy", "initial_zz"];
@@ -60,6 +62,11 @@ impl Imposed {
         names.extend(INITIAL_STRESS.iter().filter(|_| stressed));
         names.extend(TEMPERATURE.iter().filter(|_| expansion.is_some()));
         Self { law, flat, stressed, expansion, names }
+    }
+
+    /// α (T − T₀) of some variables.
+    fn thermal_strain(&self, variables: &[f64]) -> f64 {
+        self.expansion.map_or(0.0, |alpha| alpha * variables[variables.len() - TEMPERATURE.len()])
     }
 
     /// F and F₃₃ of the underlying law, without the thermal strain.
@@ -135,9 +142,17 @@ fn add_initial(answer: &mut Stretched, elastic: &Straining, (plane, across): (Ma
 }
 
 impl Spatial for Imposed {
+    /// h = ϑ h_e
+    fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+        let strain = self.thermal_strain(straining.old);
+        let elastic = self.elastic(straining, strain);
+        let own = self.law.spatial().map_or(Ok(0.0), |law| law.ln_free_stretch(&elastic))?;
+        Ok(own + if self.is_linear() { 0.0 } else { strain.ln_1p() })
+    }
+
     fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         let heat = self.names.len().saturating_sub(TEMPERATURE.len());
-        let strain = self.expansion.map_or(0.0, |alpha| alpha * new[heat]);
+        let strain = self.thermal_strain(new);
         let theta = 1.0 + strain;
         if theta.is_nan() || theta <= 0.0 {
             return Err(MaterialFailure::Inverted { jacobian: theta });
@@ -157,7 +172,7 @@ impl Spatial for Imposed {
         answer.stress *= theta * theta;
         answer.tangent *= theta;
         answer.energy *= theta.powi(3);
-        let before = 1.0 + self.expansion.map_or(0.0, |alpha| alpha * straining.old[heat]);
+        let before = 1.0 + self.thermal_strain(straining.old);
         answer.dissipation *= 0.5 * (before.powi(3) + theta.powi(3));
         let work = plane(&answer.stress).dot(&straining.deformation) + answer.stress[4] * straining.stretch;
         new[heat + 1] = (work - 3.0 * answer.energy) / theta;
@@ -197,6 +212,16 @@ impl Material for Imposed {
         }
     }
 
+    fn stretch_across(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<f64, MaterialFailure> {
+        if !self.flat {
+            return Ok(1.0);
+        }
+        let heat = self.names.len().saturating_sub(TEMPERATURE.len());
+        let strain = self.expansion.map_or(0.0, |alpha| alpha * old[heat]);
+        let elastic = self.elastic(&Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old }, strain);
+        self.law.stretch_across(&elastic.deformation, elastic.old).map(|own| own + strain)
+    }
+
     fn spatial(&self) -> Option<&dyn Spatial> {
         (!self.flat).then_some(self)
     }
@@ -205,14 +230,37 @@ impl Material for Imposed {
     fn initial_state(&self, position: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
         let own = self.law.variables().len();
         self.law.initial_state(position, stress, &mut variables[..own]);
-        if !self.stressed {
-            return;
-        }
         let CauchyStress { xx, yy, zz, xy } = *stress;
-        variables[own..own + INITIAL_STRESS.len()].copy_from_slice(&[xx, yy, xy, zz]);
-        if self.expansion.is_some() {
-            variables[own + INITIAL_STRESS.len() + 1] = xx + yy + zz;
+        if self.stressed {
+            variables[own..own + INITIAL_STRESS.len()].copy_from_slice(&[xx, yy, xy, zz]);
         }
+        if self.expansion.is_some() && (self.stressed || self.law.holds_initial_stress()) {
+            variables[self.names.len() - 1] = xx + yy + zz;
+        }
+    }
+
+    fn flow(&self) -> Option<Flow> {
+        self.law.flow()
+    }
+
+    fn concern(&self) -> Option<String> {
+        self.law.concern()
+    }
+
+    fn holds_initial_stress(&self) -> bool {
+        self.law.holds_initial_stress()
+    }
+
+    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+        self.law.admits(stress)
+    }
+
+    fn shown(&self) -> &'static [&'static str] {
+        self.law.shown()
+    }
+
+    fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
+        self.law.show(&self.elastic(straining, self.thermal_strain(straining.old)), values)
     }
 
     fn evolves(&self) -> bool {

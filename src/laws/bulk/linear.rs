@@ -58,6 +58,13 @@ impl Material for Linear {
         Some(Box::new(Self { lame: Lame { lambda, shear }, across: 0.0, ..*self }))
     }
 
+    /// 1 − λ*/(2 G) tr ε in a plate: λ*/(2 G) = λ/(λ + 2 G).
+    fn stretch_across(&self, deformation: &Matrix2<f64>, _: &[f64]) -> Result<f64, MaterialFailure> {
+        let is_plate = self.across == 0.0;
+        let share = if is_plate { self.lame.lambda / (2.0 * self.lame.shear) } else { 0.0 };
+        Ok(1.0 - share * (deformation.trace() - 2.0))
+    }
+
     fn spatial(&self) -> Option<&dyn Spatial> {
         Some(self)
     }

@@ -8,7 +8,7 @@
 //! | [`Hencky`] | G ‖ln V‖² + λ/2 (ln J)² |
 //!
 //! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
-//! beside a Maxwell arm that relaxes.
+//! beside a Maxwell arm that relaxes. Laws that yield stand in [`plasticity`].
 //!
 //! Laws are written in plane strain, F₃₃ = 1. One that also covers an out-of-plane stretch is [`Spatial`], and can be
 //! that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
@@ -37,6 +37,7 @@ mod isotropic;
 mod linear;
 mod neo_hookean;
 mod parameters;
+pub mod plasticity;
 mod saint_venant_kirchhoff;
 pub(crate) mod spatial;
 mod viscoelastic;
@@ -46,6 +47,10 @@ pub use imposed::{INITIAL_STRESS, Imposed, TEMPERATURE};
 pub use linear::Linear;
 pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
+pub use plasticity::{
+    BackStress, DruckerPrager, DruckerPragerParameters, Elastoplastic, Matching, MohrCoulomb, MohrCoulombParameters,
+    ReturnMap, Returned, Softening, VonMises, VonMisesParameters,
+};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use spatial::{PlaneStress, Spatial, Stretched};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
@@ -109,7 +114,44 @@ pub struct CauchyStress {
     pub xy: f64,
 }
 
+/// Principal values of a symmetric tensor with the components xx, yy, zz, xy, the largest first.
+///
+/// ```text
+/// ½ (xx + yy) ± √(¼ (xx − yy)² + xy²),  zz
+/// ```
+pub fn principal_values([xx, yy, zz, xy]: [f64; 4]) -> [f64; 3] {
+    let (middle, radius) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+    let mut values = [middle + radius, middle - radius, zz];
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
+}
+
+/// ln V at F: logarithmic strain along the axes of now, xx, yy, zz, xy. zz is ln F₃₃.
+///
+/// ```text
+/// ln V = ½ ln b = ½ ln(det F) 1 + atanh(x)/(2 x m) (b − m 1),   b = F Fᵀ in plane, with eigenvalues m (1 ± x)
+/// ```
+pub fn log_strain(deformation: &Matrix2<f64>, stretch: f64) -> [f64; 4] {
+    let b = deformation * deformation.transpose();
+    let (middle, apart) = (0.5 * (b.m11 + b.m22), 0.5 * (b.m11 - b.m22));
+    let radius = apart.hypot(b.m12);
+    let (area, share) = (deformation.determinant(), radius / middle);
+    // ½ ln(β₁/β₂)/(2 r), whose limit at r = 0 is 1/(2 m)
+    let shear = match share {
+        share if share < 1e-3 => 0.5 / middle * (1.0 + share * share * (1.0 / 3.0 + share * share / 5.0)),
+        share if share < 0.5 => 0.5 / middle * share.atanh() / share,
+        _ => 0.5 * ((middle + radius) / area).ln() / radius,
+    };
+    let mean = 0.5 * spatial::ln_stretch(area);
+    [mean + shear * apart, mean - shear * apart, spatial::ln_stretch(stretch), shear * b.m12]
+}
+
 impl CauchyStress {
+    /// Its components xx, yy, zz, xy.
+    pub fn components(&self) -> [f64; 4] {
+        [self.xx, self.yy, self.zz, self.xy]
+    }
+
     /// p = −tr σ / 3, positive in compression [F/L²]
     pub fn pressure(&self) -> f64 {
         -(self.xx + self.yy + self.zz) / 3.0
@@ -133,13 +175,37 @@ pub enum MaterialFailure {
         jacobian: f64,
     },
     /// The equations of the law were not solved, such as those of a return to its yield surface.
-    #[error("the material law did not converge: residual {rest:.3e} of the stress {stress:.3e}")]
+    #[error("`{law}` did not converge: residual {rest:.3e} of the stress {stress:.3e}")]
     NotConverged {
+        /// the law
+        law: &'static str,
         /// what is left out of balance [F/L²]
         rest: f64,
         /// the stress that it is to be compared with [F/L²]
         stress: f64,
     },
+    /// The increment leads out of the range in which the law is accurate.
+    #[error("`{law}`: {quantity} is {value:.3e}, more than {limit}")]
+    OutOfRange {
+        /// the law
+        law: &'static str,
+        /// what is out of range
+        quantity: &'static str,
+        /// its value
+        value: f64,
+        /// the most that it may be
+        limit: f64,
+    },
+}
+
+/// How the volume of a body changes while it yields: what its elements must be able to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Flow {
+    /// It stays
+    Isochoric,
+    /// It grows with the shear
+    Dilating,
 }
 
 /// J = det F, known to be positive and finite.
@@ -198,6 +264,14 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
+    /// F₃₃ at F in plane, with the variables that the law remembers there: 1 in plane strain, the stretch of the thickness in a plate.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn stretch_across(&self, _deformation: &Matrix2<f64>, _old: &[f64]) -> Result<f64, MaterialFailure> {
+        Ok(1.0)
+    }
+
     /// The law with an out-of-plane stretch, as rings have it; none unless it is known.
     fn spatial(&self) -> Option<&dyn Spatial> {
         None
@@ -215,6 +289,43 @@ pub trait Material: Debug + Send + Sync {
     /// Whether an increment changes what the law remembers.
     fn evolves(&self) -> bool {
         !self.variables().is_empty()
+    }
+
+    /// How it flows if it yields; none if it does not. What a law that yields dissipates is plastic work, and damping that of others.
+    fn flow(&self) -> Option<Flow> {
+        None
+    }
+
+    /// What is to be told of the law before anything is solved.
+    fn concern(&self) -> Option<String> {
+        None
+    }
+
+    /// Whether an initial stress is the law's own, which [`initial_state`](Self::initial_state) makes it remember; it stands beside
+    /// the law ([`Imposed`]) otherwise.
+    fn holds_initial_stress(&self) -> bool {
+        false
+    }
+
+    /// Whether a body of this law can have an initial stress.
+    ///
+    /// # Errors
+    /// Why it cannot, and what to do.
+    fn admits(&self, _stress: &CauchyStress) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Names of what the law shows besides stress, at a point in any state.
+    fn shown(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Write what it [shows](Self::shown) where it remembers `straining.old`.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn show(&self, _straining: &Straining, _values: &mut [f64]) -> Result<(), MaterialFailure> {
+        Ok(())
     }
 
     /// Whether ∂P/∂F is symmetric, as it is where P has a potential: half of the tangent is the mirror image of the other.

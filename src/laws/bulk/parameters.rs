@@ -3,11 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Hencky, Linear, Material, NeoHookean, SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants};
+use super::{
+    DruckerPrager, DruckerPragerParameters, Hencky, Linear, Material, MohrCoulomb, MohrCoulombParameters, NeoHookean,
+    SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants, VonMises, VonMisesParameters,
+};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// A bulk material: its law and its constants.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "model", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum MaterialParameters {
@@ -21,6 +24,12 @@ pub enum MaterialParameters {
     Hencky(ElasticConstants),
     /// Neo-Hookean beside a Maxwell arm: relaxes from E + E_1 to E within some tau
     Viscoelastic(ViscoelasticConstants),
+    /// Von Mises: metals, and clay that is sheared undrained; isotropic and kinematic hardening, large strains
+    VonMises(VonMisesParameters),
+    /// Drucker–Prager: a cone that stands for friction and cohesion of soil, perfectly plastic, large strains
+    DruckerPrager(DruckerPragerParameters),
+    /// Mohr–Coulomb: friction, cohesion, dilation and tension cut-off of soil and rock, which may soften; large strains
+    MohrCoulomb(MohrCoulombParameters),
 }
 
 /// Constants of an isotropic elastic material.
@@ -61,6 +70,9 @@ impl MaterialParameters {
             Self::NeoHookean(constants) => Box::new(NeoHookean::new(constants)?),
             Self::Hencky(constants) => Box::new(Hencky::new(constants)?),
             Self::Viscoelastic(constants) => Box::new(Viscoelastic::new(constants)?),
+            Self::VonMises(parameters) => Box::new(VonMises::new(parameters)?),
+            Self::DruckerPrager(parameters) => Box::new(DruckerPrager::new(parameters)?),
+            Self::MohrCoulomb(parameters) => Box::new(MohrCoulomb::new(parameters)?),
         })
     }
 }

@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
 
-use super::{CauchyStress, Material, MaterialFailure, MaterialResponse, Straining};
+use super::{CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, Straining};
 
 /// Response of a law at F with an out-of-plane stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,15 @@ pub trait Spatial: Material {
     /// # Errors
     /// [`MaterialFailure::Inverted`] when det F or F₃₃ is not positive.
     fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure>;
+
+    /// ln F₃₃ from which a plate's is searched, F₃₃ in `straining` being of no account: J^(−λ/(λ + 2G)), the solution of Hencky's law.
+    ///
+    /// # Errors
+    /// [`MaterialFailure::Inverted`] when det F is not positive.
+    fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+        let (modulus, shear) = (self.p_wave_modulus(), self.shear_modulus());
+        Ok(-super::positive_jacobian(&straining.deformation)?.ln() * (modulus - 2.0 * shear) / modulus)
+    }
 
     /// σ = P Fᵀ/J where the law remembers `straining.old`.
     ///
@@ -126,7 +135,8 @@ pub(super) fn positive_stretch(straining: &Straining) -> Result<f64, MaterialFai
 /// τ₃₃ = h P₃₃(F, h) = 0,   h = F₃₃                                            solved for ln h               (1)
 /// A = ∂P/∂F − (∂P/∂h)(∂P/∂h)ᵀ / (∂P₃₃/∂h)                                     consistent tangent            (2)
 /// ```
-/// (1) is solved by Newton's method from h = J^(−λ/(λ + 2G)), which is its solution for Hencky's law. Moduli of small strains
+/// (1) is solved by Newton's method from h = J^(−λ/(λ + 2G)), which is its solution for Hencky's law, or what a law that yields
+/// [remembers](Spatial::ln_free_stretch). Moduli of small strains
 /// are those of a plate: the P-wave modulus is E/(1 − ν²) = 4 G (λ + G)/(λ + 2G), so that waves, absorbing sides and penalties are a
 /// plate's. The viscous stress is formed with them, too.
 ///
@@ -141,6 +151,9 @@ pub struct PlaneStress<L> {
 /// Most iterations for (1).
 const ITERATIONS: usize = 60;
 
+/// What a search of the stretch is called where it fails.
+const PLATE: &str = "plane_stress";
+
 /// ln h is known to so much; the rest is brought in by the tangent.
 const KNOWN: f64 = 1e-13;
 
@@ -152,9 +165,8 @@ impl<L: Spatial> PlaneStress<L> {
 
     /// h and the answer there.
     fn solved(&self, straining: &Straining, new: &mut [f64]) -> Result<(f64, Stretched), MaterialFailure> {
-        let jacobian = super::positive_jacobian(&straining.deformation)?;
         let modulus = self.law.p_wave_modulus();
-        let mut ln_h = -jacobian.ln() * (modulus - 2.0 * self.law.shear_modulus()) / modulus;
+        let mut ln_h = self.law.ln_free_stretch(straining)?;
         let mut rest = 0.0;
         for _ in 0..ITERATIONS {
             let h = 1.0 + ln_h.exp_m1();
@@ -162,7 +174,7 @@ impl<L: Spatial> PlaneStress<L> {
             let stress = h * answer.stress[4];
             let slope = stress + h * h * answer.tangent[(4, 4)];
             if !(slope > 0.0 && slope.is_finite() && answer.tangent[(4, 4)] > 0.0) {
-                return Err(MaterialFailure::NotConverged { rest: stress, stress: modulus });
+                return Err(MaterialFailure::NotConverged { law: PLATE, rest: stress, stress: modulus });
             }
             let change = -stress / slope;
             if change.abs() <= KNOWN {
@@ -170,7 +182,7 @@ impl<L: Spatial> PlaneStress<L> {
             }
             (ln_h, rest) = (ln_h + change.clamp(-1.0, 1.0), stress);
         }
-        Err(MaterialFailure::NotConverged { rest, stress: modulus })
+        Err(MaterialFailure::NotConverged { law: PLATE, rest, stress: modulus })
     }
 }
 
@@ -204,6 +216,31 @@ impl<L: Spatial> Material for PlaneStress<L> {
         self.law.evolves()
     }
 
+    fn flow(&self) -> Option<Flow> {
+        self.law.flow()
+    }
+
+    fn concern(&self) -> Option<String> {
+        self.law.concern()
+    }
+
+    fn holds_initial_stress(&self) -> bool {
+        self.law.holds_initial_stress()
+    }
+
+    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+        self.law.admits(stress)
+    }
+
+    fn shown(&self) -> &'static [&'static str] {
+        self.law.shown()
+    }
+
+    fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
+        let (h, _) = self.solved(straining, &mut straining.old.to_vec())?;
+        self.law.show(&Straining { stretch: h, ..*straining }, values)
+    }
+
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
         let (_, Stretched { stress, tangent, energy, dissipation }) = self.solved(straining, new)?;
         let [by_h, of_33]: [Vector4<f64>; 2] =
@@ -217,6 +254,11 @@ impl<L: Spatial> Material for PlaneStress<L> {
             stress_zz: 0.0,
             dissipation,
         })
+    }
+
+    fn stretch_across(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<f64, MaterialFailure> {
+        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+        self.solved(&now, &mut old.to_vec()).map(|(h, _)| h)
     }
 
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {

@@ -44,7 +44,8 @@ impl Grid {
         let (columns, rows) = (along(0)?, along(1)?);
         let mut nodes = Vec::new();
         for (j, t) in rows.iter().enumerate() {
-            let used = columns.iter().enumerate().filter(|(i, _)| order == 1 || i % 2 == 0 || j % 2 == 0);
+            let used =
+                columns.iter().enumerate().filter(|(i, _)| block.kind != BlockKind::Q8 || i % 2 == 0 || j % 2 == 0);
             nodes.extend(used.map(|(_, s)| sides.place(*s, *t)));
         }
         let quarters = || [1.0, 2.0, 3.0].map(|part| Share::new(part, 4.0));
@@ -60,7 +61,7 @@ impl Grid {
     fn slot(&self, [i, j]: [usize; 2]) -> usize {
         let [n, _] = self.count;
         let local = match self.kind {
-            BlockKind::Q4 => j * (n + 1) + i,
+            BlockKind::Q4 | BlockKind::T6 => j * (n + 1) + i,
             // Rows through corners are full, those between have every other node.
             BlockKind::Q8 if j % 2 == 0 => j / 2 * (n + 1 + n / 2 + 1) + i,
             BlockKind::Q8 => j / 2 * (n + 1 + n / 2 + 1) + n + 1 + i / 2,
@@ -104,17 +105,35 @@ impl Grid {
         (0..nodes.len() - 1).step_by(order).map(edge).collect()
     }
 
+    /// Column and row of the first corner of each cell, row by row.
+    fn cells(&self) -> impl Iterator<Item = [usize; 2]> {
+        let (order, [n, m]) = (self.kind.order(), self.count);
+        (0..m).step_by(order).flat_map(move |j| (0..n).step_by(order).map(move |i| [i, j]))
+    }
+
+    /// Columns and rows of the corners of a cell, in turn.
+    fn corners(&self, [i, j]: [usize; 2]) -> [[usize; 2]; 4] {
+        let order = self.kind.order();
+        [[i, j], [i + order, j], [i + order, j + order], [i, j + order]]
+    }
+
     /// Elements, row by row: corners in turn, then the middles of their sides.
     pub fn elements(&self) -> Vec<Vec<usize>> {
-        let (order, [n, m]) = (self.kind.order(), self.count);
-        let element = |i: usize, j: usize| {
-            let corners = [[i, j], [i + order, j], [i + order, j + order], [i, j + order]];
-            let middles = [[i + 1, j], [i + order, j + 1], [i + 1, j + order], [i, j + 1]];
-            let all = corners.into_iter().chain(middles.into_iter().take(4 * (order - 1)));
-            all.map(|at| self.slot(at)).collect()
+        let element = |corners: &[[usize; 2]]| {
+            let next = corners.iter().cycle().skip(1);
+            let middles = corners.iter().zip(next).map(|(a, b)| [0, 1].map(|k| (a[k] + b[k]) / 2));
+            let middles = middles.filter(|_| self.kind.order() == 2);
+            corners.iter().copied().chain(middles).map(|at| self.slot(at)).collect()
         };
-        let rows = (0..m).step_by(order);
-        rows.flat_map(|j| (0..n).step_by(order).map(move |i| [i, j])).map(|[i, j]| element(i, j)).collect()
+        let of_cell = |at: [usize; 2]| {
+            let [a, b, c, d] = self.corners(at);
+            match (self.kind, (at[0] + at[1]) / 2 % 2) {
+                (BlockKind::Q4 | BlockKind::Q8, _) => vec![element(&[a, b, c, d])],
+                (BlockKind::T6, 0) => vec![element(&[a, b, c]), element(&[a, c, d])],
+                (BlockKind::T6, _) => vec![element(&[a, b, d]), element(&[b, c, d])],
+            }
+        };
+        self.cells().flat_map(of_cell).collect()
     }
 
     /// Slot of the one node nearest to a point.
@@ -150,11 +169,11 @@ impl Grid {
         (0..4 * OUTLINE).map(place).collect()
     }
 
-    /// Every corner of every element must be one less than a half turn.
+    /// Every corner of every cell must be one less than a half turn.
     fn refuse_folds(&self) -> Result<(), String> {
         let turn = if self.upright { 1.0 } else { -1.0 };
-        for element in self.elements() {
-            let corners: Vec<_> = element[..4].iter().map(|&slot| self.at(slot)).collect();
+        for cell in self.cells() {
+            let corners = self.corners(cell).map(|at| self.at(self.slot(at)));
             if wrong_turns(&corners, turn) == 0 {
                 continue;
             }

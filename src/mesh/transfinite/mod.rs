@@ -40,6 +40,8 @@ pub enum BlockKind {
     Q4,
     /// Serendipity, 8 nodes: those in the middle of sides lie on the arcs
     Q8,
+    /// Two quadratic triangles, 6 nodes, to each quadrilateral; its diagonals run to and fro in turn
+    T6,
 }
 
 impl BlockKind {
@@ -47,7 +49,7 @@ impl BlockKind {
     fn order(self) -> usize {
         match self {
             Self::Q4 => 1,
-            Self::Q8 => 2,
+            Self::Q8 | Self::T6 => 2,
         }
     }
 }

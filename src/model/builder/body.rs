@@ -17,7 +17,7 @@ use super::section;
 use crate::laws::bulk::{Imposed, Material, MaterialParameters};
 use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
-use crate::model::element::{SolidElement, consistent_mass};
+use crate::model::element::{Formulation, SolidElement, consistent_mass};
 use crate::model::imposed::{InitialStress, Temperature, Thermal};
 use crate::model::text::number;
 use crate::model::{Body, Damping, Model, PointMass};
@@ -56,17 +56,6 @@ impl From<MaterialParameters> for BulkLaw {
     fn from(parameters: MaterialParameters) -> Self {
         Self::Parameters(parameters)
     }
-}
-
-/// How the elements of a body are integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Formulation {
-    /// Displacements only, full integration
-    #[default]
-    Displacement,
-    /// Q4 with the mean dilatation of the centre (F-bar): does not lock for ν → 1/2
-    FBar,
 }
 
 /// A mass at every node of a group.
@@ -141,8 +130,7 @@ pub fn solids(mesh: &Mesh, given: &[(String, BodyInput)], body_of_element: &[usi
         let positions = mesh.places(e);
         let (name, body) = &given[body];
         let complain = |error| ModelError::new(format!("bodies.{name}.element"), error);
-        let f_bar = body.element == Formulation::FBar;
-        solids.push(SolidElement::new(element.kind, f_bar, mesh.section, &positions).map_err(complain)?);
+        solids.push(SolidElement::new(element.kind, body.element, mesh.section, &positions).map_err(complain)?);
         consistent_mass(element.kind, mesh.section, &positions, 1.0).map_err(complain)?;
     }
     Ok(solids)
@@ -180,13 +168,14 @@ pub fn with_imposed(
         check_finite(&format!("{place}.thermal.expansion"), [expansion])?;
         check_finite(&format!("{place}.thermal.reference"), [reference])?;
     }
-    if stress.is_none() && thermal.is_none() {
+    let stressed = stress.is_some() && !given.holds_initial_stress();
+    if !stressed && thermal.is_none() {
         return Ok(given);
     }
-    match Imposed::new(given, stress.is_some(), thermal.map(|thermal| thermal.expansion)) {
+    match Imposed::new(given, stressed, thermal.map(|thermal| thermal.expansion)) {
         Some(imposed) => Ok(Arc::new(imposed)),
         None => {
-            let key = if stress.is_some() { "initial_stress" } else { "thermal" };
+            let key = if stressed { "initial_stress" } else { "thermal" };
             let message = "needs a law with an out-of-plane stretch: take another material, or leave it out";
             Err(ModelError::new(format!("{place}.{key}"), message))
         }

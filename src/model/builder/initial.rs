@@ -12,9 +12,11 @@ use super::groups;
 use super::load_step::LoadStep;
 use super::section::check_velocities;
 use crate::contact::pair::{ContactPair, InitialTraction};
+use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::scheme::Scheme;
+use crate::model::text::number;
 
 /// An initial traction may pass the strength μ p by this share: numbers are written with a few digits.
 const ROUNDED: f64 = 1e-9;
@@ -199,6 +201,22 @@ fn of_bodies(
         initial.push(InitialTraction { pressure: pressure.max(0.0), traction });
     }
     Ok(initial)
+}
+
+/// An initial stress must be one that its law can have.
+pub fn check_stresses(model: &Model) -> Checked<()> {
+    for e in 0..model.solids.len() {
+        let body = &model.bodies[model.body_of_element[e]];
+        let Some(stress) = &body.initial_stress else { continue };
+        for at in model.quadrature_positions(e) {
+            let [xx, yy, xy, zz] = stress.at(at, model.mesh.section.is_plate());
+            body.material.admits(&CauchyStress { xx, yy, zz, xy }).map_err(|why| {
+                let [x, y] = [at.x, at.y].map(number);
+                ModelError::new(format!("bodies.{}.initial_stress", body.name), format!("at ({x}, {y}) it {why}"))
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// Nodal forces with which the initial stress of the bodies meets the initial tractions of balanced contacts; empty if

@@ -53,7 +53,7 @@ mod supports;
 mod tied;
 
 pub use along::{Along, LawChoice};
-pub use body::{BodyInput, BulkLaw, Formulation, PointMassInput};
+pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_positive};
@@ -72,6 +72,7 @@ use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::mesh::ties::Ties;
+pub use crate::model::element::Formulation;
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::linkage::Linkage;
 use crate::model::{Damping, Memories, Model, NewtonSettings, OutputRequests};
@@ -135,6 +136,11 @@ impl Builder {
     /// Elements of a body with the mean dilatation of their centre (F-bar), which do not lock for ν → ½: Q4 only.
     pub fn f_bar(self, body: impl Into<String>) -> Self {
         self.change(body, |body| body.element = Formulation::FBar)
+    }
+
+    /// Elements of a body with 2 × 2 integration points, which lock neither for ν → ½ nor where the body yields: Q8 only.
+    pub fn reduced(self, body: impl Into<String>) -> Self {
+        self.change(body, |body| body.element = Formulation::Reduced)
     }
 
     /// Damping of a body in dynamic steps.
@@ -284,6 +290,7 @@ impl Builder {
             prestress: Vec::new(),
             requests: OutputRequests { interval: checks::checked_interval(self.interval)?, ..Default::default() },
         };
+        initial::check_stresses(&model)?;
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.plates = plates::plates(&self.plates, &model.mesh)?;
         model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;

@@ -20,14 +20,50 @@
 mod solid;
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::linear::system::Contribution;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::section::Section;
 use crate::mesh::shape;
-use crate::mesh::shape::ElementKind;
+use crate::mesh::shape::{ElementKind, QuadraturePoint};
 pub use solid::{Memory, SolidElement};
+
+/// How the elements of a body are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Formulation {
+    /// Displacements only, full integration
+    #[default]
+    Displacement,
+    /// Q4 with the mean dilatation of the centre (F-bar): does not lock for ν → 1/2
+    FBar,
+    /// Q8 with 2 × 2 integration points instead of 3 × 3: does not lock for ν → 1/2, nor where a body yields. An element that shares
+    /// no edge with another of its body can bend into an hourglass without forces
+    Reduced,
+}
+
+impl Formulation {
+    /// Quadrature of the stiffness of an element of a kind that it is made for.
+    pub fn quadrature(self, kind: ElementKind) -> Vec<QuadraturePoint> {
+        match self {
+            Self::Displacement | Self::FBar => kind.quadrature(),
+            Self::Reduced => kind.reduced_quadrature(),
+        }
+    }
+
+    /// Whether it is made for a kind of elements.
+    fn check(self, kind: ElementKind) -> Result<(), ElementError> {
+        match (self, kind) {
+            (Self::Displacement, _) | (Self::FBar, ElementKind::Q4) | (Self::Reduced, ElementKind::Q8) => Ok(()),
+            (Self::FBar, _) => Err(ElementError::FBarNeedsQ4 { kind }),
+            (Self::Reduced, _) => Err(ElementError::ReducedNeedsQ8 { kind }),
+        }
+    }
+}
 
 /// An element that cannot be built on its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -43,6 +79,12 @@ pub enum ElementError {
     /// F-bar was asked of an element that is not a four-node quadrilateral
     #[error("f_bar is for four-node quadrilaterals (Q4), not for {kind:?}")]
     FBarNeedsQ4 {
+        /// kind of the element
+        kind: ElementKind,
+    },
+    /// Reduced integration was asked of an element that is not an eight-node quadrilateral
+    #[error("reduced integration is for eight-node quadrilaterals (Q8), not for {kind:?}")]
+    ReducedNeedsQ8 {
         /// kind of the element
         kind: ElementKind,
     },

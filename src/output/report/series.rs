@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::table::{Pack, Packed};
+use crate::laws::bulk::principal_values;
 use crate::output::results::{Array, Frame, Grid, frames};
 use crate::output::store::STORE;
 use crate::output::store::read::StoredContact;
@@ -42,6 +43,8 @@ struct Field {
     components: Vec<([f64; 2], [f64; 2], Packed)>,
     /// of a vector, the length of the longest of all, and of most
     longest: [f64; 2],
+    /// of a tensor, of each principal value its range, and that of most: the page computes them from the components
+    principal: Vec<[[f64; 2]; 2]>,
 }
 
 impl PackedFrame {
@@ -135,7 +138,7 @@ impl Series {
                 ([low, high], most(all()), Packed::stepped(&values, 1, size, FIELD_ERROR))
             };
             let components = (0..components).map(component).collect();
-            Field { name: array.name.clone(), components, longest: longest(array) }
+            Field { name: array.name.clone(), components, longest: longest(array), principal: principal(array) }
         });
         let largest = displacement(grid).map_or(0.0, |moved| longest(moved)[0]);
         PackedFrame { time: frame.time, largest, displacement: moved, fields: fields.collect() }
@@ -194,13 +197,24 @@ fn longest(array: &Array) -> [f64; 2] {
     [range(lengths())[1], most(lengths())[1]]
 }
 
+/// Ranges of the principal values of a tensor xx, yy, zz, xy, of all and of most; none of other arrays.
+fn principal(array: &Array) -> Vec<[[f64; 2]; 2]> {
+    let (tensors, rest) = array.values.as_chunks::<4>();
+    if array.components != 4 || !rest.is_empty() {
+        return Vec::new();
+    }
+    let values: Vec<[f64; 3]> = tensors.iter().map(|tensor| principal_values(*tensor)).collect();
+    let of = |i: usize| values.iter().map(move |values| values[i]);
+    (0..3).map(|i| [range(of(i)), most(of(i))]).collect()
+}
+
 /// A packed frame for the page.
 fn shown(frame: &PackedFrame, pack: &mut Pack) -> Value {
     let mut fields = serde_json::Map::new();
-    for Field { name, components, longest } in &frame.fields {
+    for Field { name, components, longest, principal } in &frame.fields {
         let component = |(range, most, packed): &([f64; 2], [f64; 2], Packed)| json!({ "range": range, "most": most, "chunk": pack.add(packed) });
         let components: Vec<Value> = components.iter().map(component).collect();
-        fields.insert(name.clone(), json!({ "components": components, "longest": longest }));
+        fields.insert(name.clone(), json!({ "components": components, "longest": longest, "principal": principal }));
     }
     let displacement = frame.displacement.as_ref().map(|packed| pack.add(packed));
     json!({ "time": frame.time, "displacement": displacement, "largest": frame.largest, "fields": fields })

@@ -323,10 +323,10 @@ fn bounds(
     let n = 2 * local.len();
     let (mut force, mut tangent) = (vec![0.0; n], DMatrix::zeros(n, n));
     let (solid, law) = (&model.solids[e], &*body.material);
-    let answer = match body.is_imposed() {
-        false => solid.force_and_tangent(law, local, &mut force, tangent.as_mut_slice()).map(drop),
-        // What is imposed stiffens.
-        true => {
+    let answer = match law.variables().is_empty() {
+        true => solid.force_and_tangent(law, local, &mut force, tangent.as_mut_slice()).map(drop),
+        // What is imposed stiffens, and what has yielded is another body.
+        false => {
             let memory = Memory { dt: 0.0, old: memory, new: &mut memory.to_vec() };
             solid.evolve(law, memory, local, &mut force, Some(tangent.as_mut_slice())).map(drop)
         }

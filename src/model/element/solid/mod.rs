@@ -1,4 +1,4 @@
-//! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
+//! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4 and reduced integration for Q8.
 //!
 //! Here are F-bar, (4) to (6) of [`SolidElement`], the viscous stress of a damped body, and elements whose material remembers,
 //! or whose tangent is not symmetric; in `stress.rs` their stress and reference geometry, in `ring.rs` axisymmetry.
@@ -8,6 +8,7 @@ mod stress;
 
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
+use super::Formulation;
 use crate::laws::bulk::{Material, MaterialFailure, MaterialResponse, Straining, cofactor, positive_jacobian};
 use crate::mesh::shape::ElementKind;
 use ring::Hoop;
@@ -35,9 +36,15 @@ use ring::Hoop;
 ///
 /// Source: de Souza Neto, Perić, Dutko & Owen (1996), Int. J. Solids Struct. 33, 3277,
 /// doi:10.1016/0020-7683(95)00259-6.
+///
+/// Reduced integration takes 2 × 2 points for Q8. One element alone then has a motion besides the three rigid ones that costs
+/// nothing; two that share an edge have none. The mass keeps its 3 × 3 points.
+///
+/// Source: Zienkiewicz, Taylor & Too (1971), Int. J. Numer. Meth. Engng 3, 275, doi:10.1002/nme.1620030211.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidElement {
     kind: ElementKind,
+    formulation: Formulation,
     /// ∂N_a/∂X of all nodes at the first quadrature point, then at the second, … [1/L]
     gradients: Vec<Vector2<f64>>,
     /// Reference volume of each quadrature point: weight × det(∂X/∂ξ) × w of the section [L²]

@@ -11,7 +11,7 @@
 //! ```
 //! Quadrature points lie off the axis, so that u_r/R is a number wherever an element touches it.
 
-use nalgebra::{Matrix5, Vector2, Vector5};
+use nalgebra::{Matrix2, Matrix5, Vector2, Vector5};
 
 use super::{Memory, SolidElement};
 use crate::laws::bulk::spatial::{components, plane};
@@ -111,6 +111,30 @@ impl SolidElement {
             law.cauchy(&seen.straining(0.0, &memory[k * count..(k + 1) * count]))
         };
         self.ring_points().enumerate().map(stress).collect()
+    }
+
+    /// F in plane and F₃₃ at each quadrature point, as the law sees them.
+    pub(super) fn ring_deformations(&self, u: &[Vector2<f64>]) -> Result<Vec<(Matrix2<f64>, f64)>, MaterialFailure> {
+        let centre = self.ring_centre(u)?;
+        let seen = |(at, _): (At, f64)| at.seen(centre.as_ref(), u).map(|seen| (plane(&seen.bar), seen.bar[4]));
+        self.ring_points().map(seen).collect()
+    }
+
+    /// What a material shows at each quadrature point, written over `values`.
+    pub(super) fn ring_shown(
+        &self,
+        material: &dyn Material,
+        memory: &[f64],
+        u: &[Vector2<f64>],
+        values: &mut [f64],
+    ) -> Result<(), MaterialFailure> {
+        let (count, own) = (material.variables().len(), material.shown().len().max(1));
+        let centre = self.ring_centre(u)?;
+        for (k, ((at, _), values)) in self.ring_points().zip(values.chunks_exact_mut(own)).enumerate() {
+            let seen = at.seen(centre.as_ref(), u)?;
+            material.show(&seen.straining(0.0, &memory[k * count..(k + 1) * count]), values)?;
+        }
+        Ok(())
     }
 
     /// F₃₃ at each quadrature point.

@@ -1,18 +1,18 @@
-//! Cauchy stress at the quadrature points and at the nodes.
+//! Cauchy stress at the quadrature points, and at those one order lower.
 //!
 //! What the reference geometry of an element says.
 
 use std::sync::OnceLock;
 
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::ring::Hoop;
 use super::{SolidElement, deformation_gradient};
-use crate::laws::bulk::{CauchyStress, Material, MaterialFailure};
+use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, Straining, log_strain};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
-use crate::mesh::shape::ElementKind;
-use crate::model::element::{ElementError, gradients};
+use crate::mesh::shape::{ElementKind, QuadraturePoint};
+use crate::model::element::{ElementError, Formulation, gradients};
 
 impl SolidElement {
     /// Cauchy stress at each quadrature point, with what the material remembers there; nothing if it has no memory.
@@ -42,6 +42,35 @@ impl SolidElement {
             .collect()
     }
 
+    /// Logarithmic strain xx, yy, zz, xy at each quadrature point, as the law sees it (F̄ of F-bar); of a linear law sym F − 1.
+    ///
+    /// # Errors
+    /// [`MaterialFailure`] of the law at a quadrature point.
+    pub fn log_strains(
+        &self,
+        material: &dyn Material,
+        memory: &[f64],
+        u: &[Vector2<f64>],
+    ) -> Result<Few<[f64; 4], 9>, MaterialFailure> {
+        let strain = |f: &Matrix2<f64>, across: f64| match material.is_linear() {
+            true => [f.m11 - 1.0, f.m22 - 1.0, across - 1.0, 0.5 * (f.m12 + f.m21)],
+            false => log_strain(f, across),
+        };
+        if self.hoop.is_some() {
+            return Ok(self.ring_deformations(u)?.iter().map(|(f, hoop)| strain(f, *hoop)).collect());
+        }
+        let (centre, count) = (self.centre(u)?, material.variables().len());
+        self.points()
+            .enumerate()
+            .map(|(k, (gradients, _))| {
+                let deformation = deformation_gradient(gradients, u);
+                let seen = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))? * deformation;
+                let across = material.stretch_across(&seen, &memory[k * count..(k + 1) * count])?;
+                Ok(strain(&seen, across))
+            })
+            .collect()
+    }
+
     /// F at each quadrature point.
     pub fn deformations(&self, u: &[Vector2<f64>]) -> Vec<Matrix2<f64>> {
         self.points().map(|(gradients, _)| deformation_gradient(gradients, u)).collect()
@@ -52,67 +81,62 @@ impl SolidElement {
         self.hoop.is_some().then(|| self.hoop_stretches(u))
     }
 
-    /// The (bi)linear function nearest to values at the quadrature points, at the reference coordinates `at`.
-    pub fn fitted<const N: usize>(&self, values: &[[f64; N]], at: [f64; 2]) -> [f64; N] {
-        let fit = corner_fit(self.kind);
-        let corners = linear(self.kind).values(at);
-        let weight = |point: usize| corners.iter().enumerate().map(|(a, n)| n * fit[(a, point)]).sum::<f64>();
-        let mut sum = [0.0; N];
-        for (point, values) in values.iter().enumerate() {
-            let weight = weight(point);
-            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
-        }
-        sum
+    /// Shares of its quadrature points in the values at the points of the quadrature one order lower, a row for each of these: the same
+    /// values where it is the lower one already, of a full one their projection on the polynomials with as many terms.
+    pub fn reduced(&self) -> &'static DMatrix<f64> {
+        shares(self.kind, self.formulation)
     }
 
-    /// Cauchy stress at each node: the (bi)linear function nearest to the stresses at the quadrature points.
+    /// What a material [shows](Material::shown) at each quadrature point, one behind the other.
     ///
     /// # Errors
     /// [`MaterialFailure`] of the law at a quadrature point.
-    pub fn nodal_stresses(
+    pub fn shown(
         &self,
         material: &dyn Material,
         memory: &[f64],
         u: &[Vector2<f64>],
-    ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
-        let stresses = self.stresses(material, memory, u)?;
-        let fit = corner_fit(self.kind);
-        let mut corners = [[0.0; 4]; 4];
-        for (a, corner) in corners.iter_mut().enumerate().take(fit.nrows()) {
-            for (point, &CauchyStress { xx, yy, zz, xy }) in stresses.iter().enumerate() {
-                let weight = fit[(a, point)];
-                corner.iter_mut().zip([xx, yy, zz, xy]).for_each(|(sum, stress)| *sum += weight * stress);
-            }
+    ) -> Result<Vec<f64>, MaterialFailure> {
+        let (count, own) = (material.variables().len(), material.shown().len());
+        let mut values = vec![0.0; own * self.quadrature_points()];
+        if self.hoop.is_some() {
+            self.ring_shown(material, memory, u, &mut values)?;
+            return Ok(values);
         }
-        let at = |values: &[usize]| {
-            let mean =
-                |component: usize| values.iter().map(|&a| corners[a][component]).sum::<f64>() / values.len() as f64;
-            CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
-        };
-        let n = self.kind.corners();
-        let node = |a: usize| match a {
-            8 => at(&[0, 1, 2, 3]),
-            a if a < n => at(&[a]),
-            a => at(&self.kind.edge(a - n).0),
-        };
-        Ok((0..self.kind.nodes()).map(node).collect())
+        let centre = self.centre(u)?;
+        for (k, ((gradients, _), values)) in self.points().zip(values.chunks_exact_mut(own.max(1))).enumerate() {
+            let deformation = deformation_gradient(gradients, u);
+            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
+            material.show(&Straining::new(r * deformation, &memory[k * count..(k + 1) * count]), values)?;
+        }
+        Ok(values)
     }
 }
 
-/// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.
-fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
-    static FITS: [OnceLock<DMatrix<f64>>; 5] = [const { OnceLock::new() }; 5];
-    FITS[kind as usize].get_or_init(|| {
-        let points = kind.quadrature();
-        let values = points.iter().flat_map(|point| linear(kind).values(point.at));
-        let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
-        interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
+/// Shares of the quadrature points in the values at the points one order lower: lower points × quadrature points.
+///
+/// ```text
+/// Σ_q w_q (Σ_k c_k p_k(ξ_q) − s_q)² → min,   p = 1 for one point, 1, ξ, η, ξη for four
+/// ```
+fn shares(kind: ElementKind, formulation: Formulation) -> &'static DMatrix<f64> {
+    static SHARES: [[OnceLock<DMatrix<f64>>; 5]; 3] = [const { [const { OnceLock::new() }; 5] }; 3];
+    SHARES[formulation as usize][kind as usize].get_or_init(|| {
+        let (full, lower) = (formulation.quadrature(kind), kind.reduced_quadrature());
+        if full.len() == lower.len() {
+            return DMatrix::identity(full.len(), full.len());
+        }
+        let terms = |[x, y]: [f64; 2]| [1.0, x, y, x * y].into_iter().take(lower.len()).collect::<Vec<_>>();
+        let of = |points: &[QuadraturePoint]| {
+            let all = points.iter().flat_map(|point| terms(point.at));
+            DMatrix::from_row_iterator(points.len(), lower.len(), all)
+        };
+        let weights =
+            DMatrix::from_diagonal(&DVector::from_iterator(full.len(), full.iter().map(|point| point.weight)));
+        let weighted = of(&full).transpose() * weights;
+        let normal =
+            (&weighted * of(&full)).try_inverse().expect("the points of a Gauss rule determine its polynomials");
+        of(&lower) * normal * weighted
     })
-}
-
-/// The element with the same corners, and no other nodes.
-fn linear(kind: ElementKind) -> ElementKind {
-    if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 }
 }
 
 impl SolidElement {
@@ -120,19 +144,18 @@ impl SolidElement {
     ///
     /// # Errors
     /// [`ElementError::Degenerate`] when det(∂X/∂ξ) is not positive at a quadrature point,
-    /// [`ElementError::FBarNeedsQ4`] when F-bar is asked of another kind.
+    /// [`ElementError::FBarNeedsQ4`] or [`ElementError::ReducedNeedsQ8`] when a formulation is asked of a kind that it is not made for.
     pub fn new(
         kind: ElementKind,
-        f_bar: bool,
+        formulation: Formulation,
         section: Section,
         positions: &[Vector2<f64>],
     ) -> Result<Self, ElementError> {
         debug_assert_eq!(positions.len(), kind.nodes());
-        if f_bar && kind != ElementKind::Q4 {
-            return Err(ElementError::FBarNeedsQ4 { kind });
-        }
+        formulation.check(kind)?;
         let mut element = Self {
             kind,
+            formulation,
             gradients: Vec::new(),
             volumes: Vec::new(),
             mean_weight: 1.0,
@@ -145,7 +168,7 @@ impl SolidElement {
             values.into_iter().map(move |n| n / radius).collect::<Vec<_>>()
         };
         let mut area = 0.0;
-        for point in kind.quadrature() {
+        for point in formulation.quadrature(kind) {
             let (gradients, jacobian) = gradients(kind, point.at, positions)?;
             element.gradients.extend(gradients);
             let place = positions.iter().zip(kind.values(point.at)).map(|(x, n)| x * n).sum();
@@ -156,7 +179,7 @@ impl SolidElement {
             }
         }
         element.mean_weight = element.volume() / area;
-        if f_bar {
+        if formulation == Formulation::FBar {
             element.centre = Some(gradients(kind, kind.centre(), positions)?.0);
             if let Some(hoop) = &mut element.hoop {
                 hoop.centre = over_radius(kind.centre());
@@ -165,9 +188,19 @@ impl SolidElement {
         Ok(element)
     }
 
+    /// How it is integrated.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
+    }
+
     /// Whether it has the volume change of its centre everywhere.
     pub fn is_f_bar(&self) -> bool {
         self.centre.is_some()
+    }
+
+    /// Its quadrature points.
+    pub fn quadrature(&self) -> Vec<QuadraturePoint> {
+        self.formulation.quadrature(self.kind)
     }
 
     /// Kind of the element.

@@ -40,11 +40,30 @@ function fieldsOf(solid) {
     components.forEach((_, i) =>
       add(name, `${i}`, components.length > 1 ? `${spoken(name)} ${parts[i]}` : spoken(name), (frame) => [of(frame, i).chunk],
         (frame) => peek(of(frame, i).chunk).map(blankless), (frame, _, most) => of(frame, i)[most ? "most" : "range"]));
+    const chunks = (frame) => components.map((_, i) => of(frame, i).chunk);
+    const derived = { stress: "principal_stress", log_strain: "principal_strain" }[name];
+    if (derived && components.length === 4 && !solid.frames[0].fields[derived]) {
+      [0, 1, 2].forEach((i) =>
+        add(derived, `${i}`, `${spoken(derived)} ${i + 1}`, chunks, (frame) => principalValues(chunks(frame).map(peek), i),
+          (frame, _, most) => frame.fields[name].principal[i][most ? 1 : 0]));
+    }
+    if (name === "log_strain" && !solid.frames[0].fields.stretch_zz && all.some((value) => value !== 0)) {
+      add("stretch_zz", "0", spoken("stretch_zz"), (frame) => [of(frame, 2).chunk], (frame) => peek(of(frame, 2).chunk).map((e) => blankless(Math.exp(e))),
+        (frame, _, most) => of(frame, 2)[most ? "most" : "range"].map(Math.exp));
+    }
   }
   if (solid.body && solid.cells) {
     add("body", "id", "body", () => [], (_, view) => bodyOfNodes(view), (_, view) => [0, Math.max(1, ...(view ? bodyOfNodes(view) : [1]))]);
   }
   return fields;
+}
+
+/** One of the principal values of tensors xx, yy, zz, xy, the largest first. */
+function principalValues([xx, yy, zz, xy], i) {
+  return xx.map((x, k) => {
+    const [middle, radius] = [(x + yy[k]) / 2, Math.hypot((x - yy[k]) / 2, xy[k])];
+    return blankless([middle + radius, middle - radius, zz[k]].sort((a, b) => b - a)[i]);
+  });
 }
 
 const blankless = (value) => (Number.isNaN(value) ? NO_NUMBER : value);

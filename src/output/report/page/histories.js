@@ -36,7 +36,7 @@ function owners(runs, column) {
 
 const ENERGIES = [
   ["external_work", "external work"], ["kinetic", "kinetic"], ["strain", "strain"], ["contact_elastic", "contact, elastic"],
-  ["friction_dissipation", "friction"], ["damping_dissipation", "damping"], ["radiated", "radiated"],
+  ["friction_dissipation", "friction"], ["damping_dissipation", "damping"], ["plastic_dissipation", "yielding"], ["radiated", "radiated"],
   ["plastic_dissipation", "plastic"],
 ];
 

@@ -1,0 +1,97 @@
+"""Tables of the quick tier: bodies that yield, against closed forms of small strains, on meshes of blocks that stand here.
+
+Every function runs cases and returns rows, the head first. Stiffnesses are so high that the shape does not change. Needs numpy.
+"""
+
+from math import exp, log, pi, radians, tan
+
+import numpy as np
+
+from closed_forms import block, quarter
+from problems import HEAD, digits, row
+from results import Run
+
+E, NU = 1e5, 0.3
+
+
+def von_mises(strength):
+    return {"model": "von_mises", "E": E, "nu": NU, "sigma_y": strength}
+
+
+def hills_tube(program):
+    """A tube, b = 2 a, held along its axis and widened from inside: the pressure over the displacement of the bore (Hill 1950)."""
+    rows = [["elements", *HEAD]]
+    for name, kind, element, columns in (("Q4 F-bar, 24", "Q4", "f_bar", 24), ("Q8 reduced, 10", "Q8", "reduced", 10)):
+        mesh = [block("tube", [[1, 0], [2, 0], [2, 0.1], [1, 0.1]], [columns, 1], ["bottom", None, "top", "bore"], kind=kind)]
+        step = {"name": "widen", "duration": 4, "dt": {"initial": 0.05, "max": 0.05},
+                "supports": [{"on": "bottom", "uy": 0}, {"on": "top", "uy": 0}, {"on": "bore", "ux": 4 / E}]}
+        run = Run(program, {"section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"tube": {"material": von_mises(1), "element": element}},
+                            "steps": [step], "watch": ["bore"], "output": {"fields": False}})
+        pressure = lambda time: run.at("bore.fx", time) / (2 * pi * 0.1)
+        for time, exact in ((1, 0.5109), (1.5, 0.6474), (2, 0.7216), (3, 0.7871), (4, 0.7980)):
+            rows.append([name if time == 1 else "", *row(f"p/σ_y at E u/(σ_y a) = {time:g}", exact, pressure(time), 4)])
+    return rows
+
+
+def thick_sphere(program):
+    """A sphere, b = 2 a, under a pressure inside: how far its outside moves while the front of yielding is at c (Hill 1950)."""
+    rows = [["front", *HEAD]]
+    mesh = quarter(1, 2, [10, 16])
+    for front in (1.25, 1.5, 1.75):
+        pressure = 2 * log(front) + 2 / 3 * (1 - front**3 / 8)
+        step = {"name": "press", "duration": 1, "dt": {"initial": 0.05, "max": 0.05},
+                "supports": [{"on": "bottom", "uy": 0}], "loads": [{"on": "inside", "pressure": pressure}]}
+        run = Run(program, {"section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"body": {"material": von_mises(1), "element": "reduced"}},
+                            "steps": [step], "watch": ["outside", {"near": [2, 0]}], "output": {"fields": False}})
+        rows.append([f"c = {front:g} a", *row("E u(b)/(σ_y a)", front**3 * (1 - NU) / 4, run.last("near_2_0.ux") * E, 4)])
+    return rows
+
+
+def footing(program, material, element, kind, columns, rows, width, settlement):
+    """Half of a rigid rough footing of width 1 that is bonded to the ground: the mean pressure under it over its settlement."""
+    half, beside, depth = 0.5, width, 2
+    near, far = columns
+    mesh = [block("ground", [[0, -depth], [half, -depth], [half, 0], [0, 0]], [near[0], rows[0]], ["bottom", None, "footing", "middle"],
+                  kind=kind, grading=[near[1], rows[1]]),
+            block("ground", [[half, -depth], [beside, -depth], [beside, 0], [half, 0]], [far[0], rows[0]], ["bottom", "side", None, None],
+                  kind=kind, grading=[far[1], rows[1]])]
+    step = {"name": "settle", "duration": 1, "dt": {"initial": 0.02, "max": 0.05, "min": 1e-5},
+            "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}, {"on": "middle", "ux": 0},
+                         {"on": "footing", "ux": 0, "uy": -settlement}]}
+    body = {"material": material, **({"element": element} if element else {})}
+    return Run(program, {"mesh": {"blocks": mesh}, "bodies": {"ground": body}, "steps": [step], "watch": ["footing"], "output": {"fields": False}})
+
+
+# Elements beside the middle and beside the corner, and the ratio of the last size to the first.
+FINE = {"Q4": ([[20, 0.2], [30, 30]], [32, 0.05]), "Q8": ([[12, 0.1], [15, 30]], [16, 0.05]), "T6": ([[10, 0.2], [13, 15]], [14, 0.08])}
+
+
+def strip_footing(program):
+    """Clay that is sheared undrained, s_u = 1, under a rough strip footing: 2 + π (Prandtl 1920)."""
+    rows = [["elements, corner", *HEAD]]
+    clay = {**von_mises(3**0.5), "E": 1e4}
+    for name, kind, element in (("Q4 F-bar, B/100", "Q4", "f_bar"), ("Q8 reduced, B/100", "Q8", "reduced"), ("T6, B/50", "T6", None), ("Q4 in full, B/100", "Q4", None)):
+        run = footing(program, clay, element, kind, *FINE[kind], 2.5, 0.004)
+        rows.append([name, *row("N_c", 2 + pi, -run.last("footing.fy") / 0.5, 4)])
+    return rows
+
+
+def footing_on_soil(program):
+    """Soil of c = 1, φ = 20° without weight under a rough footing: N_c = (N_q − 1) cot φ (Prandtl) where ψ = φ; with ψ = 5° less."""
+    phi = radians(20)
+    exact = (exp(pi * tan(phi)) * tan(pi / 4 + phi / 2) ** 2 - 1) / tan(phi)
+    rows = [["flow", *HEAD]]
+    for psi in (20, 5):
+        soil = {"model": "mohr_coulomb", "E": 1e4, "nu": NU, "c": 1, "phi": 20, "psi": psi}
+        run = footing(program, soil, "reduced", "Q8", *FINE["Q8"], 4, 0.02)
+        found = -run.history["footing.fy"] / 0.5
+        rows.append([f"ψ = {psi}°", *row("N_c", exact, found[-1] if psi == 20 else found.max(), 4)])
+    return rows
+
+
+LIMIT = {
+    "hills_tube": hills_tube,
+    "thick_sphere": thick_sphere,
+    "strip_footing": strip_footing,
+    "footing_on_soil": footing_on_soil,
+}

@@ -1,0 +1,398 @@
+//! Bodies that yield: multiplicative plasticity by logarithmic strains.
+//!
+//! | law | yields where |
+//! |---|---|
+//! | [`VonMises`] | √(3/2) ‖s − α‖ = Y(ε̄): metals; clay that is sheared undrained |
+//! | [`DruckerPrager`] | √J₂ + η p = ξ c: a smooth cone |
+//! | [`MohrCoulomb`] | τ = c − σ_n tan φ on some plane: soil, rock |
+//!
+//! A law is a [`ReturnMap`] of small strains; [`Elastoplastic`] makes it one of large deformations, in every section.
+
+mod axes;
+mod drucker_prager;
+mod mohr_coulomb;
+mod von_mises;
+
+use std::fmt::Debug;
+
+use nalgebra::{Matrix4, Vector2, Vector3, Vector4};
+
+use super::spatial::{Stretched, plane, positive_stretch};
+use super::{
+    CauchyStress, Flow, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining,
+    positive_jacobian,
+};
+use crate::laws::parameter::{InvalidParameter, require_not_negative};
+use axes::Axes;
+pub use drucker_prager::{DruckerPrager, DruckerPragerParameters, Matching};
+pub use mohr_coulomb::{MohrCoulomb, MohrCoulombParameters, Softening};
+pub use von_mises::{BackStress, VonMises, VonMisesParameters};
+
+/// What a law answers in the principal axes of its trial strains. Components are 11, 22, 33, 12: 1 and 2 in plane, 3 across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
+pub struct Returned {
+    /// τ: Kirchhoff stress [F/L²]
+    pub stress: Vector4<f64>,
+    /// D = ∂τ/∂ε of the trial strains, of ε₁₂ being the tensor's component [F/L²]
+    pub tangent: Matrix4<f64>,
+    /// Δε_p: plastic strain of the increment [-]
+    pub plastic: Vector4<f64>,
+    /// Energy dissipated in the increment per reference volume [F/L²]
+    pub dissipation: f64,
+}
+
+impl Returned {
+    /// No yielding: τ = C:ε.
+    pub fn elastic(elastic: Lame, trial: &Vector3<f64>) -> Self {
+        Self {
+            stress: elastic.kirchhoff(&in_axes(trial)),
+            tangent: elastic.stiffness(),
+            plastic: Vector4::zeros(),
+            dissipation: 0.0,
+        }
+    }
+}
+
+/// Principal values as components.
+fn in_axes(principal: &Vector3<f64>) -> Vector4<f64> {
+    Vector4::new(principal.x, principal.y, principal.z, 0.0)
+}
+
+/// a:b of two symmetric tensors by their components.
+pub(super) fn double_dot(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3]
+}
+
+/// The deviator of a tensor, and its trace.
+fn deviator(tensor: &Vector4<f64>) -> (Vector4<f64>, f64) {
+    let trace = tensor[0] + tensor[1] + tensor[2];
+    (tensor - trace / 3.0 * ONE, trace)
+}
+
+/// The unit tensor.
+const ONE: Vector4<f64> = Vector4::new(1.0, 1.0, 1.0, 0.0);
+
+impl Lame {
+    /// K = λ + ⅔ G: bulk modulus [F/L²]
+    pub(super) fn bulk(&self) -> f64 {
+        self.lambda + 2.0 / 3.0 * self.shear
+    }
+
+    /// τ = λ tr(ε) 1 + 2G ε
+    fn kirchhoff(&self, strain: &Vector4<f64>) -> Vector4<f64> {
+        self.lambda * (strain[0] + strain[1] + strain[2]) * ONE + 2.0 * self.shear * strain
+    }
+
+    /// The strain of a stress, ε = dev τ/2G + tr τ/9K.
+    fn strain(&self, stress: &Vector4<f64>) -> Vector4<f64> {
+        let (deviator, trace) = deviator(stress);
+        deviator / (2.0 * self.shear) + trace / (9.0 * self.bulk()) * ONE
+    }
+
+    /// W = λ/2 (tr ε)² + G ε:ε
+    fn stored(&self, strain: &Vector4<f64>) -> f64 {
+        let trace = strain[0] + strain[1] + strain[2];
+        0.5 * self.lambda * trace * trace + self.shear * double_dot(strain, strain)
+    }
+
+    /// C = λ 1⊗1 + 2G
+    fn stiffness(&self) -> Matrix4<f64> {
+        self.lambda * ONE * ONE.transpose() + Matrix4::from_diagonal_element(2.0 * self.shear)
+    }
+}
+
+/// A law that yields, at small strains: a pure function of trial strains and history.
+///
+/// ```text
+/// (τ, D, Δε_p, history₁, dissipation) = law(ε_trial; history₀)
+/// ```
+/// The trial strains are principal ones, so the law is isotropic. Its history begins with the equivalent plastic strain ε̄_p and the
+/// plastic volume strain, which [`Elastoplastic`] adds up, then come its own numbers, then [`tensors`](Self::tensors) in the axes of the
+/// trial strains.
+pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
+    /// Its name in a case.
+    fn name(&self) -> &'static str;
+
+    /// λ and G of its elasticity, τ = λ tr(ε_e) 1 + 2G ε_e.
+    fn elastic(&self) -> Lame;
+
+    /// Names of its own history, that of the tensors last: four each, xx, yy, zz, xy.
+    fn history(&self) -> &[&'static str] {
+        &[]
+    }
+
+    /// How many tensors there are among it, which turn with the body.
+    fn tensors(&self) -> usize {
+        0
+    }
+
+    /// The answer to trial strains. The committed history stands in `history`, and what it is at the end of the increment is written
+    /// over it.
+    ///
+    /// # Errors
+    /// [`MaterialFailure::NotConverged`] when there is no return to the yield surface.
+    fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure>;
+
+    /// f of a stress: 0 where it yields, less where it does not [F/L²]
+    fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64;
+
+    /// Energy that a history stores per volume besides the elastic strains, as back stresses do [F/L²]
+    fn stored(&self, _history: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Whether it dilates as it yields.
+    fn flow(&self) -> Flow;
+
+    /// Whether D is symmetric, as it is where the flow is associated, and ∂P/∂F with it.
+    fn is_associated(&self) -> bool;
+
+    /// What makes results depend on the size of elements: "softens", or another word; none if nothing does.
+    fn localizes(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Whether the law makes sense in a plate.
+    fn in_plates(&self) -> bool {
+        false
+    }
+
+    /// Why a stress beyond the yield surface is one, and what to do, for a message.
+    fn beyond(&self, stress: &CauchyStress) -> String;
+}
+
+/// A [`ReturnMap`] at large deformations, F = F_e F_p.
+///
+/// ```text
+/// b = F C_p⁻¹ Fᵀ = Σ b_i m_i⊗m_i,   ε_i = ½ ln b_i                      trial, i = 1, 2 in plane, 3 across it       (1)
+/// τ, D, Δε_p = law(ε_i; history),   ε_e = ε − Δε_p                                                                  (2)
+/// C_p⁻¹ ← F⁻¹ exp(2 ε_e) F⁻ᵀ,   P = τ F⁻ᵀ                               the exponential map                         (3)
+/// W = λ/2 (tr ε_e)² + G ε_e:ε_e + what the history stores, less that at the start                                   (4)
+/// ```
+/// with F_p of C_p⁻¹ = F_p⁻¹ F_p⁻ᵀ, so that F at the end of the increment alone is needed. Plastic volume is exact: tr Δε_p = 0 keeps
+/// det C_p. The tangent is that of (1) to (3), l = dF F⁻¹ in the axes m:
+///
+/// ```text
+/// dε_ii = l_ii,   dε₁₂ = (ε₁ − ε₂)/(b₁ − b₂) (b₂ l₁₂ + b₁ l₂₁),   dτ = D:dε,   dP = (dτ − τ lᵀ) F⁻ᵀ                  (5)
+/// ```
+/// Tensors of the history do not share the axes of b. They are kept unrotated, α = R α̂ Rᵀ with F = R U, which is objective and does
+/// not oscillate in large shear; dτ then follows the spin of R, dτ − [Ω, τ] = D:(dε − [Ω, ε]), Ω = dR Rᵀ.
+///
+/// An initial stress is that of the law from the start: C_p⁻¹ = exp(2 ε(σ₀)), so that it counts for yielding. With a relaxation time τ_v
+/// the answer lags behind (Duvaut & Lions), x₁ = (x_trial + r x_law)/(1 + r) of stress and history alike, r = Δt/τ_v; bands of
+/// localized strain then have a width of their own.
+///
+/// # Errors
+/// [`MaterialFailure::Inverted`] when det F is not positive, [`MaterialFailure::OutOfRange`] when an increment of plastic strain is above
+/// 0.2, and what the law says.
+///
+/// Source: Simo (1992), Comput. Methods Appl. Mech. Eng. 99, 61, doi:10.1016/0045-7825(92)90123-2; de Souza Neto, Perić & Owen (2008),
+/// Computational Methods for Plasticity, ch. 14.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elastoplastic<L> {
+    law: L,
+    density: f64,
+    /// τ_v [T]
+    viscosity: f64,
+    names: Vec<&'static str>,
+}
+
+/// C_p⁻¹ − 1, what was stored at the start, and what every law has in its history.
+const STATE: [&str; 7] = [
+    "plastic_xx",
+    "plastic_yy",
+    "plastic_xy",
+    "plastic_zz",
+    "energy_at_start",
+    "equivalent_plastic_strain",
+    "plastic_volume_strain",
+];
+
+/// Place of W at the start among the variables.
+const AT_START: usize = 4;
+
+/// Place of the law's history.
+const HISTORY: usize = 5;
+
+/// What every law shows.
+const SHOWN: [&str; 3] = ["equivalent_plastic_strain", "plastic_volume_strain", "yield_indicator"];
+
+/// Largest component of an increment of plastic strain.
+const LARGEST: f64 = 0.2;
+
+/// Share of the stiffness by which a stress may be beyond the yield surface by round-off.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Share of the strength by which an initial stress may be beyond the yield surface: numbers are written with a few digits.
+const WRITTEN: f64 = 1e-9;
+
+impl<L: ReturnMap> Elastoplastic<L> {
+    /// A law at large deformations, with a density [M/L³] and the relaxation time of its viscosity, 0 for none [T].
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when one of them is out of its range.
+    pub fn new(law: L, density: f64, viscosity: f64) -> Result<Self, InvalidParameter> {
+        require_not_negative("density", density)?;
+        require_not_negative("viscosity", viscosity)?;
+        let names = STATE.iter().chain(law.history()).copied().collect();
+        Ok(Self { law, density, viscosity, names })
+    }
+
+    /// Trial strains in the axes of b, the law's answer at the end of the increment and its history there, unrotated.
+    fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned), MaterialFailure> {
+        let Straining { deformation, stretch, dt, old } = *straining;
+        positive_stretch(straining)?;
+        positive_jacobian(&deformation)?;
+        let axes = Axes::of(&deformation, stretch, old)?;
+        new.copy_from_slice(old);
+        let history = &mut new[HISTORY..];
+        let first = history.len() - 4 * self.law.tensors();
+        history[first..].chunks_exact_mut(4).for_each(|tensor| axes.enter(tensor));
+        let mut found = self.law.returned(&axes.strains, history)?;
+        let largest = found.plastic.amax();
+        if !(largest <= LARGEST) {
+            let (law, quantity) = (self.law.name(), "plastic strain of an increment");
+            return Err(MaterialFailure::OutOfRange { law, quantity, value: largest, limit: LARGEST });
+        }
+        history[first..].chunks_exact_mut(4).for_each(|tensor| axes.leave(tensor));
+        if self.viscosity > 0.0 {
+            self.lag(dt, &axes, &old[HISTORY..], history, &mut found);
+        }
+        let (deviator, volume) = deviator(&found.plastic);
+        history[0] = old[HISTORY] + (2.0 / 3.0 * double_dot(&deviator, &deviator)).sqrt();
+        history[1] = old[HISTORY + 1] + volume;
+        axes.flow(&found.plastic, stretch, new);
+        Ok((axes, found))
+    }
+
+    /// Let an answer lag behind, by the law of Duvaut and Lions.
+    fn lag(&self, dt: f64, axes: &Axes, old: &[f64], history: &mut [f64], found: &mut Returned) {
+        let share = dt / (self.viscosity + dt);
+        let elastic = self.law.elastic();
+        for (new, old) in history.iter_mut().zip(old) {
+            *new = old + share * (*new - old);
+        }
+        found.plastic *= share;
+        found.stress = elastic.kirchhoff(&(in_axes(&axes.strains) - found.plastic));
+        found.tangent = (1.0 - share) * elastic.stiffness() + share * found.tangent;
+        let stored = self.law.stored(history) - self.law.stored(old);
+        found.dissipation = double_dot(&found.stress, &found.plastic) - stored;
+    }
+
+    /// Elastic energy and that of the history.
+    fn stored(&self, elastic_strain: &Vector4<f64>, variables: &[f64]) -> f64 {
+        self.law.elastic().stored(elastic_strain) + self.law.stored(&variables[HISTORY..])
+    }
+
+    /// f where the law remembers `straining.old`.
+    fn indicator(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+        let axes = Axes::of(&straining.deformation, straining.stretch, straining.old)?;
+        let mut history = straining.old[HISTORY..].to_vec();
+        let first = history.len() - 4 * self.law.tensors();
+        history[first..].chunks_exact_mut(4).for_each(|tensor| axes.enter(tensor));
+        Ok(self.law.yield_indicator(&self.law.elastic().kirchhoff(&in_axes(&axes.strains)), &history))
+    }
+}
+
+impl<L: ReturnMap> Spatial for Elastoplastic<L> {
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
+        let (axes, found) = self.answer(straining, new)?;
+        let (stress, tangent) = axes.first_piola_kirchhoff(&found, self.law.tensors() > 0);
+        let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - straining.old[AT_START];
+        Ok(Stretched { stress, tangent, energy, dissipation: found.dissipation })
+    }
+
+    /// That which leaves a plate without out-of-plane stress if it does not yield in the increment.
+    fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+        let jacobian = positive_jacobian(&straining.deformation)?;
+        let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| straining.old[k]);
+        let areal = jacobian.ln() + 0.5 * (xx + yy + xx * yy - xy * xy).ln_1p();
+        let Lame { lambda, shear } = self.law.elastic();
+        Ok(-lambda / (lambda + 2.0 * shear) * areal - 0.5 * zz.ln_1p())
+    }
+}
+
+impl<L: ReturnMap> Material for Elastoplastic<L> {
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    fn p_wave_modulus(&self) -> f64 {
+        self.law.elastic().constrained_modulus()
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.law.elastic().shear
+    }
+
+    fn variables(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.law.is_associated() && self.law.tensors() == 0
+    }
+
+    fn flow(&self) -> Option<Flow> {
+        Some(self.law.flow())
+    }
+
+    fn concern(&self) -> Option<String> {
+        let why = self.law.localizes().filter(|_| self.viscosity == 0.0)?;
+        Some(format!(
+            "`{}` {why}: bands of localized strain are as wide as an element, and what follows a peak load depends on the mesh; \
+             compare two meshes, or give the law a `viscosity`",
+            self.law.name()
+        ))
+    }
+
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        self.law.in_plates().then(|| Box::new(PlaneStress::new(self.clone())) as Box<dyn Material>)
+    }
+
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        Some(self)
+    }
+
+    fn holds_initial_stress(&self) -> bool {
+        true
+    }
+
+    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+        let CauchyStress { xx, yy, zz, xy } = *stress;
+        let (tensor, history) = (Vector4::new(xx, yy, zz, xy), vec![0.0; self.names.len() - HISTORY]);
+        // f is a function of stresses in any axes.
+        let f = self.law.yield_indicator(&tensor, &history);
+        match f <= WRITTEN * tensor.amax() {
+            true => Ok(()),
+            false => Err(format!("is beyond the yield surface, f = {f:.6e} > 0: {}", self.law.beyond(stress))),
+        }
+    }
+
+    fn initial_state(&self, _: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
+        let CauchyStress { xx, yy, zz, xy } = *stress;
+        let strain = self.law.elastic().strain(&Vector4::new(xx, yy, zz, xy));
+        let [xx, yy, zz, xy] = axes::exponential_less_one(&(2.0 * strain)).into();
+        variables[..AT_START].copy_from_slice(&[xx, yy, xy, zz]);
+        variables[AT_START] = self.stored(&strain, variables);
+    }
+
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        let Stretched { stress, tangent, energy, dissipation } = self.stretched(straining, new)?;
+        let stress_zz = stress[4] / straining.deformation.determinant();
+        let tangent = tangent.fixed_view::<4, 4>(0, 0).into();
+        Ok(MaterialResponse { stress: plane(&stress), tangent, energy, stress_zz, dissipation })
+    }
+
+    fn shown(&self) -> &'static [&'static str] {
+        &SHOWN
+    }
+
+    fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
+        let indicator = self.indicator(straining)?;
+        values.copy_from_slice(&[straining.old[HISTORY], straining.old[HISTORY + 1], indicator]);
+        Ok(())
+    }
+}

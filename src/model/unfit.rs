@@ -1,0 +1,80 @@
+//! Elements that do not fit their body.
+
+use std::collections::HashMap;
+
+use super::text::{count, number};
+use crate::laws::bulk::Flow;
+use crate::mesh::shape::ElementKind;
+use crate::model::element::Formulation;
+use crate::model::{Body, Model};
+
+/// Warnings about elements.
+pub fn concerns(model: &Model) -> Vec<String> {
+    let lock = model.bodies.iter().filter_map(|body| locks(model, body));
+    lock.chain(alone(model)).collect()
+}
+
+/// Elements that lock where their body yields: plastic flow says how the volume changes at every integration point, which is more than
+/// the nodes of these elements can follow. In a plate the thickness is free to.
+///
+/// Source: Nagtegaal, Parks & Rice (1974), Comput. Methods Appl. Mech. Eng. 4, 153, doi:10.1016/0045-7825(74)90032-2.
+fn locks(model: &Model, body: &Body) -> Option<String> {
+    let flow = body.material.flow().filter(|_| !model.mesh.section.is_plate())?;
+    let is_unfit = |e: &&usize| match (model.mesh.elements[**e].kind, model.solids[**e].formulation(), flow) {
+        (ElementKind::T6, ..) | (_, Formulation::Reduced, _) => false,
+        (_, Formulation::FBar, flow) => flow != Flow::Isochoric,
+        _ => true,
+    };
+    let unfit: Vec<usize> = body.elements.iter().filter(is_unfit).copied().collect();
+    let first = *unfit.first()?;
+    let mut kinds: Vec<String> = unfit.iter().map(|&e| format!("{:?}", model.mesh.elements[e].kind)).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let (kinds, name) = (kinds.join(", "), &body.name);
+    Some(match (model.solids[first].formulation(), flow) {
+        (Formulation::FBar, _) => format!(
+            "body `{name}`: it dilates where it yields, which f_bar cures in part only: limit loads come out some 10 % too high; take Q8 with \
+             \"element\": \"reduced\", or T6"
+        ),
+        (_, Flow::Isochoric) => format!(
+            "body `{name}`: its elements ({kinds}) lock where it yields, and limit loads come out up to a third too high: take Q4 with \
+             \"element\": \"f_bar\", Q8 with \"element\": \"reduced\", or T6"
+        ),
+        _ => format!(
+            "body `{name}`: its elements ({kinds}) lock where it yields and dilates, and limit loads come out up to two thirds too high: take \
+             Q8 with \"element\": \"reduced\", or T6"
+        ),
+    })
+}
+
+/// An element with reduced integration bends into an hourglass without forces unless an edge holds it: one that it shares with another
+/// element.
+fn alone(model: &Model) -> Option<String> {
+    let elements = &model.mesh.elements;
+    if model.solids.iter().all(|solid| solid.formulation() != Formulation::Reduced) {
+        return None;
+    }
+    let edges = |e: usize| {
+        let (kind, nodes) = (elements[e].kind, &elements[e].nodes);
+        (0..kind.corners()).map(move |edge| {
+            let [a, b] = kind.edge(edge).0.map(|corner| nodes[corner]);
+            [a.min(b), a.max(b)]
+        })
+    };
+    let mut times: HashMap<[usize; 2], usize> = HashMap::new();
+    (0..elements.len()).flat_map(edges).for_each(|edge| *times.entry(edge).or_default() += 1);
+    let is_alone =
+        |e: &usize| model.solids[*e].formulation() == Formulation::Reduced && edges(*e).all(|edge| times[&edge] == 1);
+    let lonely: Vec<usize> = (0..elements.len()).filter(is_alone).collect();
+    let &first = lonely.first()?;
+    let body = &model.bodies[model.body_of_element[first]].name;
+    let [x, y] = [0, 1].map(|k| {
+        let nodes = &elements[first].nodes;
+        number(nodes.iter().map(|&node| model.mesh.nodes[node][k]).sum::<f64>() / nodes.len() as f64)
+    });
+    Some(format!(
+        "body `{body}`: {} of reduced integration without an edge in common with another, as at ({x}, {y}): it can bend into an hourglass without \
+         forces, so divide it, or leave out \"element\": \"reduced\"",
+        count(lonely.len(), "element")
+    ))
+}

@@ -1,0 +1,364 @@
+//! Stresses and strains at nodes and at probes, recovered from the elements around: right at surfaces, too.
+//!
+//! Stresses are more accurate at the points of the quadrature one order lower than anywhere else in an element (the centre of Q4, 2 × 2 points
+//! of Q8 and Q9, the three points of T6). Around a place X₀ a polynomial is fitted to the values there, body by body:
+//!
+//! ```text
+//! σ*(X) = Σ c_k P_k(X),   P = 1, x, y, x², xy, y²,   Σ_s |X_s − X₀|⁻⁴ (σ*(X_s) − σ_s)² → min,   σ(X₀) = σ*(X₀)       (1)
+//! ```
+//! X are places of the undeformed body. The patch is the elements around X₀ and, layer by layer, their neighbours: one layer at most of quadratic
+//! elements, two of linear ones, so that at a surface there are the three layers that a parabola needs; inside fewer will do. The weights let the
+//! nearest values count most; the others only tell how the field bends. Those of T3 count alike: single ones err either way, and only many together
+//! are right.
+//!
+//! A linear field is met exactly, a smooth one at a surface to the third order in the size of the elements. Where the samples do not tell
+//! a term, it is left out, the shorter direction of the patch first: σ(X₀) is a weighted sum of samples, and the magnitudes of these
+//! weights may add up to [`AMPLIFIED`] at most. A body of one layer has its values at all quadrature points fitted by a linear field instead: bending
+//! is seen.
+//!
+//! Nodes that bodies share have the mean of the values of the bodies.
+//!
+//! Source: Zienkiewicz & Zhu (1992), Int. J. Numer. Meth. Engng 33, 1331, doi:10.1002/nme.1620330702, with the weights of Lancaster & Salkauskas
+//! (1981), Math. Comp. 37, 141.
+
+use nalgebra::{Rotation2, Vector2};
+
+use crate::laws::bulk::CauchyStress;
+use crate::mesh::shape::{ElementKind, QuadraturePoint};
+use crate::model::Model;
+use crate::model::state::State;
+
+/// The largest sum of magnitudes of the weights of samples: above it errors of the samples would be amplified.
+const AMPLIFIED: f64 = 10.0;
+
+/// The same sum from which a patch needs no further layer: less than that of an extrapolation, which has 2 at least.
+const INSIDE: f64 = 1.9;
+
+/// Distance from a sample, in parts of the size of the patch, below which weights do not grow any more.
+const NEAREST: f64 = 1e-3;
+
+/// Part of a term that must be new beside the terms before it.
+const NEW: f64 = 1e-6;
+
+/// The elements around every node.
+#[derive(Debug)]
+pub struct Recovery {
+    /// Start of the elements of each node, and end of the last
+    starts: Vec<usize>,
+    elements: Vec<usize>,
+}
+
+/// A value at a place as a weighted sum of the values at the quadrature points of some elements.
+#[derive(Debug)]
+pub struct Stencil {
+    elements: Vec<usize>,
+    /// of the quadrature points of each element, one after the other
+    weights: Vec<f64>,
+}
+
+impl Stencil {
+    /// The elements.
+    pub fn elements(&self) -> &[usize] {
+        &self.elements
+    }
+
+    /// The sums, component by component. `values` are those of an element: all components at its first quadrature point, then at
+    /// its second, …
+    pub fn sum<'v>(&self, sums: &mut [f64], values: impl Fn(usize) -> &'v [f64]) {
+        let mut weights = self.weights.iter();
+        for &e in &self.elements {
+            let points = values(e).chunks_exact(sums.len());
+            for (point, weight) in points.zip(&mut weights) {
+                combine(sums, *weight, point);
+            }
+        }
+    }
+}
+
+impl Recovery {
+    /// Of the mesh of a model.
+    pub fn new(model: &Model) -> Self {
+        let mut starts = vec![0; model.mesh.nodes.len() + 1];
+        let elements = || model.mesh.elements.iter().enumerate();
+        let all = || elements().flat_map(|(e, element)| element.nodes.iter().map(move |&node| (e, node)));
+        all().for_each(|(_, node)| starts[node + 1] += 1);
+        (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
+        let (mut next, mut elements) = (starts.clone(), vec![0; starts[starts.len() - 1]]);
+        for (e, node) in all() {
+            elements[next[node]] = e;
+            next[node] += 1;
+        }
+        Self { starts, elements }
+    }
+
+    fn around(&self, node: usize) -> &[usize] {
+        &self.elements[self.starts[node]..self.starts[node + 1]]
+    }
+
+    /// The stencils at a node, one for each body there, with its number.
+    pub fn at_node(&self, model: &Model, node: usize) -> Vec<(usize, Stencil)> {
+        let mut bodies: Vec<usize> = self.around(node).iter().map(|&e| model.body_of_element[e]).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let of_body = |body: usize| {
+            let seeds = self.around(node).iter().copied().filter(|&e| model.body_of_element[e] == body).collect();
+            (body, self.stencil(model, seeds, model.mesh.nodes[node]))
+        };
+        bodies.into_iter().map(of_body).collect()
+    }
+
+    /// The stencil at a place of the undeformed body in an element.
+    pub fn at(&self, model: &Model, element: usize, place: Vector2<f64>) -> Stencil {
+        self.stencil(model, vec![element], place)
+    }
+
+    /// (1) at a place of a body, from some of its elements on.
+    fn stencil(&self, model: &Model, seeds: Vec<usize>, place: Vector2<f64>) -> Stencil {
+        let (fit, elements) = self.patch(model, seeds, place);
+        if fit.terms < 2 {
+            // Samples in a row.
+            let all = places(model, &elements, |e| model.solids[e].quadrature());
+            return Stencil { weights: Fit::new(&all, place, (2, Nearness::Counts)).weights, elements };
+        }
+        let mut weights = Vec::new();
+        let mut of_samples = fit.weights.iter();
+        for &e in &elements {
+            let shares = model.solids[e].reduced();
+            let first = weights.len();
+            weights.resize(first + shares.ncols(), 0.0);
+            for (row, weight) in shares.row_iter().zip(&mut of_samples) {
+                weights[first..].iter_mut().zip(row.iter()).for_each(|(sum, share)| *sum += weight * share);
+            }
+        }
+        Stencil { elements, weights }
+    }
+
+    /// The seeds with as many layers of neighbours in the same body as a fit needs, ascending, and the fit.
+    fn patch(&self, model: &Model, seeds: Vec<usize>, place: Vector2<f64>) -> (Fit, Vec<usize>) {
+        let is_quadratic = |&e: &usize| {
+            let kind = model.mesh.elements[e].kind;
+            kind.nodes() > kind.corners()
+        };
+        let layers = if seeds.iter().any(is_quadratic) { 1 } else { 2 };
+        let is_t3 = |&e: &usize| model.mesh.elements[e].kind == ElementKind::T3;
+        let nearness = if seeds.iter().all(is_t3) { Nearness::IsNothing } else { Nearness::Counts };
+        let fit = |patch: &[usize]| {
+            let samples = places(model, patch, |e| model.mesh.elements[e].kind.reduced_quadrature());
+            Fit::new(&samples, place, (5, nearness))
+        };
+        let mut found = (fit(&seeds), seeds);
+        for _ in 0..layers {
+            if found.0.terms == 5 && found.0.amplified <= INSIDE {
+                break;
+            }
+            let patch = self.with_neighbours(model, &found.1);
+            found = (fit(&patch), patch);
+        }
+        found
+    }
+
+    /// Elements and their neighbours in the same body, ascending.
+    fn with_neighbours(&self, model: &Model, elements: &[usize]) -> Vec<usize> {
+        let of = |&e: &usize| model.mesh.elements[e].nodes.iter().copied();
+        let mut nodes: Vec<usize> = elements.iter().flat_map(of).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut all: Vec<usize> = nodes.iter().flat_map(|&node| self.around(node).iter().copied()).collect();
+        let body = elements.first().map(|&e| model.body_of_element[e]);
+        all.retain(|&e| Some(model.body_of_element[e]) == body);
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
+
+/// Fields of the bodies at all nodes.
+#[derive(Debug)]
+pub struct NodalFields {
+    /// Cauchy stress [F/L²], and logarithmic strain xx, yy, zz, xy [-]; 0 at nodes without elements
+    pub tensors: Vec<(CauchyStress, [f64; 4])>,
+    /// what laws show, by its names: NaN where no law shows it
+    pub shown: Vec<(&'static str, Vec<f64>)>,
+}
+
+/// Cauchy stress at the nodes.
+pub fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
+    nodal_fields(model, state).tensors.into_iter().map(|(stress, _)| stress).collect()
+}
+
+/// Fields at the nodes. An element that the material law cannot answer counts as 0: it never occurs in an accepted state.
+pub fn nodal_fields(model: &Model, state: &State) -> NodalFields {
+    let elements = 0..model.mesh.elements.len();
+    let tensors: Vec<Vec<f64>> = elements.clone().map(|e| stress_and_strain(model, state, e)).collect();
+    let shown: Vec<Vec<f64>> = elements.map(|e| shown(model, state, e)).collect();
+    let (recovery, names) = (Recovery::new(model), shown_names(model));
+    let nodes = model.mesh.nodes.len();
+    let mut fields = NodalFields {
+        tensors: Vec::with_capacity(nodes),
+        shown: names.iter().map(|name| (*name, Vec::with_capacity(nodes))).collect(),
+    };
+    for node in 0..nodes {
+        let stencils = recovery.at_node(model, node);
+        let mut sums = [0.0; 8];
+        stencils.iter().for_each(|(_, stencil)| stencil.sum(&mut sums, |e| &tensors[e]));
+        let [xx, yy, zz, xy, strain @ ..] = sums.map(|sum| sum / stencils.len().max(1) as f64);
+        fields.tensors.push((CauchyStress { xx, yy, zz, xy }, strain));
+        let of_bodies: Vec<(&[&str], Vec<f64>)> = stencils
+            .iter()
+            .map(|(body, stencil)| {
+                let names = model.bodies[*body].material.shown();
+                let mut sums = vec![0.0; names.len()];
+                if !names.is_empty() {
+                    stencil.sum(&mut sums, |e| &shown[e]);
+                }
+                (names, sums)
+            })
+            .collect();
+        for (name, values) in &mut fields.shown {
+            let own = |(names, sums): &(&[&str], Vec<f64>)| Some(sums[names.iter().position(|own| own == name)?]);
+            let found: Vec<f64> = of_bodies.iter().filter_map(own).collect();
+            let mean = found.iter().sum::<f64>() / found.len() as f64;
+            values.push(if found.is_empty() { f64::NAN } else { mean });
+        }
+    }
+    fields
+}
+
+/// Names of what the laws of the bodies show.
+pub fn shown_names(model: &Model) -> Vec<&'static str> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in model.bodies.iter().flat_map(|body| body.material.shown()) {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Stress and logarithmic strain at the quadrature points of an element, as [`Stencil::sum`] takes them.
+fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
+    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
+    let (material, memory) = (&*model.bodies[model.body_of_element[e]].material, model.memories.of(e, &state.memory));
+    let both = solid.stresses(material, memory, &u).and_then(|stresses| {
+        let strains = solid.log_strains(material, memory, &u)?;
+        Ok(stresses
+            .iter()
+            .zip(&strains)
+            .flat_map(|(stress, strain)| stress.components().into_iter().chain(*strain))
+            .collect())
+    });
+    both.unwrap_or_else(|_| vec![0.0; 8 * solid.quadrature_points()])
+}
+
+/// What the law of an element shows at its quadrature points, as [`Stencil::sum`] takes it.
+fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
+    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
+    let material = &*model.bodies[model.body_of_element[e]].material;
+    let found = solid.shown(material, model.memories.of(e, &state.memory), &u);
+    found.unwrap_or_else(|_| vec![0.0; material.shown().len() * solid.quadrature_points()])
+}
+
+/// Places of the undeformed bodies at points of some elements.
+fn places(model: &Model, elements: &[usize], points: impl Fn(usize) -> Vec<QuadraturePoint>) -> Vec<Vector2<f64>> {
+    let of_element = |&e: &usize| {
+        let element = &model.mesh.elements[e];
+        let place = move |point: QuadraturePoint| {
+            let shares = element.kind.values(point.at);
+            element.nodes.iter().zip(shares).map(|(&node, share)| model.mesh.nodes[node] * share).sum()
+        };
+        points(e).into_iter().map(place)
+    };
+    elements.iter().flat_map(of_element).collect()
+}
+
+/// Whether near samples count more.
+#[derive(Clone, Copy)]
+enum Nearness {
+    Counts,
+    IsNothing,
+}
+
+/// A value as a weighted sum of samples.
+struct Fit {
+    weights: Vec<f64>,
+    /// number of terms besides the constant: 2 are a linear field
+    terms: usize,
+    /// sum of the magnitudes of the weights
+    amplified: f64,
+}
+
+impl Fit {
+    /// The fit at a place with the constant and so many terms at most.
+    ///
+    /// The weighted constant is made orthogonal to the other weighted terms, one after the other; the value at the place is then
+    /// the projection of the samples on what is left of it.
+    fn new(samples: &[Vector2<f64>], place: Vector2<f64>, (most, nearness): (usize, Nearness)) -> Self {
+        let arms: Vec<Vector2<f64>> = samples.iter().map(|sample| sample - place).collect();
+        let size = arms.iter().map(|arm| arm.norm()).fold(0.0, f64::max);
+        if size == 0.0 {
+            return Self { weights: vec![1.0 / arms.len() as f64; arms.len()], terms: 0, amplified: 1.0 };
+        }
+        let turned = long_axis(&arms).inverse();
+        let own: Vec<Vector2<f64>> = arms.iter().map(|arm| turned * arm / size).collect();
+        let near = |x: &Vector2<f64>| match nearness {
+            Nearness::Counts => 1.0 / x.norm_squared().max(NEAREST * NEAREST),
+            Nearness::IsNothing => 1.0,
+        };
+        let near: Vec<f64> = own.iter().map(near).collect();
+        let terms: [fn(&Vector2<f64>) -> f64; 5] = [|x| x.x, |x| x.y, |x| x.x * x.x, |x| x.x * x.y, |x| x.y * x.y];
+        let mut rest = near.clone();
+        let mut fit = Self { weights: projection(&near, &rest), terms: 0, amplified: 1.0 };
+        let mut directions: Vec<Vec<f64>> = Vec::new();
+        for (k, term) in terms.iter().take(most).enumerate() {
+            let mut column: Vec<f64> = own.iter().zip(&near).map(|(x, near)| near * term(x)).collect();
+            let whole = dot(&column, &column);
+            // Twice: round-off of the first time is made orthogonal, too.
+            for direction in directions.iter().chain(&directions) {
+                let share = -dot(direction, &column);
+                combine(&mut column, share, direction);
+            }
+            let new = dot(&column, &column);
+            if new.is_nan() || new <= NEW * NEW * whole {
+                break;
+            }
+            column.iter_mut().for_each(|value| *value /= new.sqrt());
+            let share = -dot(&column, &rest);
+            combine(&mut rest, share, &column);
+            directions.push(column);
+            let weights = projection(&near, &rest);
+            let amplified: f64 = weights.iter().map(|weight| weight.abs()).sum();
+            if amplified.is_nan() || amplified > AMPLIFIED {
+                break;
+            }
+            fit = Self { weights, terms: k + 1, amplified };
+        }
+        fit
+    }
+}
+
+/// The weights of samples, from their nearness and what is left of the weighted constant.
+fn projection(near: &[f64], rest: &[f64]) -> Vec<f64> {
+    let square = dot(rest, rest);
+    near.iter().zip(rest).map(|(near, rest)| near * rest / square).collect()
+}
+
+/// The rotation from the x axis to the direction in which places extend farthest.
+fn long_axis(arms: &[Vector2<f64>]) -> Rotation2<f64> {
+    let mean = arms.iter().sum::<Vector2<f64>>() / arms.len() as f64;
+    let [mut xx, mut yy, mut xy] = [0.0; 3];
+    for arm in arms {
+        let from_mean = arm - mean;
+        xx += from_mean.x * from_mean.x;
+        yy += from_mean.y * from_mean.y;
+        xy += from_mean.x * from_mean.y;
+    }
+    Rotation2::new(0.5 * f64::atan2(2.0 * xy, xx - yy))
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn combine(sums: &mut [f64], share: f64, of: &[f64]) {
+    sums.iter_mut().zip(of).for_each(|(sum, of)| *sum += share * of);
+}

@@ -1,0 +1,552 @@
+//! Laws that yield at large deformations: tangents against differences over random histories, objectivity, what is committed asked for
+//! again, steps of an increment, energies, and closed forms.
+
+use crate::common::close;
+use crate::random::Random;
+use fecontact::laws::bulk::{
+    CauchyStress, Flow, Imposed, Material, MaterialFailure, MaterialParameters, Straining, Stretched,
+};
+use nalgebra::{Matrix2, Matrix3, Matrix5, Rotation2, Vector2, Vector3, Vector5};
+use serde_json::{Value, json};
+
+const E: f64 = 100.0;
+const NU: f64 = 0.3;
+const G: f64 = E / (2.0 * (1.0 + NU));
+const K: f64 = E / (3.0 * (1.0 - 2.0 * NU));
+const SIGMA_Y: f64 = 0.3;
+
+fn build(given: Value) -> Box<dyn Material> {
+    serde_json::from_value::<MaterialParameters>(given).expect("well formed").build().expect("allowed")
+}
+
+fn with_elasticity(mut given: Value) -> Box<dyn Material> {
+    (given["E"], given["nu"]) = (json!(E), json!(NU));
+    build(given)
+}
+
+/// Every law in each of its forms.
+fn laws() -> Vec<(&'static str, Box<dyn Material>)> {
+    let af = json!([{"C": 20.0, "gamma": 60.0}, {"C": 5.0}]);
+    let given = [
+        ("perfect", json!({"model": "von_mises", "sigma_y": SIGMA_Y})),
+        ("hardening", json!({"model": "von_mises", "sigma_y": SIGMA_Y, "H": 3.0, "Q": 0.2, "b": 30.0})),
+        ("weakening", json!({"model": "von_mises", "sigma_y": SIGMA_Y, "Q": -0.1, "b": 30.0})),
+        (
+            "back stress",
+            json!({"model": "von_mises", "sigma_y": SIGMA_Y, "back_stresses": [{"C": 20.0, "gamma": 60.0}]}),
+        ),
+        ("two of them", json!({"model": "von_mises", "sigma_y": SIGMA_Y, "Q": 0.2, "b": 9.0, "back_stresses": af})),
+        ("viscous", json!({"model": "von_mises", "sigma_y": SIGMA_Y, "H": 3.0, "back_stresses": af, "viscosity": 0.7})),
+        ("cone", json!({"model": "drucker_prager", "c": 0.1, "phi": 25, "psi": 25, "matching": "plane_strain"})),
+        (
+            "cut cone",
+            json!({"model": "drucker_prager", "c": 0.1, "phi": 30, "psi": 5, "matching": "compression", "tension": 0.05}),
+        ),
+        ("cylinder", json!({"model": "drucker_prager", "c": 0.1, "phi": 0, "psi": 0, "matching": "compression"})),
+        (
+            "viscous cone",
+            json!({"model": "drucker_prager", "c": 0.1, "phi": 30, "psi": 5, "matching": "compression", "viscosity": 0.4}),
+        ),
+        ("hexagon", json!({"model": "mohr_coulomb", "c": 0.1, "phi": 30, "psi": 30})),
+        ("not associated", json!({"model": "mohr_coulomb", "c": 0.1, "phi": 35, "psi": 5})),
+        ("cut off", json!({"model": "mohr_coulomb", "c": 0.1, "phi": 20, "psi": 10, "tension": 0.06})),
+        ("Tresca", json!({"model": "mohr_coulomb", "c": 0.1, "phi": 0, "psi": 0, "tension": 0.2})),
+        (
+            "softening",
+            json!({"model": "mohr_coulomb", "c": 0.1, "phi": 30, "psi": 10, "softening": {"c": 0.02, "phi": 24, "psi": 2, "strain": 0.04}}),
+        ),
+    ];
+    given.into_iter().map(|(name, given)| (name, with_elasticity(given))).collect()
+}
+
+fn plane(f: &Vector5<f64>) -> Matrix2<f64> {
+    Matrix2::from_column_slice(&f.as_slice()[..4])
+}
+
+/// The answer to five components of F, and the variables it leaves.
+fn stretched(law: &dyn Material, f: &Vector5<f64>, old: &[f64]) -> Result<(Stretched, Vec<f64>), MaterialFailure> {
+    let mut new = vec![0.0; old.len()];
+    let straining = with!(Straining::new(plane(f), old), stretch: f[4], dt: 0.1);
+    law.spatial().expect("every section").stretched(&straining, &mut new).map(|answer| (answer, new))
+}
+
+/// f in a state, and what else it shows.
+fn shown(law: &dyn Material, f: &Vector5<f64>, old: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; law.shown().len()];
+    law.show(&with!(Straining::new(plane(f), old), stretch: f[4]), &mut values).expect("an answer");
+    values
+}
+
+/// Deformations that go on from one another at random, by some strain each, turned by any angle.
+fn walk(random: &mut Random, increments: usize, strain: f64) -> Vec<Vector5<f64>> {
+    let (mut f, mut h) = (Matrix2::identity(), 1.0);
+    let mut all = Vec::new();
+    for _ in 0..increments {
+        let size = strain * random.magnitude(-1.0, 0.0);
+        let step = Matrix2::from_fn(|_, _| random.between(-size, size));
+        f = Rotation2::new(random.between(-0.5, 0.5)).into_inner() * (Matrix2::identity() + step) * f;
+        h *= 1.0 + random.between(-size, size);
+        all.push(Vector5::new(f.m11, f.m21, f.m12, f.m22, h));
+    }
+    all
+}
+
+/// Committed variables after a walk that the law could follow.
+fn followed(law: &dyn Material, path: &[Vector5<f64>]) -> Option<Vec<f64>> {
+    let mut old = vec![0.0; law.variables().len()];
+    for f in path {
+        old = stretched(law, f, &old).ok()?.1;
+    }
+    Some(old)
+}
+
+/// ∂P/∂F is that of what was computed, over histories of two and three increments: within the yield surface and on each of its parts, at
+/// corners and tips. A difference across an edge between two of them says nothing, and is left out.
+#[test]
+fn the_tangent_equals_differences_over_random_histories() {
+    let step = 1e-6;
+    for (name, law) in laws() {
+        let mut random = Random(11);
+        let (mut compared, mut yielded) = (0, 0);
+        while compared < 300 {
+            let path = walk(&mut random, 2 + compared % 2, 0.04);
+            let Some(old) = followed(&*law, &path[..path.len() - 1]) else { continue };
+            let f = path[path.len() - 1];
+            let Ok((answer, new)) = stretched(&*law, &f, &old) else { continue };
+            let at = |column: usize, step: f64| {
+                let mut f = f;
+                f[column] += step;
+                stretched(&*law, &f, &old).map(|found| found.0.stress)
+            };
+            let mut smooth = true;
+            let columns: Vec<Vector5<f64>> = (0..5)
+                .map(|column| {
+                    let [Ok(back), Ok(ahead)] = [at(column, -step), at(column, step)] else {
+                        smooth = false;
+                        return Vector5::zeros();
+                    };
+                    smooth &= (ahead + back - 2.0 * answer.stress).amax() < 1e-3 * step * E;
+                    (ahead - back) / (2.0 * step)
+                })
+                .collect();
+            if !smooth {
+                continue;
+            }
+            let error = (answer.tangent - Matrix5::from_columns(&columns)).amax();
+            assert!(error < 1e-6 * E, "{name}: {error} at {f} after {old:?}");
+            compared += 1;
+            let place =
+                law.variables().iter().position(|name| *name == "equivalent_plastic_strain").expect("it is there");
+            yielded += usize::from(new[place] > old[place]);
+        }
+        assert!((100..300).contains(&yielded), "{name}: {yielded} of {compared} yield");
+    }
+}
+
+/// Nothing in the history turns with the body: P(QF) = Q P(F), and the variables are the same.
+#[test]
+fn stress_turns_with_the_body() {
+    for (name, law) in laws() {
+        let mut random = Random(5);
+        for _ in 0..100 {
+            let path = walk(&mut random, 3, 0.04);
+            let turn = Rotation2::new(random.between(-3.0, 3.0)).into_inner();
+            let Some(old) = followed(&*law, &path[..2]) else { continue };
+            let f = path[2];
+            let q = turn * plane(&f);
+            let turned = Vector5::new(q.m11, q.m21, q.m12, q.m22, f[4]);
+            let (Ok((here, new)), Ok((there, also))) = (stretched(&*law, &f, &old), stretched(&*law, &turned, &old))
+            else {
+                continue;
+            };
+            let error =
+                (plane(&there.stress) - turn * plane(&here.stress)).amax() + (there.stress[4] - here.stress[4]).abs();
+            assert!(error < 1e-11 * E, "{name}: {error}");
+            let moment = plane(&here.stress) * plane(&f).transpose();
+            assert!((moment.m12 - moment.m21).abs() < 1e-12 * E, "{name}");
+            for (a, b) in new.iter().zip(&also) {
+                assert!((a - b).abs() < 1e-11, "{name}: {new:?} {also:?}");
+            }
+        }
+    }
+}
+
+/// What is committed is answered again: the same stress at the same F, at once, and nothing flows. No answer is beyond the yield surface
+/// but that of a viscous law.
+#[test]
+fn a_committed_state_stays_and_is_within_the_yield_surface() {
+    for (name, law) in laws() {
+        let mut random = Random(7);
+        for _ in 0..200 {
+            let path = walk(&mut random, 3, 0.04);
+            let Some(old) = followed(&*law, &path[..2]) else { continue };
+            let f = path[2];
+            let Ok((first, committed)) = stretched(&*law, &f, &old) else { continue };
+            let mut new = committed.clone();
+            let again = with!(Straining::new(plane(&f), &committed), stretch: f[4]);
+            let second = law.spatial().expect("every section").stretched(&again, &mut new).expect("an answer");
+            assert!((first.stress - second.stress).amax() < 1e-11 * E, "{name}");
+            assert!((first.energy - second.energy).abs() < 1e-12 * E && second.dissipation.abs() < 1e-12 * E, "{name}");
+            for (a, b) in new.iter().zip(&committed) {
+                assert!((a - b).abs() < 1e-12, "{name}: {new:?} {committed:?}");
+            }
+            let indicator = shown(&*law, &f, &committed)[2];
+            assert!(name.starts_with("viscous") || indicator < 1e-11 * E, "{name}: f = {indicator}");
+        }
+    }
+}
+
+/// Plastic volume is exact: where the flow is isochoric det C_p stays 1.
+#[test]
+fn isochoric_flow_keeps_the_volume() {
+    for (name, law) in laws().into_iter().filter(|(name, _)| *name != "cut off" && *name != "Tresca") {
+        let isochoric = law.flow() == Some(Flow::Isochoric);
+        let mut random = Random(3);
+        let (mut most, mut flowed) = (0.0f64, 0.0f64);
+        for _ in 0..50 {
+            let Some(old) = followed(&*law, &walk(&mut random, 6, 0.04)) else { continue };
+            let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| old[k]);
+            let volume = ((1.0 + xx) * (1.0 + yy) - xy * xy) * (1.0 + zz) - 1.0;
+            (most, flowed) = (most.max(volume.abs()), flowed.max(old[5]));
+            close(name, old[6], -0.5 * volume.ln_1p(), 1e-12);
+        }
+        assert!(flowed > 0.02, "{name}");
+        assert_eq!(isochoric, most < 1e-13, "{name}: {most}");
+    }
+}
+
+/// A deformation along a path, evenly in so many increments: stress, energy, dissipation and work ∫ P:dF by the mean of both ends.
+fn driven(law: &dyn Material, along: impl Fn(f64) -> Vector5<f64>, parts: usize) -> (Vector5<f64>, [f64; 3]) {
+    let mut old = vec![0.0; law.variables().len()];
+    let (mut before, mut stress, mut energies) = (along(0.0), Vector5::zeros(), [0.0; 3]);
+    for k in 1..=parts {
+        let f = along(k as f64 / parts as f64);
+        let (answer, new) = stretched(law, &f, &old).expect("an answer");
+        assert!(answer.dissipation >= -1e-15, "{}", answer.dissipation);
+        energies[0] = answer.energy;
+        energies[1] += answer.dissipation;
+        energies[2] += 0.5 * (stress + answer.stress).dot(&(f - before));
+        (before, stress, old) = (f, answer.stress, new);
+    }
+    (stress, energies)
+}
+
+/// A path that turns its direction while it is compressed.
+fn winding(t: f64) -> Vector5<f64> {
+    let (sin, cos) = (1.5 * t).sin_cos();
+    let f = Rotation2::new(0.8 * t).into_inner()
+        * Matrix2::new(1.0 + 0.02 * t, 0.03 * sin, 0.0, 1.0 - 0.03 * t + 0.01 * (1.0 - cos));
+    Vector5::new(f.m11, f.m21, f.m12, f.m22, 1.0 - 0.005 * t)
+}
+
+/// One increment against a thousand: the error falls as their length. (Time runs along, so that viscous laws have another history.)
+#[test]
+fn increments_converge_at_first_order() {
+    for (name, law) in laws().into_iter().filter(|(name, _)| !name.starts_with("viscous")) {
+        let [exact, one, ten, hundred] = [4000, 1, 10, 100].map(|parts| driven(&*law, winding, parts).0);
+        let [one, ten, hundred] = [one, ten, hundred].map(|stress| (stress - exact).amax());
+        assert!(one < 0.3, "{name}: {one}");
+        assert!(hundred < 0.2 * ten + 1e-9 && hundred < 0.02 * one.max(0.02) + 1e-9, "{name}: {one} {ten} {hundred}");
+    }
+}
+
+/// Work is stored or dissipated, all of it as increments become short.
+#[test]
+fn energy_is_balanced() {
+    for (name, law) in laws().into_iter().filter(|(name, _)| !name.starts_with("viscous")) {
+        let [coarse, fine] = [1000, 10_000].map(|parts| {
+            let (_, [stored, dissipated, work]) = driven(&*law, winding, parts);
+            assert!(dissipated > 0.01 * work, "{name}: {dissipated} of {work}");
+            (work - stored - dissipated).abs() / work
+        });
+        assert!(coarse < 1e-3 && fine < 0.15 * coarse + 1e-9, "{name}: {coarse} {fine}");
+    }
+}
+
+/// Splitting an elastic increment changes nothing.
+#[test]
+fn elastic_increments_may_be_split() {
+    for (name, law) in laws() {
+        let along = |t: f64| Vector5::new(1.0 - 1e-4 * t, 2e-4 * t, 3e-4 * t, 1.0 - 2e-4 * t, 1.0);
+        let [one, many] = [1, 50].map(|parts| driven(&*law, along, parts));
+        assert_eq!(one.0, many.0, "{name}");
+        assert_eq!(many.1[1], 0.0, "{name}");
+    }
+}
+
+/// Plane stress with the other in-plane stress zero: λ₁ and the true strain ln λ₂, Kirchhoff stress of a bar.
+struct Bar {
+    law: Box<dyn Material>,
+    old: Vec<f64>,
+    lateral: f64,
+}
+
+impl Bar {
+    fn new(law: &dyn Material) -> Self {
+        let law = law.plane_stress().expect("a metal");
+        Self { old: vec![0.0; law.variables().len()], law, lateral: 1.0 }
+    }
+
+    /// τ₁₁ at a logarithmic strain.
+    fn pull(&mut self, strain: f64) -> f64 {
+        for _ in 0..50 {
+            let mut new = self.old.clone();
+            let f = Matrix2::new(strain.exp(), 0.0, 0.0, self.lateral);
+            let answer = self.law.respond(&with!(Straining::new(f, &self.old), dt: 1.0), &mut new).expect("an answer");
+            let change = answer.stress.m22 / answer.tangent[(3, 3)];
+            if change.abs() < 1e-14 {
+                self.old = new;
+                return answer.stress.m11 * strain.exp();
+            }
+            self.lateral -= change;
+        }
+        panic!("the bar finds no lateral stretch");
+    }
+}
+
+/// Uniaxial tension: τ = Y(ε̄) and ln λ = τ/E + ε̄ at any size, exact in one increment.
+#[test]
+fn a_bar_hardens_as_its_curve_says() {
+    let law = with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y, "H": 3.0, "Q": 0.2, "b": 30.0}));
+    for equivalent in [1e-4, 0.01, 0.1, 0.18f64] {
+        let strength = SIGMA_Y + 3.0 * equivalent + 0.2 * (1.0 - (-30.0 * equivalent).exp());
+        let mut bar = Bar::new(&*law);
+        close("τ", bar.pull(strength / E + equivalent), strength, 1e-12);
+        close("ε̄", bar.old[5], equivalent, 1e-13);
+    }
+}
+
+/// Monotonic and cyclic: X = C/γ (1 − e^(−γ ε_p)), and the stabilised loop X_max = (C/γ) tanh(γ Δε_p/2) of Armstrong and Frederick.
+#[test]
+fn a_back_stress_saturates_and_loops() {
+    let (c, gamma) = (20.0, 60.0);
+    let law =
+        with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y, "back_stresses": [{"C": c, "gamma": gamma}]}));
+    let (mut bar, parts) = (Bar::new(&*law), 400);
+    let plastic = 0.03;
+    let closed = c / gamma * (1.0 - (-gamma * plastic as f64).exp());
+    let strain = (SIGMA_Y + closed) / E + plastic;
+    let mut stress = 0.0;
+    (1..=parts).for_each(|k| stress = bar.pull(strain * f64::from(k) / f64::from(parts)));
+    close("X", stress - SIGMA_Y, closed, 2e-3 * closed);
+    // Between ±ε: the amplitude of the plastic strain follows from that of the stress.
+    let amplitude = 0.012;
+    let mut bar = Bar::new(&*law);
+    let mut at = 0.0;
+    let mut ends = Vec::new();
+    for end in [amplitude, -amplitude].repeat(8) {
+        for k in 1..=parts {
+            stress = bar.pull(at + (end - at) * f64::from(k) / f64::from(parts));
+        }
+        at = end;
+        ends.push(stress);
+    }
+    let [low, high] = [ends[15], ends[14]];
+    close("symmetric", high + low, 0.0, 1e-3);
+    let plastic = 2.0 * amplitude - (high - low) / E;
+    let closed = c / gamma * (0.5 * gamma * plastic).tanh();
+    close("X_max", high - SIGMA_Y, closed, 2e-3 * closed);
+}
+
+/// The stress nearest to a trial stress in the metric of C⁻¹ among those that fulfil all six inequalities: Hildreth's method on the dual.
+fn nearest(trial: &Vector3<f64>, [c, phi]: [f64; 2], tension: Option<f64>) -> Vector3<f64> {
+    let stiffness = Matrix3::repeat(K - 2.0 / 3.0 * G) + Matrix3::from_diagonal_element(2.0 * G);
+    let (sin, cos) = phi.to_radians().sin_cos();
+    let mut planes: Vec<(Vector3<f64>, f64)> = Vec::new();
+    for (i, j) in [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)] {
+        let mut normal = Vector3::zeros();
+        (normal[i], normal[j]) = (1.0 + sin, sin - 1.0);
+        planes.push((normal, 2.0 * c * cos));
+    }
+    planes.extend(tension.into_iter().flat_map(|limit| [0, 1, 2].map(|i| (Vector3::ith(i, 1.0), limit))));
+    let mut multipliers = vec![0.0; planes.len()];
+    let mut stress = *trial;
+    for _ in 0..200_000 {
+        let mut change = 0.0f64;
+        for ((normal, limit), multiplier) in planes.iter().zip(&mut multipliers) {
+            let flow = stiffness * normal;
+            let next = f64::max(0.0, *multiplier + (normal.dot(&stress) - limit) / normal.dot(&flow));
+            stress -= (next - *multiplier) * flow;
+            change = change.max((next - *multiplier).abs());
+            *multiplier = next;
+        }
+        if change < 1e-15 {
+            break;
+        }
+    }
+    stress
+}
+
+/// Associated Mohr–Coulomb is the closest-point projection onto its planes: faces, corners, tips, with tension cut-off or not.
+#[test]
+fn mohr_coulomb_is_the_closest_point() {
+    let mut random = Random(29);
+    for (phi, tension) in [(30.0, None), (20.0, Some(0.05)), (0.0, None), (0.0, Some(0.08)), (35.0, Some(1.0))] {
+        let mut given = json!({"model": "mohr_coulomb", "c": 0.1, "phi": phi, "psi": phi});
+        if let Some(tension) = tension {
+            given["tension"] = json!(tension);
+        }
+        let law = with_elasticity(given);
+        for _ in 0..60 {
+            let strain = Vector3::from_fn(|_, _| random.between(-0.01, 0.01));
+            let trial = (K - 2.0 / 3.0 * G) * strain.sum() * Vector3::repeat(1.0) + 2.0 * G * strain;
+            let f = strain.map(f64::exp);
+            let old = vec![0.0; law.variables().len()];
+            let (answer, _) = stretched(&*law, &Vector5::new(f.x, 0.0, 0.0, f.y, f.z), &old).expect("an answer");
+            let found = Vector3::new(answer.stress[0] * f.x, answer.stress[3] * f.y, answer.stress[4] * f.z);
+            let expected = nearest(&trial, [0.1, phi], tension);
+            assert!((found - expected).amax() < 1e-7, "φ = {phi}, {tension:?}: {found} for {expected} from {trial}");
+        }
+    }
+}
+
+/// Compressed along y in plane strain under a constant lateral pressure p: σ_yy = −(p N + 2c √N/J), N = (1 + sin φ)/(1 − sin φ), at the
+/// limit (strength is that of τ = J σ), of Mohr–Coulomb and of the cone that is matched to plane strain.
+#[test]
+fn cone_and_hexagon_collapse_alike_in_plane_strain() {
+    let (c, phi, lateral) = (0.1, 25.0f64, 0.2);
+    let sin = phi.to_radians().sin();
+    let n = (1.0 + sin) / (1.0 - sin);
+    for given in [
+        json!({"model": "mohr_coulomb", "c": c, "phi": phi, "psi": phi}),
+        json!({"model": "mohr_coulomb", "c": c, "phi": phi, "psi": 3}),
+        json!({"model": "drucker_prager", "c": c, "phi": phi, "psi": phi, "matching": "plane_strain"}),
+    ] {
+        let law = with_elasticity(given.clone());
+        let (mut old, mut wide, mut sigma, mut expected) = (vec![0.0; law.variables().len()], 1.0, 0.0, 0.0);
+        for k in 1..=200 {
+            let high = 1.0 - 0.05 * f64::from(k) / 200.0;
+            for iteration in 0.. {
+                assert!(iteration < 50, "{given}");
+                let (answer, new) =
+                    stretched(&*law, &Vector5::new(wide, 0.0, 0.0, high, 1.0), &old).expect("an answer");
+                // σ_xx = P₁₁/F₂₂
+                let rest = answer.stress[0] + lateral * high;
+                if rest.abs() < 1e-13 {
+                    (old, sigma) = (new, answer.stress[3] / wide);
+                    expected = lateral * n + 2.0 * c * n.sqrt() / (wide * high);
+                    break;
+                }
+                wide -= rest / answer.tangent[(0, 0)];
+            }
+        }
+        close(&given.to_string(), -sigma, expected, 2e-3 * expected);
+    }
+}
+
+/// Stress relaxes towards the yield surface as e^(−t/τ_v) at a held strain; at once a viscous law is elastic, after long times inviscid.
+#[test]
+fn overstress_relaxes_in_its_time() {
+    let given = |viscosity: f64| json!({"model": "von_mises", "sigma_y": SIGMA_Y, "viscosity": viscosity});
+    let [viscous, inviscid] = [given(2.0), given(0.0)].map(with_elasticity);
+    let hencky = with_elasticity(json!({"model": "hencky"}));
+    let f = Matrix2::new(1.0, 0.02, 0.0, 1.0);
+    let zeros = vec![0.0; viscous.variables().len()];
+    let respond = |law: &dyn Material, old: &[f64], dt: f64| {
+        let mut new = vec![0.0; old.len()];
+        (law.respond(&with!(Straining::new(f, old), dt: dt), &mut new).expect("an answer").stress, new)
+    };
+    let [at_once, last] = [respond(&*viscous, &zeros, 0.0), respond(&*viscous, &zeros, 1e12)];
+    let elastic = hencky.at_once(&f).expect("an answer").stress;
+    assert!((at_once.0 - elastic).amax() < 1e-13);
+    let limit = respond(&*inviscid, &zeros, 1.0).0;
+    assert!((last.0 - limit).amax() < 1e-9);
+    let (mut old, dt) = (at_once.1, 1e-3);
+    let mut stress = at_once.0;
+    for _ in 0..3000 {
+        (stress, old) = respond(&*viscous, &old, dt);
+    }
+    let left = (stress.m12 - limit.m12) / (elastic.m12 - limit.m12);
+    close("left", left, (-1.5f64).exp(), 1e-3);
+}
+
+/// An initial stress is the law's own: it is there at F = 1, nothing is stored beyond it, and it counts for yielding.
+#[test]
+fn an_initial_stress_is_inside_the_law() {
+    let law = with_elasticity(json!({"model": "mohr_coulomb", "c": 0.0, "phi": 30, "psi": 0}));
+    let stress = CauchyStress { xx: -0.4, yy: -1.0, zz: -0.4, xy: 0.1 };
+    let mut old = vec![0.0; law.variables().len()];
+    law.admits(&stress).expect("it is within");
+    law.initial_state(Vector2::zeros(), &stress, &mut old);
+    let here = law.cauchy_stress(&Matrix2::identity(), &old).expect("an answer");
+    for (found, given) in [(here.xx, stress.xx), (here.yy, stress.yy), (here.zz, stress.zz), (here.xy, stress.xy)] {
+        close("σ₀", found, given, 1e-14);
+    }
+    let one = Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0);
+    close("W", stretched(&*law, &one, &old).expect("an answer").0.energy, 0.0, 1e-17);
+    // Compressed laterally by what takes it to passive failure, σ_xx/σ_yy = 3.
+    let f = Vector5::new(0.95, 0.0, 0.0, 1.06, 1.0);
+    let indicator = shown(&*law, &f, &stretched(&*law, &f, &old).expect("an answer").1)[2];
+    close("f", indicator, 0.0, 1e-10);
+    let low = CauchyStress { xx: -0.3, yy: -1.0, zz: -0.3, xy: 0.0 };
+    let why = law.admits(&low).expect_err("K0 = 0.3 is below 1/3");
+    assert!(why.contains("0.3333") && why.contains("f = "), "{why}");
+    assert!(law.admits(&CauchyStress { xx: -1.0 / 3.0, yy: -1.0, zz: -1.0 / 3.0, xy: 0.0 }).is_ok());
+}
+
+/// A heated body that yields expands as another: F = ϑ F_e without stress, and its tangent is that of what it answers.
+#[test]
+fn a_heated_body_yields() {
+    for (name, law) in laws() {
+        let imposed = Imposed::new(law, false, Some(0.01)).expect("every section");
+        let old = vec![0.0; imposed.variables().len()];
+        let at = |f: &Vector5<f64>| {
+            let mut new = old.clone();
+            let count = new.len();
+            new[count - 2] = 2.0;
+            let straining = with!(Straining::new(plane(f), &old), stretch: f[4], dt: 0.1);
+            imposed.spatial().expect("every section").stretched(&straining, &mut new).expect("an answer")
+        };
+        let free = 1.02 * Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0);
+        assert!(at(&free).stress.amax() < 1e-13, "{name}");
+        let f = free + Vector5::new(-0.02, 0.004, 0.03, 0.015, 0.001);
+        let (answer, step) = (at(&f), 1e-6);
+        assert!(answer.dissipation > 0.0, "{name}");
+        for column in 0..5 {
+            let [mut ahead, mut back] = [f; 2];
+            (ahead[column], back[column]) = (f[column] + step, f[column] - step);
+            let slope = (at(&ahead).stress - at(&back).stress) / (2.0 * step);
+            assert!((slope - answer.tangent.column(column)).amax() < 1e-6 * E, "{name}");
+        }
+    }
+}
+
+/// Failures say which law, and why; soils are no plates.
+#[test]
+fn what_cannot_be_answered_is_told() {
+    let law = with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y}));
+    let old = vec![0.0; law.variables().len()];
+    let far = stretched(&*law, &Vector5::new(1.0, 0.0, 2.0, 1.0, 1.0), &old).expect_err("too far");
+    assert!(matches!(far, MaterialFailure::OutOfRange { law: "von_mises", .. }), "{far}");
+    assert!(far.to_string().contains("plastic strain of an increment"), "{far}");
+    let inverted = stretched(&*law, &Vector5::new(-1.0, 0.0, 0.0, 1.0, 1.0), &old).expect_err("inverted");
+    assert!(matches!(inverted, MaterialFailure::Inverted { .. }));
+    let soil = with_elasticity(json!({"model": "mohr_coulomb", "c": 0.1, "phi": 30, "psi": 0}));
+    assert!(soil.plane_stress().is_none());
+    assert!(soil.concern().expect("it is not associated").contains("psi < phi"));
+    assert!(law.concern().is_none());
+}
+
+/// Constants out of range are refused with their name.
+#[test]
+fn bad_constants_are_refused() {
+    let soil = |c: f64, phi: f64, psi: f64| json!({"model": "mohr_coulomb", "c": c, "phi": phi, "psi": psi});
+    let mut snaps = soil(0.1, 30.0, 0.0);
+    snaps["softening"] = json!({"c": 0.0, "phi": 30, "psi": 0, "strain": 1e-4});
+    for (key, mut given) in [
+        ("sigma_y", json!({"model": "von_mises", "sigma_y": 0.0})),
+        ("Q", json!({"model": "von_mises", "sigma_y": 1.0, "Q": -1.0, "b": 1.0})),
+        ("b", json!({"model": "von_mises", "sigma_y": 1.0, "Q": 1.0})),
+        ("b", json!({"model": "von_mises", "sigma_y": 1.0, "Q": -0.9, "b": 1000.0})),
+        ("C", json!({"model": "von_mises", "sigma_y": 1.0, "back_stresses": [{"C": 0.0}]})),
+        ("phi", soil(0.1, 90.0, 0.0)),
+        ("psi", soil(0.1, 20.0, 21.0)),
+        ("c", soil(0.0, 0.0, 0.0)),
+        ("softening.strain", snaps),
+        ("psi", json!({"model": "drucker_prager", "c": 1.0, "phi": 20, "psi": 5, "matching": "plane_strain"})),
+    ] {
+        (given["E"], given["nu"]) = (json!(E), json!(NU));
+        let refused = serde_json::from_value::<MaterialParameters>(given.clone()).expect("well formed").build();
+        assert_eq!(refused.map(drop).expect_err(&given.to_string()).name, key, "{given}");
+    }
+}
