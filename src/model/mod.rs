@@ -65,19 +65,19 @@ pub use step::{ForceComponent, Increments, Rupture, Step};
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct NewtonSettings {
-    /// Out-of-balance force relative to the forces at work
+    /// Residual force relative to the acting forces
     pub tolerance: f64,
-    /// Linear solves an increment before it is cut
+    /// Linear solves per increment before it is rejected
     pub max_iterations: usize,
 }
 
 impl NewtonSettings {
-    /// With another tolerance [-].
+    /// Sets the tolerance [-].
     pub fn tolerance(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
     }
 
-    /// With another limit of linear solves.
+    /// Sets the maximum number of linear solves.
     pub fn max_iterations(self, max_iterations: usize) -> Self {
         Self { max_iterations, ..self }
     }
@@ -93,17 +93,17 @@ impl Default for NewtonSettings {
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct WatchedSet {
-    /// name in results: that of the group, or what says which node it is
+    /// name in results: that of the group, or one that identifies the node
     pub name: String,
-    /// its nodes, of which the displacement is the mean
+    /// nodes, whose mean displacement is reported
     pub nodes: Vec<usize>,
-    /// its edges, where it is a group of edges
+    /// edges, if it is an edge group
     pub edges: Vec<Edge>,
-    /// nodes whose reactions along x and y are its own
+    /// nodes whose reactions along x and y belong to it
     pub held: [Vec<usize>; 2],
 }
 
-/// The model; it does not change while it is solved.
+/// The model; constant during a run.
 #[derive(Debug)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Model {
@@ -120,10 +120,10 @@ pub struct Model {
     /// nodes of periodic sides and of loading plates
     #[doc(hidden)]
     pub ties: Ties,
-    /// nodes constrained to others: plates that rotate, or with one equal component
+    /// nodes constrained to others: platens that rotate, or with one equal component
     #[doc(hidden)]
     pub linkage: Linkage,
-    /// nodes of each loading plate, ascending
+    /// nodes of each loading platen, ascending
     #[doc(hidden)]
     pub plates: Vec<Vec<usize>>,
     /// point masses
@@ -135,13 +135,13 @@ pub struct Model {
     /// integration geometry of each element
     #[doc(hidden)]
     pub solids: Vec<SolidElement>,
-    /// where each element finds what its material remembers, in [`State::memory`]
+    /// layout of the internal variables of all elements in [`State::memory`]
     #[doc(hidden)]
     pub memories: Memories,
     /// contact pairs
     #[doc(hidden)]
     pub contacts: Vec<ContactPair>,
-    /// where each contact is evaluated, and why; none for a slave group of points
+    /// method of each contact, and its reason; `None` for a point group as slave
     #[doc(hidden)]
     pub methods: Vec<Option<Chosen>>,
     /// steps, in order
@@ -152,28 +152,28 @@ pub struct Model {
     /// initial velocity of every dof [L/T]
     #[doc(hidden)]
     pub initial_velocity: Vec<f64>,
-    /// Forces of an initial stress of the bodies on every dof, which balance initial tractions of contacts, if any [F]
+    /// Forces of an initial stress of the bodies on every dof, balanced by initial tractions of contacts, if any [F]
     #[doc(hidden)]
     pub prestress: Vec<f64>,
-    /// Least time between two rows of the history of implicit steps, and between the results of explicit ones [T]
+    /// Minimum time between two rows of the history of implicit steps, and interval of the results of explicit ones [T]
     #[doc(hidden)]
     pub interval: Option<f64>,
-    /// Times that increments end at, ascending, because fields are written then [T]
+    /// Output times of fields, ascending, at which increments end [T]
     #[doc(hidden)]
     pub times: Vec<f64>,
-    /// Points of the bodies that are watched
+    /// Gauges in the bodies
     #[doc(hidden)]
     pub probes: Vec<Probe>,
-    /// when Newton's method stops
+    /// stopping criteria of Newton's method
     pub newton: NewtonSettings,
-    /// what makes iterations converge, all of it unless switched off for an experiment
+    /// convergence aids, all active unless switched off for an experiment
     #[doc(hidden)]
     pub aids: Aids,
 }
 
 #[doc(hidden)]
 impl Model {
-    /// Number of dofs, two a node.
+    /// Number of dofs, two per node.
     pub fn dofs(&self) -> usize {
         2 * self.mesh.nodes.len()
     }
@@ -198,12 +198,12 @@ impl Model {
         self.dampings(step).iter().map(|damping| damping.retardation).collect()
     }
 
-    /// Whether some body has the viscous stress of Kelvin and Voigt in a step.
+    /// Whether some body has a Kelvin–Voigt viscous stress in a step.
     pub fn is_viscous(&self, step: &Step) -> bool {
         (0..self.bodies.len()).any(|body| self.damping(step, body).retardation > 0.0)
     }
 
-    /// Whether forces act before anything has moved: bodies are stressed, or contacts closed already.
+    /// Whether forces act in the initial state: bodies with initial stress, or closed contacts.
     pub fn starts_loaded(&self) -> bool {
         self.contacts.iter().any(|pair| pair.initial.is_some())
             || self.bodies.iter().any(|body| body.initial_stress.is_some())
@@ -221,7 +221,7 @@ impl Model {
         self.consistent(element, self.bodies[self.body_of_element[element]].material.density())
     }
 
-    /// ∫ N_a N_b dV of an element, as its mass is distributed [L³].
+    /// ∫ N_a N_b dV of an element, in accordance with its mass [L³].
     pub fn element_volumes(&self, element: usize) -> DMatrix<f64> {
         self.consistent(element, 1.0)
     }
@@ -249,24 +249,24 @@ impl Model {
             .expect("elements are checked when the model is built")
     }
 
-    /// (λ + 2G) w of the stiffest element, the scale of forces over displacements; 0 without elements [F/L].
+    /// (λ + 2G) w of the stiffest element, the ratio of force to displacement; 0 without elements [F/L].
     pub fn stiffness(&self) -> f64 {
         let of =
             |(solid, &body): (&SolidElement, &usize)| self.bodies[body].material.p_wave_modulus() * solid.mean_weight();
         self.solids.iter().zip(&self.body_of_element).map(of).fold(0.0, f64::max)
     }
 
-    /// Whether fields are asked for at a time; round-off of the way there does not matter.
+    /// Whether a time is an output time of fields, within round-off.
     pub fn is_output_time(&self, time: f64) -> bool {
         self.times.iter().any(|at| (at - time).abs() <= near(*at))
     }
 
-    /// The next time after another at which fields are asked for.
+    /// The next output time of fields after a time.
     pub fn next_output_time(&self, after: f64) -> Option<f64> {
         self.times.iter().copied().find(|at| *at > after + near(*at))
     }
 
-    /// The state at rest before the first increment.
+    /// The initial state before the first increment.
     pub fn initial_state(&self) -> State {
         let zero = vec![0.0; self.dofs()];
         State {
@@ -289,19 +289,19 @@ impl Model {
     }
 }
 
-/// Difference below which two times are the same [T].
+/// Difference below which two times are equal [T].
 fn near(time: f64) -> f64 {
     16.0 * f64::EPSILON * time
 }
 
-/// A point that moves with a body, at which motion, strain and stress are asked for, as a gauge there would read them.
+/// A gauge: a material point of a body at which motion, strain and stress are evaluated.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Probe {
-    /// its name in results
+    /// name in results
     pub name: String,
-    /// the element it lies in
+    /// its element
     pub element: usize,
-    /// its coordinates (ξ, η) in it
+    /// its coordinates (ξ, η) in the element
     pub at: [f64; 2],
 }
