@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! p = ⟨p̄ − α_n (g − d)⟩,   q and d from the friction law,   t = p n − q s
-//!                                      p̄: multiplier, 0 for the plain penalty; g: gap of the surfaces − gap at touch;
+//!                                      p̄: multiplier, 0 for the plain penalty; g: gap of the surfaces − gap at closure;
 //!                                      d: opening, 0 for laws that do not dilate
 //! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n (δg − δd),   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd likewise

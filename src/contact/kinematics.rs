@@ -6,7 +6,7 @@
 //! g = (x_s − x)·n         δg = n·(δx_s − δm)
 //! (x_s − x)·x′ = 0        δξ (J² − g n·x″) = J s·(δx_s − δm) + g n·δx′
 //! θ: rotation of (s, n)   δθ = n·(δx′ + x″ δξ)/J,   δs = n δθ,   δn = −s δθ
-//! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old foot to the new one
+//! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old projection to the new one
 //! ```
 //!
 //! A point without a projection at the start of the increment has no old projection; its slip is measured past the present
@@ -25,7 +25,7 @@
 //! ```text
 //! δr = δx_s − δu_R + b rδφ,   b = −J (x_s − x_R)/r             b: the lever;   J: turned by 90°
 //! δg = n·δr,   δΔu_t = a s·δr,   δθ = t s·δr + δφ              a, t: advance and turn of the shape
-//! Δr = d − Q(Δφ) d_before,   d = x_s − x_R                     motion of a point without an old foot, along s the slip
+//! Δr = d − Q(Δφ) d_before,   d = x_s − x_R                     motion of a point without an old projection, slip along s
 //! ```
 //! The body receives the opposite of the slave's force, at the position of the slave: −t ℓ at its reference node and, as its
 //! moment, b·t ℓ at the node that carries r φ. The two forces are in balance and do work on δr only.

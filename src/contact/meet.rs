@@ -62,7 +62,7 @@ impl ContactPair {
     /// Starts a shrink fit: the overlap of the surfaces in the configuration `x` is applied gradually.
     ///
     /// ```text
-    /// g(t) = g_surfaces + overlap × (1 − share of the first step that has passed)
+    /// g(t) = g_surfaces + overlap × (1 − elapsed fraction of the first step)
     /// ```
     pub fn start_fitting(&mut self, x: &Configuration) {
         let met = self.meetings(x, false);

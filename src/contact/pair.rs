@@ -5,8 +5,8 @@
 //! A fluid between the surfaces of a contact pushes them apart.
 //!
 //! ```text
-//! p_total = p + p_w        p: what the surfaces themselves carry (penalty or multiplier), under which friction answers
-//! f_a = −w_a p_w n ℓ       beside that of p and q, wherever the master faces the point, closed or open
+//! p_total = p + p_w        p: contact pressure of the surfaces (penalty or multiplier), used by friction
+//! f_a = −w_a p_w n ℓ       in addition to that of p and q, wherever the point has a projection, closed or open
 //! ```
 //!
 //! p_w is prescribed as a function of the reference position of a slave point and time: fluid flow is not modelled. Friction

@@ -238,7 +238,7 @@ impl ContactIncrement {
 pub struct PointIncrement {
     /// Length of the increment, and other data common to all points
     pub during: ContactIncrement,
-    /// What the linear solve presumes about the point
+    /// Presumptions of the linear solve about the point
     pub presumption: Presumption,
 }
 

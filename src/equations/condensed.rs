@@ -23,8 +23,8 @@
 //! If the opposite position of a slave node never changes, contact acts on its jump only.
 //!
 //! ```text
-//! u_s = J_s + Σ N_a u_a        u = T y: J in place of u_s         N_a: weights of the foot, in small sliding
-//! r_a ← r_a + N_a r_s          L r: what contact puts on s, and −N_a of it on a, cancels in a
+//! u_s = J_s + Σ N_a u_a        u = T y: J in place of u_s         N_a: weights of the projection, in small sliding
+//! r_a ← r_a + N_a r_s          L r: the contact forces f on s and −N_a f on a cancel in a
 //! L A T y = L b                                                   only where s and a are free: a support's equation stays
 //! ```
 //!

@@ -20,7 +20,7 @@
 //! Stabilizing dashpots act in a static step and decrease to zero at its end:
 //!
 //! ```text
-//! f = −c₀ (1 − share of the step that has passed) (u − u₀)/Δt
+//! f = −c₀ (1 − elapsed fraction of the step) (u − u₀)/Δt
 //! ```
 
 use std::collections::BTreeMap;

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! work       ½ (f₀ + f₁)·Δu of loads and reactions; drivers of dashpots; overlaps of shrink fits
-//! damping    −½ (d₀ + d₁)·Δu of the forces of dashpots on the nodes; drivers; what statics takes out of a motion
+//! damping    −½ (d₀ + d₁)·Δu of the forces of dashpots on the nodes; drivers; kinetic energy removed by statics
 //! friction   ∫ q v^p ds dt
 //! radiated   ½ (r₀ + r₁) Δu_t of the tractions r = η v of radiation damping
 //! ```

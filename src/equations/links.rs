@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! w (u_c − Σ G_k u_k) = 0                  a follower; its forces are with its leaders
-//! r_A + r_B = 0,   (J e)·r_B/L = 0         a rigid plate: forces, and moments about A
+//! r_A + r_B = 0,   (J e)·r_B/L = 0         a rigid platen: forces, and moments about A
 //! w (|e|² − L²)/(2 L) = 0                  its length
 //! ```
 //! In motion r includes the inertia (below), and e in the moments is weighted with α_f, as the forces are.
@@ -12,7 +12,7 @@
 //! The velocities and accelerations of the nodes of a rigid platen, and its contribution to the tangent of inertia, are
 //!
 //! ```text
-//! x_c = x_R + (G_c − G_R) e                     R: the center of mass, or the node A if a support holds it
+//! x_c = x_R + (G_c − G_R) e                     R: the center of mass, or the node A if it is supported
 //! v_c = v_R + (G_c − G_R) ω J e                 u_R and the angle of e follow the scheme
 //! a_c = a_R + (G_c − G_R) (θ̈ J e − ω² e)
 //! weighted:   θ̈_m J e_f − (ω²)_f e_f            _m, _f: weighted with α_m and α_f, as masses and forces are

@@ -6,7 +6,7 @@
 //! equation of one direction: these constant equations are eliminated once.
 //!
 //! ```text
-//! A = S + diag(C_k),   C_k = [c_tt  c_tn]           n: direction of node k whose equation stays, t: across it
+//! A = S + diag(C_k),   C_k = [c_tt  c_tn]           n: direction of node k with a constant equation, t: perpendicular
 //!                            [ 0     α_k]
 //! A_NN = S_NN + α                                    N, T: the unknowns along n and t of all nodes
 //! G = A_NN⁻¹ S_NT,   y = A_NN⁻¹ b_N

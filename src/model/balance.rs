@@ -1,7 +1,7 @@
 //! Equilibrium of the initial stress of bodies with their loads.
 //!
 //! ```text
-//! r = f(σ₀) − loads − contact        at u = 0 and the start of the first step, where no support holds
+//! r = f(σ₀) − loads − contact        at u = 0 and the start of the first step, at unsupported dofs
 //! ```
 //! f(σ₀) are the forces of the initial stress, contact those of initial tractions and fluids. The remaining r accelerates the
 //! bodies, or is balanced by deformation in the first static increment.

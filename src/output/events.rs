@@ -6,9 +6,9 @@
 //!
 //! ```text
 //! stress drop       q before − q after, positive where slip has unloaded
-//! fracture energy   ∫ (q − q_min) ds up to where q is least, q_min: what weakening takes beyond sliding at its end
+//! fracture energy   ∫ (q − q_min) ds up to the minimum of q, q_min: work in excess of sliding at that traction
 //! released          Δ(external work − strain energy − elastic energy of contacts), of the whole model
-//! radiated          released − Δ(dissipation by friction): kinetic energy, and what dampers and absorbing sides took
+//! radiated          released − Δ(dissipation by friction): kinetic energy, and energy absorbed by dampers and absorbing sides
 //! front speed       slope of the distance from where it began over the arrivals, by least squares
 //! ```
 //!

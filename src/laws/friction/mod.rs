@@ -119,7 +119,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///
 /// ```text
 /// (q, variables, d)₁ = law((q, p, variables, d)₀; Δu_t, p₁, Δt)       q resists +Δu_t, p > 0 in compression
-/// p = p̄ − α_n (g − d)                                                d: how far the law holds the surfaces apart (dilatancy)
+/// p = p̄ − α_n (g − d)                                                d: opening of the surfaces by the law (dilatancy)
 /// W₁ − W₀ = ∫ q dλ − ∫ p dd ≥ 0                                     dissipation [F/L]; q²/(2 α_t) is stored
 /// ```
 /// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law receives the effective pressure, never a penalty or multiplier;
@@ -142,7 +142,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// /// Viscous friction, q = η v.
 /// #[derive(Clone, Debug)]
 /// struct Oil {
-/// η: viscosity divided by the film thickness, η > 0 [F·T/L³]
+///     /// η: viscosity divided by the film thickness, η > 0 [F·T/L³]
 ///     viscosity: f64,
 /// }
 ///

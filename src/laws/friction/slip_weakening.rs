@@ -53,7 +53,7 @@ impl SlipWeakeningParameters {
 /// ```text
 /// q̇ = α_t (v − λ sgn q)                          slip = elastic + plastic
 /// |q| ≤ c + μ p,   λ ≥ 0                           sticking, or slipping at the strength
-/// μ = max(μ_s − W D, μ_d),   W = (μ_s − μ_d)/D_c      D = ∫ λ dt, back and forth alike; it does not heal
+/// μ = max(μ_s − W D, μ_d),   W = (μ_s − μ_d)/D_c      D = ∫ λ dt, in either direction; it does not heal
 /// ```
 /// An increment slips by the smallest Δλ that reduces the trial |q_tr| = |q₀ + α_t Δu| to the strength,
 /// ```text

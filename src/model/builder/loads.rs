@@ -39,7 +39,7 @@ const MOST_REMEMBERED: usize = 1000;
 /// let steel = Linear::new(&ElasticConstants::new(1000.0, 0.3))?;
 /// let mut run = Simulation::new(Model::builder(mesh).body("block", steel).step(steps[0].clone()).build()?);
 /// run.next_increment()?;
-/// From now on the pressure increases to twice its value at the end of the step.
+/// // From now on the pressure increases to twice its value at the end of the step.
 /// let mut loads = LoadsInForce::of_step(run.step_number(), &steps, run.model())?;
 /// let rest = Span { start: run.state().time, end: 1.0 };
 /// loads.change_within(&Load::dead_pressure("block_top", 2.0), "load", rest, run.model())?;

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! τ = τ_static − Z₁ v₁ = τ_static − Z₂ v₂,   v₁ + v₂ = v     plane shear waves leave on both sides,    Z = ρ c_s = G/c_s     (1)
-//! τ = τ_static − η v,   1/η = 1/Z₁ + 1/Z₂                     v₁ and v₂ eliminated; alike: η = G/(2 c_s)                   (2)
+//! τ = τ_static − η v,   1/η = 1/Z₁ + 1/Z₂                     v₁ and v₂ eliminated; equal bodies: η = G/(2 c_s)                   (2)
 //! ```
 //! A side that slips with v₁ radiates a wave that changes the traction by Z₁ v₁; both sides have the same traction, so
 //! the slip rate is divided between them as between dashpots in series. For a rigid master η = Z of the slave.

@@ -134,7 +134,7 @@ fn reach(model: &Model, element: usize) -> Box2 {
 /// (ξ, η) of a position in an element, if it lies there.
 ///
 /// ```text
-/// Σ N_a(ξ, η) X_a = X                     Newton's method from the centre; places count from the first node
+/// Σ N_a(ξ, η) X_a = X                     Newton's method from the centre; positions relative to the first node
 /// ```
 fn coordinates(model: &Model, element: usize, place: Vector2<f64>) -> Option<[f64; 2]> {
     let element = &model.mesh.elements[element];

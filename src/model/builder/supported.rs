@@ -231,7 +231,7 @@ pub struct Part {
     radius: f64,
 }
 
-/// All parts.
+/// All parts of a model.
 pub struct Parts<'m> {
     /// list of parts
     pub parts: Vec<Part>,

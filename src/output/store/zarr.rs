@@ -1,7 +1,7 @@
 //! A store of arrays that grow record by record: zarr version 2, as xarray opens it.
 //!
 //! ```text
-//! .zgroup .zattrs          what the store is
+//! .zgroup .zattrs          description of the store
 //! NAME/.zarray .zattrs     shape, chunks and codecs of an array; its dimensions, units and meaning
 //! NAME/k  NAME/k.0         chunk k: records k R … (k + 1) R − 1 of all places, NaN where there is none yet
 //! .zmetadata               all of the above but the chunks, once more in one file

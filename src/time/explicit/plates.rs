@@ -1,7 +1,7 @@
 //! Loading platens (one equal component) and rigid platens in explicit increments.
 //!
 //! ```text
-//! Σ m_c a = −Σ f_c                              alike in one component; m_c: lumped masses
+//! Σ m_c a = −Σ f_c                              one equal component; m_c: lumped masses
 //! ```
 //!
 //! The mass of a platen is no smaller than that of any of its nodes, so the stability limit holds.
