@@ -62,7 +62,7 @@ pub struct SmallPoint {
     pub gap: f64,
     /// ℓ: tributary length of the point [L]
     pub length: f64,
-    /// The foot
+    /// Closest-point projection on the master
     pub foot: MasterPoint,
     /// Part of the master on which its projection stays
     against: Against,
