@@ -58,7 +58,7 @@ pub fn bears(path: &Path, words: &str) -> bool {
         && String::from_utf8_lossy(&start).contains(words)
 }
 
-/// Checks that a path is not a link.
+/// Checks that a path is a regular file, not a link.
 fn plain(path: &Path) -> io::Result<()> {
     let kind = fs::symlink_metadata(path)?.file_type();
     match (kind.is_file(), kind.is_symlink()) {
