@@ -1,4 +1,4 @@
-//! Where contact is evaluated: as it is asked for, or as the surfaces need it.
+//! Contact method: as requested, or chosen for the surfaces.
 //!
 //! Pointwise contact passes the patch test where nodes face nodes, and else to a few percent. On quadratic edges two points leave
 //! the pressure to alternate, and between two faceted curves the gap itself alternates by the height of the facets, which
@@ -14,7 +14,7 @@ use crate::contact::search::Index;
 use crate::contact::surface::{CORNER, MasterPoint, Surface, in_order, nodal_points};
 use crate::mesh::{Group, Mesh};
 
-/// Contact method: where contact is evaluated.
+/// Contact method: evaluation points of contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -28,7 +28,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Its name in a case.
+    /// Name in a case.
     pub fn name(self) -> &'static str {
         match self {
             Self::NodeToSegment => "node_to_segment",
@@ -43,11 +43,11 @@ impl Method {
 pub struct Chosen {
     /// method
     pub method: Method,
-    /// Gauss points an edge, for gauss_to_segment
+    /// Gauss points per edge, for gauss_to_segment
     pub points: usize,
-    /// Why, if it was left open
+    /// Reason, if it was chosen automatically
     pub because: Option<&'static str>,
-    /// What is known to suffer, and the remedy
+    /// Known weakness, and the remedy
     pub concern: Option<&'static str>,
 }
 
@@ -71,11 +71,11 @@ enum Shape {
     Quadratic,
 }
 
-/// Gauss points an edge unless given.
+/// Default number of Gauss points per edge.
 const POINTS: usize = 2;
 
-/// A surface of linear edges is curved where its direction turns by more than this between two corners; far above what
-/// round-off of coordinates does to a straight line, and below what facets do to the pressure [rad].
+/// Angle by which the direction of a linear-edge surface must vary between two corners for it to count as curved; far above the
+/// round-off of a straight line, and below facets that affect the pressure [rad].
 const CURVED: f64 = 0.0175;
 
 /// What a contact says of its method, and whether the run has explicit steps.
@@ -198,7 +198,7 @@ fn looks(mesh: &Mesh, group: &str) -> Looks {
         looks.shape = Shape::Quadratic;
     }
     let edges = in_order(&edges.iter().map(|edge| edge.nodes.clone()).collect::<Vec<_>>());
-    // Angles counted on from one edge to the next, from corner to corner.
+    // Angles are accumulated from edge to edge between corners.
     let (mut angle, mut range) = (0.0f64, [0.0f64; 2]);
     for pair in edges.windows(2) {
         let [before, after] = [&pair[0], &pair[1]].map(|edge| mesh.nodes[edge[1]] - mesh.nodes[edge[0]]);

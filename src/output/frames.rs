@@ -1,4 +1,4 @@
-//! What a frame shows of a state: bodies, interfaces, integration points.
+//! Content of frames: bodies, interfaces, integration points.
 
 use nalgebra::Vector2;
 
@@ -13,13 +13,13 @@ use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 use crate::model::state::State;
 
-/// Content of a frame: a state, and what is computed from it before the frame is written. Contacts are searched by all
-/// threads, which may be waiting for the writer of frames.
+/// Content of a frame: a state and the quantities computed from it before the frame is written. The search for contacts uses
+/// all threads, which may be waiting for the writer of frames.
 #[derive(Debug)]
 pub struct Shown {
     /// the state
     pub state: State,
-    /// what contacts put on every node [F]
+    /// contact forces on every node [F]
     contact_forces: Vec<f64>,
 }
 
@@ -34,7 +34,7 @@ impl Shown {
 pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, derived: bool, grid: &mut Grid) {
     let fields = nodal_fields(model, state);
     let nodes = model.mesh.own_nodes();
-    // A body has one material, and a material serves one body: the two ids agree.
+    // Each body has exactly one material, so the two ids agree.
     let body = || model.body_of_element.iter().map(|&body| body as i32);
     grid.begin(|| {
         let cell = |element: &Element| (cell_type(element.kind), element.nodes.clone());
@@ -137,7 +137,7 @@ fn add_fields(grid: &mut Grid, fields: &[(CauchyStress, [f64; 4])], derived: boo
     }
 }
 
-/// The interfaces: a polyline through the contact points along each slave surface.
+/// Fills the grid of the interfaces: a polyline through the contact points along each slave surface.
 pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
     let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
     let undeformed = model.mesh.undeformed();

@@ -1,21 +1,21 @@
-//! From a contact as it is given to the pair of surfaces that is evaluated.
+//! Builds the pair of surfaces of a contact.
 //!
 //! # Radiation damping
 //!
-//! Radiation damping: what inertia would do to slip, in motions that leave it out.
+//! Radiation damping approximates the effect of inertia on slip in motions without inertia.
 //!
 //! ```text
 //! τ = τ_static − Z₁ v₁ = τ_static − Z₂ v₂,   v₁ + v₂ = v     plane shear waves leave on both sides,    Z = ρ c_s = G/c_s     (1)
-//! τ = τ_static − η v,   1/η = 1/Z₁ + 1/Z₂                     v₁ and v₂ eliminated; alike: η = G/(2 c_s)                   (2)
+//! τ = τ_static − η v,   1/η = 1/Z₁ + 1/Z₂                     v₁ and v₂ eliminated; equal bodies: η = G/(2 c_s)                   (2)
 //! ```
-//! A side that slips away with v₁ sends off a wave that changes the traction by Z₁ v₁; both sides see the same traction, so
-//! that the slip rate is shared between them as between dashpots in series. A rigid master takes no share: η = Z of the slave.
+//! A side that slips with v₁ radiates a wave that changes the traction by Z₁ v₁; both sides have the same traction, so
+//! the slip rate is divided between them as between dashpots in series. For a rigid master η = Z of the slave.
 //!
 //! Source: Rice (1993), J. Geophys. Res. 98, 9885.
 //!
 //! # Penalties
 //!
-//! Default penalties: stiff beside the elements that they hold, soft enough to be solved with.
+//! Default penalties are stiff compared with the adjacent elements, but soft enough for the iterations.
 //!
 //! ```text
 //! α_n = 300 (λ + 2G)/h,   α_t = 5 (λ + 2G)/h           all steps are solved                                         (1)
@@ -27,9 +27,9 @@
 //! slide with a stiff α_t, iterates pass over the narrow range of sticking to and fro: 30 times of it doubles the linear solves of a
 //! rolling disk, and only the elastic slip gains.
 //!
-//! # What points do not tell
+//! # Data of the bodies
 //!
-//! What the points of a contact do not tell of themselves: nodes that no point stands for, and how stiff the bodies are.
+//! Some data of a contact do not follow from its points: nodes without a contact point, and the stiffness of the bodies.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -116,10 +116,10 @@ fn pair(contact: &Contact, model: &Model, explicit: bool) -> Checked<ContactPair
     Ok(pair)
 }
 
-/// Share of the shortest edge of the slave within which surfaces touch.
+/// Gap at which surfaces touch, as a fraction of the shortest edge of the slave.
 const TOUCH: f64 = 1e-9;
 
-/// The shortest edge that a slave point belongs to; of points of no edge the length of one that has their area [L].
+/// Length of the shortest edge of a slave point; for points without edges the length with their area [L].
 fn size(points: &[SlavePoint], model: &Model) -> f64 {
     let undeformed = model.mesh.undeformed();
     let of = |point: &SlavePoint| {
@@ -132,7 +132,7 @@ fn size(points: &[SlavePoint], model: &Model) -> f64 {
     points.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// The body of the slave's edge at its first point. Where two bodies meet a node is one of both: the edge tells, not the node.
+/// Body of the slave's edge at its first point; a node may belong to two bodies, an edge does not.
 fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<usize> {
     let (node, _) = *first?.position.first()?;
     match model.mesh.group(&contact.slave) {
@@ -147,7 +147,7 @@ fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<
     }
 }
 
-/// How the surfaces lie at the start: as they are, closed, or to be fitted.
+/// Sets the initial state of the surfaces: as in the mesh, closed, or with an overlap to be fitted.
 fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) -> Checked<()> {
     if let Some(initial) = &contact.initial {
         initial::close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
@@ -162,7 +162,7 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
     Ok(())
 }
 
-/// Gaps are differences of positions and displacements; of these, round-off of the size of the model is left.
+/// Round-off of gaps relative to the size of the model; gaps are differences of positions and displacements.
 const OF_SIZE: f64 = 8.0 * f64::EPSILON;
 
 /// A penetration, and an elastic slip, must be one that displacements can tell.
@@ -211,7 +211,7 @@ pub fn evaluation(contact: &Contact, mesh: &Mesh, explicit: bool) -> Option<Chos
     contact.area.is_none().then(|| choose([Some(slave), master], asked, mesh))
 }
 
-/// Nodes of the slaves whose mass is to be moved away.
+/// Slave nodes whose mass is moved away.
 pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
     let mut massless = vec![false; mesh.nodes.len()];
     for contact in contacts.iter().filter(|contact| contact.massless) {
@@ -226,7 +226,7 @@ pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
     Ok(massless)
 }
 
-/// The nodes of a mesh master against the edges of the slave.
+/// Nodes of a mesh master, with the slave edges as their master.
 fn reverse(contact: &Contact, mesh: &Mesh) -> Option<Reverse> {
     let MasterSide::Group(master) = &contact.master else { return None };
     let [master, slave] = [master, &contact.slave].map(|name| match mesh.group(name) {
@@ -311,7 +311,7 @@ fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) 
     Ok(Master::Mesh(surface.smoothed(&mesh.nodes)))
 }
 
-/// Two groups in contact must be different edges, and a slave point of no edge must not be on the master.
+/// Checks that two groups in contact have no common edges, and that a slave point without edges is not on the master.
 fn check_disjoint(
     place: &str,
     slave: &str,
@@ -338,7 +338,7 @@ fn check_disjoint(
     Err(ModelError::new(place, message))
 }
 
-/// η of a contact, 0 for none.
+/// η of a contact, 0 if not used.
 pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> {
     let at = format!("{place}.radiation_damping");
     let damping = match contact.radiation_damping {
@@ -351,7 +351,7 @@ pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> 
     Ok(damping)
 }
 
-/// η of (2); on each side the mean over its edges.
+/// η by (2), averaged over the edges of each side.
 fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked<f64> {
     if contact.area.is_some() {
         let message = "has no default for a slave group of points, behind which there is no body: give a number";
@@ -394,9 +394,9 @@ const TANGENTIAL: f64 = 5.0;
 pub struct Penalty {
     /// α_n [F/L³]
     pub alpha_n: f64,
-    /// α_t of a law that has none of its own; none for a slave group of points [F/L³]
+    /// Default α_t; `None` for a point group as slave [F/L³]
     pub alpha_t: Option<f64>,
-    /// h/(λ + 2G): how far a pressure pushes the bodies in; 0 where no elements are behind the slave [L³/F]
+    /// h/(λ + 2G): compliance of the bodies under a contact pressure; 0 without elements at the slave [L³/F]
     pub compliance: f64,
 }
 
@@ -455,16 +455,16 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
     Ok(Some(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64))
 }
 
-/// Depth of the element behind an edge [L].
+/// Depth of the element at an edge [L].
 pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
     let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
     model.solids[edge.element].area() / (b - a).norm()
 }
 
-/// Find nodes of the surface of the slave's bodies that are not on the slave and outside a rigid master at the start: inside,
-/// they would not be seen.
+/// Finds surface nodes of the slave's bodies that are not on the slave and initially outside a rigid master, whose penetration
+/// would not be detected.
 pub fn unseen(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
-    // Many contacts may be of the same bodies.
+    // Several contacts may belong to the same bodies.
     let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
     for (contact, pair) in contacts.iter().zip(pairs) {
         let (Master::Rigid(rigid), Ok(Group::Edges(slave))) = (&pair.master, model.mesh.group(&contact.slave)) else {
@@ -482,7 +482,7 @@ fn is_outside(rigid: &Rigid, point: &SlavePoint, mesh: &Mesh) -> bool {
     rigid.project(point, &mesh.undeformed()).is_none_or(|projection| projection.gap > 0.0)
 }
 
-/// Nodes on sides that belong to one element only.
+/// Nodes on element sides that belong to one element only.
 fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
     let mut sides: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
     for (element, body) in model.mesh.elements.iter().zip(&model.body_of_element) {
@@ -499,7 +499,7 @@ fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
     sides.into_values().flatten().flatten().collect()
 }
 
-/// G*: what slip that varies along the interface is resisted with, 0 for points without bodies [F/L²]
+/// G*: stiffness against slip that varies along the interface, 0 for points without bodies [F/L²]
 ///
 /// ```text
 /// 1/G* = ½ (1/G₁* + 1/G₂*),   Gᵢ* = Gᵢ/(1 − νᵢ),   a rigid master has 1/G₂* = 0

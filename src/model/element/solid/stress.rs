@@ -1,6 +1,6 @@
 //! Cauchy stress at the quadrature points, and at those one order lower.
 //!
-//! What the reference geometry of an element says.
+//! Construction of elements from their reference geometry.
 
 use std::sync::OnceLock;
 
@@ -15,10 +15,10 @@ use crate::mesh::shape::{ElementKind, QuadraturePoint};
 use crate::model::element::{ElementError, Formulation, gradients};
 
 impl SolidElement {
-    /// Cauchy stress at each quadrature point, with what the material remembers there; nothing if it has no memory.
+    /// Cauchy stress at each quadrature point, given its internal variables there (empty for a material without any).
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn stresses(
         &self,
         material: &dyn Material,
@@ -76,7 +76,7 @@ impl SolidElement {
         self.points().map(|(gradients, _)| deformation_gradient(gradients, u)).collect()
     }
 
-    /// F₃₃ at each quadrature point of a ring; none of other sections.
+    /// F₃₃ at each quadrature point of an axisymmetric element; `None` in other sections.
     pub fn hoops(&self, u: &[Vector2<f64>]) -> Option<Vec<f64>> {
         self.hoop.is_some().then(|| self.hoop_stretches(u))
     }
@@ -140,7 +140,7 @@ fn shares(kind: ElementKind, formulation: Formulation) -> &'static DMatrix<f64> 
 }
 
 impl SolidElement {
-    /// The element of `kind` on the reference `positions` of its nodes, in a section.
+    /// Creates an element of `kind` on the reference `positions` of its nodes, in a section.
     ///
     /// # Errors
     /// [`ElementError::Degenerate`] when det(∂X/∂ξ) is not positive at a quadrature point,
