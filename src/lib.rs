@@ -1,6 +1,6 @@
 //! A 2D finite-element contact solver whose interfaces obey the time-dependent super/subloading-surface friction law.
 //!
-//! A block pressed on another one and dragged, from code; the run is an iterator, the caller looks at every increment:
+//! The following example compresses a block on another one and drags it. The run is an iterator over increments:
 //!
 //! ```
 //! use fecontact::laws::bulk::{ElasticConstants, NeoHookean};
@@ -36,65 +36,67 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`model::builder::LoadsInForce`]), a
-//! candidate can be dropped ([`run::Simulation::try_increment`]), and a run saved and resumed to the same bits
-//! ([`run::Saved`], in memory or as bytes).
+//! Between two increments the caller can prescribe the motion of supports ([`run::Simulation::lead`]), change loads
+//! ([`model::builder::LoadsInForce`]), drop a candidate ([`run::Simulation::try_increment`]), and save the run to resume it
+//! with bitwise identical results ([`run::Saved`], in memory or as bytes).
 //!
-//! # What is published
+//! # Public modules
 //!
-//! A program that uses the library names it with `default-features = false`, and sees these rooms:
+//! A program that uses the library depends on it with `default-features = false`, and sees these modules:
 //!
-//! | room | what it offers |
+//! | module | content |
 //! |---|---|
-//! | [`model`] | [`model::Model::builder`] and what is given to it: bodies, [`model::builder::Contact`], [`model::builder::LoadStep`], supports and loads |
+//! | [`model`] | [`model::Model::builder`] and its input: bodies, [`model::builder::Contact`], [`model::builder::LoadStep`], supports and loads |
 //! | [`run`] | [`run::Simulation`], increment by increment; [`run::observer`]s of a whole run; [`run::law`], a friction law along a path |
-//! | [`laws`] | friction and bulk laws, with the traits by which others are written: [`laws::friction::FrictionLaw`], [`laws::bulk::Material`] |
+//! | [`laws`] | friction and bulk laws, and the traits for user-defined ones: [`laws::friction::FrictionLaw`], [`laws::bulk::Material`] |
 //! | [`mesh`] | meshes from gmsh ([`mesh::gmsh`]), from blocks ([`mesh::Blocks`]), from code ([`mesh::InlineMesh`]) |
-//! | [`output::results`] | frames of a folder of results, as plain numbers |
+//! | [`output::results`] | frames of a results folder, as plain numbers |
 //!
-//! Inputs are made by `new` and setters, and what comes back may grow: nearly all structures and enums are `non_exhaustive`. The
-//! feature `internals`, which the program (`cli`) turns on, opens all rooms; what only it shows changes without notice.
+//! Inputs are created by `new` and setters, and results may be extended: nearly all structures and enums are `non_exhaustive`.
+//! The feature `internals`, enabled by the program (`cli`), makes all modules public; those that only it exposes change without
+//! notice.
 //!
-//! # The way through the house
+//! # Architecture
 //!
-//! A room imports only from the rooms below it:
+//! A module (a "room") imports only from the modules below it:
 //!
-//! | room | what is in it |
+//! | module | content |
 //! |---|---|
 //! | [`cli`] | commands, arguments, progress |
-//! | [`case`] | the JSON of a case: read, handed to the builder of a model, and run into a folder ([`case::job`]) |
+//! | [`case`] | the JSON of a case: read, passed to the builder of a model, and run into a folder ([`case::job`]) |
 //! | [`output`] | observers of a run and the files they write; the page of results |
-//! | [`run`] | steps, increments accepted and cut, observers |
-//! | [`time`] | one increment, implicit or explicit: old state → new state; how long the next one is |
-//! | [`solve`] | Newton's method; bodies that float |
+//! | [`run`] | steps, acceptance and cut-back of increments, observers |
+//! | [`time`] | one increment, implicit or explicit: old state → new state; step-size control |
+//! | [`solve`] | Newton's method; detection of unconstrained rigid-body modes |
 //! | [`equations`] | residual and tangent of a model at a trial displacement; energies |
 //! | [`model`] | bodies, contacts, steps, supports and loads; the state; [`model::builder`]: a model from code |
 //! | [`contact`] | surfaces, search, projection, mortar, forces of contact pairs |
 //! | [`linear`] | sparse matrices and their factors |
-//! | [`mesh`] | nodes, elements, groups, shapes |
+//! | [`mesh`] | nodes, elements, groups, shape functions |
 //! | [`laws`] | friction of interfaces, stress of bodies |
 //!
 //! Reading order: `main` → [`cli`] → [`case`] (JSON, [`case::job`]) → [`model::builder`] (defaults, checks) → [`model`] → [`run`] (steps,
-//! increments, cut-back; [`time::step_size`] says how long) → [`time::increment`] (one increment: old state → new state) →
-//! [`solve::newton`] → [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up
-//! again: accepted [`model::state`] → [`output`].
+//! increments, cut-back; [`time::step_size`] for their length) → [`time::increment`] (one increment: old state → new state) →
+//! [`solve::newton`] → [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then
+//! back up: accepted [`model::state`] → [`output`].
 //!
-//! A law alone: [`cli`] → [`case`] → [`run::law`] along a path of slip, pressure and time → [`laws::friction`] → [`output`].
+//! A law test: [`cli`] → [`case`] → [`run::law`] along a path of slip, pressure and time → [`laws::friction`] → [`output`].
 //!
-//! # The way of one number
+//! # Example: path of the slip increment
 //!
 //! The slip increment Δu_t of a contact point, from the case file to the law and back to `history.csv`:
 //!
-//! 1. What moves the block, `"ux": {"rate": 0.05}`, is read as a [`model::builder::Support`], of which the builder makes a
+//! 1. The motion of the block, `"ux": {"rate": 0.05}`, is read as a [`model::builder::Support`], from which the builder makes a
 //!    [`model::support::Prescribed`] dof of the [`model::Step`].
-//! 2. [`run`] asks for an increment, [`time::increment`] sets a [`equations::Trial`] for it, and [`solve::equilibrium`] finds
-//!    the displacement u at its end, iterate by iterate.
-//! 3. At every iterate `equations/contacts.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and
-//!    `contact/projection.rs` find the foot, and [`contact::kinematics`] the arc on the master from the committed foot to this
-//!    one: that is Δu_t. [`contact::force`] hands it to the law as [`laws::friction::Sliding::slip`], with p and Δt.
-//! 4. The law returns q, its tangents and a new [`laws::friction::FrictionState`], whose `plastic_increment` is what of Δu_t
-//!    is slip; [`contact::force`] turns q into nodal forces, and the terms of [`equations`] add up.
-//! 5. The accepted [`model::state::State`] keeps it (`time/accept.rs`), and `output/history.rs` writes the mean over the
+//! 2. [`run`] requests an increment, [`time::increment`] creates a [`equations::Trial`] for it, and [`solve::equilibrium`]
+//!    finds the displacement u at its end by iteration.
+//! 3. At every iterate `equations/contacts.rs` evaluates each [`contact::pair`]. `contact/search.rs` and
+//!    `contact/projection.rs` find the projection, and [`contact::kinematics`] the arc on the master from the committed
+//!    projection to this one: Δu_t. [`contact::force`] passes it to the law as [`laws::friction::Sliding::slip`], with p and
+//!    Δt.
+//! 4. The law returns q, its tangents and a new [`laws::friction::FrictionState`], whose `plastic_increment` is the plastic
+//!    part of Δu_t; [`contact::force`] converts q to nodal forces, which are summed with the other terms of [`equations`].
+//! 5. The accepted [`model::state::State`] stores it (`time/accept.rs`), and `output/history.rs` writes the mean over the
 //!    contact, `base.mean_slip`.
 //!
 //! # Signs
@@ -102,22 +104,22 @@
 //! | symbol | in code | meaning |
 //! |---|---|---|
 //! | n, s | `normal`, `tangent` | unit normal out of the master; s = n turned by −90°, so (s, n) is right-handed |
-//! | g | `gap` | (x_slave − x_foot)·n, positive when open |
+//! | g | `gap` | (x_slave − x_m)·n with the projection x_m, positive when open |
 //! | p | `pressure` | positive in compression |
 //! | Δu_t | `slip` | motion of the slave relative to the master along s |
 //! | q | `traction` | resists positive slip; the traction on the slave is p n − q s |
 //!
 //! Surfaces in the mesh have their body on the left; the segments of a master run along s, so its body is on the right.
-//! The plane is a slice of depth 1 unless a section says otherwise ([`mesh::section`]), units are any consistent set.
+//! The plane is a slice of depth 1 unless a section specifies otherwise ([`mesh::section`]); units are any consistent set.
 //!
 //! # Invariants
 //!
 //! - A law is a pure function of (committed state, increment); it returns the stress or traction and the consistent
 //!   tangent of exactly that.
-//! - The traction is a scalar in the frame that turns with the interface; that is the co-rotational rate in 2D.
-//! - Committed and trial state are two values: accepting a state is the commit, dropping it the roll-back.
-//! - Sums run in a fixed order: the same input gives the same bits on any number of threads.
-//! - A room imports only from lower ones, and no files import each other in a circle; `tests/layers.rs` holds the list.
+//! - The traction is a scalar in the frame that rotates with the interface; this is the co-rotational rate in 2D.
+//! - Committed and trial state are separate values: commit is to accept a state, roll-back to drop it.
+//! - Sums run in a fixed order: results are bitwise identical for any number of threads.
+//! - A module imports only from lower ones, and no files import each other in a circle; `tests/layers.rs` checks this.
 
 #![cfg_attr(
     not(feature = "internals"),

@@ -51,7 +51,7 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    // The command only says what to use instead.
+    // The command only names its replacement.
     #[command(hide = true, disable_help_flag = true)]
     Plot {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

@@ -1,4 +1,4 @@
-"""Which parameters a fit can be asked for, and which of their ranges leave a law no room."""
+"""Checks of the free parameters of a fit and of their ranges."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Ranges = Mapping[str, tuple[float, float]]
 
 
 def check_names(law: str, names: Iterable[str]) -> None:
-    """Names that neither the law nor a machine has; those of a registered law are its own affair.
+    """Check that the law or the machine has parameters of these names; those of a registered law are not checked.
 
     Raises:
-        ValueError: the nearest name that there is.
+        ValueError: a name is unknown; the message suggests the nearest known one.
     """
     known = _known(law)
     for name in names if known else ():
@@ -35,13 +35,13 @@ def _known(law: str) -> list[str]:
 
 
 def no_room(ranges: Ranges, why: str) -> ValueError | None:
-    """That the law accepts none of the points in the ranges of which its complaint speaks; nothing where it speaks of none."""
+    """Message that the law accepts no point in the ranges of the parameters named by its error; empty if it names none."""
     spoken = [f"{name} {low:g} to {high:g}" for name, (low, high) in ranges.items() if re.search(rf"\b{re.escape(name)}\b", why)]
     return ValueError(f"free: no start in the ranges ({', '.join(spoken)}) is valid: {why}") if spoken else None
 
 
 def check_room(law: str, ranges: Ranges, fixed: Mapping[str, Any]) -> None:
-    """Super/subloading friction is fitted with mu_s raised to mu_k where a trial has it below; it must not be so everywhere.
+    """Check that mu_s can exceed mu_k: super/subloading friction is fitted with mu_s raised to mu_k where a trial has it below.
 
     Raises:
         ValueError: the ranges leave mu_s below mu_k.

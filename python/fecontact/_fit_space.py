@@ -1,7 +1,7 @@
-"""The space that a fit searches: free parameters as coordinates, and the room in it where the law makes sense.
+"""Search space of a fit: free parameters as coordinates, and the part of the space where the law is valid.
 
-Coordinates are logarithms where the range of a parameter is positive, else the parameter in widths of its range. A search goes over shares,
-each from 0 to 1 of a range; that of ``mu_s`` begins at ``mu_k`` where both are free, so that no search is caught beyond, where nothing weakens.
+Coordinates are logarithms where the range of a parameter is positive, else the parameter in widths of its range. A search uses shares,
+fractions from 0 to 1 of a range; the range of ``mu_s`` begins at ``mu_k`` if both are free, so that no search ends where nothing weakens.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Space:
         self._kinetic: int | None = self.names.index("mu_k") if both else None
 
     def _room(self, ends: Array) -> tuple[Array, Array]:
-        """Lowest and highest values in the room."""
+        """Lowest and highest valid values."""
         low, high = ends.T.copy()
         known = {**self.fixed, **dict(zip(self.names, ends))}
         least, most = (np.ravel(known.get(name, np.nan)) for name in ("mu_k", "mu_s"))
@@ -49,7 +49,7 @@ class Space:
         return low, high
 
     def rough(self) -> Space:
-        """The same with a law that is computed faster, and less exactly where it controls its error."""
+        """The same space with a law that is evaluated faster, with a larger tolerance if it controls its error."""
         tolerance = {"tolerance": ROUGH} if self.law == "super_subloading" else {}
         return Space(self.law, self.ranges, {**tolerance, **self.fixed})
 
@@ -62,7 +62,7 @@ class Space:
         return np.where(self.log, np.exp(np.where(self.log, points, 0.0)), points * self.width)
 
     def within(self, shares: Array) -> Array:
-        """Coordinates (..., free) at shares (..., free) of the room."""
+        """Coordinates (..., free) at shares (..., free) of the valid ranges."""
         points = np.asarray(self.bottom + shares * (self.top - self.bottom))
         if (static := self._static) is not None:
             least, _ = self._least_static(points)
@@ -80,7 +80,7 @@ class Space:
         return slopes
 
     def shares(self, point: Array) -> Array:
-        """Shares (free,) of the room at one point."""
+        """Shares (free,) of the valid ranges at one point."""
         low = self.bottom.copy()
         if self._static is not None:
             low[self._static], _ = self._least_static(point)
@@ -88,7 +88,7 @@ class Space:
         return np.asarray(np.clip((point - low) / np.where(extent > 0.0, extent, 1.0), 0.0, 1.0))
 
     def _least_static(self, points: Array) -> tuple[Array, Array]:
-        """The coordinate from which on ``mu_s`` is allowed at points (..., free), and how it varies with that of ``mu_k``."""
+        """Lowest valid coordinate of ``mu_s`` at points (..., free), and its derivative by that of ``mu_k``."""
         static, kinetic = self._static, self._kinetic
         value = np.maximum(self.values(points)[..., kinetic], np.finfo(float).tiny)
         least = np.log(value) if self.log[static] else value / self.width[static]
@@ -114,7 +114,7 @@ class Space:
         return given
 
     def slopes(self, point: Array) -> dict[str, Array]:
-        """Derivatives of the parameters that vary, by the coordinates (free,)."""
+        """Derivatives of the free parameters by the coordinates (free,)."""
         values = self.values(point)
         rows = dict(zip(self.names, np.diag(np.where(self.log, values, self.width))))
         given = {**self.fixed, **dict(zip(self.names, values))}
@@ -139,7 +139,7 @@ def _ends(name: str, given: Any) -> tuple[float, float]:
     """The ends of the range of a free parameter.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the range is invalid.
     """
     try:
         low, high = (float(end) for end in given)

@@ -1,4 +1,4 @@
-"""What to know of a fit, in plain words: what the data do not tell, and whether the law follows them."""
+"""Assessment of a fit in words: parameters not determined by the data, and systematic deviations."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NUMBERS = ("none", "one", "two", "three", "four", "five", "six")
 
 @dataclass(frozen=True)
 class Evidence:
-    """What the words are about."""
+    """Data for the assessment."""
 
     # Value, low and high of the free parameters.
     table: pd.DataFrame
@@ -56,7 +56,7 @@ class Evidence:
 
 
 def words(of: Evidence) -> list[str]:
-    """What to know; empty where nothing is wrong."""
+    """The assessment; empty if there is no problem."""
     weakens = not _no_weakening(of)
     told = _undetermined(of, weakens) + _trades(of, weakens) + _borders(of)
     if not weakens:
@@ -79,7 +79,7 @@ def _no_weakening(of: Evidence) -> bool:
 
 
 def _unknown(of: Evidence) -> list[set[str]]:
-    """The members of every direction of which the data tell nothing."""
+    """The parameters of every direction not determined by the data."""
     names = list(of.table.index)
     return [
         {name for name, share in zip(names, direction) if abs(share) > SHARE}
@@ -89,7 +89,7 @@ def _unknown(of: Evidence) -> list[set[str]]:
 
 
 def _undetermined(of: Evidence, weakens: bool) -> list[str]:
-    """A sentence for each group of parameters that directions without evidence join."""
+    """One sentence per group of parameters connected by undetermined directions."""
     directions, told = _unknown(of), []
     for group in _joined(directions):
         lost = sum(members <= group for members in directions)
@@ -107,7 +107,7 @@ def _undetermined(of: Evidence, weakens: bool) -> list[str]:
 
 
 def _trades(of: Evidence, weakens: bool) -> list[str]:
-    """A sentence for each group of parameters of which the errors go together."""
+    """One sentence per group of parameters with correlated errors."""
     unknown = set().union(*_unknown(of))
     matrix, names = of.correlation.to_numpy(), list(of.table.index)
     pairs = [
@@ -136,7 +136,7 @@ def _borders(of: Evidence) -> list[str]:
 
 
 def _others(of: Evidence) -> list[str]:
-    """Other fits that are as good and lie elsewhere."""
+    """Other fits of equal quality with different parameters."""
     best = of.ends.iloc[0]
     for _, end in of.ends.iloc[1:].iterrows():
         away = [name for name in of.table.index if not of.table["low"][name] <= end[name] <= of.table["high"][name]]
@@ -147,7 +147,7 @@ def _others(of: Evidence) -> list[str]:
 
 
 def _joined(sets: Iterable[set[str]]) -> list[set[str]]:
-    """Sets that share a member, joined."""
+    """Unions of sets that share a member."""
     groups: list[set[str]] = []
     for members in sets:
         touched = [group for group in groups if group & members]

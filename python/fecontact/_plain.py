@@ -1,4 +1,4 @@
-"""From what Python users write to what JSON holds."""
+"""Conversion of Python values to JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def plain(value: Any, place: str = "", file: str = "case") -> Any:
     """The same of dicts, lists, texts and numbers alone.
 
     Raises:
-        CaseError: what JSON cannot hold, with its place.
+        CaseError: a value cannot be written as JSON; with its place.
     """
     if value is None or isinstance(value, (str, bool, int)):
         return value
@@ -63,10 +63,10 @@ def number(given: Any, place: str, file: str) -> float:
 
 
 def count(given: Any, name: str) -> int | None:
-    """A count of something, or none.
+    """An integer count, or None.
 
     Raises:
-        ValueError: it is no whole number.
+        ValueError: it is not an integer.
     """
     if given is not None and (isinstance(given, (bool, np.bool_)) or not isinstance(given, (int, np.integer))):
         raise ValueError(f"{name}: is {_told(given)}: must be a whole number")
@@ -100,7 +100,7 @@ def path(given: Any, place: str) -> str:
     """The same as a text.
 
     Raises:
-        ValueError: it is no path.
+        ValueError: it is not a path.
     """
     if not isinstance(given, (str, os.PathLike)):
         raise ValueError(f"{place}: is {_told(given)}: must be a path")
@@ -108,7 +108,7 @@ def path(given: Any, place: str) -> str:
 
 
 def _told(given: Any) -> str:
-    """What it is, in a few letters."""
+    """Short description of a value."""
     shown = " ".join(repr(given).split())
     return shown if len(shown) <= 40 else f"a {type(given).__name__}"
 
@@ -121,6 +121,6 @@ def below(place: str, key: object, file: str) -> str:
 
 
 def refused(file: str, place: str, message: str) -> CaseError:
-    """A complaint about a place."""
+    """An error at a place."""
     inside = f"{place}: " if place else ""
     return CaseError(f"{file}: {inside}{message}", file, place, message)

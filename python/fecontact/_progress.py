@@ -1,4 +1,4 @@
-"""The bar of a run, and of a study."""
+"""Progress bars of runs and studies."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 def is_seen() -> bool:
-    """Whether a bar has somewhere to move: a terminal or a notebook. A log would get a line at every step of it."""
+    """Whether a progress bar can be shown: on a terminal or in a notebook. A log would get a line per update."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython else None
     return getattr(shell, "kernel", None) is not None or (sys.stderr is not None and sys.stderr.isatty())
 
 
 class Progress:
-    """A bar over the time of a run, if it is wanted and can be seen."""
+    """A progress bar over the time of a run, if requested and visible."""
 
     def __init__(self, wanted: bool) -> None:
         self._wanted = wanted and is_seen()
@@ -32,7 +32,7 @@ class Progress:
             self._bar.close()
 
     def show(self, place: _native.Place | None) -> None:
-        """Show how far the run is, if it has come further."""
+        """Update the progress of the run, if it has advanced."""
         if not self._wanted or place is None:
             return
         step, time, end, dt, increments, iterations, (opened, stick, slip) = place

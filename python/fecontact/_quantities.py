@@ -11,7 +11,7 @@ from . import _native
 
 @cache
 def _files() -> dict[str, dict[str, dict[str, str]]]:
-    """Those of every file by their names, without those of contacts, sets, bodies and probes before them."""
+    """Quantities of every file by name, without the prefixes of contacts, sets, bodies and probes."""
     listed = json.loads(_native.schema("results"))
     return {file: {entry["name"].rsplit(".", 1)[-1]: entry for entry in entries} for file, entries in listed.items()}
 
@@ -22,19 +22,19 @@ def _known(name: str) -> dict[str, str]:
 
 
 def spoken(name: str) -> str:
-    """What a quantity is called in figures."""
+    """Name of a quantity in figures."""
     return _known(name).get("spoken", name)
 
 
 def unit(column: str, units: Mapping[str, str]) -> str | None:
-    """The unit of a column, as far as the units of a case label it."""
+    """Unit of a column, as far as it is labelled by the units of a case."""
     name = column.rsplit(".")[-1]
     known = _known(name) or _known(name.removeprefix("mean_"))
     return units.get(known.get("of", ""))
 
 
 def unit_in(file: str, column: str, units: Mapping[str, str]) -> str:
-    """The unit of a column of a table: as the units of a case label it, else made of F, L and T, or their labels; nothing where it has none."""
+    """Unit of a column of a table: as labelled by the units of a case, else composed of F, L and T or their labels; empty if dimensionless."""
     own, name = _files().get(file, {}), column.rsplit(".")[-1]
     known = own.get(name) or _known(name) or _known(name.removeprefix("mean_"))
     labels = {"F": units.get("force", "F"), "L": units.get("length", "L"), "T": units.get("time", "T")}
@@ -42,6 +42,6 @@ def unit_in(file: str, column: str, units: Mapping[str, str]) -> str:
 
 
 def name_of_now(name: str) -> str:
-    """What a quantity of a store is called now; versions before called some otherwise."""
+    """Present name of a quantity of a store; earlier versions used other names for some."""
     store = _files()["interface.zarr"]
     return next((now for now, entry in store.items() if entry.get("formerly") == name), name)

@@ -1,4 +1,4 @@
-"""Measured curves that a law can be fitted to: what was led, what was measured, and what a law says instead."""
+"""Measured curves for fits: prescribed and measured quantities, and the prediction of a law."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Interface:
         slip: since the start, shape (n,) [L].
         pressure: shape (n,), or a number [F/L²].
         traction: measured, shape (n,) [F/L²].
-        sigma: standard deviation of the noise of ``traction``: a number or shape (n,); the fit finds it unless given [F/L²].
-        weight: of this record among others.
+        sigma: standard deviation of the noise of ``traction``: a number or shape (n,); by default estimated by the fit [F/L²].
+        weight: weight of this record relative to others.
         initial: traction at the start [F/L²].
     """
 
@@ -61,7 +61,7 @@ class Interface:
         return float(coefficient), float(np.ptp(self.slip)), float(np.ptp(self.time))
 
     def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
-        """What the law says instead of what was measured, shape (sets, n)."""
+        """Prediction of the measured quantity by the law, shape (sets, n)."""
         driven = law(_of_law(parameters)).drive(self.time, self.slip, self.pressure, traction=self.initial, threads=threads)
         return driven["traction"]
 
@@ -78,7 +78,7 @@ class Interface:
 class SpringSlider(Interface):
     """Load-point displacement and force of a machine, whose stiffness k is a parameter, ``stiffness``, and mass M may be one, ``mass``.
 
-    With a mass the record is what :meth:`fecontact.law.Law.ride` rides, from rest: M ü = F − q, F = F₀ + k (w − u). Without, the machine
+    With a mass the record is simulated by :meth:`fecontact.law.Law.ride`, from rest: M ü = F − q, F = F₀ + k (w − u). Without, the machine
     and what the interface yields are springs in series: the load point leads a law with 1/α = 1/α_t + 1/k, of which the data tell no more
     than α, and a slip event is a jump.
 
@@ -86,7 +86,7 @@ class SpringSlider(Interface):
         time: ascending, shape (n,) [T].
         load_point: displacement since the start, shape (n,) [L].
         pressure: shape (n,), or a number [F/L²].
-        traction: measured force an area, shape (n,) [F/L²].
+        traction: measured force per area, shape (n,) [F/L²].
         sigma, weight, initial: as for :class:`Interface`.
     """
 
@@ -96,7 +96,7 @@ class SpringSlider(Interface):
         super().__init__(time, load_point, pressure, traction, **options)
 
     def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
-        """The force that the slider says, shape (sets, n)."""
+        """Predicted force of the spring-slider, shape (sets, n)."""
         if "mass" in parameters:
             return self._ride(parameters, (), threads)["force"]
         return super().predicted({**parameters, "alpha_t": self._series(parameters)[0]}, threads)
@@ -120,7 +120,7 @@ class SpringSlider(Interface):
         return law(whole).ride(*path, stiffness=stiffness, mass=mass, force=self.initial, by=by, threads=threads)
 
     def _series(self, parameters: Parameters) -> tuple[Array, dict[str, Array]]:
-        """α, and how it varies with k and α_t."""
+        """α, and its derivatives by k and α_t."""
         self._check(parameters)
         springs = {name: np.asarray(parameters[name], dtype=float) for name in ("stiffness", "alpha_t")}
         series = np.asarray(1.0 / (1.0 / springs["stiffness"] + 1.0 / springs["alpha_t"]))
@@ -136,13 +136,13 @@ class Holds:
     """Peaks of the coefficient of friction after holds, in one slide-hold-slide sequence of a stiff machine.
 
     Args:
-        hold: durations, one after the other, shape (n,) [T].
+        hold: durations of the successive holds, shape (n,) [T].
         peak: measured largest q/p of the slide after each hold, shape (n,) [-].
-        rate: of the slides [L/T].
-        slide: length of every slide, the first one included, from rest [L].
+        rate: slip rate of the slides [L/T].
+        slide: length of every slide, including the first one, which starts from rest [L].
         pressure: [F/L²].
-        sigma: standard deviation of the noise of ``peak``; the fit finds it unless given [-].
-        weight: of this record among others.
+        sigma: standard deviation of the noise of ``peak``; by default estimated by the fit [-].
+        weight: weight of this record relative to others.
     """
 
     kind = "peak"
@@ -177,12 +177,12 @@ class Holds:
         return float(self.measured.max()), self.slide, float(self.hold.max())
 
     def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
-        """The peaks that the law says, shape (sets, n)."""
+        """Predicted peaks, shape (sets, n)."""
         drive = law(_of_law(parameters)).drive(self._time, self._slip, self.pressure, threads=threads)
         return np.asarray(self._slides(drive["traction"]).max(axis=-1) / self.pressure)
 
     def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
-        """How they vary with parameters of one set, shape (n, by): as the law does at the sample of the peak."""
+        """Their derivatives by parameters of one set, shape (n, by), taken at the sample of the peak."""
         own = [name for name in by if name not in MACHINE]
         drive = law(_of_law(parameters)).drive(self._time, self._slip, self.pressure, by=own, threads=threads)
         peaks = self._slides(drive["traction"]).argmax(axis=-1)
@@ -201,7 +201,7 @@ Record = Interface | SpringSlider | Holds
 
 
 def _shown(record: Record, **ranges: Array | float) -> str:
-    """A record in a line: how many samples, and from where to where."""
+    """Description of a record in one line: number and range of its samples."""
     spans = {name: np.unique([np.min(values, initial=np.inf), np.max(values, initial=-np.inf)]) for name, values in ranges.items()}
     told = ", ".join(f"{name} {' to '.join(f'{end:.6g}' for end in span)}" for name, span in spans.items())
     return f"<{type(record).__name__} of {record.measured.size} samples: {told}>"
@@ -212,7 +212,7 @@ def _of_law(parameters: Parameters) -> dict[str, Any]:
 
 
 def _columns(drive: Drive, what: str, by: Sequence[str]) -> Array:
-    """∂what/∂parameter of a drive, a column a parameter; 0 for those that it does not depend on."""
+    """∂what/∂parameter of a drive, one column per parameter; 0 for those without effect."""
     return np.stack([drive.get(f"d{what}_d{name}", np.zeros_like(drive[what])) for name in by], axis=-1)
 
 

@@ -1,12 +1,12 @@
-"""Laws fitted to measurements: least squares, with what the data tell of each parameter, and what they do not.
+"""Fits of laws to measurements by least squares, with the parameters that the data do and do not determine.
 
-The parameters x are fitted by their logarithms where the range to find them in is positive, and as they are where it is not::
+The parameters x are fitted by their logarithms if their range is positive, otherwise directly::
 
     S(x) = Σ w² ((y(x) − ŷ)/σ)² → min,   cov = (JᵀJ/s² + diag(1/range²))⁻¹,   interval = x ± t₀.₉₇₅(n − m) √cov
 
-The ranges count as knowledge: where the data say nothing, a parameter is somewhere in its range, and no further away do the others go with it. J
-is exact, of what the law computes with its sub-steps as they are: parameters and state are differentiated together from sample to sample
-(:meth:`fecontact.law.Law.drive`, ``by``). Laws that do not differentiate, those written in Python and backward Euler, have central differences.
+The ranges are prior information: a parameter not determined by the data lies within its range, which also limits its effect on the others. J
+is the exact derivative of the computed values at fixed sub-steps: parameters and state are differentiated together from sample to sample
+(:meth:`fecontact.law.Law.drive`, ``by``). For laws without derivatives (written in Python, or backward Euler) central differences are used.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class _Problem:
         return np.concatenate(parts, axis=-1)
 
     def _predicted(self, record: Record, parameters: dict[str, Any]) -> Array:
-        """What the law says; not a number for sets that it does not accept or has no answer for, from which the search turns back."""
+        """Prediction of the law; NaN for sets that it does not accept or cannot solve, which the search avoids."""
         try:
             return record.predicted(parameters, self.threads)
         except (CaseError, Stopped) as error:
@@ -89,11 +89,11 @@ class _Problem:
             return np.concatenate([self._predicted(record, each) for each in one])
 
     def at(self, point: Array) -> Array:
-        """Those of one point."""
+        """Residuals at one point."""
         return np.asarray(self.residuals(point[None])[0])
 
     def jacobian(self, point: Array) -> Array:
-        """∂residual/∂coordinate (samples, free), exact where the law says how its answers vary."""
+        """∂residual/∂coordinate (samples, free), exact if the law provides derivatives."""
         try:
             found = self._exact(point)
         except (CaseError, Stopped):
@@ -103,7 +103,7 @@ class _Problem:
         return np.nan_to_num(found, nan=0.0, posinf=0.0, neginf=0.0)
 
     def _exact(self, point: Array) -> Array | None:
-        """The same as the law differentiates itself; none where it does not."""
+        """The same from the derivatives of the law; None if it has none."""
         slopes = self.space.slopes(point)
         parameters = {name: _plain(value) for name, value in self.space.parameters(point[None]).items()}
         of_law = law_of({name: value for name, value in parameters.items() if name not in MACHINE})
@@ -117,7 +117,7 @@ class _Problem:
         return np.asarray(np.concatenate(parts) @ np.stack(list(slopes.values())))
 
     def differences(self, point: Array) -> Array:
-        """The same by central differences within the ranges, by one side where the other has no answer."""
+        """The same by central differences within the ranges, one-sided where the law fails on the other side."""
         above, below = np.minimum(point + STEP, self.space.high), np.maximum(point - STEP, self.space.low)
         sides = self.residuals(point + np.concatenate([np.diag(above - point), np.diag(below - point)]))
         here, count = self.at(point), point.size
@@ -129,7 +129,7 @@ class _Problem:
 
 @dataclass(frozen=True)
 class _End:
-    """Where a search has ended: shares of the room, the point, and the residuals there."""
+    """End of a search: shares of the valid ranges, the point, and its residuals."""
 
     shares: Array
     point: Array
@@ -142,7 +142,7 @@ class _End:
 
 
 def _search(problem: _Problem, shares: Array, most: int) -> _End | None:
-    """The search from one point of the room, in at most so many solves; none where the law has no answer there."""
+    """A search from one point, with a limited number of solves; None if the law fails there."""
     from scipy.optimize import least_squares
 
     space, shares = problem.space, np.clip(shares, 1e-9, 1.0 - 1e-9)
@@ -160,7 +160,7 @@ def _search(problem: _Problem, shares: Array, most: int) -> _End | None:
 
 
 def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: int) -> list[_End]:
-    """Where the searches have ended, the best first: many are begun, the most promising carried on."""
+    """Ends of the searches, the best first: many are started, the most promising are continued."""
     from scipy.stats import qmc
 
     rough = _Problem(problem.records, problem.space.rough(), problem.threads)
@@ -178,13 +178,13 @@ def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: 
 
 
 def _ends(problem: _Problem, begin: list[Array], most: int) -> list[_End]:
-    """Where searches from some points of the room have ended, the best first."""
+    """Ends of searches from some points, the best first."""
     found = (_search(problem, shares, most) for shares in begin)
     return sorted((end for end in found if end is not None), key=lambda end: end.squares)
 
 
 def _first(problem: _Problem, start: Mapping[str, float], point: Array) -> Array:
-    """The shares of where a search is asked to begin, what is not said being that of the point.
+    """Shares of the requested starting point of a search; parameters not given are those of the point.
 
     Raises:
         ValueError: there is no such free parameter, or its value is out of its range.
@@ -205,7 +205,7 @@ def _first(problem: _Problem, start: Mapping[str, float], point: Array) -> Array
 
 
 def _profile(problem: _Problem, best: _End, name: str, step: float, excess: float, points: int) -> pd.DataFrame:
-    """Least sums of squares where a parameter is held at values to either side of the best, up to `excess` above it."""
+    """Minimum sums of squares with a parameter fixed at values on either side of the best, up to `excess` above it."""
     space, k = problem.space, problem.space.names.index(name)
     # √(S − S_min), linear in the parameter where the law is.
     target, rows = np.sqrt(excess), {float(best.point[k]): (0.0, best)}
@@ -245,7 +245,7 @@ def _profile(problem: _Problem, best: _End, name: str, step: float, excess: floa
 
 
 def _held(problem: _Problem, k: int, at: float, near: Array) -> _End:
-    """The best with one coordinate held, from the others of a point near it."""
+    """The best fit with one coordinate fixed, starting from a nearby point."""
     space, point = problem.space, near.copy()
     point[k] = at
     name = space.names[k]
@@ -263,15 +263,15 @@ class Fit:
     """A fitted law.
 
     Attributes:
-        parameters: all, those given included.
-        table: a row a free parameter: ``value``, ``low`` and ``high`` of its 95 % interval, from nothing to infinity where the data do not
+        parameters: all parameters, including the given ones.
+        table: one row per free parameter: ``value``, ``low`` and ``high`` of its 95 % interval, from zero to infinity where the data do not
             determine it, ``std`` (of its logarithm where ``log``).
-        correlation: of the free parameters.
-        words: what to know about it, in plain words; empty where nothing is wrong.
+        correlation: correlation of the free parameters.
+        words: assessment of the fit in words; empty if there is no problem.
         noise: s, standard deviation of the residuals; in units of sigma where sigma was given.
-        residuals: of each record, fitted minus measured.
-        memory: correlation of a residual with the one before; 0 for noise, near 1 where the law cannot follow the data.
-        ends: where each start has ended: the free parameters and S.
+        residuals: fitted minus measured values of each record.
+        memory: correlation of successive residuals; 0 for noise, near 1 where the law cannot follow the data.
+        ends: result of each search: the free parameters and S.
     """
 
     def __init__(self, problem: _Problem, ends: list[_End]) -> None:
@@ -311,29 +311,29 @@ class Fit:
         return law_of({name: value for name, value in self.parameters.items() if name not in MACHINE})
 
     def predicted(self, record: Record) -> Array:
-        """What it says for a record, also for one that it was not fitted to, shape (n,)."""
+        """Prediction for a record, also for one that was not fitted, shape (n,)."""
         sets = {name: np.array([value]) if isinstance(value, float) else value for name, value in self.parameters.items()}
         return np.asarray(record.predicted(sets)[0])
 
     def profile(self, name: str, points: int = 12) -> pd.DataFrame:
-        """How well the data can be followed with a parameter held at other values: its profile likelihood, for intervals where the law is
-        far from linear. It takes a search a point.
+        """Quality of the fit with a parameter fixed at other values: its profile likelihood, for intervals where the law is
+        strongly nonlinear. It takes one search per point.
 
         ```text
         S(x) = min over the other parameters,   95 %:  S(x) ≤ S_min + t₀.₉₇₅² s²,   s = 1 where sigma was given
         ```
 
         Args:
-            name: of a free parameter.
-            points: at most so many to either side.
+            name: name of a free parameter.
+            points: maximum number on either side.
 
         Returns:
-            A row a value, ascending: the free parameters, and S; ``attrs["low"]`` and ``attrs["high"]`` of the 95 % interval, ``attrs["limit"]``
-            of S. An end that the data do not determine, as S stays below the limit up to the border of the range, is 0 (−∞ where the
+            One row per value, ascending: the free parameters, and S; ``attrs["low"]`` and ``attrs["high"]`` of the 95 % interval, ``attrs["limit"]``
+            of S. An end not determined by the data, where S stays below the limit up to the border of the range, is 0 (−∞ if the
             range is not positive) or ∞.
 
         Raises:
-            ValueError: it is no free parameter.
+            ValueError: it is not a free parameter.
         """
         if name not in self.table.index:
             raise ValueError(f"name: {name} is no free parameter; there are {', '.join(self.table.index)}")
@@ -365,23 +365,23 @@ def fit(
     Args:
         data: records: :class:`Interface`, :class:`SpringSlider`, :class:`Holds`, or several of them. Records of different kinds need a
             ``sigma`` each.
-        law: its name.
-        free: parameters to find, with the ranges to find them in; positive ones are searched by their logarithm. Without ranges
-            (super/subloading friction only) they come from what the records cover, wide. Ranges may overlap: trials that the law does not accept,
-            ``mu_d`` above ``mu_s``, are passed over.
-        start: where the first search begins: values of free parameters, within their ranges; those that it does not name are as in the
-            best of the points that the other searches begin from.
-        starts: searches, of three times as many that are begun from the best of 128 points spread over the ranges.
-        seed: of those points.
-        threads: all cores unless given.
+        law: name of the law.
+        free: parameters to be found, with their ranges; positive ranges are searched by the logarithm. Without ranges
+            (super/subloading friction only) wide ones are derived from the records. Ranges may overlap: trials that the law does not accept,
+            such as ``mu_d`` above ``mu_s``, are skipped.
+        start: start of the first search: values of free parameters, within their ranges; others are taken from the
+            best starting point of the other searches.
+        starts: number of completed searches; three times as many are started from the best of 128 points spread over the ranges.
+        seed: random seed of those points.
+        threads: number of threads; default: all cores.
         **fixed: the other parameters; ``stiffness`` and ``mass`` are those of the machine of a :class:`SpringSlider`.
 
     Returns:
-        The best of the fits. Read its ``words``: they say which parameters these data do not determine.
+        The best fit. Read its ``words``, which name the parameters not determined by these data.
 
     Raises:
-        ValueError: a name that the law does not have, with the nearest that it has; ranges in which no start is valid.
-        CaseError: a parameter that is given is wrong.
+        ValueError: the law has no parameter of a name (the message suggests the nearest one), or no starting point in the ranges is valid.
+        CaseError: a given parameter is invalid.
     """
     records = _records(data)
     free = free if isinstance(free, Mapping) else [free] if isinstance(free, str) else free
@@ -435,7 +435,7 @@ def _check(records: Sequence[Record], free: Iterable[str], fixed: Mapping[str, A
 
 
 def _check_fixed(fixed: Mapping[str, Any]) -> None:
-    """Parameters that are given must be one value each.
+    """Check that each given parameter has one value.
 
     Raises:
         CaseError: one is none.
@@ -446,7 +446,7 @@ def _check_fixed(fixed: Mapping[str, Any]) -> None:
 
 
 def _ranges(law: str, free: Iterable[str], records: Sequence[Record]) -> dict[str, tuple[float, float]]:
-    """Wide ranges, from what the records cover."""
+    """Wide ranges, derived from the records."""
     coefficient, slip, time = np.max([record.scales() for record in records], axis=0)
     pressure = max(float(np.max(record.pressure)) for record in records)
     if not min(coefficient, slip, time, pressure) > 0:
@@ -462,7 +462,7 @@ def _ranges(law: str, free: Iterable[str], records: Sequence[Record]) -> dict[st
 
 
 def _table(space: Space, point: Array, std: Array, quantile: float) -> pd.DataFrame:
-    """Values and 95 % intervals; those that say nothing, wider than the range to both sides or by far, have no ends."""
+    """Values and 95 % intervals; uninformative ones, wider than the range on both sides or by far, have no ends."""
     with np.errstate(over="ignore"):
         low, value, high = (space.values(point + side * quantile * std) for side in (-1.0, 0.0, 1.0))
     wide = (point - quantile * std < space.low) & (point + quantile * std > space.high)
@@ -473,13 +473,13 @@ def _table(space: Space, point: Array, std: Array, quantile: float) -> pd.DataFr
 
 
 def _share(residuals: Array, measured: Array) -> float:
-    """Root mean square of residuals, as a share of the largest value measured."""
+    """Root mean square of residuals, as a fraction of the largest measured value."""
     size, largest = float(np.sqrt(np.mean(residuals**2))), float(np.abs(measured).max())
     return size / largest if largest > size else float(size > 0.0)
 
 
 def _memory(residuals: NDArray[np.float64]) -> float:
-    """Correlation of a residual with the one before it."""
+    """Correlation of successive residuals."""
     power = float(np.sum(residuals**2))
     return float(np.sum(residuals[1:] * residuals[:-1])) / power if power > 0 else 0.0
 

@@ -31,7 +31,7 @@ AT_HAND = "a mesh at hand"
 
 
 class Report(str):
-    """A text that shows itself as it is."""
+    """A text displayed without escapes."""
 
     __slots__ = ()
 
@@ -45,11 +45,11 @@ class Case:
     Args:
         source: the path of a case file, or its content as a dict. The mesh may be a :class:`Mesh`, and any part an object of
             :mod:`fecontact.model`; arrays of numpy stand for lists.
-        folder: where relative paths of a dict begin; the current folder unless given.
+        folder: reference folder of relative paths in a dict; default: the current folder.
         **keys: the keys of a case, instead of a dict: ``Case(mesh=..., bodies=..., contacts=..., steps=...)``.
 
     Raises:
-        CaseError: file, place and value of what is wrong, as the command line says it. What only the mesh can tell is found by
+        CaseError: the case is invalid; with file, place and value, as on the command line. Errors that require the mesh are found by
             :meth:`check` and :meth:`run`.
     """
 
@@ -92,27 +92,27 @@ class Case:
 
     @property
     def mesh(self) -> Mesh | None:
-        """The mesh, if it is at hand and not named by the case."""
+        """The mesh in memory, if it was given instead of a file."""
         return self._mesh
 
     @property
     def title(self) -> str:
-        """What the case shows."""
+        """Title of the case."""
         return str(self._document.get("title", ""))
 
     def check(self) -> str:
         """Check the case and its mesh, and return the case as interpreted; solves nothing.
 
         Raises:
-            CaseError: file, place and value of what is wrong.
+            CaseError: the case is invalid; with file, place and value.
         """
         return Report(self._native.check())
 
     def resolved(self) -> Case:
-        """The case with every default filled in, which runs to the same bits: what ``fecontact check --resolved`` prints.
+        """The case with every default filled in, with bitwise identical results; as printed by ``fecontact check --resolved``.
 
         Raises:
-            CaseError: as of :meth:`check`.
+            CaseError: the same as for :meth:`check`.
         """
         case = Case.__new__(Case)
         case._path, case._mesh, case._document = self._path, self._mesh, json.loads(self._native.resolved())
@@ -126,7 +126,7 @@ class Case:
             values: by place, such as ``{"contacts.base.friction.mu_s": 0.5, "steps[1].duration": 10, "mesh": mesh}``.
 
         Raises:
-            CaseError: there is no such place, or a value does not fit.
+            CaseError: a place does not exist, or a value is invalid.
         """
         if not isinstance(values, Mapping) or not all(isinstance(place, str) for place in values):
             raise refused(self._path, "", f"replace: is a {type(values).__name__}: give values by place, as {{\"steps[0].duration\": 2.0}}")
@@ -142,7 +142,7 @@ class Case:
 
     @property
     def digest(self) -> str:
-        """A name of what is solved, mesh included, and of nothing else: 16 hexadecimal digits."""
+        """Hash of the problem to be solved, including the mesh: 16 hexadecimal digits."""
         solved = {key: value for key, value in self._document.items() if key not in ("title", "units")}
         of = hashlib.sha256(json.dumps(solved, sort_keys=True).encode())
         mesh = self._document.get("mesh")
@@ -154,7 +154,7 @@ class Case:
         return of.hexdigest()[:16]
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the case as a file for ``fecontact run``, a mesh at hand within it."""
+        """Write the case as a file for ``fecontact run``, including a mesh in memory."""
         path = as_path(path, "path")
         document = dict(self._document)
         mesh = document.get("mesh")
@@ -174,23 +174,23 @@ class Case:
         resume: bool = False,
         report: bool = False,
     ) -> Result:
-        """Run the case, to the same bits as ``fecontact run``.
+        """Run the case, with results bitwise identical to ``fecontact run``.
 
-        Ctrl-C ends it at the next increment; a second one does not wait for that. SIGTERM and SIGHUP end Python as they end any
-        program of it, and the run goes on from its last checkpoint (``resume``).
+        Ctrl-C ends it after the current increment, a second one immediately. SIGTERM and SIGHUP terminate Python as usual,
+        and the run can be resumed from its last checkpoint (``resume``).
 
         Args:
-            out: folder of the results; a temporary one, which goes with the result, unless given.
-            threads: all cores unless given; the results do not depend on it.
-            progress: whether a bar is shown, on a terminal or in a notebook.
-            resume: whether to go on from the last checkpoint in ``out``; where this case's own run has left none yet, it begins anew,
+            out: results folder; default: a temporary one, deleted with the result.
+            threads: number of threads, without effect on the results; default: all cores.
+            progress: whether a progress bar is shown, on a terminal or in a notebook.
+            resume: whether to resume from the last checkpoint in ``out``; if this case's own run has left none yet, it starts anew,
                 with a warning.
             report: whether to write ``report.html`` into ``out``.
 
         Raises:
-            CaseError: bad input; nothing was written.
-            Stopped: it stopped while solving; ``.result`` has the results so far.
-            Interrupted: Ctrl-C; ``.result`` has the results so far.
+            CaseError: the input is invalid; nothing was written.
+            Stopped: the run stopped while solving; ``.result`` contains the results so far.
+            Interrupted: Ctrl-C was pressed; ``.result`` contains the results so far.
         """
         holder = None
         if out is None:
@@ -219,7 +219,7 @@ class Case:
 
 
 def _raise(status: str, why: str | None, raised: BaseException | None, result: Result) -> None:
-    """The exception of a run that did not come to its end, or during which something was raised."""
+    """The exception of a run that did not finish, or during which an exception was raised."""
     if isinstance(raised, KeyboardInterrupt):
         text = f"interrupted; the results so far are the .result of this exception, in {result.folder}"
         raise Interrupted(text, result) from None
@@ -273,7 +273,7 @@ def _put(document: dict[str, Any], place: str, value: Any, file: str) -> None:
 
 
 def schema(of: str = "case") -> dict[str, Any]:
-    """The JSON Schema of a ``"case"``, or of the test of a ``"law"``; of ``"results"`` the quantities of their files: names, units
-    made of F, L and T, and what they are."""
+    """The JSON Schema of a ``"case"`` or of a ``"law"`` test; for ``"results"`` the quantities of the result files: names, units
+    composed of F, L and T, and meanings."""
     found: dict[str, Any] = json.loads(_native.schema(a_name(of, "schema", "schema")))
     return found

@@ -1,4 +1,4 @@
-"""What goes wrong, with the texts of the command line."""
+"""Errors and warnings, with the texts of the command line."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ if TYPE_CHECKING:
 
 
 class CaseError(ValueError):
-    """Bad input: nothing was solved or written.
+    """The input is invalid: nothing was solved or written.
 
     Attributes:
         file: the case or mesh file; ``"case"`` for a case given as a dict.
-        place: where in it, such as ``"contacts.base.friction.mu_s"``.
-        message: what is wrong, and what to do.
+        place: place in the file, such as ``"contacts.base.friction.mu_s"``.
+        message: error and remedy.
     """
 
     def __init__(self, text: str, file: str = "", place: str = "", message: str = "") -> None:
@@ -28,10 +28,10 @@ class CaseError(ValueError):
 
 
 class Stopped(RuntimeError):
-    """A run stopped while solving; what it has found is kept.
+    """A run stopped while solving; its results so far are kept.
 
     Attributes:
-        result: the results so far; ``None`` where there are none, as of a :class:`~fecontact.Simulation`.
+        result: the results so far; ``None`` if there are none, as for a :class:`~fecontact.Simulation`.
     """
 
     def __init__(self, text: str, result: Result | None = None) -> None:
@@ -40,7 +40,7 @@ class Stopped(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended a run at an increment; what it has found is kept.
+    """Ctrl-C ended a run after an increment; its results so far are kept.
 
     Attributes:
         result: the results so far.
@@ -52,7 +52,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Defect(RuntimeError):
-    """The program itself is wrong: please report it.
+    """The program has a defect; please report it.
 
     Attributes:
         result: the results so far, if there are any.
@@ -64,4 +64,4 @@ class Defect(RuntimeError):
 
 
 class RunWarning(UserWarning):
-    """Something to know about a result, as ``summary["warnings"]`` has it; of a study: rows that have no measures."""
+    """Warning about a result, as listed in ``summary["warnings"]``; for a study: rows without measures."""

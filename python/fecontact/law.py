@@ -1,4 +1,4 @@
-"""Friction laws alone, driven along paths of slip and pressure; many parameter sets at once."""
+"""Friction laws without a mesh, driven along paths of slip and pressure; many parameter sets at once."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ Array = NDArray[np.float64]
 
 
 class Drive(Mapping[str, Array]):
-    """What a law answers along a path, by name; each has the shape (..., n): that of the parameters, and the times.
+    """Response of a law along a path, by name; each array has the shape (..., n): that of the parameters, and the times.
 
     ``time`` (n,) [T], ``slip`` [L], ``pressure``, ``traction`` [F/L²], ``R``, ``mu``, ``structure`` [-], ``plastic_slip`` [L],
     ``dissipation`` [F/L], the consistent tangents of every step ``dtraction_dslip`` [F/L³] and ``dtraction_dpressure`` [-],
-    ``evaluations`` of the law's equation, and what the law has besides. Also attributes: ``drive.traction``.
+    ``evaluations`` of the law's equation, and further variables of the law. Also available as attributes: ``drive.traction``.
     """
 
     def __init__(self, arrays: Mapping[str, Array]) -> None:
@@ -51,7 +51,7 @@ class Drive(Mapping[str, Array]):
 
 
 class Law:
-    """A friction law with its parameters, each a number, or an array of any shape: a set of parameters an entry."""
+    """A friction law with its parameters, each a number, or an array of any shape with one set of parameters per entry."""
 
     def __init__(self, parameters: Mapping[str, Any]) -> None:
         arrays = {name: _array(name, value) for name, value in parameters.items() if _is_array(value)}
@@ -72,7 +72,7 @@ class Law:
         """Check the parameters of all sets.
 
         Raises:
-            CaseError: one of them is wrong.
+            CaseError: a parameter is invalid.
         """
         self.drive([0.0, 1.0], 0.0, 1.0)
 
@@ -86,20 +86,20 @@ class Law:
         by: Sequence[str] = (),
         threads: int | None = None,
     ) -> Drive:
-        """Drive the law along straight lines from sample to sample: ``fecontact law`` of a table, to the same bits.
+        """Drive the law along straight lines from sample to sample, bitwise identical to ``fecontact law`` with a table.
 
-        However far apart the samples are, the traction is right to about 1e-6 μ p: super/subloading friction (unless by backward
-        Euler) and rate and state take sub-steps for it, the increments of Coulomb friction and slip weakening are exact.
+        However far apart the samples are, the traction is accurate to about 1e-6 μ p: super/subloading friction (except with backward
+        Euler) and rate-and-state friction take sub-steps; the increments of Coulomb friction and slip weakening are exact.
 
         Args:
             time: ascending, shape (n,), n ≥ 2 [T].
             slip: total slip since the start, shape (n,), or (..., n) with a path for every set of parameters [L].
-            pressure: the same, or a number; at or below 0 the surfaces are apart [F/L²].
-            traction: at the start [F/L²].
-            by: parameters by which to differentiate the traction, of those that :meth:`sensitivities` names: the drive has
-                ``dtraction_dmu_s`` for ``"mu_s"``, the traction at the start staying as it is. The derivatives are those of what was
-                computed, to round-off, with the sub-steps that it took.
-            threads: all cores unless given.
+            pressure: the same, or a number; at or below 0 the surfaces are separated [F/L²].
+            traction: traction at the start [F/L²].
+            by: parameters by which to differentiate the traction, among those of :meth:`sensitivities`: the drive contains
+                ``dtraction_dmu_s`` for ``"mu_s"``, at constant initial traction. The derivatives are those of the computed values, to
+                round-off, at fixed sub-steps.
+            threads: number of threads; default: all cores.
 
         Raises:
             CaseError: a parameter or the path is wrong.
@@ -127,23 +127,23 @@ class Law:
         tolerance: float = 1e-8,
         threads: int | None = None,
     ) -> Drive:
-        """Ride a spring-slider: the law under a mass that the spring of a machine pulls, at rest in equilibrium at the start::
+        """Simulate a spring-slider: a mass with the law, pulled by the spring of a machine, initially at rest in equilibrium::
 
             M ü = F − q,   F = F₀ + k (w − u)
 
-        Its steps are adapted to slip events by halving the samples; nothing but friction damps it.
+        Its steps are adapted to slip events by halving the samples; only friction damps it.
 
         Args:
             time: ascending, shape (n,), n ≥ 2 [T].
             load_point: w since the start, shape (n,), or (..., n) with a path for every set of parameters [L].
             pressure: the same, or a number [F/L²].
-            stiffness: k of the machine, k > 0, a number or of the shape of the parameters [F/L³].
-            mass: M, M > 0, in the same way [F T²/L³].
-            force: F₀, at the start [F/L²].
-            by: parameters by which to differentiate the force, of those that :meth:`sensitivities` names, ``"stiffness"`` and ``"mass"``:
-                the drive has ``dforce_dmass``, exact for the steps that were taken.
-            tolerance: error of force and traction in a step, as a share of the largest pressure.
-            threads: all cores unless given.
+            stiffness: k of the machine, k > 0, a number or an array of the shape of the parameters [F/L³].
+            mass: M > 0, likewise [F T²/L³].
+            force: initial force F₀ [F/L²].
+            by: parameters by which to differentiate the force, among those of :meth:`sensitivities`, ``"stiffness"`` and ``"mass"``:
+                the drive contains ``dforce_dmass``, exact for fixed steps.
+            tolerance: error of force and traction in a step, as a fraction of the largest pressure.
+            threads: number of threads; default: all cores.
 
         Returns:
             ``time``, ``load_point``, ``pressure``, ``force`` [F/L²], ``slip`` [L], ``slip_rate`` [L/T], shape (..., n).
@@ -178,12 +178,12 @@ class Law:
         return listed
 
     def sensitivities(self) -> list[str]:
-        """Parameters by which :meth:`drive` differentiates: those of Coulomb friction, slip weakening, rate and state, and
-        super/subloading friction unless it is integrated by backward Euler; none of other laws."""
+        """Parameters by which :meth:`drive` can differentiate: those of Coulomb friction, slip weakening, rate-and-state friction, and
+        super/subloading friction except with backward Euler; none for other laws."""
         return _native.sensitivities(self._sets[0])
 
     def steady(self, rate: ArrayLike) -> Array:
-        """The coefficient q/p of steady sliding at a rate, shape (..., rates): that of the parameters, and the rates.
+        """Friction coefficient q/p in steady sliding at a rate, with the shape (..., rates) of the parameters and the rates.
 
         ```text
         coulomb            μ
@@ -196,7 +196,7 @@ class Law:
             rate: V > 0, shape (rates,) or a number [L/T].
 
         Raises:
-            CaseError: the law has no steady state, or a parameter is wrong.
+            CaseError: the law has no steady state, or a parameter is invalid.
         """
         rates = _finite("rate", rate)
         if not (rates > 0).all():
@@ -219,15 +219,15 @@ class Law:
 
 
 def law(law: str | Mapping[str, Any], **parameters: Any) -> Law:
-    """A friction law alone: ``law("coulomb", mu=[0.3, 0.4], alpha_t=1e5)``, an object of :mod:`fecontact.model`, or the
-    ``friction`` of a contact; it needs ``alpha_t``, for which there is no mesh.
+    """Create a friction law without a mesh: ``law("coulomb", mu=[0.3, 0.4], alpha_t=1e5)``, from an object of :mod:`fecontact.model`, or
+    from the ``friction`` of a contact; ``alpha_t`` is required, since there is no mesh for a default.
 
     Args:
-        law: its name, or all its parameters; see ``fecontact.model`` for what there is.
-        **parameters: numbers, or arrays that go together by the rules of numpy: a set of parameters an entry.
+        law: its name, or all its parameters; see ``fecontact.model`` for the available laws.
+        **parameters: numbers, or arrays that are broadcast by the rules of numpy, with one set of parameters per entry.
 
     Raises:
-        CaseError: there is no such law, or a parameter is wrong.
+        CaseError: there is no such law, or a parameter is invalid.
     """
     if not isinstance(law, (str, Mapping)):
         raise refused("law", "", f"is a {type(law).__name__}: give the name of a law, or its parameters")
@@ -242,8 +242,8 @@ def friction_law(
 ) -> Callable[[Callable[..., Mapping[str, Any]]], Callable[..., Mapping[str, Any]]]:
     """Register a law written in Python, for trying ideas: ``model.Registered(name=...)`` uses it in cases and in :func:`law`.
 
-    It is slow: Python is entered for every slice of points at every iterate. Workers in other processes must register it too.
-    The function gets arrays of the n closed points, shape (n,), and the parameters as keywords::
+    It is slow: Python is called for every slice of points at every iterate. Workers in other processes must register it too.
+    The function receives arrays of the n closed points, shape (n,), and the parameters as keywords::
 
         @fc.friction_law("my_coulomb")
         def my_coulomb(old, slip, pressure, dt, *, mu, alpha_t):
@@ -257,19 +257,19 @@ def friction_law(
                 "plastic_increment": np.where(sliding, (trial - traction) / alpha_t, 0.0),
             }
 
-    ``old`` has traction, pressure [F/L²], plastic_slip [L], dissipation [F/L] and the variables at the start; slip [L], pressure
+    ``old`` contains traction, pressure [F/L²], plastic_slip [L], dissipation [F/L] and the variables at the start; slip [L], pressure
     [F/L²] and dt [T] are those of the increment, alpha_t is the tangential stiffness [F/L³]. It returns the traction at the end, its
-    consistent tangents [F/L³], [-], the plastic part of the slip [L], all variables and, if it knows better than the
-    trapezoidal rule, the dissipation of the increment [F/L]: each an array of shape (n,), or a number that all points have.
+    consistent tangents [F/L³], [-], the plastic part of the slip [L], all variables and optionally, in place of the
+    trapezoidal rule, the dissipation of the increment [F/L]: each an array of shape (n,), or a number for all points.
 
     Args:
-        name: by which cases use it.
-        variables: what the law remembers, at most 4 numbers a point, with their values at first touch. Results have them by
-            their names, which begin with a letter, have letters, digits and ``_``, and are not those of what results have anyway
-            (``slip``, ``pressure``, ``q``); ``mu`` is what results show as μ.
+        name: name of the law in cases.
+        variables: internal variables, at most 4 numbers per point, with their values at first contact. They appear in results by
+            their names, which begin with a letter, consist of letters, digits and ``_``, and differ from those of other results
+            (``slip``, ``pressure``, ``q``); ``mu`` is shown in results as μ.
 
     Raises:
-        ValueError: a name cannot be one, or there are too many.
+        ValueError: a name is invalid, or there are too many variables.
     """
 
     if not isinstance(variables or {}, Mapping):

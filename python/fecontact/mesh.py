@@ -1,4 +1,4 @@
-"""Meshes: from files, from arrays, from blocks, from the gmsh model in memory."""
+"""Meshes from files, arrays, blocks, or the gmsh model in memory."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ Source = Union[tuple[Any, ...], bytes, str, list[Any]]
 
 
 class Mesh:
-    """A mesh at hand, checked as one from a file is.
+    """A mesh in memory, checked like one from a file.
 
     Args:
         nodes: positions, shape (nodes, 2) [L].
-        elements: for each body its elements, numbers of nodes counted from 0: shape (elements, k) with k = 3 or 6
-            (triangles), 4, 8 or 9 (quadrilaterals; corners in turn, then mid-side nodes in the same order, then the centre),
+        elements: for each body its elements, as node numbers from 0: shape (elements, k) with k = 3 or 6
+            (triangles), 4, 8 or 9 (quadrilaterals; corners in order, then mid-side nodes in the same order, then the centre),
             or a list of such arrays.
         edges: for each boundary curve its edges, shape (edges, 2), or (edges, 3) with the middle node last.
         points: for each set its nodes, shape (points,).
 
     Raises:
-        CaseError: what is wrong with it.
+        CaseError: the mesh is invalid.
     """
 
     def __init__(
@@ -59,22 +59,22 @@ class Mesh:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], bodies: Sequence[str] | str | None = None) -> Mesh:
-        """The mesh in a file: of gmsh (``.msh``, MSH 4.1 or 2.2), or of another program, with its groups.
+        """Read the mesh of a file: of gmsh (``.msh``, MSH 4.1 or 2.2), or of another program, with its groups.
 
         Bodies are the element sets of Abaqus and CalculiX (``.inp``), the blocks of Exodus (``.e``, ``.exo``), the groups of cells of
-        MED (``.med``), and in what else meshio reads, such as ``.vtu``, the values of an array of the cells (``NAME_1``, …). Element
-        surfaces, side sets, and groups of lines are groups of edges; node sets are groups of nodes.
+        MED (``.med``), and in other formats read by meshio, such as ``.vtu``, the values of a cell array (``NAME_1``, …). Element
+        surfaces, side sets, and groups of lines become edge groups; node sets become node groups.
 
-        All but ``.msh`` and ``.inp`` need ``pip install 'fecontact[meshio]'``. A set of nodes that are those of edges, or of a body,
-        of the same name is that group; with other nodes it is called ``NAME_nodes``.
+        All but ``.msh`` and ``.inp`` need ``pip install 'fecontact[meshio]'``. A node set with the nodes of edges, or of a body,
+        of the same name is merged with that group; with other nodes it is called ``NAME_nodes``.
 
         Args:
-            path: the file; how its name ends says its format.
-            bodies: the sets of elements that are the bodies, where sets overlap; or the name of the array of the cells.
+            path: the file; its extension determines the format.
+            bodies: the element sets that are bodies, if sets overlap; or the name of the cell array.
 
         Raises:
-            CaseError: what cannot be read, or is no plane mesh.
-            ImportError: the format needs a package that is not there.
+            CaseError: the file cannot be read, or is not a plane mesh.
+            ImportError: the format needs a package that is not installed.
         """
         path = as_path(path, "path")
         if Path(path).suffix.lower() == ".msh" or _is_gmsh(path):
@@ -85,7 +85,7 @@ class Mesh:
 
     @classmethod
     def join(cls, meshes: Sequence[Mesh]) -> Mesh:
-        """The meshes as one; they share no nodes, and each group is in one of them.
+        """Combine meshes into one; they share no nodes, and each group is in one of them.
 
         Raises:
             CaseError: two of them have a group of the same name.
@@ -101,19 +101,19 @@ class Mesh:
         apart: Sequence[str] = (),
         joined: Sequence[Sequence[str]] = (),
     ) -> Mesh:
-        """Quadrilaterals that are divided into elements and joined where two of a body share a side.
+        """Create a mesh of quadrilaterals divided into elements, joined where two of one body share a side.
 
-        ``Case(mesh=model.Blocks(...))`` takes the same without a mesh at hand, and leaves the parameters to be changed:
+        ``Case(mesh=model.Blocks(...))`` accepts the same without a mesh in memory, and keeps the parameters changeable:
         ``case.replace({"mesh.parameters.L": 3.0})``.
 
         Args:
             blocks: objects of :class:`fecontact.model.Block`, or dicts.
-            parameters: numbers by name, which corners, numbers of elements and gradings may have in expressions.
+            parameters: numbers by name, for expressions in corners, numbers of elements and gradings.
             apart: names of sides that are not joined.
-            joined: lists of bodies that are joined with each other, too, such as two materials that are bonded.
+            joined: lists of bodies joined with each other, such as two bonded materials.
 
         Raises:
-            CaseError: which block is wrong, and why.
+            CaseError: a block is invalid, with the reason.
         """
         more = {"parameters": dict(parameters or {}), "apart": list(apart), "joined": [list(bodies) for bodies in joined]}
         given = plain({"blocks": list(blocks), **more}, file="mesh")
@@ -121,7 +121,7 @@ class Mesh:
 
     @classmethod
     def from_gmsh(cls) -> Mesh:
-        """The mesh of the current model of the module ``gmsh``, which is initialized and has generated it.
+        """Take the mesh of the current model of the module ``gmsh``, which must be initialized and have generated it.
 
         Bodies are its physical surfaces, boundary curves its physical curves, sets of nodes its physical points.
         """
@@ -166,7 +166,7 @@ class Mesh:
         return {name: kind for name, (kind, _) in self._native.groups().items()}
 
     def document(self) -> dict[str, Any]:
-        """The mesh as it would stand in a case file."""
+        """The mesh in the form of a case file."""
         groups = self._native.groups()
         elements = self.elements
         return {
@@ -194,7 +194,7 @@ def _again(source: Source) -> Mesh:
 
 
 def _is_gmsh(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is one of gmsh, whatever its name."""
+    """Whether a file is a gmsh mesh, by its content."""
     if not os.path.isfile(path):
         return False
     with open(path, "rb") as file:

@@ -36,10 +36,10 @@ class Body(dict[str, Any]):
 
     Args:
         material: Bulk law
-        damping: Damping of the body in dynamic steps; none unless given
+        damping: Damping of the body in dynamic steps; default: none
         element: Element formulation
-        initial_stress: Stress of the undeformed body at the start; none unless given
-        thermal: Thermal expansion; none unless given
+        initial_stress: Stress of the undeformed body at the start; default: none
+        thermal: Thermal expansion; default: none
     """
 
     def __init__(
@@ -158,8 +158,9 @@ class Damping(dict[str, Any]):
 
     Args:
         mass: Force per momentum: damps slow motions most, free flight included [1/T]
-        stiffness: Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps
-            fast vibrations most, and makes explicit increments shorter [T]
+        stiffness: Kelvin-Voigt damping: retardation time by which the elastic stress of the strain rate is
+            multiplied to give the viscous stress; damps high frequencies most, and shortens explicit increments
+            [T]
     """
 
     def __init__(
@@ -176,11 +177,10 @@ class Geostatic(dict[str, Any]):
     plate.
 
     Args:
-        surface: Level y at which the vertical stress is zero: the top of the body, or above it if it lies
-            deeper [L]
+        surface: Level y of zero vertical stress: the top of the body, or above it if the body lies deeper [L]
         weight: γ: weight per volume, the density times gravity, above 0 [F/L³]
-        K0: K₀: horizontal over vertical stress, zero or positive; 1 − sin φ of loose ground, ν/(1 − ν) of an
-            elastic body that cannot widen [-]
+        K0: K₀: ratio of horizontal to vertical stress, zero or positive; 1 − sin φ for loose soil, ν/(1 − ν)
+            for an elastic body without lateral strain [-]
     """
 
     def __init__(
@@ -230,12 +230,12 @@ class Components(dict[str, Any]):
 
 
 class Thermal(dict[str, Any]):
-    """Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material is
-    evaluated at F_e; a `linear` one at the strain less α (T − T₀).
+    """Thermal expansion of a body, whose `temperature` is given by the steps. With F = (1 + α (T − T₀)) F_e the
+    material is evaluated at F_e; a `linear` one at the strain minus α (T − T₀).
 
     Args:
-        expansion: α: strain per temperature, against the undeformed body [1/Θ]
-        reference: T₀: temperature of the undeformed body, which it has until a step gives another [Θ]
+        expansion: α: strain per temperature, relative to the undeformed body [1/Θ]
+        reference: T₀: temperature of the undeformed body, in effect until a step specifies another [Θ]
     """
 
     def __init__(
@@ -251,14 +251,14 @@ class Contact(dict[str, Any]):
     """A contact pair.
 
     Args:
-        slave: Edge group whose points are kept out of the master, the finer or softer side; or a group of
-            points, each with the `area`
+        slave: Edge group whose points are kept out of the master, the finer or softer side; or a point group,
+            each point with the `area`
         master: Edge group, or a rigid body. The slave's group again: self-contact of the surface; each point
             then has half its tributary length, because every contact is evaluated from both sides
         friction: Friction law
         along: Friction parameters that vary along the slave and in time
-        area: Tributary area of each point of a slave group of points, with the thickness or the full turn; it
-            does not change. Edges have lengths of their own [L, the thickness being 1, or L²]
+        area: Tributary area of each point of a point group as slave, including the thickness or the full turn;
+            it is constant. Edges have lengths of their own [L for thickness 1, or L²]
         dilatancy: Dilatancy: opening by plastic slip
         fluid_pressure: p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend
             on the run time t and on the reference position x, y of the slave. It acts on both surfaces wherever
@@ -281,8 +281,8 @@ class Contact(dict[str, Any]):
             unbounded bodies. A number is η [F·T/L³]; true takes the impedances of the bodies, 1/η = 1/Z₁ + 1/Z₂
             with Z = ρ c_s of each side: G/(2 c_s) for equal bodies, Z on a rigid master. Dynamic and explicit
             steps have inertia, and omit it
-        rigid_body: Rigid body that a rigid master is a part of, and moves with: one of `rigid_bodies`. Without
-            it the master is at rest
+        rigid_body: Moving rigid body to which a rigid master belongs: one of `rigid_bodies`; default: the
+            master is fixed
         shrink_fit: Whether the initial overlap of the surfaces is applied gradually over the first step (shrink
             fit) instead of at once
         sliding: Sliding range: finite, or small compared with the distance between nodes
@@ -290,7 +290,8 @@ class Contact(dict[str, Any]):
             mortar), so that forces do not jump where a slave slides from one edge to the next. Corners of more
             than 45° remain
         wear: k of Archard's law: the surfaces wear by dw = k p × plastic slip, in either direction of slip; k
-            is the wear coefficient over the hardness. The wear depth w is `wear` in tables and frames [L²/F]
+            is the wear coefficient divided by the hardness. The wear depth w is `wear` in tables and frames
+            [L²/F]
     """
 
     def __init__(
@@ -323,7 +324,7 @@ class Plane(dict[str, Any]):
 
     Args:
         point: A point of its surface [L]
-        normal: Direction out of the solid, of any length
+        normal: Outward normal of the solid, of any length
     """
 
     def __init__(
@@ -358,8 +359,8 @@ class Polyline(dict[str, Any]):
     """A rigid body bounded by straight lines.
 
     Args:
-        points: Its corners, with the solid on the right in their order; the first corner repeated at the end
-            closes it [L]
+        points: Corners, with the solid on the right in their order; repeating the first corner at the end
+            closes the line [L]
     """
 
     def __init__(
@@ -404,13 +405,13 @@ class SuperSubloading(dict[str, Any]):
         r: r: rate at which R approaches 1 with plastic slip, r > 0 [1/L]
         alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
             [F/L³]
-        approach: U(R): how R approaches 1
+        approach: U(R): approach of R to 1
         elastic_core: R_e: elastic core, no plastic slip for R ≤ R_e, 0 ≤ R_e < 1 [-]
-        integration: How an increment is integrated
+        integration: Integration of an increment
         kappa: κ: loss of structure with plastic slip, κ ≥ 0 [1/L]
         m: m: exponent of the loss, m > 0 [-]
         n: n: exponent of the recovery, n > 0 [-]
-        structure: 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
+        structure: 1/R*₀: structure at first contact, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
         tolerance: Error tolerance of the controlled integration, as a fraction of μ_s p, from 1e-12 to 0.1;
             1e-6 by default [-]
         xi: ξ: recovery of structure with time, ξ ≥ 0 [1/T]
@@ -437,7 +438,7 @@ class SuperSubloading(dict[str, Any]):
 
 
 class SlipWeakening(dict[str, Any]):
-    """Friction that falls linearly with slip from static to dynamic, and does not heal.
+    """Friction that decreases linearly with slip from static to dynamic, and does not heal.
 
     Args:
         mu_s: μ_s: static friction coefficient, μ_s ≥ μ_d [-]
@@ -445,7 +446,7 @@ class SlipWeakening(dict[str, Any]):
         D_c: D_c: slip over which friction falls from μ_s to μ_d, D_c > 0 [L]
         alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
             [F/L³]
-        cohesion: c: cohesion, the strength without pressure of surfaces that touch, c ≥ 0 [F/L²]
+        cohesion: c: cohesion, the strength at zero pressure of surfaces in contact, c ≥ 0 [F/L²]
     """
 
     def __init__(
@@ -471,8 +472,8 @@ class RateAndState(dict[str, Any]):
         D_c: D_c: slip over which the state evolves, D_c > 0 [L]
         alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
             [F/L³]
-        evolution: How the state evolves
-        theta: θ: state at the start, θ > 0; D_c/V₀, steady sliding at V₀, unless given [T]
+        evolution: Evolution law of the state
+        theta: θ: state at the start, θ > 0; default D_c/V₀, steady sliding at V₀ [T]
     """
 
     def __init__(
@@ -491,7 +492,7 @@ class RateAndState(dict[str, Any]):
 
 
 class Prescribed(dict[str, Any]):
-    """Slip at a given rate, whatever traction that takes.
+    """Slip at a prescribed rate, whatever the traction.
 
     Args:
         slip_rate: V: slip rate of the slave along +s, of either sign [L/T]
@@ -509,14 +510,14 @@ class Prescribed(dict[str, Any]):
 
 
 class Registered(dict[str, Any]):
-    """A law that the program has not itself: one that calls the library has registered it, such as a law written in
+    """A law that is not part of the program, registered by a program that uses the library, such as a law written in
     Python.
 
     Args:
-        name: The name by which the program that calls the library has registered it
+        name: Name under which the calling program has registered it
         alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
             [F/L³]
-        parameters: Its parameters by their names
+        parameters: Parameters by name
     """
 
     def __init__(
@@ -533,9 +534,9 @@ class LawChoice(dict[str, Any]):
     """A law on a part of the slave.
 
     Args:
-        where: The law applies where this is positive
+        where: The law applies where this expression is positive
         friction: Friction law
-        along: Its parameters that vary along the slave, and in time, by name
+        along: Parameters that vary along the slave and in time, by name
     """
 
     def __init__(
@@ -555,8 +556,8 @@ class Dilatancy(dict[str, Any]):
     Args:
         rate: tan ψ: initial opening per plastic slip, in either direction of slip; below the lowest friction
             coefficient of the law (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
-        limit: d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit by default. The
-            opening δ is `dilation` in tables and frames [L]
+        limit: d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; unlimited by default.
+            The opening δ is `dilation` in tables and frames [L]
     """
 
     def __init__(
@@ -569,17 +570,16 @@ class Dilatancy(dict[str, Any]):
 
 
 class Initial(dict[str, Any]):
-    """The state of a contact that starts closed.
+    """Initial state of a contact that starts closed.
 
     Args:
         balanced: Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements
             and stresses of the run are then changes from the initial stress
         of_bodies: Instead of pressure and traction: those of the `initial_stress` of the slave's body at the
-            contact, p = −n·σn (less the pressure of a fluid at the start) and q = s·σn, with the normal n and
-            the tangent s of the master
+            contact, p = −n·σn (minus an initial fluid pressure) and q = s·σn, with the normal n and the tangent
+            s of the master
         pressure: p: contact pressure, zero or positive [F/L²]
-        structure: 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given
-            [-]
+        structure: 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; default: that of the law [-]
         traction: q: traction that resists the slip of the slave along +s, the master's normal turned by −90°
             [F/L²]
     """
@@ -601,7 +601,7 @@ class Normal(dict[str, Any]):
 
     Args:
         alpha_n: α_n: pressure per penetration [F/L³]; default 10 (λ + 2G)/h, with λ + 2G of the softer body and
-            the depth h of the slave's elements. A slave group of points has no elements and needs a number
+            the depth h of the slave's elements. Required for a point group as slave, which has no elements
         penetration: Largest penetration allowed [L]: the pressure is increased until no penetration is larger
             (augmented Lagrangian by Uzawa's method), so that the solution does not depend on alpha_n; default:
             penalty only
@@ -624,8 +624,8 @@ class Blocks(dict[str, Any]):
     Args:
         blocks: Blocks; nodes are numbered in their order, row by row
         apart: Names of sides that are not joined to others, such as the two sides of a crack in one body
-        joined: Lists of bodies that are joined with each other, as one body is, where their blocks share a
-            whole side, such as two materials that are bonded
+        joined: Lists of bodies that are joined with each other, like blocks of one body, where their blocks
+            share a whole side, for example two materials that are bonded
         parameters: Numbers with names of your choice, for the expressions of the blocks; a number, or an
             expression in other parameters
     """
@@ -642,22 +642,23 @@ class Blocks(dict[str, Any]):
 
 
 class Block(dict[str, Any]):
-    """A quadrilateral divided into elements. Side k goes from corner k to the next one, in the order in which the
-    corners are given.
+    """A quadrilateral divided into elements. Side k runs from corner k to the next one, in the given order of the
+    corners.
 
     Args:
         body: Name of the body that its elements belong to
         corners: The four corners [x, y] in order around the block, clockwise or counterclockwise [L]
         elements: Number of elements along side 0, from corner 0 to corner 1, and along side 1, from corner 1 to
             corner 2
-        arcs: For each side null where it is straight, or the centre [x, y] of the circle through its two
-            corners: it is the shorter arc
+        arcs: For each side null if it is straight, or the centre [x, y] of the circle through its two corners,
+            of which the shorter arc is used
         grading: Grading of their sizes along side 0 and along side 1, as a geometric series; default: uniform
         kind: Kind of the elements
-        points: Points [x, y] by a name of your choice: the node of this block that is nearest to it is in the
-            group of nodes of that name, which points of other blocks may share. It must be the only one, and no
-            farther away than the elements there are long [L]
-        sides: For each side its name, or null: edges of a name are a group for contacts, supports and loads
+        points: Points [x, y] by a name of your choice: the node of this block nearest to each belongs to the
+            node group of that name, which points of other blocks may share. The nearest node must be unique,
+            and no farther away than the length of the elements there [L]
+        sides: For each side its name, or null: edges with the same name form a group for contacts, supports and
+            loads
     """
 
     def __init__(
@@ -676,10 +677,10 @@ class Block(dict[str, Any]):
 
 
 class Middle(dict[str, Any]):
-    """Equal sizes at both ends, with another in the middle.
+    """Equal sizes at both ends, with a different one in the middle.
 
     Args:
-        middle: Size in the middle over that at both ends
+        middle: Size in the middle divided by that at both ends
     """
 
     def __init__(
@@ -694,8 +695,8 @@ class Newton(dict[str, Any]):
     """Stopping criteria of Newton's method.
 
     Args:
-        max_iterations: Linear solves an increment before it is cut
-        tolerance: Out-of-balance force relative to the forces at work
+        max_iterations: Linear solves per increment before it is rejected
+        tolerance: Residual force relative to the acting forces
     """
 
     def __init__(
@@ -720,17 +721,16 @@ class Output(dict[str, Any]):
         exact: Whether fields are written as 64-bit numbers, as they are computed; default: as 32-bit numbers
             (relative error at most 6e-8), in half the space. Undeformed coordinates are always 64-bit numbers
         fields: Whether fields are written at all
-        fronts: The fronts that run along contacts with friction (fronts.csv), and the events of slip that they
-            make (events.csv)
+        fronts: Slip fronts along contacts with friction (fronts.csv), and their slip events (events.csv)
         interval: Explicit steps write a row of the history (and fields, every n-th time) at multiples of this
-            since the start of the step [T]; a hundredth of the step unless given. Implicit steps write every
-            increment or, if this is given, rows that are at least so far apart in time; where a contact point
-            opens, closes, begins to slip or stops, the increments before and after are always written, and so
-            are the ends of steps
+            since the start of the step [T]; default: a hundredth of the step. Implicit steps write every
+            increment or, if this is given, rows at least that far apart in time; the increments before and
+            after a contact point opens, closes, begins to slip or stops are always written, and so are the ends
+            of steps
         points: Whether stresses at the integration points are written with the fields (points.pvd)
         report: Whether a run ends with report.html, one page to look at its results in a browser; `fecontact
             report` writes it at any time
-        times: Times at which fields are written, ascending; increments end on them [T]
+        times: Times at which fields are written, ascending; increments end at them [T]
     """
 
     def __init__(
@@ -753,7 +753,7 @@ class Fronts(dict[str, Any]):
     """Definition of fronts.
 
     Args:
-        slip_rate: Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a
+        slip_rate: Slip rate that marks the arrival of a front when it is exceeded; a slip event lasts while any
             point of the contact slips faster [L/T]
         arrival: Criterion for arrivals instead of the slip rate
     """
@@ -768,25 +768,25 @@ class Fronts(dict[str, Any]):
 
 
 class ArrivalR(dict[str, Any]):
-    """R passes this value from below [-]."""
+    """R exceeds this value [-]."""
 
     def __init__(self, R: float) -> None:
         super().__init__({"R": R})
 
 
 class ArrivalMu(dict[str, Any]):
-    """μ passes this value from above [-]."""
+    """μ falls below this value [-]."""
 
     def __init__(self, mu: float) -> None:
         super().__init__({"mu": mu})
 
 
 class MovingPlate(dict[str, Any]):
-    """A loading plate that moves in another way than as one.
+    """A loading plate with another kind of motion.
 
     Args:
         on: Group of its nodes
-        moves: How they move
+        moves: Kind of motion
     """
 
     def __init__(
@@ -799,10 +799,10 @@ class MovingPlate(dict[str, Any]):
 
 
 class PointMass(dict[str, Any]):
-    """A mass at every node of a group.
+    """A point mass at every node of a group.
 
     Args:
-        mass: Mass of each node, added to what a body has there [M]
+        mass: Mass of each node, added to that of a body there [M]
         velocity: Initial velocity [x, y] of the nodes [L/T]
     """
 
@@ -816,15 +816,15 @@ class PointMass(dict[str, Any]):
 
 
 class Probe(dict[str, Any]):
-    """A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; places are undeformed
+    """A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; positions are undeformed
     ones.
 
     Args:
         at: The point [x, y]
-        body: The body, needed where two bodies touch
-        from_: Where a line begins [x, y]
-        number: How many points it has, both ends included; the k-th is called NAME.k, from 1
-        to: Where it ends [x, y]
+        body: Body of the point, required where two bodies touch
+        from_: Start of a line [x, y]
+        number: Number of points of a line, including both ends; the k-th is called NAME.k, from 1
+        to: End of a line [x, y]
     """
 
     def __init__(
@@ -840,14 +840,14 @@ class Probe(dict[str, Any]):
 
 
 class RigidBody(dict[str, Any]):
-    """A rigid body that moves: contacts with a rigid master name it; supports, forces and a moment `on` its name move
-    it. Its mass is given as a point mass of its name, and is at the reference point.
+    """A moving rigid body: contacts with a rigid master refer to it; supports, forces and a moment `on` its name act
+    on it. Its mass is given as a point mass with its name, located at the reference point.
 
     Args:
         reference: Reference point [x, y]: `ux` and `uy` of a support are its displacement, `angle` is the
-            rotation about it, and the moment in the history is about it [L]
-        inertia: Moment of inertia about the reference point, which is then the centre of mass; needed in
-            dynamic steps unless supports give the `angle` [M L²]
+            rotation about it, and the moment in the history refers to it [L]
+        inertia: Moment of inertia about the reference point, which is then the centre of mass; required in
+            dynamic steps unless supports prescribe the `angle` [M L²]
     """
 
     def __init__(
@@ -860,8 +860,8 @@ class RigidBody(dict[str, Any]):
 
 
 class PlaneStress(dict[str, Any]):
-    """A plate, free of out-of-plane stress: forces, masses and energies of its whole thickness. Pressures and
-    tractions, those of contact included, count the undeformed thickness.
+    """A plate without out-of-plane stress: forces, masses and energies refer to the whole thickness. Pressures and
+    tractions, including those of contact, refer to the undeformed thickness.
 
     Args:
         thickness: Undeformed thickness, above 0 [L]
@@ -955,11 +955,11 @@ class Load(dict[str, Any]):
     """A load: exactly one kind per entry. It replaces the load of the same kind and place of an earlier step.
 
     Args:
-        on: Where
+        on: Group, or single node, on which it acts
         absorbing: true: an absorbing side, as if the body were unbounded there (Lysmer-Kuhlemeyer: dashpots rho
             c_p along the normal and rho c_s along the side, of the undeformed body); false or null ends it
         dashpot: Dashpot at every node of the group, to the ground or to a moving driver
-        dead_pressure: Pressure on edges that keeps the force and direction it has on the undeformed edges,
+        dead_pressure: Pressure on edges with the force and direction that it has on the undeformed edges,
             positive toward the body [F/L²]
         force: Force on every node of the group [F]
         gravity: Acceleration of gravity on a body or on point masses [L/T²]
@@ -971,7 +971,7 @@ class Load(dict[str, Any]):
         total_force: Resultant force on edges, applied as a uniform traction: per unit of depth in plane strain,
             for the thickness in plane stress, per full turn in axisymmetry. Its expressions depend on t only
             [F]
-        traction: Traction on reference edges that keeps its direction [F/L²]
+        traction: Traction on reference edges with constant direction [F/L²]
     """
 
     def __init__(
@@ -1000,8 +1000,8 @@ class Node(dict[str, Any]):
 
 
 class Near(dict[str, Any]):
-    """Single node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
-    away than the elements there are long [L].
+    """Single node of the undeformed mesh nearest to this point [x, y]. It must be unique, and no farther away than the
+    length of the elements there [L].
     """
 
     def __init__(self, near: Vector) -> None:
@@ -1185,7 +1185,7 @@ class Support(dict[str, Any]):
     """A support on a group or a node.
 
     Args:
-        on: Where
+        on: Group, or single node, that is supported
         along: Direction [x, y] of the displacement u; it need not be of unit length
         angle: Rotation of a rigid body about its reference point, counter-clockwise; null releases it, see
             `supports` [rad]
@@ -1261,41 +1261,41 @@ class Until(dict[str, Any]):
 # A bulk material: its law and its constants.
 Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic]
 
-# How the elements of a body are integrated.
+# Element formulation of a body.
 Formulation = Union[Literal["displacement"], Literal["f_bar"]]
 
-# Initial stress of a body. Displacements and strains are measured from the initial state, stresses are total. The run
+# Initial stress of a body. Displacements and strains are measured from the initial state; stresses are total. The run
 # reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
-# such as "-9.81" for a gravity, because a number grows from zero over the step
+# such as "-9.81" for gravity, because a number increases from zero over the step
 InitialStress = Union[Geostatic, Components]
 
 # Quantity that varies along a surface, by reference position. A table is linear between its pairs, constant outside;
 # the same coordinate twice is a jump, and the second value holds there and beyond.
 Profile = Union[AlongX, AlongY, float, str]
 
-# The master side: a group of the mesh, or a rigid master given by a formula, at rest unless `rigid_body` says what it
-# moves with.
+# The master side: a group of the mesh, or a rigid master given by a formula, fixed unless `rigid_body` names a moving
+# body.
 Master = Union[Plane, Circle, Polyline, str]
 
 # A friction law and its parameters.
 Friction = Union[Frictionless, Coulomb, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]
 
-# U(R): how fast the normal-sliding ratio approaches 1 with plastic slip. ```text dR/dλ = U(R), y = (R − R_e)/(1 −
+# U(R): rate of approach of the normal-sliding ratio to 1 with plastic slip. ```text dR/dλ = U(R), y = (R − R_e)/(1 −
 # R_e) U = −r ln y logarithmic (the authors' choice) U = r cot(π y/2) cotangent (their earlier subloading-friction
 # models) ``` Both are infinite at y = 0 (elastic) and 0 at y = 1 (full sliding). Source: Toyoda, Yasuike & Noda
 # (2024), Tribology International 191:109080, eq. 13; Ozaki & Hashiguchi (2010), Tribology International 43:2120.
 Approach = Union[Literal["logarithmic"], Literal["cotangent"]]
 
-# How the evolution of an increment is integrated.
+# Integration of the evolution over an increment.
 Integration = Union[Literal["controlled"], Literal["backward_euler"]]
 
 # Evolution of the state θ of rate-and-state friction.
 StateEvolution = Union[Literal["ageing"], Literal["slip"]]
 
-# Contact method: where contact is evaluated.
+# Contact method: evaluation points of contact.
 Method = Union[Literal["node_to_segment"], Literal["gauss_to_segment"], Literal["mortar"]]
 
-# Radiation damping of a contact in static steps: whether, or how much.
+# Radiation damping of a contact in static steps.
 Radiation = Union[bool, float]
 
 # Sliding range of the surfaces of a contact.
@@ -1310,7 +1310,7 @@ Amount = Union[float, str]
 # Grading of the element sizes along a side.
 Grading = Union[float, str, Middle]
 
-# Elements of a block.
+# Element kind of a block.
 BlockKind = Union[Literal["Q4"], Literal["Q8"]]
 
 # Criterion for the arrival of a front at a point.
@@ -1322,13 +1322,13 @@ LoadingPlate = Union[str, MovingPlate]
 # Motion of the nodes of a loading plate.
 PlateMotion = Union[Literal["as_one"], Literal["ux_alike"], Literal["uy_alike"], Literal["rigid"]]
 
-# The kind of plane section that the model represents.
+# Kind of plane section represented by the model.
 Section = Union[Literal["plane_strain"], PlaneStress, Literal["axisymmetric"]]
 
 # A group or a single node.
 Place = Union[Node, Near, str]
 
-# Prescribed quantity as a function of time and place.
+# Prescribed quantity as a function of time and position.
 Drive = Union[Rate, Table, float, str]
 
 # Time scheme of a step, as the case file names it.
@@ -1353,7 +1353,7 @@ class CaseKeys(TypedDict, total=False):
     # Initial velocity [x, y] of whole bodies; supported nodes follow their supports
     initial_velocity: Mapping[str, Vector]
     # Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given
-    # in place: as blocks that are divided into elements, or node by node
+    # in place: blocks divided into elements, or node by node
     mesh: Mesh | MeshSource
     # Stopping criteria of Newton's method
     newton: Newton
@@ -1373,9 +1373,9 @@ class CaseKeys(TypedDict, total=False):
     # Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every
     # row of the history (probes.csv)
     probes: Mapping[str, Probe]
-    # Rigid bodies that move, by a name of your choice: rigid masters of contacts are parts of them. Supports on the
-    # name give the path, `ux`, `uy` and `angle`, 0 where it rests; what they leave free moves under contact and
-    # loads on the name
+    # Moving rigid bodies, by a name of your choice: rigid masters of contacts refer to them. Supports on the name
+    # prescribe the path, `ux`, `uy` and `angle`, 0 where it is fixed; free components move under contact and loads
+    # on the name
     rigid_bodies: Mapping[str, RigidBody]
     # Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     section: Section

@@ -1,6 +1,6 @@
 """Figures of results with matplotlib; each takes ``ax``, and returns it.
 
-Labels have the units that the case names under ``units``; legends and limits are matplotlib's to change.
+Labels contain the units named by the case under ``units``; legends and limits can be changed with matplotlib.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def friction(result: Result, contact: str | None = None, *, x: str = "time", ax:
 
 
 def slip_fraction(result: Result, contact: str | None = None, *, ax: Axes | None = None, **line: Any) -> Axes:
-    """Slipping share of the closed length of contacts over time."""
+    """Slipping fraction of the closed length of contacts over time."""
     ax = _axes(ax)
     for name in _contacts(result, contact):
         ax.plot(result.history["time"], result.history[f"{name}.slip_fraction"], **{"label": name, **line})
@@ -55,16 +55,16 @@ def interface(
     ax: Axes | None = None,
     **mesh: Any,
 ) -> Axes:
-    """A field of a contact over place and time, as colours.
+    """A field of a contact over place and time as a colour map.
 
     Args:
         result: the results.
         contact: one contact; the first unless given.
         field: of ``result.interface[contact]``, such as ``slip``, ``slip_rate``, ``pressure``, ``traction``, ``mu``.
-        x: place by ``"position"``, the way along the slave surface, or by its coordinate ``"x"`` or ``"y"``.
-        y: ``"time"``, or ``"row"`` of the history, which are dense where much happens: over cycles of earthquakes an event is
-            too short to be seen in time. The axis then bears the times of rows.
-        log: whether colours are logarithmic; for slip rates unless given.
+        x: place as ``"position"``, the arc length along the slave surface, or as coordinate ``"x"`` or ``"y"``.
+        y: ``"time"``, or ``"row"`` of the history; rows are dense during events, which over earthquake cycles are
+            too short to be visible in time. The axis is then labelled with the times of rows.
+        log: whether colours are logarithmic; default: for slip rates only.
         ax: where to draw.
         **mesh: for ``ax.pcolormesh``.
     """
@@ -100,12 +100,12 @@ def interface(
 def fronts(
     result: Result, contact: str | None = None, *, event: int | None = None, ax: Axes | None = None, **points: Any
 ) -> Axes:
-    """Arrivals of fronts over the way along a contact, with the slopes of c_R, c_s and c_p of the body behind its slave.
+    """Arrivals of fronts over the position along a contact, with the slopes of c_R, c_s and c_p of its slave's body.
 
     Args:
         result: the results; the case asks for fronts by ``output.fronts``.
         contact: one contact; the first unless given.
-        event: its number in ``result.events``; that of the greatest length unless given. Time counts from its onset.
+        event: its number in ``result.events``; default: the one with the greatest length. Time is measured from its onset.
         ax: where to draw.
         **points: for ``ax.plot``.
     """
@@ -128,7 +128,7 @@ def fronts(
 
 
 def _slopes(ax: Axes, arrivals: pd.DataFrame, start: float, until: float) -> None:
-    """What a wave from the start would draw, to the ends of what the arrivals cover."""
+    """Lines of waves from the first arrival, over the range of the arrivals."""
     low, high = arrivals["position"].min(), arrivals["position"].max()
     for k, wave in enumerate(("c_R", "c_s", "c_p")):
         # Of each row: speed/(speed/c); the same c in all.
@@ -150,7 +150,7 @@ def events(result: Result, *, ax: Axes | None = None, **points: Any) -> Axes:
 
 
 def path(drive: Drive | Result, contact: str | None = None, *, ax: Axes | None = None, **line: Any) -> Axes:
-    """Traction over pressure: of a law that was driven, or N and Q of a contact."""
+    """Traction over pressure: of a law test, or Q over N of a contact."""
     ax = _axes(ax)
     if isinstance(drive, Drive):
         pressures = np.atleast_2d(drive["pressure"].reshape(-1, drive["time"].size))
@@ -168,7 +168,7 @@ def path(drive: Drive | Result, contact: str | None = None, *, ax: Axes | None =
 
 
 def newton(result: Result, *, ax: Axes | None = None, **line: Any) -> Axes:
-    """Relative residual of every iteration, a line an attempt."""
+    """Relative residual of every iteration, one line per attempt."""
     ax = _axes(ax)
     for _, attempt in result.newton.groupby(["step", "increment", "attempt"], sort=False):
         ax.semilogy(attempt["iteration"], attempt["residual"], **{"linewidth": 0.6, "color": "C0", "alpha": 0.5, **line})

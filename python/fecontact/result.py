@@ -1,4 +1,4 @@
-"""What a run leaves behind, read when it is asked for."""
+"""Results of a run, read on demand."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 
 class Result:
-    """The results of a run, whoever made it: ``case.run()``, or ``fecontact run`` (:meth:`open`).
+    """The results of a run by ``case.run()``, or by ``fecontact run`` (:meth:`open`).
 
-    Tables and fields are read when they are asked for, and kept; :meth:`reload` forgets them, for a run that is under way.
-    ``history.attrs["units"]`` has the unit of every column, as the case labels it, else made of F, L and T; so have the other tables.
+    Tables and fields are read on demand and cached; :meth:`reload` clears the cache, for an active run.
+    ``history.attrs["units"]`` contains the unit of every column, as labelled by the case, else composed of F, L and T; the same holds for
+    the other tables.
     """
 
     def __init__(self, folder: str | os.PathLike[str], *, _holder: Any = None) -> None:
@@ -47,7 +48,7 @@ class Result:
         return result
 
     def reload(self) -> Result:
-        """The same folder, read anew."""
+        """The same folder, without cached data."""
         return Result(self.folder, _holder=self._holder)
 
     @cached_property
@@ -73,7 +74,7 @@ class Result:
 
     @property
     def warnings(self) -> list[str]:
-        """Things to know about the result."""
+        """Warnings about the result."""
         return list(self.summary["warnings"])
 
     @property
@@ -83,28 +84,28 @@ class Result:
 
     @property
     def units(self) -> dict[str, str]:
-        """Labels of the units, as the case has them."""
+        """Labels of the units given by the case."""
         return dict(self.summary["units"])
 
     @cached_property
     def history(self) -> pd.DataFrame:
-        """A row an increment: time [T], energies [F·L], forces [F] and means of every contact, watched sets."""
+        """One row per increment: time [T], energies [F·L], forces [F] and means of every contact, watched sets."""
         return self._table("history.csv")
 
     @cached_property
     def newton(self) -> pd.DataFrame:
-        """A row a linear solve: residual, correction, numbers of points open, sticking, slipping; the outcome of the attempt (``verdict``)
-        and the reason of its rejection (``reason``). One rejected before its first solve has a row whose ``iteration`` is 0."""
+        """One row per linear solve: residual, correction, numbers of points open, sticking, slipping; the outcome of the attempt (``verdict``)
+        and the reason of its rejection (``reason``). An attempt rejected before its first solve has a row with ``iteration`` 0."""
         return self._table("newton.csv")
 
     @cached_property
     def events(self) -> pd.DataFrame:
-        """A row an event of slip; the case asks for it by ``output.fronts``."""
+        """One row per slip event; requires ``output.fronts`` in the case."""
         return self._table("events.csv", "the case asks for events by output.fronts")
 
     @cached_property
     def fronts(self) -> pd.DataFrame:
-        """A row a passage of a front; the case asks for it by ``output.fronts``."""
+        """One row per passage of a front; requires ``output.fronts`` in the case."""
         return self._table("fronts.csv", "the case asks for fronts by output.fronts")
 
     @cached_property
@@ -114,18 +115,18 @@ class Result:
 
     @cached_property
     def interface(self) -> Mapping[str, xr.Dataset]:
-        """Fields of every contact over time and place, by its name: ``result.interface["base"].slip`` has the dimensions
+        """Fields of every contact over time and place, by contact name: ``result.interface["base"].slip`` has the dimensions
         (time, point) and the coordinates time [T] and position [L]."""
         return _Interfaces(self.folder / "interface.zarr", self._holder is not None)
 
     @cached_property
     def fields(self) -> Fields:
-        """Fields of the bodies, a grid of PyVista a time; ``.contact`` and ``.points`` are those of contacts and of
+        """Fields of the bodies, one PyVista grid per time; ``.contact`` and ``.points`` are those of contacts and of
         integration points."""
         return Fields(self.folder, "solid")
 
     def report(self, file: str | os.PathLike[str] | None = None) -> Path:
-        """Write one page (HTML) to look at the results in a browser; into their folder unless a file is given."""
+        """Write one HTML page for viewing the results in a browser; default: into the results folder."""
         return report([self.folder], file or self.folder / "report.html")
 
     def _table(self, name: str, hint: str = "") -> pd.DataFrame:
@@ -164,7 +165,7 @@ class Result:
         return f"<div><b>{title}</b><table>{cells}</table>{self._figure()}</div>"
 
     def _figure(self) -> str:
-        """Friction over time as an SVG; nothing where there is none."""
+        """Friction over time as an SVG; empty without friction."""
         if not self.contacts or not (self.folder / "history.csv").is_file() or len(self.history) < 2:
             return ""
         from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -185,7 +186,7 @@ class Result:
 
 
 def friction_ratio(history: pd.DataFrame, contact: str) -> pd.Series:
-    """|Q|/N of a contact, where it is pressed [-]."""
+    """|Q|/N of a contact, where it is closed [-]."""
     normal, tangential = history[f"{contact}.normal_force"], history[f"{contact}.tangential_force"]
     return (tangential.abs() / normal).where(normal > 0)
 
@@ -197,7 +198,7 @@ def labelled(result: Result, column: str) -> str:
 
 
 class Fields(Sequence[Any]):
-    """Grids of PyVista over time; each is read when it is asked for."""
+    """PyVista grids over time, each read on demand."""
 
     def __init__(self, folder: Path, kind: str) -> None:
         self._folder, self._kind = folder, kind
@@ -222,12 +223,12 @@ class Fields(Sequence[Any]):
 
     @property
     def contact(self) -> Fields:
-        """Those of the contacts: polylines through the contact points."""
+        """Grids of the contacts: polylines through the contact points."""
         return Fields(self._folder, "contact")
 
     @property
     def points(self) -> Fields:
-        """Those of the integration points."""
+        """Grids of the integration points."""
         return Fields(self._folder, "points")
 
     def __len__(self) -> int:
@@ -274,7 +275,7 @@ class _Interfaces(Mapping[str, "xr.Dataset"]):
 
 
 def _of_contact(whole: xr.Dataset, prefix: str) -> xr.Dataset:
-    """The arrays of one contact, without its name before theirs."""
+    """The arrays of one contact, without the prefix of its name."""
     own = [name for name in whole.variables if str(name).startswith(f"{prefix}.")]
     part = whole[own]
     of_contact = [name for name in [*part.variables, *part.dims] if str(name).startswith(f"{prefix}.")]
@@ -282,12 +283,12 @@ def _of_contact(whole: xr.Dataset, prefix: str) -> xr.Dataset:
 
 
 def _closed(text: str) -> str:
-    """The text of a collection, also of one that is still growing."""
+    """The text of a collection, completed if it is still growing."""
     return text if "</VTKFile>" in text else text[: text.rindex("/>") + 2] + "</Collection></VTKFile>"
 
 
 def report(folders: Sequence[str | os.PathLike[str]], file: str | os.PathLike[str]) -> Path:
-    """Write one page (HTML) to look at the results of some folders, overlaid: ``fecontact report``."""
+    """Write one HTML page with the results of several folders, overlaid, as ``fecontact report``."""
     if isinstance(folders, str) or not isinstance(folders, Sequence):
         raise ValueError(f"folders: is {folders!r}: give a list of folders")
     _native.report([as_path(folder, "folders") for folder in folders], as_path(file, "file"))
@@ -295,7 +296,7 @@ def report(folders: Sequence[str | os.PathLike[str]], file: str | os.PathLike[st
 
 
 def _finished(path: Path) -> Path | io.BytesIO:
-    """A table without the row that is being written, if there is one: cut off, its last number would be another one."""
+    """A table without an incomplete last row, whose last number would be truncated."""
     with path.open("rb") as file:
         file.seek(max(0, path.stat().st_size - 1))
         if file.read() in (b"", b"\n"):

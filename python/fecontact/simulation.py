@@ -1,4 +1,4 @@
-"""A run increment by increment, led by its caller."""
+"""A run increment by increment, controlled by its caller."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class Increment:
-    """An accepted state. Its arrays of the nodes are views of the solver's own, not to be written to; nothing is copied."""
+    """An accepted state. Its nodal arrays are read-only views of the solver's data, not copies."""
 
     def __init__(self, native: _native.Increment) -> None:
         self._native = native
@@ -79,10 +79,10 @@ class Increment:
 
 
 class ContactFields(Mapping[str, Array]):
-    """Fields of a contact at present by name, shape (points,); each is computed, and so a copy.
+    """Current fields of a contact by name, shape (points,); each is computed on demand, and so a copy.
 
     ``gap``, ``slip``, ``elastic_slip`` [L], ``pressure``, ``traction`` [F/L²], ``slip_rate`` [L/T], ``state`` (0 open, 1
-    sticking, 2 slipping), ``dissipation`` [F/L], ``R``, ``mu``, ``structure`` [-], and what its law has besides.
+    sticking, 2 slipping), ``dissipation`` [F/L], ``R``, ``mu``, ``structure`` [-], and further variables of its law.
     """
 
     ALWAYS = (
@@ -113,19 +113,19 @@ class ContactFields(Mapping[str, Array]):
 
     @property
     def position(self) -> Array:
-        """Where the slave points are, shape (points, 2) [L]; a copy."""
+        """Positions of the slave points, shape (points, 2) [L]; a copy."""
         return self._native.contact_positions(self._name)
 
     @property
     def force(self) -> Array:
-        """What the master puts on the slave, without the pressure of a fluid, shape (2,) [F]."""
+        """Force of the master on the slave, without fluid pressure, shape (2,) [F]."""
         return np.array(self._native.contact_force(self._name))
 
 
 class Simulation:
-    """A run as an iterator over its increments; supports and loads can be led between them.
+    """A run as an iterator over its increments; supports and loads can be changed between them.
 
-    A machine that keeps a force, from what the last increment has shown::
+    Force control of a machine, based on the last increment::
 
         machine = fc.Simulation(case)
         for increment in machine:
@@ -133,11 +133,11 @@ class Simulation:
             machine.lead("piston", ux=machine.displacement("piston")[0] + error / stiffness, by=increment.time + dt)
 
     Args:
-        case: a case, or what makes one.
-        threads: all cores unless given; the results do not depend on it.
+        case: a case, or the arguments of one.
+        threads: number of threads, without effect on the results; default: all cores.
 
     Raises:
-        CaseError: as of ``case.check()``.
+        CaseError: the same as for ``case.check()``.
     """
 
     def __init__(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], threads: int | None = None) -> None:
@@ -151,7 +151,7 @@ class Simulation:
         """The next accepted increment; of an explicit step, all of them to the next output.
 
         Raises:
-            Stopped: no increment is short enough; the state before it is still there.
+            Stopped: no increment is short enough to be solved; the previous state is kept.
         """
         increment = self._native.next_increment()
         if increment is None:
@@ -199,7 +199,7 @@ class Simulation:
         return np.array(self._native.nodes_of(a_name(group, "group", "nodes_of")), dtype=np.intp)
 
     def reaction(self, group: str) -> Array:
-        """Sum of what the supports of a group put on it, shape (2,) [F]."""
+        """Sum of the support reactions on a group, shape (2,) [F]."""
         return np.array(self._native.reaction(a_name(group, "group", "reaction")))
 
     def displacement(self, group: str) -> Array:
@@ -208,17 +208,17 @@ class Simulation:
 
     @property
     def contacts(self) -> dict[str, ContactFields]:
-        """Contacts by name, and their fields at present."""
+        """Contacts by name, with their current fields."""
         return {name: ContactFields(self._native, name) for name in self._native.contacts}
 
     def lead(self, group: str, *, ux: float | None = None, uy: float | None = None, by: float) -> None:
-        """Lead the supports of a group evenly from where they are to a displacement, and hold them there to the end of the
+        """Move the supports of a group linearly from their current position to a displacement, and hold them there to the end of the
         step.
 
         Args:
-            group: a group that is supported in these directions.
+            group: a group supported in these directions.
             ux, uy: displacements [L].
-            by: when they are reached [T].
+            by: time at which they are reached [T].
         """
         end = number(by, "by", "lead")
         for axis, (name, to) in enumerate((("ux", ux), ("uy", uy))):
@@ -226,25 +226,25 @@ class Simulation:
                 self._native.lead(a_name(group, "group", "lead"), axis, number(to, name, "lead"), end)
 
     def load(self, on: str, *, by: float | None = None, **load: Any) -> None:
-        """Give a load anew, to the end of the step.
+        """Change a load until the end of the step.
 
         Args:
-            on: where: a group.
-            by: when it is reached, evenly from what it is now [T]; at once unless given.
-            **load: one kind, as in a step: ``pressure=2.0``, ``traction={"x": 1.0}``, ``force=``, ``gravity=``,
+            on: group on which it acts.
+            by: time at which its value is reached, linearly from the current one [T]; default: immediately.
+            **load: one kind of load, as in a step: ``pressure=2.0``, ``traction={"x": 1.0}``, ``force=``, ``gravity=``,
                 ``spring={"kx": 10, "driver": {"x": 0.1}}``, ``dashpot=``; ``None`` ends it.
         """
         self._native.load(json.dumps(plain({"on": on, **load}, file="load")), None if by is None else number(by, "by", "load"))
 
     def increments(self, *, max: float | None = None, min: float | None = None) -> None:
-        """Bound the increments of the step under way [T].
+        """Bound the increments of the current step [T].
 
         Args:
-            max: none is longer; that of the step unless given.
-            min: none is cut below it; that of the step unless given, and at most ``max``.
+            max: longest increment; default: unchanged.
+            min: shortest increment; default: unchanged, and at most ``max``.
 
         Raises:
-            CaseError: a bound is not positive, ``min`` is above ``max``, or they ask for increments without end, as of ``dt`` in a case.
+            CaseError: a bound is not positive, ``min`` is above ``max``, or too many increments would be needed, as for ``dt`` in a case.
         """
         for name, bound in (("max", max), ("min", min)):
             if not isinstance(bound, (Real, type(None))):
@@ -252,18 +252,18 @@ class Simulation:
         self._native.increments(max, min)
 
     def stop(self) -> None:
-        """End it: no increment follows. What is saved goes on as if it had not been ended."""
+        """Stop the run: no increment follows. A saved run continues as if it had not been stopped."""
         self._native.stop()
 
     def save(self) -> _native.Saved:
-        """The run as it is, to be gone on with in this process by :meth:`resume`, as often as wanted."""
+        """Save the run, to be continued in this process by :meth:`resume`, any number of times."""
         return self._native.save()
 
     def write(self, folder: str | os.PathLike[str]) -> None:
         """Write a checkpoint into a folder; another case can begin with it once this run is complete (``begin_with``).
 
         Raises:
-            Stopped: it cannot be written, or supports and loads of the step under way were led, which no file holds.
+            Stopped: it cannot be written, or supports and loads of the current step were changed, which a file cannot hold.
         """
         self._native.write(path(folder, "folder"))
 
@@ -271,16 +271,16 @@ class Simulation:
     def resume(
         cls, case: Case | Mapping[str, Any] | str | os.PathLike[str], saved: _native.Saved, threads: int | None = None
     ) -> Simulation:
-        """Resume from what :meth:`save` returned, bitwise identical to an uninterrupted run.
+        """Resume from the result of :meth:`save`, bitwise identical to an uninterrupted run.
 
         Args:
-            case: the case that it was saved of. Its title, units, what is watched and what is written may be others, and so may
-                steps that had not begun; a step that was led has begun.
-            saved: where it goes on from.
-            threads: all cores unless given.
+            case: the case of the saved run. Its title, units, watched sets and output may differ, as may
+                steps that had not begun; a step that was changed by the caller has begun.
+            saved: the saved run.
+            threads: number of threads; default: all cores.
 
         Raises:
-            CaseError: the case has changed otherwise, and how: as of ``case.run(out, resume=True)``.
+            CaseError: the case has other changes, which the message lists, as for ``case.run(out, resume=True)``.
         """
         if not isinstance(saved, _native.Saved):
             raise ValueError(f"saved: is a {type(saved).__name__}: give what save() has returned")

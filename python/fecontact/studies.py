@@ -1,4 +1,4 @@
-"""Studies: many variants of a case, on the processes of this computer or on a cluster, into one table."""
+"""Studies: many variants of a case, run in processes of this computer or on a cluster, with one table of results."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def latin_hypercube(ranges: Mapping[str, tuple[float, float]], n: int, *, log: S
     Args:
         ranges: lowest and highest value by place.
         n: number of points.
-        log: places whose logarithm is spread evenly.
+        log: places whose logarithm is distributed uniformly.
         seed: the same seed gives the same points.
     """
     from scipy.stats import qmc
@@ -54,7 +54,7 @@ def latin_hypercube(ranges: Mapping[str, tuple[float, float]], n: int, *, log: S
 
 
 def sobol(ranges: Mapping[str, tuple[float, float]], n: int, *, log: Sequence[str] = (), seed: int = 0) -> pd.DataFrame:
-    """``n`` points of a scrambled Sobol sequence; balanced where ``n`` is a power of 2. Arguments as :func:`latin_hypercube`."""
+    """``n`` points of a scrambled Sobol sequence; balanced if ``n`` is a power of 2. The arguments are those of :func:`latin_hypercube`."""
     from scipy.stats import qmc
 
     sampler = qmc.Sobol(len(ranges), rng=seed)
@@ -88,40 +88,40 @@ def study(
     retry: bool = False,
     progress: bool = True,
 ) -> pd.DataFrame:
-    """Run variants of a case, and put them into one table.
+    """Run variants of a case, and collect the results in one table.
 
-    A run has the folder ``out/runs/<digest>``, named by the hash of its case; equal cases are run once. A study that is started
-    again does only what is missing, from the checkpoints of runs that were cut off, and takes all measures anew. A run whose
-    worker dies is begun again from its checkpoint (``output.checkpoint`` of the case: minutes between two); one whose worker
-    dies three times without coming further is ``lost``. Ctrl-C ends the study with a checkpoint of every run.
+    A run has the folder ``out/runs/<digest>``, named by the hash of its case; equal cases are run once. A restarted study
+    only completes missing runs, from the checkpoints of interrupted ones, and evaluates all measures again. A run whose
+    worker dies is restarted from its checkpoint (``output.checkpoint`` of the case: minutes between two); one whose worker
+    dies three times without progress is ``lost``. Ctrl-C ends the study with a checkpoint of every run.
 
-    Runs write no fields unless the case asks for them: ``output.fields``, ``every``, ``times`` or ``points``.
+    Runs write no fields unless the case requests them: ``output.fields``, ``every``, ``times`` or ``points``.
 
     Args:
-        case: what all runs have in common.
+        case: the common part of all runs.
         parameters: values by place, such as ``{"contacts.base.friction.mu_s": [0.3, 0.4]}``: all combinations (:func:`grid`); or
-            a table with a column a place and a row a run, such as that of :func:`latin_hypercube` or :func:`sobol`.
-        measure: from the :class:`~fecontact.Result` of a completed run to a number, or numbers or texts by name; None among
-            these is an empty cell (NaN).
+            a table with one column per place and one row per run, such as that of :func:`latin_hypercube` or :func:`sobol`.
+        measure: function from the :class:`~fecontact.Result` of a completed run to a number, or to numbers or texts by name; None
+            is an empty cell (NaN).
         out: folder of the study; workers on other computers must see it under the same path.
-        workers: processes at once; as many as cores and memory allow unless given. Not with ``client``.
-        threads: of one run. Results do not depend on it.
-        memory: that one run may need [bytes]; for dividing up this computer, or the workers of a cluster.
-        client: a ``distributed.Client`` (dask-jobqueue for Slurm, PBS, LSF; Kubernetes). A task asks its worker for the resources
-            ``threads`` (where more than 1) and ``memory`` (where given): ``dask worker --resources "threads=4,memory=16e9"``.
-        retry: whether runs that stopped are tried again, from where they stopped.
-        progress: whether a bar is shown, on a terminal or in a notebook.
+        workers: number of simultaneous processes; default: as many as cores and memory permit. Not with ``client``.
+        threads: number of threads of one run, without effect on the results.
+        memory: memory required by one run [bytes]; limits the number of runs per computer or worker.
+        client: a ``distributed.Client`` (dask-jobqueue for Slurm, PBS, LSF; Kubernetes). A task requests the resources
+            ``threads`` (if more than 1) and ``memory`` (if given) from its worker: ``dask worker --resources "threads=4,memory=16e9"``.
+        retry: whether stopped runs are tried again, from where they stopped.
+        progress: whether a progress bar is shown, on a terminal or in a notebook.
 
     Returns:
-        A row for every row of parameters, also ``out/table.csv`` and, with pyarrow, ``out/table.parquet``: the parameters,
+        One row per row of parameters, also in ``out/table.csv`` and, with pyarrow, ``out/table.parquet``: the parameters,
         ``run`` (the digest), ``status``, ``reason``, ``seconds`` of its last start, ``warnings``, and the measures. The status is
         ``completed``; ``stopped`` (the solver gave up), ``refused`` (bad input), ``unmeasured`` (``measure`` raised), ``lost``, ``failed`` (the
-        computer: a full disk), ``defect``; ``pending`` in the files of a study that was cut off. Only completed runs have measures.
-        A :class:`~fecontact.errors.RunWarning` tells how many rows have not been completed, and why the first of them.
+        computer: a full disk), ``defect``; ``pending`` in the files of an interrupted study. Only completed runs have measures.
+        A :class:`~fecontact.errors.RunWarning` reports the number of rows not completed, and the reason of the first one.
 
     Raises:
-        CaseError: all rows are refused for the same place, such as one that the case does not have.
-        TypeError: the values of a place are no list.
+        CaseError: all rows are refused because of the same place, such as one that the case does not have.
+        TypeError: the values of a place are not a list.
     """
     rows = parameters.reset_index(drop=True) if isinstance(parameters, pd.DataFrame) else grid(parameters)
     if taken := [name for name in rows if name in OWN]:
@@ -150,7 +150,7 @@ def study(
 
 
 def _warn(frame: pd.DataFrame) -> None:
-    """Tell what a table leaves out."""
+    """Warn about rows without results."""
     without = frame[frame["status"] != "completed"]
     if without.empty:
         return
@@ -161,7 +161,7 @@ def _warn(frame: pd.DataFrame) -> None:
 
 
 def _follow(done: Generator[tuple[Task, Record], None, None], table: _Table, runs: int, progress: bool) -> None:
-    """Take records as they come."""
+    """Add records as they arrive."""
     from tqdm.auto import tqdm
 
     written = time.monotonic()
@@ -175,7 +175,7 @@ def _follow(done: Generator[tuple[Task, Record], None, None], table: _Table, run
 
 
 class _Table:
-    """Parameters of all rows, the run of each, and what is known of it."""
+    """Parameters of all rows, with the run of each and its record."""
 
     def __init__(self, rows: pd.DataFrame, folder: Path) -> None:
         self._rows, self._folder = rows, folder
@@ -202,7 +202,7 @@ class _Table:
         return list(found.values())
 
     def refuse(self) -> None:
-        """Raise where all rows are refused for the same place: that is no answer about any of them."""
+        """Raise if all rows are refused because of the same place."""
         records = [self.records.get(digest, {}) if digest else self._refused[k] for k, digest in enumerate(self._names)]
         places = {(record.get("status"), record.get("place")) for record in records}
         if len(places) == 1 and (place := places.pop())[0] == "refused" and place[1]:
@@ -210,7 +210,7 @@ class _Table:
             raise CaseError(records[0]["reason"], file, place[1], message)
 
     def frame(self) -> pd.DataFrame:
-        """The table as far as it is known."""
+        """The table with the known results."""
         pending: Record = {"status": "pending", "reason": "", "seconds": np.nan, "warnings": ""}
         rows = []
         for k, digest in enumerate(self._names):
@@ -221,7 +221,7 @@ class _Table:
         return pd.concat([self._rows.map(_shown), known], axis=1)
 
     def take(self, task: Task, record: Record) -> None:
-        """Take the record of a run that has ended."""
+        """Add the record of a run that has ended."""
         measures = record.get("measures", {}) if record["status"] == "completed" else {}
         if taken := [name for name in measures if name in OWN or name in self._rows]:
             reason = f"measure: {taken[0]} is the name of another column of the table: choose another"
@@ -229,7 +229,7 @@ class _Table:
         self.records[task.digest] = record
 
     def write(self) -> None:
-        """``table.csv``, and ``table.parquet`` where pyarrow is there."""
+        """Write ``table.csv``, and ``table.parquet`` if pyarrow is installed."""
         frame = self.frame()
         replace_file(self._folder / "table.csv", frame.to_csv(index=False))
         try:
@@ -244,7 +244,7 @@ class _Table:
 
 
 def _shown(value: Any) -> Any:
-    """A parameter as a cell: what is no number or text as its text."""
+    """A parameter as a cell: a number or text, else its text form."""
     if isinstance(value, Mesh):
         return "a mesh at hand"
     if isinstance(value, (Mapping, list, tuple, np.ndarray)):
@@ -253,7 +253,7 @@ def _shown(value: Any) -> Any:
 
 
 def _room(threads: int, memory: float | None) -> int:
-    """Runs that this computer can do at once."""
+    """Number of runs that this computer can do simultaneously."""
     affinity: Callable[[int], set[int]] | None = getattr(os, "sched_getaffinity", None)
     cores = len(affinity(0)) if affinity else os.cpu_count() or 1
     room = cores // threads

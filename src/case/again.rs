@@ -1,7 +1,7 @@
-//! Cases that go on: a run taken up from its checkpoint, and a case that begins where another ended. What may differ from the
-//! case of the checkpoint, and what does.
+//! Continuation of cases: a run resumed from its checkpoint, and a case that begins with the final state of another. This file
+//! defines which differences from the case of the checkpoint are allowed.
 //!
-//! How two cases differ, place by place.
+//! Two cases are compared key by key.
 
 use std::path::{Path, PathBuf};
 use std::slice;
@@ -26,34 +26,34 @@ use crate::run::{Saved, SavedRun};
 /// Keys that never affect how a run continues.
 const FREE: [&str; 5] = ["title", "units", "watch", "probes", "output"];
 
-/// Values that differ by less than this, relative, are the same.
+/// Relative difference below which values are equal.
 const SAME: f64 = 1e-9;
 
-/// A case ready to be run: its steps behind those of the case that it begins with, if there is one.
+/// A case ready to run, with the steps of the case that it begins with, if any, before its own.
 pub struct Opened {
     /// the case
     pub case: Case,
-    /// its file
+    /// case file
     pub path: PathBuf,
     /// the case as JSON
     pub document: Value,
-    /// how many of its steps are those of the case that it begins with
+    /// number of steps taken over from the case that it begins with
     pub taken_over: usize,
-    /// what else it reads, besides its file: mesh, and checkpoint that it begins with
+    /// other input files: mesh, and the checkpoint that it begins with
     pub inputs: Vec<PathBuf>,
-    /// its mesh, where it is at hand and not named by the case
+    /// mesh in memory, used instead of the one named by the case
     mesh: Option<Mesh>,
-    /// from where it begins, unless at the beginning
+    /// checkpoint at which it starts, if any
     start: Option<Checkpoint>,
     /// whether it resumes the run of that checkpoint
     resumes: bool,
 }
 
 impl Opened {
-    /// Open a case to be run from its beginning.
+    /// Opens a case to be run from its beginning.
     ///
     /// # Errors
-    /// [`CaseError`] where it cannot begin with what it names.
+    /// Returns [`CaseError`] if it cannot begin with the case that it names.
     pub fn begin(Written { path, mut document, case }: Written) -> Result<Self, CaseError> {
         let path = path.as_path();
         let Some(source) = case.begin_with.as_ref() else { return Ok(Self::new(path, document, case, None)) };
@@ -68,10 +68,10 @@ impl Opened {
         Ok(opened)
     }
 
-    /// Open a case whose run resumes from a checkpoint.
+    /// Opens a case whose run resumes from a checkpoint.
     ///
     /// # Errors
-    /// [`CaseError`], also where the case has changed since, and how.
+    /// Returns [`CaseError`] with the differences if the case has changed since.
     pub fn resume(written: Written, checkpoint: Checkpoint) -> Result<Self, CaseError> {
         let Written { path, mut document, .. } = written;
         let path = path.as_path();
@@ -90,16 +90,16 @@ impl Opened {
         Self { case, path: path.to_owned(), document, taken_over: 0, inputs, mesh: None, start, resumes: false }
     }
 
-    /// Use a mesh in memory; the mesh that the case names is then only a label.
+    /// Uses a mesh in memory; the mesh named by the case is then only a label.
     #[must_use]
     pub fn on(self, mesh: Mesh) -> Self {
         Self { mesh: Some(mesh), inputs: self.inputs.into_iter().skip(1).collect(), ..self }
     }
 
-    /// Build the model, and the run to begin from or to resume; `None` to begin at the beginning.
+    /// Builds the model, and the saved run to begin from or to resume; `None` to start at the beginning.
     ///
     /// # Errors
-    /// [`CaseError`] as [`super::build`], and where the run is not one of this model.
+    /// Returns [`CaseError`] as [`super::build`], and if the run does not belong to this model.
     pub fn build(&mut self) -> Result<(Arc<Model>, Option<SavedRun>), CaseError> {
         let built = match self.mesh.take() {
             Some(mesh) => super::build_on(&self.case, mesh, &self.path),
@@ -117,11 +117,11 @@ impl Opened {
         Ok((model, Some(saved.begin())))
     }
 
-    /// A run that was saved in this process, to resume with this case on its model. It was one of the case `before`,
-    /// its steps behind those of the case that it begins with, on a mesh.
+    /// Resumes a run saved in this process with this case on its model. `before` is the case of that run, with the steps of the
+    /// case that it begins with, and its mesh.
     ///
     /// # Errors
-    /// [`CaseError`] as [`Self::resume`] and [`Self::build`].
+    /// Returns [`CaseError`] as [`Self::resume`] and [`Self::build`].
     pub fn take_up(
         &self,
         run: Saved,
@@ -139,7 +139,7 @@ impl Opened {
         ModelError::new(place, format!("{message}; the run cannot be resumed from its checkpoint")).in_file(&self.path)
     }
 
-    /// A structure that the other case has left must be one of the law as it is now.
+    /// Checks that the structure variable left by the other case is valid for the present law.
     fn within_strength(&self, model: &Model, state: &State) -> Checked<()> {
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
             let Some(input) = self.case.contacts.get(&pair.name) else { continue };
@@ -169,7 +169,7 @@ impl Opened {
         self.resumes
     }
 
-    /// A place in the case as its user has written it.
+    /// Returns a place in the case as written by its user.
     fn own_place(&self, place: String) -> String {
         let own = |place: &str| {
             let (number, rest) = place.strip_prefix("steps[")?.split_once(']')?;
@@ -179,7 +179,7 @@ impl Opened {
     }
 }
 
-/// Whether two cases are the same but for keys that never affect how a run continues.
+/// Whether two cases are equal except for keys that never affect how a run continues.
 pub(super) fn is_same(one: &Value, other: &Value) -> bool {
     let solved = |case: &Value| {
         let mut case = case.as_object().cloned().unwrap_or_default();
@@ -202,7 +202,7 @@ fn steps(document: &Value) -> &[Value] {
     document["steps"].as_array().map_or(&[], |steps| steps)
 }
 
-/// Put the steps of another case before a case's own.
+/// Inserts the steps of another case before a case's own.
 fn join(document: &mut Value, before: &[Value]) {
     let Some(document) = document.as_object_mut() else { return };
     document.remove("begin_with");
@@ -216,12 +216,12 @@ fn document_of(checkpoint: &Checkpoint) -> Checked<Value> {
         .map_err(|cause| ModelError::new("", format!("the case of the checkpoint: {cause}")))
 }
 
-/// Let a case begin with the end of another; the checkpoint read, and its file.
+/// Prepares a case that begins with the end of another; returns the checkpoint and its file.
 fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> {
     let complain = |message: String| ModelError::new("begin_with", message);
     let (file, checkpoint) = if source.is_dir() {
         let newest = checkpoint::newest(source);
-        // What is damaged is not begun with: the one before it is not from the end.
+        // A damaged checkpoint is refused: the previous one is not at the end of the run.
         let (checkpoint, damage) = newest.map_err(|(file, why)| complain(format!("{}: {why}", file.display())))?;
         if let Some(damage) = damage {
             return Err(complain(damage));
@@ -250,7 +250,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
     Ok((file, checkpoint))
 }
 
-/// A case may have changed where its run has not come yet, and in what is written.
+/// Checks that a case has changed only in steps that have not begun, and in its output.
 fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
     let [before, now] = [before, now].map(with_defaults);
     let mut differences = Vec::new();
@@ -265,10 +265,10 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
     refuse(differences, "the case has changed since its checkpoint was written")
 }
 
-/// Parameters of friction that only the start of a run depends on, or that what is stored depends on.
+/// Friction parameters that affect only the start of a run, or stored states.
 const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
 
-/// Differences listed in one message.
+/// Maximum number of differences listed in one message.
 const MOST_LISTED: usize = 5;
 
 /// A place where two cases differ.
@@ -279,7 +279,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Whether it makes a variant of the same model: other parameters of friction, other damping.
+    /// Whether it is a variation of the same model: other parameters of friction or damping.
     pub fn is_variant(&self) -> bool {
         let parts: Vec<&str> = self.place.split('.').collect();
         match parts[..] {
@@ -290,7 +290,7 @@ impl Difference {
     }
 }
 
-/// Refuse differences, if there are any.
+/// Returns an error with the differences, if there are any.
 pub fn refuse(differences: Vec<Difference>, what: &str) -> Checked<()> {
     if differences.is_empty() {
         return Ok(());
@@ -318,7 +318,7 @@ pub fn object(value: &Value) -> &Map<String, Value> {
     value.as_object().unwrap_or(&NONE)
 }
 
-/// Keys of two objects with their values in both.
+/// Keys of two objects, with their values in both.
 pub fn both<'a>(
     was: &'a Map<String, Value>,
     is: &'a Map<String, Value>,
@@ -327,10 +327,10 @@ pub fn both<'a>(
     was.keys().chain(new).map(|key| (key.as_str(), was.get(key), is.get(key)))
 }
 
-/// Note how what stands at a place of two cases differs.
+/// Records the differences between the values at a place of two cases.
 pub fn compare(place: String, was: Option<&Value>, is: Option<&Value>, differences: &mut Vec<Difference>) {
     match (was, is) {
-        // Two meshes are compared themselves, wherever they lie.
+        // Meshes are compared by content, whatever their paths.
         (Some(Value::String(_) | Value::Array(_)), Some(Value::String(_) | Value::Array(_))) if place == "mesh" => {}
         (Some(Value::Object(was)), Some(Value::Object(is))) => {
             both(was, is).for_each(|(key, was, is)| compare(format!("{place}.{key}"), was, is, differences));

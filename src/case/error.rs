@@ -1,4 +1,4 @@
-//! Bad input, with the place where it stands and what to do.
+//! Errors of the input, with their place and remedy.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::mesh::names::{in_line, printable};
 use crate::model::builder::ModelError;
 
-/// Something in a case that cannot be run.
+/// An error in a case.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}: {}{}", in_line(&file.to_string_lossy()), within(place), printable(message))]
 pub struct CaseError {
@@ -15,7 +15,7 @@ pub struct CaseError {
     pub file: PathBuf,
     /// path of the key, such as `bodies.block.material`
     pub place: String,
-    /// what is wrong, and what to do
+    /// error and remedy
     pub message: String,
 }
 
@@ -24,7 +24,7 @@ fn within(place: &str) -> String {
 }
 
 impl ModelError {
-    /// The error with the file that it concerns.
+    /// Returns the error with the file that it concerns.
     pub fn in_file(self, file: &Path) -> CaseError {
         CaseError { file: file.to_owned(), place: self.place, message: self.message }
     }

@@ -1,4 +1,4 @@
-//! The test of a law as it is written, and from there to the test that is run.
+//! Input of a law test, and its conversion to the test that is run.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,11 +15,11 @@ use crate::model::boundary::{Drive, Span};
 use crate::model::builder::{Checked, ModelError, check_line, check_positive};
 use crate::run::law::{LawTest, PathDrive, Phase, Undefined};
 
-/// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
+/// A test of a friction law alone: the law, and the path of slip and pressure along which it is driven.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawTestInput {
-    /// What the test shows, in a line
+    /// Title of the test, in one line
     #[serde(default)]
     pub title: String,
     /// Labels of the units used, for the page: length, force, time, stress; any consistent set will do
@@ -34,11 +34,11 @@ pub struct LawTestInput {
     pub dt: Option<f64>,
     /// Phases, one after the other; either this or a table
     pub path: Option<Vec<PhaseInput>>,
-    /// Rows [time, slip, pressure] with increasing times, linear between; either this or a path
+    /// Rows [time, slip, pressure] with increasing times, interpolated linearly; either this or a path
     pub table: Option<Vec<[f64; 3]>>,
 }
 
-/// State at the start; the structure is the law's.
+/// State at the start; the structure variable is given with the law.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StartInput {
@@ -49,7 +49,7 @@ pub struct StartInput {
     pub pressure: Option<f64>,
 }
 
-/// A stretch of the path.
+/// A phase of the path.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseInput {
@@ -64,43 +64,43 @@ pub struct PhaseInput {
     pub dt: Option<f64>,
 }
 
-/// Steps of a phase that nobody asked for by a dt.
+/// Number of steps of a phase without `dt`.
 const STEPS: f64 = 100.0;
 
-/// A phase of more steps is a slip of the keyboard: each is a row of the table.
+/// Number of steps above which a phase is refused as a typing error: each is a row of the table.
 const MOST_STEPS: f64 = 1e7;
 
-/// Steps as a share of the time at the end of their phase below which round-off would swallow them.
+/// Shortest step relative to the time at the end of its phase, below which round-off would dominate.
 const SHORTEST_STEP: f64 = 16.0 * f64::EPSILON;
 
-/// Values that differ by less than this, relative, are the same.
+/// Relative difference below which values are equal.
 const SAME: f64 = 1e-9;
 
-/// The JSON Schema of a test of a law.
+/// Returns the JSON Schema of a law test.
 pub fn schema() -> Value {
     schema_of::<LawTestInput>()
 }
 
-/// Read a test of a law.
+/// Reads a law test.
 ///
 /// # Errors
-/// [`CaseError`] when the file cannot be read or is not a test.
+/// Returns [`CaseError`] if the file cannot be read or is not a test.
 pub fn read(path: &Path) -> Result<LawTestInput, CaseError> {
     super::read::read(path)
 }
 
-/// A test from its text; `path` is where it would stand.
+/// Reads a law test from its text; `path` is used in messages.
 ///
 /// # Errors
-/// As [`read`].
+/// The same as for [`read`].
 pub fn from_text(text: &str, path: &Path) -> Result<LawTestInput, CaseError> {
     super::read::read_text(text, path)
 }
 
-/// Check a test and make it ready to run. `path` is its file.
+/// Checks a test and prepares it. `path` is its file.
 ///
 /// # Errors
-/// [`CaseError`] names file, key, value and what to do.
+/// Returns [`CaseError`] with file, key, value and remedy if the test is invalid.
 pub fn build(input: &LawTestInput, path: &Path) -> Result<LawTest, CaseError> {
     test(input).map_err(|complaint| complaint.in_file(path))
 }
@@ -122,7 +122,7 @@ fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
     if let Some(message) = parameters.unknown() {
         return Err(ModelError::new("friction.name", message));
     }
-    // There is no mesh from which a stiffness could be chosen: NaN stands for none.
+    // Without a mesh there is no default stiffness: NaN stands for none.
     let law = parameters.build(f64::NAN).map_err(|error| match error.name {
         "alpha_t" if error.value.is_nan() => {
             ModelError::new("friction", "the key `alpha_t` is missing here: a law alone has no mesh to choose it from")
@@ -207,7 +207,7 @@ fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<P
             complain("x and y have no meaning here: the only variable is the time t")
         }
         (Drive::Rate(_), None) => complain("a rate needs a value to start from: give initial.pressure"),
-        // Nothing to start from: it is there from the start.
+        // Without a previous value, the quantity is constant from the start.
         (Drive::Constant(value), None) => Ok(PathDrive { start: *value, drive }),
         _ => Ok(PathDrive { drive, start: reached.unwrap_or(0.0) }),
     }
@@ -215,7 +215,7 @@ fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<P
 
 fn check_continuous(place: &str, course: &PathDrive, reached: f64, span: Span) -> Checked<()> {
     let first = course.value(span.start, span);
-    // What is not finite is complained of later.
+    // Non-finite values are reported later.
     if (first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE) {
         let message = format!("jumps from {reached} to {first} at t = {}: start from the value reached", span.start);
         return Err(ModelError::new(place, message));

@@ -1,4 +1,4 @@
-//! Loads as written, given between two increments of a run.
+//! Loads in the form of the case file, changed between two increments of a run.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::model::boundary::Span;
 use crate::model::builder::{Checked, Load, LoadsInForce, ModelError};
 use crate::run::Simulation;
 
-/// The loads of a step under way, which its caller changes.
+/// Loads of the current step, with the changes of its caller.
 #[derive(Clone)]
 pub struct LoadChanges {
     /// number of the step
@@ -20,7 +20,7 @@ pub struct LoadChanges {
 }
 
 impl LoadChanges {
-    /// The loads of a case in the step under way of its run, with what the caller has changed in it `before`.
+    /// Returns the loads of a case in the current step of its run, with the caller's changes `before`.
     fn of(case: &Case, simulation: &Simulation, before: Option<&Self>) -> Checked<Self> {
         let model = simulation.model();
         if simulation.has_ended_early() {
@@ -35,11 +35,11 @@ impl LoadChanges {
     }
 }
 
-/// Give a load anew from now on, as a step would that begins now and ends at the time `by`; at once where that is now. It holds to
-/// the end of the step under way. `loading` is what was changed in it before.
+/// Changes a load from now on, as in a step that begins now and ends at the time `by`; immediately if `by` is now. It remains
+/// until the end of the current step. `loading` contains the earlier changes in it.
 ///
 /// # Errors
-/// [`CaseError`], with the place within the load.
+/// Returns [`CaseError`] with the place within the load if it is invalid.
 pub fn load(
     case: &Case,
     path: &Path,

@@ -1,7 +1,5 @@
-//! The case: JSON of the types that a model is built from ([`crate::model::builder`]) and of what only a file has ([`file`]); run by
-//! [`job`].
-//!
-//! A case as it is written, in a file or by a program.
+//! The case: JSON of the types from which a model is built ([`crate::model::builder`]) and of what only a file contains
+//! ([`file`]); run by [`job`].
 
 mod again;
 mod error;
@@ -29,35 +27,35 @@ use file::{Case, MeshSource, blocks};
 pub use report::{report, understood};
 pub use resolved::resolved;
 
-/// Read a case file.
+/// Reads a case file.
 ///
 /// # Errors
-/// [`CaseError`] when the file cannot be read or is not a case.
+/// Returns [`CaseError`] if the file cannot be read or is not a case.
 pub fn read(path: &Path) -> Result<Case, CaseError> {
     read::read(path)
 }
 
-/// A case from its text; `path` is where it would stand.
+/// Reads a case from its text; `path` is used in messages and for relative paths.
 ///
 /// # Errors
-/// As [`read()`].
+/// The same as for [`read()`].
 pub fn from_text(text: &str, path: &Path) -> Result<Case, CaseError> {
     read::read_text(text, path)
 }
 
-/// Read the mesh of a case, check everything, and build the model. `path` is the case file.
+/// Reads the mesh of a case, checks everything, and builds the model. `path` is the case file.
 ///
 /// # Errors
-/// [`CaseError`] names file, key, value and what to do.
+/// Returns [`CaseError`] with file, key, value and remedy if the case is invalid.
 pub fn build(case: &Case, path: &Path) -> Result<Model, CaseError> {
     let mesh = mesh(case, path).map_err(|complaint| complaint.in_file(path))?;
     build_on(case, mesh, path)
 }
 
-/// As [`build`], on a mesh in memory.
+/// Builds the model as [`build`], on a mesh in memory.
 ///
 /// # Errors
-/// As [`build`].
+/// The same as for [`build`].
 pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError> {
     built(case, mesh).map_err(|complaint| complaint.in_file(path))
 }
@@ -78,7 +76,7 @@ fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
     Ok(model)
 }
 
-/// The builder of a case on its mesh.
+/// Returns the builder of a case on its mesh.
 fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
     let section = if case.section == Section::PlaneStrain { mesh.section } else { case.section };
     check_units(&case.units)?;
@@ -129,10 +127,10 @@ fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
     })
 }
 
-/// A mesh of blocks from its text, as `mesh` of a case has it.
+/// Builds a mesh of blocks from the text of `mesh` in a case.
 ///
 /// # Errors
-/// [`CaseError`] as [`build`]; the file it names is `mesh`.
+/// Returns [`CaseError`] as [`build`]; the file it names is `mesh`.
 pub fn blocks_from_text(text: &str) -> Result<Mesh, CaseError> {
     let path = Path::new("mesh");
     let input = read::read_text(text, path)?;
@@ -140,36 +138,36 @@ pub fn blocks_from_text(text: &str) -> Result<Mesh, CaseError> {
     mesh.map_err(|complaint| complaint.in_file(path))
 }
 
-/// The JSON Schema of a case file.
+/// Returns the JSON Schema of a case file.
 pub fn schema() -> Value {
     schema::schema_of::<Case>()
 }
 
-/// A case as it is written.
+/// A case as written in a file or by a program.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// its file, or where it would stand
+    /// its file, or a path for messages
     pub path: PathBuf,
     /// the case as JSON
     pub document: Value,
-    /// what it says
+    /// the case
     pub case: Case,
 }
 
 impl Written {
-    /// Read a case file.
+    /// Reads a case file.
     ///
     /// # Errors
-    /// [`CaseError`] when the file cannot be read or is not a case.
+    /// Returns [`CaseError`] if the file cannot be read or is not a case.
     pub fn read(path: &Path) -> Result<Self, CaseError> {
         let (document, case) = read::read_document(path)?;
         Ok(Self { path: path.to_owned(), document, case })
     }
 
-    /// A case from its text; `path` is where it would stand.
+    /// Reads a case from its text; `path` is used in messages and for relative paths.
     ///
     /// # Errors
-    /// As [`Written::read`].
+    /// The same as for [`Written::read`].
     pub fn from_text(text: &str, path: &Path) -> Result<Self, CaseError> {
         let (document, case) = read::read_document_text(text, path)?;
         Ok(Self { path: path.to_owned(), document, case })

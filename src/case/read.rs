@@ -1,11 +1,11 @@
-//! From the text of a case file, or a test of a law, to its types.
+//! Reader of case files and law tests: from text to types.
 //!
-//! The text becomes a JSON document first, in which no key may stand twice; the document becomes a `Case` or a
-//! `LawTestInput`, and what does not fit is named by its place.
+//! The text first becomes a JSON document, in which no key may occur twice; the document becomes a `Case` or a
+//! `LawTestInput`, and errors are reported with their place.
 //!
-//! A JSON document whose lists are no objects: serde's derived types would take a list for their keys in order.
+//! Lists of the document are not accepted as objects: serde's derived types would take a list as values of their keys in order.
 //!
-//! serde's errors in the terms of a case file.
+//! serde's errors are translated into the terms of a case file.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -24,41 +24,41 @@ use super::error::CaseError;
 use crate::mesh::names::{in_line, nearest};
 use crate::model::builder::ModelError;
 
-/// No case is larger: large meshes have files of their own [MiB].
+/// Largest size of a case file; large meshes have files of their own [MiB].
 const LARGEST: u64 = 16;
 
-/// Keys that choose a law; without one nothing else in its object makes sense.
+/// Keys that select a law; without one the other keys of the object have no meaning.
 const TAGS: [&str; 2] = ["model", "law"];
 
-/// Read a file; unknown keys, wrong types and impossible numbers are named with their place.
+/// Reads a file; unknown keys, wrong types and invalid numbers are reported with their place.
 ///
 /// # Errors
-/// [`CaseError`] when the file cannot be read or is not what it should be.
+/// Returns [`CaseError`] if the file cannot be read or is invalid.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
     read_document(path).map(|(_, input)| input)
 }
 
-/// Read what would be the text of a file; `path` is for complaints.
+/// Reads the text of a file; `path` is used in messages.
 ///
 /// # Errors
-/// As [`read`].
+/// The same as for [`read`].
 pub fn read_text<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, CaseError> {
     read_document_text(text, path).map(|(_, input)| input)
 }
 
-/// The document of a file, and what it says.
+/// Returns the JSON document of a file, and its value.
 ///
 /// # Errors
-/// As [`read`].
+/// The same as for [`read`].
 pub fn read_document<T: DeserializeOwned>(path: &Path) -> Result<(Value, T), CaseError> {
     let text = text(path).map_err(|complaint| complaint.in_file(path))?;
     read_document_text(&text, path)
 }
 
-/// As [`read_document`], from the text instead of the file.
+/// Returns the same as [`read_document`], from the text instead of the file.
 ///
 /// # Errors
-/// As [`read`].
+/// The same as for [`read`].
 pub fn read_document_text<T: DeserializeOwned>(text: &str, path: &Path) -> Result<(Value, T), CaseError> {
     let read = document(text).and_then(|document| Ok((input(&document)?, document)));
     read.map(|(input, document)| (document, input)).map_err(|complaint| complaint.in_file(path))
@@ -117,7 +117,7 @@ fn not_json(error: &serde_json::Error) -> String {
     }
 }
 
-/// A JSON value whose objects name each key once.
+/// A JSON value in which no object contains a key twice.
 struct Document(Value);
 
 impl<'de> Deserialize<'de> for Document {
@@ -187,7 +187,7 @@ pub(super) fn input<T: DeserializeOwned>(document: &Value) -> Result<T, ModelErr
     })
 }
 
-/// The place of a key as messages show it: `steps[0].dt.min`.
+/// Place of a key in messages: `steps[0].dt.min`.
 fn place(path: &KeyPath, key: Option<&str>) -> String {
     let path = path.to_string();
     let known = if path == "." { "" } else { path.as_str() };
@@ -198,8 +198,8 @@ fn place(path: &KeyPath, key: Option<&str>) -> String {
     }
 }
 
-/// The key to blame inside an object whose law is chosen by a tag, where serde loses the way: the one without which the
-/// complaint changes.
+/// Returns the invalid key of an object whose law is selected by a tag, where serde does not report the path: the key whose
+/// removal changes the message.
 fn blamed_key<T: DeserializeOwned>(document: &Value, path: &KeyPath, message: &str) -> Option<String> {
     if message.starts_with("missing field") || message == SEVERAL_KEYS {
         return None;
@@ -223,11 +223,11 @@ fn object_at<'v>(document: &'v mut Value, path: &KeyPath) -> Option<&'v mut Map<
     path.iter().try_fold(document, step)?.as_object_mut()
 }
 
-/// A value whose lists are taken for lists only.
+/// A value whose lists are accepted as lists only.
 #[derive(Clone, Copy)]
 pub struct Strict<'de>(pub &'de Value);
 
-/// What a type that is chosen by a tag expects, in serde's words: all else that takes lists says so by its request.
+/// Expectation of a tagged enum, in serde's words; all other types that accept lists request them.
 const TAGGED: &str = "internally tagged enum ";
 
 /// The entries of an object.
@@ -327,15 +327,15 @@ impl<'de> IntoDeserializer<'de, serde_json::Error> for Strict<'de> {
     }
 }
 
-/// Longest piece of the user's own text that a message repeats.
+/// Longest quotation of the user's text in a message.
 const LONGEST: usize = 100;
 
 const OBJECT: &str = "an object {…}";
 
-/// serde's complaint of an object whose only key should choose a variant.
+/// serde's message for an object with several keys that should select one variant.
 pub const SEVERAL_KEYS: &str = "invalid value: map, expected map with a single key";
 
-/// A complaint of serde as a sentence; unknown names come with the nearest known one.
+/// Converts a message of serde to a sentence; unknown names come with the nearest known one.
 pub fn explain(message: &str) -> String {
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
         return unknown(message);
@@ -346,7 +346,7 @@ pub fn explain(message: &str) -> String {
     if message == SEVERAL_KEYS {
         return "has several keys, but must be an object {…} with exactly one key".into();
     }
-    // What the types of the input say themselves is a sentence.
+    // Messages of the input types themselves are sentences.
     let Some((found, expected)) = message.split_once(", expected ") else { return message.into() };
     let expected = plain_expected(expected);
     if let Some(found) = found.strip_prefix("invalid type: ").or_else(|| found.strip_prefix("invalid value: ")) {
@@ -359,7 +359,7 @@ pub fn explain(message: &str) -> String {
     }
 }
 
-/// serde quotes the unknown name first, and then all known ones.
+/// serde quotes the unknown name first, then all known ones.
 fn unknown(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     let name = quoted.next().unwrap_or_default();
@@ -402,7 +402,7 @@ fn plain_expected(expected: &str) -> &str {
     }
 }
 
-/// The text in one line, cut where it is too long for a message.
+/// The text in one line, truncated if too long for a message.
 pub fn clipped(text: &str) -> String {
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", in_line(&text[..end])),

@@ -1,4 +1,4 @@
-//! A case with every default filled in, which runs to the same bits.
+//! Resolved case: every default filled in, with bitwise identical results.
 
 use serde_json::Value;
 
@@ -8,9 +8,9 @@ use crate::model::builder::{Contact, Friction, IncrementSettings, default_alpha_
 use crate::model::method::{Chosen, Method};
 use crate::model::{Increments, Model};
 
-/// The case of a model as the text of a file, with what it leaves open as the model has it: scheme and increments of every step, and of
-/// contacts the method and the stiffnesses. Those of a case that begins with another one stay as they are, for they must be those
-/// of the other.
+/// Returns the case of a model as the text of a file, with the defaults chosen by the model: scheme and increments of every
+/// step, and of contacts the method and the stiffnesses. Those of a case that begins with another one are kept, since they must
+/// equal those of the other.
 pub fn resolved(case: &Case, model: &Model) -> String {
     let mut case = case.clone();
     let taken_over = model.steps.len().saturating_sub(case.steps.len());
@@ -26,7 +26,7 @@ pub fn resolved(case: &Case, model: &Model) -> String {
             }
         }
     }
-    // What was read from JSON can be written as JSON.
+    // Values read from JSON can be written as JSON.
     serde_json::to_string_pretty(&case).unwrap_or_default()
 }
 
@@ -46,7 +46,7 @@ fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>) {
     }
 }
 
-/// The parameters with this α_t, where they have one and leave it open.
+/// Returns the parameters with this α_t, if they have one and do not specify it.
 fn with_alpha_t(parameters: &FrictionParameters, alpha_t: f64) -> FrictionParameters {
     let filled = |mut fields: Value| {
         match fields.get_mut("alpha_t") {
@@ -58,8 +58,8 @@ fn with_alpha_t(parameters: &FrictionParameters, alpha_t: f64) -> FrictionParame
     serde_json::to_value(parameters).ok().and_then(filled).unwrap_or_else(|| parameters.clone())
 }
 
-/// The document of a case with the defaults of its types filled in, so that one that is written down makes no difference; as it is if
-/// it is no case.
+/// Returns the document of a case with the defaults of its types filled in, so that explicit defaults make no difference;
+/// unchanged if it is not a valid case.
 pub fn with_defaults(document: &Value) -> Value {
     let read = super::read::input::<Case>(document).ok();
     read.and_then(|case| serde_json::to_value(case).ok()).unwrap_or_else(|| document.clone())

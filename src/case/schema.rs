@@ -1,16 +1,16 @@
-//! JSON Schemas, made from the types that read the files.
+//! JSON Schemas, generated from the types that read the files.
 
 use schemars::JsonSchema;
 use serde_json::Value;
 
-/// The JSON Schema of a file.
+/// Returns the JSON Schema of a file.
 pub fn schema_of<T: JsonSchema>() -> Value {
     let mut schema = schemars::schema_for!(T).to_value();
     describe_choices(&mut schema);
     schema
 }
 
-/// A key that only chooses between alternatives takes the description of its alternative.
+/// Gives a key that only selects between alternatives the description of its alternative.
 fn describe_choices(schema: &mut Value) {
     if let Some(object) = schema.as_object_mut() {
         let description = object.get("description").cloned();

@@ -1,23 +1,23 @@
-//! Why a command did not end well, and what is said of it.
+//! Failures of commands, and their messages.
 
 use crate::case::CaseError;
 use crate::case::job::{Failed, Refused, defect};
 use crate::output::report::ReportError;
 use crate::run::error::Error;
 
-/// Why a command did not end well.
+/// Reason why a command failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// It stopped while solving; results so far are kept.
+    /// The run stopped; results so far are kept.
     Stopped(String),
-    /// The input is bad; nothing was written.
+    /// The input is invalid; nothing was written.
     BadInput(String),
-    /// The program itself is wrong.
+    /// The program has a defect.
     Defect(String),
 }
 
 impl Failure {
-    /// The exit code, and the text for stderr.
+    /// Returns the exit code, and the text for stderr.
     pub fn code_and_message(&self) -> (u8, String) {
         match self {
             Self::Stopped(message) => (1, format!("stopped: {message}")),

@@ -1,14 +1,14 @@
-//! Signals: a run ends at the next increment, with its results whole; at the second signal, at once.
+//! Signals: a run ends after the current increment, with complete results; at the second signal, immediately.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether the end was asked for.
+/// Whether a signal has requested the end.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Watch for signals that ask for the end, except those ignored by the caller (nohup).
+    /// Watches for signals that request the end, except those ignored by the caller (nohup).
     #[cfg(unix)]
     pub fn watch() -> Self {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
@@ -16,16 +16,16 @@ impl Interrupt {
         let interrupt = Self::default();
         let ignored = ignored();
         for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0) {
-            // One that cannot be watched ends the program as ever.
+            // A signal that cannot be watched keeps its default action.
             let _ = register_conditional_shutdown(signal, 1, interrupt.0.clone());
             let _ = register(signal, interrupt.0.clone());
         }
-        // A file that may not grow any more is an error like a full disk.
+        // Exceeding the file size limit is an error like a full disk.
         let _ = register(SIGXFSZ, Arc::default());
         interrupt
     }
 
-    /// Watch for the signals that there are.
+    /// Watches for the signals of this system.
     #[cfg(not(unix))]
     pub fn watch() -> Self {
         let interrupt = Self::default();
@@ -40,7 +40,7 @@ impl Interrupt {
     }
 }
 
-/// Signals that are ignored, a bit each, from the Linux process status.
+/// Signals that are ignored, one bit each, from the Linux process status.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The commands behind the command line.
+//! Implementation of the commands.
 
 #[macro_use]
 mod say;
@@ -33,14 +33,14 @@ pub enum Input {
     Case,
     /// the test of `fecontact law`
     Law,
-    /// what results hold: the quantities of their files
+    /// quantities in the files of results
     Results,
 }
 
-/// `fecontact check`.
+/// Implements `fecontact check`.
 ///
 /// # Errors
-/// [`Failure::BadInput`].
+/// Returns [`Failure::BadInput`] if the case is invalid.
 pub fn check(path: &Path, resolved: bool) -> Result<(), Failure> {
     use_threads(None)?;
     let written = Written::read(path)?;
@@ -52,10 +52,10 @@ pub fn check(path: &Path, resolved: bool) -> Result<(), Failure> {
     }
 }
 
-/// `fecontact law`.
+/// Implements `fecontact law`.
 ///
 /// # Errors
-/// [`Failure`].
+/// Returns [`Failure`] if the test is invalid or stopped.
 pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     use_threads(None)?;
     let input = law_test::read(path)?;
@@ -78,7 +78,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     folder.make_room_after(&result);
     let summary = LawSummary { ending: Ending::new(result.as_ref().err(), &folder.files), about, report };
     let written = summary::write(&summary, &folder.path);
-    // Report the first failure; where a table found no room, a page finds none either.
+    // The first failure is reported; if a table cannot be written, neither can a page.
     let wants_page = written.is_ok() && !matches!(result, Err(Error::Output { .. }));
     let page = wants_page.then(|| report::write(std::slice::from_ref(&folder.path), &folder.path.join(report::FILE)));
     result?;
@@ -88,7 +88,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The last lines of a test on stderr.
+/// Prints the last lines of a test on stderr.
 fn conclude_law(report: &LawReport, folder: &Path) {
     let LawReport { steps, most_evaluations, peaks, dissipation, warnings } = report;
     say!("{steps} steps, at most {most_evaluations} evaluations of the law's equation per step");
@@ -105,7 +105,7 @@ fn conclude_law(report: &LawReport, folder: &Path) {
     say!("results in {}", folder.display());
 }
 
-/// `fecontact plot`, which is no command any more: what to use instead.
+/// Returns the message of the removed command `fecontact plot`, with its replacement.
 pub fn plot() -> Failure {
     Failure::BadInput(
         "`fecontact plot` is gone: `fecontact report DIR…` writes a page whose pictures are saved as SVG, PNG and CSV; from Python, \
@@ -114,10 +114,10 @@ pub fn plot() -> Failure {
     )
 }
 
-/// `fecontact report`.
+/// Implements `fecontact report`.
 ///
 /// # Errors
-/// [`Failure`].
+/// Returns [`Failure`] if a folder cannot be read or the page cannot be written.
 pub fn report(folders: &[PathBuf], out: Option<PathBuf>) -> Result<(), Failure> {
     use_threads(None)?;
     let file = out.unwrap_or_else(|| match folders {
@@ -128,10 +128,10 @@ pub fn report(folders: &[PathBuf], out: Option<PathBuf>) -> Result<(), Failure> 
     print(&format!("{}\n", file.display()))
 }
 
-/// `fecontact schema`.
+/// Implements `fecontact schema`.
 ///
 /// # Errors
-/// [`Failure::Stopped`] when it cannot be printed.
+/// Returns [`Failure::Stopped`] if the schema cannot be printed.
 pub fn schema(of: Input) -> Result<(), Failure> {
     let schema = match of {
         Input::Case => case::schema(),

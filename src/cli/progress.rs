@@ -1,5 +1,5 @@
-//! Progress on stderr: one line that is kept up to date on a terminal, a line every tenth of the run elsewhere; warnings as they
-//! come.
+//! Progress on stderr: one line that is updated on a terminal, otherwise one line per tenth of the run; warnings are printed
+//! immediately.
 
 use std::time::{Duration, Instant};
 
@@ -20,15 +20,15 @@ pub enum Voice {
     Quiet,
     /// Lines on stderr
     Lines,
-    /// A terminal, above the line that is kept up to date
+    /// A terminal, above the progress line
     Terminal(ProgressBar),
 }
 
 impl Voice {
-    /// The voice of a run.
+    /// Creates the output of a run.
     pub fn new(quiet: bool) -> Self {
-        // It is drawn where there is something new, and not more often than a frame; never where nothing once written can be
-        // written over: beside a terminal, and on one whose TERM is unset or `dumb`.
+        // The line is redrawn when its content changes, at most once per frame, and only where it can be overwritten: on a
+        // terminal whose TERM is set and not `dumb`.
         let target = ProgressDrawTarget::stderr();
         match (quiet, target.is_hidden()) {
             (true, _) => Self::Quiet,
@@ -41,7 +41,7 @@ impl Voice {
         }
     }
 
-    /// Print a line.
+    /// Prints a line.
     pub fn say(&self, line: &str) {
         match self {
             Self::Quiet => {}
@@ -50,7 +50,7 @@ impl Voice {
         }
     }
 
-    /// Print a warning.
+    /// Prints a warning.
     pub fn warn(&self, warning: &str) {
         match self {
             Self::Quiet => say!("warning: {warning}"),
@@ -64,25 +64,25 @@ impl Voice {
 pub struct Progress {
     voice: Voice,
     start: Instant,
-    /// Share of the run that was done at the start; `None` before the first attempt
+    /// Fraction of the run that was done at the start; `None` before the first attempt
     done_before: Option<f64>,
-    /// When the line of a terminal may be drawn again, after the start
+    /// Earliest time of the next update on a terminal, since the start
     next: Duration,
-    /// Tenths of the run that have had their line
+    /// Number of tenths of the run already reported
     tenths: f64,
 }
 
-/// The line is drawn no more often than this.
+/// Shortest time between two updates of the line.
 const FRAME: Duration = Duration::from_millis(100);
 
-/// Part of a time that may be lost to round-off.
+/// Relative round-off allowed in comparing times.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Before this nobody knows how long it will take.
+/// Time before which the remaining time is not estimated.
 const TOO_EARLY: Duration = Duration::from_secs(1);
 
 impl Progress {
-    /// Progress with this voice.
+    /// Creates the observer with this output.
     pub fn new(voice: Voice) -> Self {
         if let Voice::Terminal(bar) = &voice {
             bar.set_message("the first increment is under way");
@@ -137,7 +137,7 @@ fn left(spent: Duration, done: f64, rest: f64) -> String {
     format!(", {hours}:{minutes:02}:{:02} left", seconds % 60)
 }
 
-/// A line about an attempt; a `terse` one has room on a terminal of eighty columns.
+/// Describes an attempt in one line; a `terse` one fits a terminal of eighty columns.
 fn message(model: &Model, attempt: &Attempt, terse: bool) -> String {
     let (gap, iterations) = if terse { (" ", "iter") } else { ("  ", "iterations") };
     let solves = match attempt.iterations.len() {
@@ -157,7 +157,7 @@ fn message(model: &Model, attempt: &Attempt, terse: bool) -> String {
     }
 }
 
-/// Text about a rejected attempt with the kind of its failure; `newton.csv` has the reason.
+/// Describes a rejected attempt by the kind of its failure; `newton.csv` contains the reason.
 fn given_up(attempt: &Attempt) -> String {
     let what = if attempt.verdict == Verdict::Unsolved { "rejected" } else { "repeated" };
     let when = match attempt.iterations.len() {
@@ -167,7 +167,7 @@ fn given_up(attempt: &Attempt) -> String {
     format!("{what} {when}: {}", attempt.cause.map_or(attempt.verdict.kind(), IncrementFailure::kind))
 }
 
-/// A time to so many digits that an increment shows.
+/// Formats a time with enough digits to distinguish increments.
 fn significant(time: f64, dt: f64) -> String {
     const FEWEST: f64 = 6.0;
     const MOST: f64 = 15.0;

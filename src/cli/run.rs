@@ -1,6 +1,6 @@
 //! `fecontact run`: a case from its beginning, from the end of another, or from its last checkpoint.
 //!
-//! The texts on stderr at the start and at the end of a run are here too.
+//! This file also prints the texts on stderr at the start and at the end of a run.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -25,20 +25,20 @@ use crate::run::observer::Observer;
 /// Options of `fecontact run`.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// folder of the results
+    /// results folder
     pub out: Option<PathBuf>,
-    /// threads
+    /// number of threads
     pub threads: Option<usize>,
     /// whether only warnings and the last line are printed
     pub quiet: bool,
-    /// whether the run resumes from the last checkpoint, if it has left one
+    /// whether the run resumes from its last checkpoint, if there is one
     pub resume: bool,
 }
 
-/// `fecontact run`.
+/// Implements `fecontact run`.
 ///
 /// # Errors
-/// [`Failure`].
+/// Returns [`Failure`] if the case is invalid or the run stopped.
 pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
     let Options { out, threads, quiet, resume } = options;
     use_threads(threads)?;
@@ -55,7 +55,7 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
     let messages = Messages::start(&job, &voice);
     let outcome = job.run(callbacks(&voice))?;
     messages.end(&outcome, &job);
-    // Report the first failure.
+    // The first failure is reported.
     let wants_page = job.opened.case.output.report && outcome.is_readable();
     let page = wants_page.then(|| report::write(std::slice::from_ref(&job.folder.path), &place.join(report::FILE)));
     let Outcome { ended, written, .. } = outcome;
@@ -76,11 +76,11 @@ fn callbacks(voice: &Voice) -> Callbacks<'static> {
     }
 }
 
-/// Prints what a user needs to know at the start and at the end of a run.
+/// Prints information for the user at the start and at the end of a run.
 struct Messages(Voice);
 
 impl Messages {
-    /// Before the first increment: warnings and choices, or the state from which the run resumes.
+    /// Prints, before the first increment, warnings and choices, or the state from which the run resumes.
     pub fn start(Job { opened, model, folder, saved, damage, begins_anew }: &Job, voice: &Voice) -> Self {
         if *begins_anew {
             voice.say(&format!("{}: no checkpoint yet, the run begins anew", folder.path.display()));
@@ -101,7 +101,7 @@ impl Messages {
         Self(voice.clone())
     }
 
-    /// After the last increment.
+    /// Prints the results after the last increment.
     pub fn end(&self, Outcome { summary, supplied, ended, .. }: &Outcome, job: &Job) {
         match (&self.0, ended) {
             (Voice::Quiet, Ok(())) => conclude(summary, &job.model, &job.folder.path),
@@ -115,7 +115,7 @@ impl Messages {
     }
 }
 
-/// What a run took, and where its results are, in one line on stderr.
+/// Prints the cost of a run and the path of its results in one line on stderr.
 fn conclude(summary: &Summary, model: &Model, folder: &Path) {
     let report = &summary.report;
     say!(
@@ -130,7 +130,7 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
     );
 }
 
-/// The lines after it: friction, rejected attempts, energies.
+/// Prints the following lines: friction, rejected attempts, energies.
 fn account(summary: &Summary, model: &Model, supplied: f64) {
     let report = &summary.report;
     summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}`: {course}"));

@@ -1,4 +1,4 @@
-//! Output to stderr and stdout. A closed pipe or a full disk behind them does not end a run with it.
+//! Output to stderr and stdout. A closed pipe or a full disk does not stop a run.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Write};
@@ -6,21 +6,21 @@ use std::io::{ErrorKind, Write};
 use super::failure::Failure;
 use crate::mesh::names::printable;
 
-/// Tell stderr a line, if it listens.
+/// Prints a line to stderr, ignoring errors.
 macro_rules! say {
     ($($text:tt)*) => { $crate::cli::say(format_args!($($text)*)) };
 }
 
-/// Tell stderr a line, if it listens.
+/// Prints a line to stderr, ignoring errors.
 pub fn say(text: Arguments) {
-    // There is no one left to report to.
+    // The failure cannot be reported anywhere.
     let _ = writeln!(std::io::stderr(), "{}", printable(&text.to_string()));
 }
 
-/// Print the requested text to stdout; a reader may stop early.
+/// Prints the requested text to stdout; a reader may stop early.
 ///
 /// # Errors
-/// [`Failure::Stopped`] when it cannot be written.
+/// Returns [`Failure::Stopped`] if it cannot be written.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {

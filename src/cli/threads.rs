@@ -1,4 +1,4 @@
-//! The threads of a run; its answers do not depend on their number.
+//! Threads of a run; results do not depend on their number.
 
 use std::io;
 use std::sync::mpsc::{Sender, channel};
@@ -8,26 +8,25 @@ use rayon::{ThreadBuilder, ThreadPoolBuilder};
 use super::failure::Failure;
 use crate::linear::memory::address_space;
 
-/// More threads than this are a slip of the keyboard.
+/// Number of threads above which the input is refused as a typing error.
 const MOST: usize = 1024;
 
 /// Environment variable that sets the number of threads for all runs.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
-/// The stack of a thread [MiB].
+/// Stack size of a thread [MiB].
 const STACK: usize = 2;
 
-/// Address space of a thread [MiB]: its stack, the 64 MiB that glibc reserves for what a thread allocates, and its own
-/// data.
+/// Address space of a thread [MiB]: its stack, the 64 MiB that glibc reserves for its allocations, and its own data.
 const THREAD: usize = STACK + 64 + 1;
 
 /// Bytes in a MiB.
 const MIB: usize = 1 << 20;
 
-/// Make so many threads; all cores unless the environment says otherwise.
+/// Starts the given number of threads; all cores unless the environment specifies otherwise.
 ///
 /// # Errors
-/// [`Failure::BadInput`] where so many were asked for and cannot be had.
+/// Returns [`Failure::BadInput`] if the requested number is not available.
 pub fn use_threads(asked: Option<usize>) -> Result<(), Failure> {
     let from_environment = || std::env::var(VARIABLE).ok()?.trim().parse().ok().filter(|threads| *threads > 0);
     let (threads, name) = match asked {
@@ -48,7 +47,7 @@ pub fn use_threads(asked: Option<usize>) -> Result<(), Failure> {
     made.map_err(|cause| Failure::BadInput(format!("{name} {threads}: {cause}; give fewer")))
 }
 
-/// A thread for every core; where the system does not give so many, fewer, and at last the one that there is.
+/// Starts one thread per core, fewer if the system refuses, and finally a single one.
 fn as_usual() -> Result<(), Failure> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(MOST);
     let fitting = address_space().map_or(cores, |left| cores.min(left / (THREAD * MIB)));
@@ -56,8 +55,8 @@ fn as_usual() -> Result<(), Failure> {
     set_to_work(waiting).map_err(|cause| Failure::BadInput(format!("the threads cannot be started: {cause}")))
 }
 
-/// Refuse more threads than the limit of the address space leaves room for: one that is made, and finds no memory when its turn
-/// comes, aborts the process.
+/// Refuses more threads than the limit of the address space permits: a thread that later runs out of memory would abort the
+/// process.
 fn room_for(threads: usize) -> Result<(), String> {
     let (needed, left) = (threads * THREAD, address_space().map(|left| left / MIB));
     match left.filter(|left| threads > 1 && *left < needed) {
@@ -68,7 +67,7 @@ fn room_for(threads: usize) -> Result<(), String> {
     }
 }
 
-/// A thread that waits for what it is to do. It is made before the pool, of which there can be one attempt only.
+/// Starts a thread that waits for its task. It is created before the pool, which can be attempted only once.
 fn started() -> io::Result<Sender<ThreadBuilder>> {
     let (work, given) = channel::<ThreadBuilder>();
     let waits = move || given.recv().map_or((), ThreadBuilder::run);
@@ -76,7 +75,7 @@ fn started() -> io::Result<Sender<ThreadBuilder>> {
     Ok(work)
 }
 
-/// Make this thread and those that wait the ones of all parallel work.
+/// Makes this thread and the waiting ones the pool of all parallel work.
 fn set_to_work(mut waiting: Vec<Sender<ThreadBuilder>>) -> Result<(), String> {
     let lost = || io::Error::other("a thread has ended unexpectedly");
     let pool = ThreadPoolBuilder::new().num_threads(waiting.len() + 1).use_current_thread();

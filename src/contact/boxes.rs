@@ -1,4 +1,4 @@
-//! A tree of boxes around the segments of a surface, to find the nearest one.
+//! Tree of bounding boxes of the segments of a surface, for the nearest-segment search.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -8,28 +8,29 @@ use nalgebra::Vector2;
 use super::surface::{Segment, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
-/// A binary tree of boxes around the segments of a surface. Neighbours are near each other, so the tree simply halves their range.
+/// A binary tree of bounding boxes of the segments of a surface. Consecutive segments are adjacent, so the tree halves their
+/// range.
 ///
-/// All places are relative to a node of the surface: which segment is the nearest must not be decided by the round-off of
-/// coordinates far from the origin.
+/// Positions are relative to a node of the surface, so that round-off of coordinates far from the origin does not affect the
+/// choice of the nearest segment.
 ///
-/// The boxes are a margin larger than what they hold. As long as no node has moved by more than that against the origin, they
-/// hold it still: the tree of another configuration serves, and what is found is the same to the bit, since the distances
-/// compared in the end are those of the segments themselves. The nearest segment is the first of all by (distance, number),
-/// whatever tree finds it: the margin is far above the round-off of a box's distance.
+/// The boxes are extended by a margin. As long as no node has moved by more than the margin relative to the origin, the boxes
+/// still contain their segments, and the tree can be reused. The result is bitwise the same, since the final comparison uses
+/// the distances of the segments themselves: the nearest segment is the first by (distance, number) for any valid tree, as the
+/// margin far exceeds the round-off of a box's distance.
 #[derive(Clone, Debug, Default)]
 pub struct Boxes {
     segments: usize,
     pub(super) origin: usize,
     /// [L]
     margin: f64,
-    /// The nodes of the segments, and their places when the tree was built
+    /// Nodes of the segments, and their positions when the tree was built
     places: Vec<(usize, Vector2<f64>)>,
-    /// Level by level from the leaves, one box a segment, to the root; each level has half the boxes of the one before
+    /// Levels from the leaves, one box per segment, to the root; each level has half the boxes of the previous one
     levels: Vec<Vec<Box2>>,
 }
 
-/// The smallest box that holds something.
+/// A bounding box.
 #[derive(Clone, Copy, Debug)]
 pub struct Box2 {
     pub(super) low: Vector2<f64>,
@@ -37,7 +38,7 @@ pub struct Box2 {
 }
 
 impl Box2 {
-    /// The box of a segment's nodes, their places relative to a node `origin`.
+    /// Bounding box of a segment's nodes, relative to the node `origin`.
     pub fn of(segment: &Segment, origin: usize, x: &Configuration) -> Self {
         let point = |node: usize| Self { low: x.between(origin, node), high: x.between(origin, node) };
         segment.nodes().fold(point(segment.ends[0]), |sum, node| sum.around(&point(node)))
@@ -53,18 +54,18 @@ impl Box2 {
         0.5 * (self.high - self.low).norm()
     }
 
-    /// The smallest box that holds another as well.
+    /// Bounding box of two boxes.
     pub fn around(&self, other: &Self) -> Self {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
-    /// The box with a margin all round.
+    /// The box extended by a margin on all sides.
     fn wider(&self, margin: f64) -> Self {
         let margin = Vector2::new(margin, margin);
         Self { low: self.low - margin, high: self.high + margin }
     }
 
-    /// Whether two boxes have a point in common.
+    /// Whether two boxes intersect.
     pub fn meets(&self, other: &Self) -> bool {
         (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
@@ -75,21 +76,21 @@ impl Box2 {
     }
 }
 
-/// Margin of the boxes, as a share of the mean length of the segments.
+/// Margin of the boxes, as a fraction of the mean length of the segments.
 const MARGIN: f64 = 0.05;
 
-/// Share of the margin that nodes may use up before the tree is built anew: what is left is for round-off.
+/// Fraction of the margin that the motion of nodes may use before the tree is rebuilt; the rest covers round-off.
 const USED: f64 = 0.9;
 
 impl Boxes {
-    /// See to it that the tree serves for a surface in the configuration `x`.
+    /// Rebuilds the tree unless it is valid for a surface in the configuration `x`.
     pub(super) fn update(&mut self, surface: &Surface, x: &Configuration) {
         if !self.serves(surface, x) {
             self.build(surface, x);
         }
     }
 
-    /// Whether it was built for this surface, in a configuration that is near enough.
+    /// Whether it was built for this surface, in a configuration that is close enough.
     fn serves(&self, surface: &Surface, x: &Configuration) -> bool {
         let most = USED * self.margin;
         let nodes = || surface.segments.iter().flat_map(Segment::nodes);
@@ -121,7 +122,7 @@ impl Boxes {
         }
     }
 
-    /// The segments that may meet a box, in order along the surface.
+    /// Finds the segments whose boxes intersect a box, in order along the surface.
     pub(super) fn meeting(&self, other: &Box2, found: &mut Vec<usize>) {
         if self.segments > 0 {
             self.collect(other, (self.levels.len() - 1, 0), found);
@@ -141,9 +142,9 @@ impl Boxes {
         halves.for_each(|half| self.collect(other, (level - 1, half), found));
     }
 
-    /// The first of the segments by their distance from a point: what most points need, and found without a heap. Boxes
-    /// and segments (level 0) that do not count are passed over. From a segment that may be near the search goes up the
-    /// tree, else from the root down; what it finds is the same.
+    /// First of the segments by their distance from a point, which most points need, without a heap. Boxes and segments (level
+    /// 0) excluded by `counts` are skipped. The search starts from a segment that may be near, upwards in the tree, or else
+    /// from the root; the result is the same.
     pub(super) fn nearest_one(
         &self,
         slave: &SlavePoint,
@@ -165,7 +166,7 @@ impl Boxes {
         nearest.map(|(_, number)| number)
     }
 
-    /// Look at a segment, and then at the other half of every box that holds it.
+    /// Checks a segment, and then the sibling of every box that contains it.
     fn climb(
         &self,
         point: Vector2<f64>,
@@ -184,7 +185,7 @@ impl Boxes {
         }
     }
 
-    /// Look for a nearer segment in a box, in the nearer half first; `nearest` is the best so far and its distance.
+    /// Searches for a nearer segment in a box, the nearer half first; `nearest` is the best so far and its distance.
     fn descend(
         &self,
         point: Vector2<f64>,
@@ -215,7 +216,7 @@ impl Boxes {
         }
     }
 
-    /// The segments by their distance from a point, the nearest first; of equally near ones the first along the surface.
+    /// Segments by their distance from a point, nearest first; equally near ones in order along the surface.
     pub(super) fn nearest(
         &self,
         slave: &SlavePoint,
@@ -248,7 +249,7 @@ impl Boxes {
     }
 }
 
-/// Squared distance of a point from a segment; of a parabola from the two chords on either side of its middle.
+/// Squared distance of a point from a segment; for a parabola, from the two chords on either side of its middle node.
 fn distance_from_segment(slave: &SlavePoint, segment: &Segment, x: &Configuration) -> f64 {
     let from_chord = |[a, b]: [usize; 2]| {
         let (along, offset) = (x.between(a, b), slave.offset(a, x));
@@ -259,7 +260,7 @@ fn distance_from_segment(slave: &SlavePoint, segment: &Segment, x: &Configuratio
     segment.middle.map_or_else(|| from_chord([a, b]), |m| from_chord([a, m]).min(from_chord([m, b])))
 }
 
-/// A box or segment that may be the nearest; the heap has the nearest on top.
+/// A box or segment that may be the nearest; the nearest is at the top of the heap.
 struct Candidate {
     /// Squared distance of the box, or, if `exact`, of the segment itself
     distance: f64,
@@ -269,7 +270,7 @@ struct Candidate {
 }
 
 impl Ord for Candidate {
-    /// Boxes come before segments at the same distance: one of theirs may be the first along the surface.
+    /// Boxes precede segments at the same distance: they may contain one that is earlier along the surface.
     fn cmp(&self, other: &Self) -> Ordering {
         let by_distance = other.distance.total_cmp(&self.distance);
         by_distance.then_with(|| other.exact.cmp(&self.exact)).then_with(|| other.number.cmp(&self.number))

@@ -1,26 +1,26 @@
-//! Numbers that carry their derivatives: what is computed with them brings its exact variation along.
+//! Automatic differentiation with dual numbers.
 
-/// Numbers used to compute averages: plain values, or values with their variations.
+/// Numbers for averages: plain values, or values with their variations.
 pub trait Number: Clone + Default {
-    /// A number that does not vary.
+    /// Creates a constant.
     fn constant(value: f64) -> Self;
 
-    /// Unknown number `k` of `n`.
+    /// Creates unknown number `k` of `n`.
     fn unknown(value: f64, k: usize, n: usize) -> Self;
 
     /// The value without its variations.
     fn value(&self) -> f64;
 
-    /// The derivatives with respect to the unknowns at hand; none of a constant.
+    /// The derivatives with respect to the current unknowns; empty for a constant.
     fn gradient(&self) -> &[f64];
 
-    /// f(self) from the value f and the derivative f′ at the value.
+    /// f(self), given the value f and the derivative f′.
     fn map(&self, value: f64, derivative: f64) -> Self;
 
-    /// A function of two: its value and its partial derivatives.
+    /// A function of two numbers, given its value and partial derivatives.
     fn join(value: f64, a: (&Self, f64), b: (&Self, f64)) -> Self;
 
-    /// Add `factor · other`.
+    /// Adds `factor · other`.
     fn accumulate(&mut self, factor: f64, other: &Self);
 
     /// factor · self.
@@ -86,21 +86,21 @@ impl Number for f64 {
     }
 }
 
-/// Derivatives that need no memory of their own: those of eight nodes.
+/// Number of derivatives stored without heap allocation: those of eight nodes.
 const FEW: usize = 16;
 
-/// A value and its derivatives with respect to the unknowns at hand.
+/// A value and its derivatives with respect to the current unknowns.
 #[derive(Clone, Debug, Default)]
 pub struct Dual {
     value: f64,
     count: usize,
     few: [f64; FEW],
-    /// All of them, where they are more
+    /// All derivatives if there are more
     many: Vec<f64>,
 }
 
 impl Dual {
-    /// A value with `count` derivatives, zero so far.
+    /// Creates a value with `count` zero derivatives.
     fn with(value: f64, count: usize) -> Self {
         let many = if count > FEW { vec![0.0; count] } else { Vec::new() };
         Self { value, count, few: [0.0; FEW], many }
@@ -181,7 +181,7 @@ impl<N: Number> DualVector<N> {
         Self { x: self.x.minus(&other.x), y: self.y.minus(&other.y) }
     }
 
-    /// Add `factor · other`.
+    /// Adds `factor · other`.
     pub fn add_scaled(&mut self, factor: &N, other: &Self) {
         self.x.accumulate(1.0, &factor.times(&other.x));
         self.y.accumulate(1.0, &factor.times(&other.y));

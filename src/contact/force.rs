@@ -1,46 +1,46 @@
-//! Traction at one contact point, the forces it puts on the nodes, and their tangent.
+//! Traction at a contact point, the nodal forces, and their tangent.
 //!
 //! ```text
 //! p = ⟨p̄ − α_n (g − d)⟩,   q and d from the friction law,   t = p n − q s
-//!                                      p̄: multiplier, 0 for the plain penalty; g: gap of the surfaces − gap at touch;
+//!                                      p̄: multiplier, 0 for the plain penalty; g: gap of the surfaces − gap at closure;
 //!                                      d: opening, 0 for laws that do not dilate
 //! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n (δg − δd),   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd likewise
 //! ```
 //!
-//! Surfaces that dilate part where the opening that goes with p = 0 ends, not where that of the old state does: between the two
-//! gaps slip lifts them, and they carry what presses them together. A point is closed where
+//! Dilating surfaces separate at the opening of p → 0, not at that of the old state: between these two gaps they are lifted
+//! by slip and carry the pressure that compresses them. A point is closed where
 //!
 //! ```text
 //! p̄ − α_n (g − d(Δu_t, p → 0)) > 0
 //! ```
 //!
-//! A fluid adds its pressure p_w to p in the forces and in nothing else, see `pair.rs`; it acts on open points too.
+//! A fluid adds its pressure p_w to p in the forces only, see `pair.rs`; it acts on open points too.
 //!
 //! With radiation damping, q + η Δu_t/Δt replaces q in static increments: without inertia the slip rate is unbounded;
-//! the bodies, were they unbounded, would take η v from the traction by the shear waves that slip sends into them.
+//! in unbounded bodies, shear waves radiated by slip would reduce the traction by η v.
 //!
-//! In an increment that starts open, at the gap g₀, only the slip after touch counts; all where nothing faced the point at
-//! its start. The surfaces approach at a steady rate, first through the gap and then by what the pressure pushes in:
+//! In an increment that starts open, at the gap g₀, only the slip after closure counts; all of it if the point had no
+//! projection at its start. The surfaces approach at a constant rate, first by the gap and then by the compression under
+//! pressure:
 //!
 //! ```text
 //! Δu_t d/(g₀ + d),   d = c p + p/α_n             c: compliance of the bodies; 0 in central differences, which move first;
 //!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
 //! ```
 //!
-//! Nor do surfaces ride up on each other (dilate) in such an increment, where they meet: they begin with the next. From
-//! where they end alone the two possible states could not be distinguished: apart at a gap g > 0, never having touched,
-//! or riding at the same gap on what slip after touch has opened. Closed is what overlaps, g < d₀, as without
-//! dilatancy; what the opening would have done to the pressure is part of the doubt by which static increments end
-//! where points touch ([`ContactPair::arrival`]).
+//! In such an increment the surfaces do not dilate either; dilation starts with the next. From the final state alone two states
+//! could not be distinguished: open at a gap g > 0, never closed, or closed at the same gap by dilation after closure. A point
+//! is closed if the surfaces overlap, g < d₀, as without dilatancy; the effect of the omitted opening on the pressure is part
+//! of the uncertainty by which static increments end at contact closure ([`ContactPair::arrival`]).
 //!
-//! What is accepted depends on c by no more than the control of static increments allows: it repeats those in which friction
-//! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
-//! penalty alone, and spring away by all it has missed in the increment after.
+//! The control of static increments limits the dependence of accepted results on c: increments in which friction depends on
+//! the counted fraction are repeated. Without c, a point that closes with a high pressure would stick because of its stiff
+//! penalty alone, and release the missed slip in the next increment.
 //!
 //! # Open or closed
 //!
-//! Where a contact point is at the end of an increment, and whether it is closed there.
+//! A contact point is located at the end of an increment, and its contact status determined.
 
 pub use super::kinematics::Meeting;
 use super::kinematics::{Kinematics, kinematics};
@@ -53,35 +53,35 @@ use super::projection::Projection;
 use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
 
-/// Evaluation of a point's law: first its arguments, then what follows from its response.
+/// Evaluation of a point's law: first its arguments, then the results of its response.
 #[derive(Debug)]
 pub struct PointEvaluation<'a> {
     pair: &'a ContactPair,
     slave: &'a SlavePoint,
-    /// The law that holds in the increment
+    /// Law of the increment
     law: &'a ContactLaw,
     old: &'a ContactState,
     increment: PointIncrement,
     place: PointPlace,
     kinematics: &'a mut Kinematics,
-    /// All of the slip, also what came before touch [L]
+    /// Total slip, including slip before closure [L]
     whole: f64,
     alpha_n: f64,
-    /// p if the surfaces opened no further than they are [F/L²]
+    /// p if the surfaces open no further than at present [F/L²]
     free: f64,
-    /// What the opening at p → 0 adds to it [F/L²]
+    /// Additional pressure by the opening at p → 0 [F/L²]
     lift: f64,
-    /// d/p of slip after touch; none where all slip counts [L³/F]
+    /// d/p of slip after closure; `None` where all slip counts [L³/F]
     compliance: Option<f64>,
-    /// What the law is asked for
+    /// Arguments of the law
     pub sliding: Sliding,
 }
 
 impl<'a> PointEvaluation<'a> {
-    /// Arguments of the law at a point in its place, with these kinematics if it is closed.
+    /// Prepares the arguments of the law at a located point, with these kinematics if it is closed.
     ///
     /// # Errors
-    /// [`LawFailure`] of a law that does not say where its surfaces part.
+    /// Returns [`LawFailure`] if the law has no opening at p → 0.
     pub fn new(
         pair: &'a ContactPair,
         slave: &'a SlavePoint,
@@ -118,7 +118,7 @@ impl<'a> PointEvaluation<'a> {
         Ok(loading)
     }
 
-    /// Ask for the pressure of a point that is closed by its gap or, where surfaces ride up on each other, by its slip.
+    /// Sets the pressure of a point that is closed by its gap or, with dilatancy, by its slip.
     fn close(&mut self) -> Result<(), LawFailure> {
         let Presumption { kept, presume, .. } = self.increment.presumption;
         let clearance = self.place.gap - self.old.friction.opening;
@@ -129,19 +129,19 @@ impl<'a> PointEvaluation<'a> {
         if self.place.closes {
             let (lifted, before) = (self.free + self.lift, self.old.friction.pressure);
             let free = if self.free > 0.0 && !self.parts() { self.free } else { lifted };
-            // What slip alone could lift is far more than what friction lets it.
+            // The lift by slip alone far exceeds that limited by friction.
             let first = if self.lift > 0.0 && before > 0.0 { free.min(before) } else { free };
             self.load(carried(first, self.increment.presumption));
         }
         Ok(())
     }
 
-    /// Whether no pressure is left.
+    /// Whether no pressure remains.
     fn parts(&self) -> bool {
         self.free + self.lift <= 0.0
     }
 
-    /// d at p → 0: a law has no answer at 0, but near it the answer no longer changes.
+    /// d at p → 0: a law has no response at 0, but near 0 it no longer changes.
     fn parting(&self) -> Result<f64, LawFailure> {
         let (old, slip) = (&self.old.friction, self.whole * self.counted(0.0).0);
         let size = old.pressure + old.traction.abs() + (self.alpha_n + self.law.description.stiffness) * slip.abs();
@@ -152,24 +152,24 @@ impl<'a> PointEvaluation<'a> {
         Ok(self.law.respond(old, sliding)?.state.opening)
     }
 
-    /// Ask for a pressure, and the slip that counts under it.
+    /// Sets a pressure, and the slip that counts under it.
     fn load(&mut self, pressure: f64) {
         self.sliding.slip = self.whole * self.counted(pressure).0;
         self.sliding.pressure = pressure;
     }
 
-    /// Share of the slip that counts under a pressure, d/(g₀ + d) in an increment that starts open and 1 else, and the
-    /// derivative of the slip by the pressure.
+    /// Fraction of the slip that counts under a pressure, d/(g₀ + d) in an increment that starts open and 1 otherwise, and the
+    /// derivative of the slip with respect to pressure.
     fn counted(&self, pressure: f64) -> (f64, f64) {
         let Some(compliance) = self.compliance else { return (1.0, 0.0) };
         let (way, old_gap) = (compliance * pressure, self.old.clearance());
         (way / (old_gap + way), self.whole * compliance * old_gap / (old_gap + way).powi(2))
     }
 
-    /// The state of the point from what its law answered; what it adds to the equations, if closed, goes to `closed`.
+    /// Computes the state of the point from the response of its law; contributions of a closed point are added to `closed`.
     ///
     /// # Errors
-    /// [`LawFailure`] of the law, or where its opening and its pressure do not come to agree.
+    /// Returns [`LawFailure`] of the law, or if its opening and its pressure do not converge.
     pub fn finish(mut self, answer: Answer, closed: &mut ClosedPoints) -> Result<ContactState, LawFailure> {
         let mut response = self.met(answer?);
         let PointPlace { gap, foot, closes, fluid } = self.place;
@@ -195,7 +195,7 @@ impl<'a> PointEvaluation<'a> {
             response.state.pressure = pressure;
         }
         let clearance = gap - response.state.opening;
-        // At p = 0 the law has no answer to give, and near it round-off decides which.
+        // At p = 0 the law has no response, and near it round-off decides.
         if touches(pair, clearance, old, increment.presumption.presume) {
             response.dtraction_dslip = stiffness;
         }
@@ -215,22 +215,22 @@ impl<'a> PointEvaluation<'a> {
             slip: whole,
             radiation,
             radiated: old.radiated + 0.5 * (old.radiation + radiation) * sliding.slip,
-            // The next increment begins with the same pressure, but the stiffness given.
+            // The next increment starts with the same pressure, but the given stiffness.
             multiplier: old.multiplier - (alpha_n - pair.alpha_n) * clearance,
             fluid,
         })
     }
 
-    /// The answer of the law, without riding up in an increment in which the surfaces meet.
+    /// Response of the law, without dilation in an increment in which the surfaces close.
     fn met(&self, response: FrictionResponse) -> FrictionResponse {
         if self.compliance.is_some() { response.without_lift(&self.old.friction) } else { response }
     }
 
-    /// The pressure that goes with the opening of the law, p = p̄ − α_n (g − d): asked for again until both agree, or by the
-    /// tangent of one answer where a presumption says under which pressure the law answers.
+    /// Pressure consistent with the opening of the law, p = p̄ − α_n (g − d): iterated until both agree, or by the tangent of
+    /// one response if a presumption prescribes the pressure of the law.
     fn agree(&mut self, response: &mut FrictionResponse) -> Result<f64, LawFailure> {
         let presumed = self.increment.presumption.carried.is_some() || self.parts();
-        // Between them p − p̄ + α_n (g − d) changes its sign: no pressure is too little where the surfaces do not part.
+        // p − p̄ + α_n (g − d) changes its sign between them: zero pressure is too low where the surfaces stay closed.
         let [mut low, mut high] = [0.0, f64::INFINITY];
         for _ in 0..MOST_ANSWERS {
             let asked = self.sliding.pressure;
@@ -239,14 +239,14 @@ impl<'a> PointEvaluation<'a> {
             let rate = response.dopening_dpressure + response.dopening_dslip * dslip;
             let lifted = self.alpha_n * (opened + rate * (self.free - asked)) / (1.0 - self.alpha_n * rate);
             let pressure = self.free + lifted;
-            // An opening is known to its own round-off, which a small pressure feels.
+            // Round-off of the opening affects a small pressure.
             let size = asked.abs() + self.alpha_n * (opened.abs() + response.state.opening.abs());
             if presumed || (pressure - asked).abs() <= AGREE * size {
                 return Ok(pressure);
             }
             let side = if asked < self.free + self.alpha_n * opened { &mut low } else { &mut high };
             *side = asked;
-            // Where slip sets in the opening has a kink, over which tangents lead to and fro.
+            // At the onset of slip the opening has a kink, across which tangent steps alternate.
             let between = low < pressure && pressure < high;
             self.load(if between { pressure } else { 0.5 * (low + high.min(4.0 * asked)) });
             *response = self.met(self.law.respond(&self.old.friction, self.sliding)?);
@@ -255,8 +255,8 @@ impl<'a> PointEvaluation<'a> {
     }
 }
 
-/// δp = −α δg + lift (share δΔu_t), with α = α_n/(1 − α_n dd/dp) and lift = α ∂d/∂Δu_t; where slip is `counted` by a share
-/// that depends on the pressure, its variation becomes that of what counts.
+/// δp = −α δg + lift (fraction δΔu_t), with α = α_n/(1 − α_n dd/dp) and lift = α ∂d/∂Δu_t; if slip is `counted` by a
+/// pressure-dependent fraction, its variation becomes that of the counted slip.
 fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<(f64, f64)>, closed: &mut ClosedPoints) {
     if let Some((share, _)) = counted {
         k.dslip.iter_mut().for_each(|dslip| *dslip *= share);
@@ -270,14 +270,14 @@ fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<(f64, f64)>, 
     }
 }
 
-/// Answers of the law until its opening and the pressure must agree.
+/// Maximum number of evaluations of the law until its opening and the pressure agree.
 const MOST_ANSWERS: usize = 60;
 
-/// Share of the pressure up to which they do.
+/// Relative tolerance of the pressure in that iteration.
 const AGREE: f64 = 1e-14;
 
-/// The pressure under which friction answers: that of a point which is only kept closed is the one it is kept by,
-/// beyond which its response is extrapolated linearly.
+/// Pressure of the friction response: for a point that is only presumed closed the presumed one, beyond which its
+/// response is extrapolated linearly.
 fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64 {
     carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
 }
@@ -285,18 +285,18 @@ fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64
 /// Kinematics of a contact point at the end of an increment.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointPlace {
-    /// g; 0 where nothing faces it [L]
+    /// g; 0 without a projection [L]
     pub gap: f64,
-    /// The foot, if the master faces it
+    /// Closest-point projection on the master, if there is one
     pub foot: Option<MasterPoint>,
     /// Whether it is closed, and has kinematics
     pub closes: bool,
-    /// p_w; it has kinematics where this is not 0, too [F/L²]
+    /// p_w; if it is not 0, the point has kinematics too [F/L²]
     pub fluid: f64,
 }
 
-/// Place of a point with known projection, in the committed configuration and that of the trial, and its kinematics if
-/// it is closed.
+/// Locates a point with known projection, in the committed and the trial configuration, and its kinematics if it is
+/// closed.
 pub fn place(
     pair: &ContactPair,
     slave: &SlavePoint,
@@ -319,7 +319,7 @@ pub fn place(
     PointPlace { gap, foot: Some(projection.foot), closes, fluid }
 }
 
-/// Whether a point with this gap carries pressure, or is presumed to.
+/// Whether a point with this gap carries pressure or is presumed to.
 pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactState, increment: PointIncrement) -> bool {
     let kept = increment.presumption.kept > 0.0;
     let clearance = gap - old.friction.opening;
@@ -328,12 +328,12 @@ pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactSta
     kept || pressure > 0.0 || touches(pair, clearance, old, presume) || may_ride(pair, slave, old)
 }
 
-/// Whether slip may keep a point closed, or part it, whatever its gap says: that is known once its slip is.
+/// Whether slip may keep a point closed or open it, whatever its gap; this is known once its slip is.
 fn may_ride(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
     old.foot.is_some() && !pair.law(slave).description.opening.is_empty() && !old.apart(pair.touch)
 }
 
-/// Whether a zero gap is presumed to be closed, and to stick.
+/// Whether a zero gap is presumed closed and sticking.
 pub fn touches(pair: &ContactPair, clearance: f64, old: &ContactState, presume: Presume) -> bool {
     let presumed = presume == Presume::Touch && old.foot.is_some();
     presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= pair.touch)

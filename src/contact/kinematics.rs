@@ -6,29 +6,29 @@
 //! g = (x_s − x)·n         δg = n·(δx_s − δm)
 //! (x_s − x)·x′ = 0        δξ (J² − g n·x″) = J s·(δx_s − δm) + g n·δx′
 //! θ: rotation of (s, n)   δθ = n·(δx′ + x″ δξ)/J,   δs = n δθ,   δn = −s δθ
-//! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old foot to the new one
+//! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old projection to the new one
 //! ```
 //!
-//! A point without a projection at the start of the increment has no old projection; it has slipped past its present
-//! one, Σ w_a x_a being x_s − x:
+//! A point without a projection at the start of the increment has no old projection; its slip is measured past the present
+//! one, with Σ w_a x_a = x_s − x:
 //!
 //! ```text
 //! Δu_t = s·Σ w_a Δx_a     δΔu_t = s·Σ (w_a δx_a + δw_a Δx_a) + n·Σ w_a Δx_a δθ        Δx_a: motion in the increment
 //! ```
 //!
-//! A foot bound to a node x_v: g = ±‖x_s − x_v‖, δg = n·(δx_s − δx_v), δθ = −s·(δx_s − δx_v)/g, δξ = 0.
+//! For a projection fixed at a node x_v: g = ±‖x_s − x_v‖, δg = n·(δx_s − δx_v), δθ = −s·(δx_s − δx_v)/g, δξ = 0.
 //!
-//! # Rigid masters that move
+//! # Moving rigid masters
 //!
-//! What counts is the motion of the point as the rigid body sees it, with the displacement u_R and the angle φ of the body:
+//! The relevant motion is that of the point in the body-fixed frame, with the displacement u_R and the angle φ of the body:
 //!
 //! ```text
 //! δr = δx_s − δu_R + b rδφ,   b = −J (x_s − x_R)/r             b: the lever;   J: turned by 90°
 //! δg = n·δr,   δΔu_t = a s·δr,   δθ = t s·δr + δφ              a, t: advance and turn of the shape
-//! Δr = d − Q(Δφ) d_before,   d = x_s − x_R                     motion of a point without an old foot, along s the slip
+//! Δr = d − Q(Δφ) d_before,   d = x_s − x_R                     motion of a point without an old projection, slip along s
 //! ```
-//! The body gets the opposite of what the slave gets, at the place of the slave: −t ℓ at its reference node and, as the moment of
-//! that, b·t ℓ at the node that carries r φ. So the forces of the two are in balance, and do work on δr alone.
+//! The body receives the opposite of the slave's force, at the position of the slave: −t ℓ at its reference node and, as its
+//! moment, b·t ℓ at the node that carries r φ. The two forces are in balance and do work on δr only.
 
 use nalgebra::Vector2;
 
@@ -39,24 +39,24 @@ use crate::mesh::configuration::Configuration;
 use crate::mesh::rigid::{RigidBody, turned};
 use crate::mesh::shape;
 
-/// Kinematics of one contact point and, if the tangent is asked for, the variations with respect to its nodes' displacements.
+/// Kinematics of one contact point and, on request, the variations with respect to its nodes' displacements.
 ///
-/// It is filled in again for one point after the other, so that no point needs memory of its own.
+/// It is reused for one point after another, without allocation per point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kinematics {
-    /// Nodes that take part: entries of all variations, two dofs a node
+    /// Participating nodes: entries of all variations, two dofs per node
     pub nodes: Vec<usize>,
-    /// Weights w_a of x_s − x_foot = Σ w_a x_a, by position in `nodes`
+    /// Weights w_a of x_s − x_m = Σ w_a x_a, with x_m the projection, by position in `nodes`
     pub relative: Vec<f64>,
     /// n
     pub normal: Vector2<f64>,
     /// s
     pub tangent: Vector2<f64>,
-    /// Δu_t since the old foot [L]
+    /// Δu_t since the old projection [L]
     pub slip: f64,
     /// Current tributary length of the point [L]
     pub length: f64,
-    /// Whether the variations are asked for; they are empty if not
+    /// Whether the variations are computed; they are empty otherwise
     pub varied: bool,
     /// δg
     pub dgap: Vec<f64>,
@@ -70,11 +70,11 @@ pub struct Kinematics {
     pub changing: Vec<usize>,
     /// δw_a of these, row by row [1/L]
     pub drelative: Vec<f64>,
-    /// What the rotation of a rigid master adds to Σ w_a x_a; none on any other
+    /// Contribution of the rotation of a rigid master to Σ w_a x_a; none for other masters
     pub lever: Option<Lever>,
     /// δb of the lever, its two components
     pub dlever: [Vec<f64>; 2],
-    /// δξ of the foot
+    /// δξ of the projection
     dfoot: Vec<f64>,
 }
 
@@ -92,11 +92,11 @@ pub struct Lever {
 pub struct Meeting {
     /// g [L]
     pub gap: f64,
-    /// The foot
+    /// Projection
     pub foot: MasterPoint,
 }
 
-/// Kinematics of `slave` projected on `master`, with the slip counted from the committed foot `from`.
+/// Computes the kinematics of `slave` projected on `master`, with slip relative to the committed projection `from`.
 pub fn kinematics(
     slave: &SlavePoint,
     master: &Master,
@@ -111,7 +111,7 @@ pub fn kinematics(
     }
 }
 
-/// Kinematics of `slave` projected on a rigid master, with the slip counted from the committed foot `from`.
+/// Computes the kinematics of `slave` projected on a rigid master, with slip relative to the committed projection `from`.
 pub fn past_rigid(
     slave: &SlavePoint,
     rigid: &Rigid,
@@ -173,8 +173,8 @@ fn on_surface(
     }
 }
 
-/// Whether a foot has slid along a path. On a surface that touches itself it may also have jumped from one part of it to
-/// another, over segments that look away.
+/// Whether the projection has slid along a path. In self-contact it may also have jumped from one part of the surface to
+/// another, over segments that face away.
 fn slides(surface: &Surface, path: &Path, projection: &Projection, x: &Configuration) -> bool {
     let looks = |segment: usize| {
         let [a, b] = surface.segments[segment].ends;
@@ -184,12 +184,12 @@ fn slides(surface: &Surface, path: &Path, projection: &Projection, x: &Configura
 }
 
 impl Kinematics {
-    /// To be filled in, with the variations or without.
+    /// Creates empty kinematics, with or without variations.
     pub fn new(varied: bool) -> Self {
         Self { varied, ..Self::default() }
     }
 
-    /// Start with the normal; everything else is empty.
+    /// Sets the normal and clears everything else.
     pub fn begin(&mut self, normal: Vector2<f64>) {
         (self.normal, self.tangent) = (normal, tangent_of(normal));
         (self.slip, self.length) = (0.0, 0.0);
@@ -200,7 +200,7 @@ impl Kinematics {
         self.dlever.iter_mut().for_each(Vec::clear);
     }
 
-    /// All weights and variations zero, once the nodes are listed.
+    /// Sets all weights and variations to zero, once the nodes are listed.
     pub fn clear(&mut self) {
         let dofs = if self.varied { 2 * self.nodes.len() } else { 0 };
         let Self { relative, dgap, dslip, drotation, dlength, dfoot, .. } = self;
@@ -212,7 +212,7 @@ impl Kinematics {
         }
     }
 
-    /// Nodes that take part, each once.
+    /// Adds participating nodes, each once.
     pub fn list(&mut self, nodes: impl IntoIterator<Item = usize>) {
         for node in nodes {
             if !self.nodes.contains(&node) {
@@ -221,7 +221,7 @@ impl Kinematics {
         }
     }
 
-    /// δg, δθ, δξ and δw of a foot on a surface.
+    /// Computes δg, δθ, δξ and δw of a projection on a surface.
     fn vary_foot(&mut self, slave: &SlavePoint, surface: &Surface, projection: &Projection, x: &Configuration) {
         if !self.varied {
             return;
@@ -230,7 +230,7 @@ impl Kinematics {
         let (curve, n, s, gap) = (&surface.segments[segment], self.normal, self.tangent, projection.gap);
         let (foot, slope) = (curve.position(xi), curve.slope(xi));
         let length = x.combine(&slope).norm();
-        // Of x_s − x_foot
+        // Variation of x_s − x_m
         let vary = |k: &mut Self, direction: Vector2<f64>, row: fn(&mut Self) -> &mut Vec<f64>| {
             k.vary(&slave.position, direction, row);
             k.vary(&foot, -direction, row);
@@ -267,7 +267,8 @@ impl Kinematics {
         }
     }
 
-    /// Count the slip of a point that nothing faced in the configuration `before`; `body` is that of a rigid master that moves.
+    /// Measures the slip of a point that had no projection in the configuration `before`; `body` is that of a moving rigid
+    /// master.
     pub fn count_from(&mut self, body: Option<&RigidBody>, before: &Configuration, x: &Configuration) {
         let motion = |node: usize| x.since(before, node);
         let mut whole: Vector2<f64> = self.nodes.iter().zip(&self.relative).map(|(&node, &w)| w * motion(node)).sum();
@@ -297,13 +298,13 @@ impl Kinematics {
         }
     }
 
-    /// The nodes of the slave's part.
+    /// Adds the nodes of the slave side.
     fn list_slave(&mut self, slave: &SlavePoint) {
         let shares = slave.length.iter().flat_map(|share| &share.tangent);
         self.list(slave.position.iter().chain(shares).map(|&(node, _)| node));
     }
 
-    /// The slave's weights and its length, once all nodes are listed; everything else zero.
+    /// Sets the slave's weights and its length, once all nodes are listed; everything else is zero.
     fn take_slave(&mut self, slave: &SlavePoint, x: &Configuration) {
         self.clear();
         self.length = slave.current_length(x);
@@ -324,7 +325,7 @@ impl Kinematics {
         }
     }
 
-    /// The weight of a rigid body, and its lever with its variation, once the slave's weights are there.
+    /// Sets the weight of a rigid body, and its lever with its variation, after the slave's weights.
     fn take_rigid(&mut self, slave: &SlavePoint, body: &RigidBody, x: &Configuration) {
         let [reference, at] = [body.reference, body.turning].map(|node| self.local(node));
         self.relative[reference] = -1.0;
@@ -343,7 +344,7 @@ impl Kinematics {
         }
     }
 
-    /// Add `direction`·δr to a variation: the motion of the slave as its rigid master sees it.
+    /// Adds `direction`·δr to a variation: the motion of the slave relative to its rigid master.
     fn vary_past(
         &mut self,
         slave: &SlavePoint,
@@ -362,7 +363,7 @@ impl Kinematics {
         self.nodes.iter().position(|&n| n == node).expect("every node of a contact point is listed when it is built")
     }
 
-    /// Add `direction`·Σ w_a δx_a to a variation.
+    /// Adds `direction`·Σ w_a δx_a to a variation.
     fn vary(&mut self, weights: &[(usize, f64)], direction: Vector2<f64>, row: impl Fn(&mut Self) -> &mut Vec<f64>) {
         if !self.varied {
             return;

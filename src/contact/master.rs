@@ -1,9 +1,9 @@
-//! The master side of a contact.
+//! Master side of a contact.
 //!
 //! # Rigid masters
 //!
-//! Rigid masters, given by formula: the foot of a point, and how it moves with the point. One that moves is met in the frame that
-//! moves with it, where it rests: feet, and ways from one to another, are those of its shape.
+//! Rigid masters are given by formulas for the projection of a point and its variation. A moving one is evaluated in its
+//! body-fixed frame: projections and paths are those of its undeformed shape.
 
 use nalgebra::Vector2;
 
@@ -23,7 +23,7 @@ pub enum Master {
 }
 
 impl Master {
-    /// The rigid body that it moves with; none on a mesh, and of one at rest.
+    /// The rigid body of a moving rigid master; `None` for meshes and fixed masters.
     pub fn rigid_body(&self) -> Option<&RigidBody> {
         match self {
             Self::Mesh(_) => None,
@@ -31,7 +31,7 @@ impl Master {
         }
     }
 
-    /// The segments of a surface of the mesh; none of a rigid body.
+    /// Segments of a mesh surface; empty for a rigid body.
     pub fn segments(&self) -> &[Segment] {
         match self {
             Self::Mesh(surface) => &surface.segments,
@@ -45,7 +45,7 @@ impl Master {
 pub struct Rigid {
     /// Its shape, in the reference configuration
     pub shape: Shape,
-    /// The rigid body that it is a part of; none is at rest
+    /// Rigid body to which it belongs; `None` if it is fixed
     pub body: Option<RigidBody>,
 }
 
@@ -60,12 +60,12 @@ pub enum Shape {
     Polyline(Polyline),
 }
 
-/// A rigid half-space: a point of its surface and its unit normal.
+/// A rigid half-space, given by a point of its surface and its unit normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// A point of the surface [L]
     pub point: Vector2<f64>,
-    /// Unit normal, out of the solid
+    /// Unit normal, outward from the solid
     pub normal: Vector2<f64>,
 }
 
@@ -76,7 +76,7 @@ pub struct Circle {
     pub centre: Vector2<f64>,
     /// Radius [L]
     pub radius: f64,
-    /// Whether the solid is outside: a hole
+    /// Whether the solid is outside the circle (a hole)
     pub hole: bool,
 }
 
@@ -89,16 +89,16 @@ pub struct Polyline {
 }
 
 impl From<Shape> for Rigid {
-    /// At rest.
+    /// Creates a fixed rigid master.
     fn from(shape: Shape) -> Self {
         Self { shape, body: None }
     }
 }
 
 impl Rigid {
-    /// The foot of a slave point; `None` past the end of a polyline.
+    /// Closest-point projection of a slave point; `None` beyond the ends of a polyline.
     ///
-    /// X and u are kept apart: what a displacement changes is exact, however far away a plane's point or a circle's centre
+    /// X and u are kept separate: changes by a displacement are accurate however far away a plane's point or a circle's centre
     /// lies.
     pub fn project(&self, slave: &SlavePoint, x: &Configuration) -> Option<Projection> {
         let Some(body) = &self.body else {
@@ -110,7 +110,7 @@ impl Rigid {
         Some(Projection { normal: rotation * found.normal, ..found })
     }
 
-    /// The way of a slave point's foot from one place to another along s [L].
+    /// Path length of the projection of a slave point from one position to another along s [L].
     pub fn way(&self, slave: &SlavePoint, from: MasterPoint, to: MasterPoint, x: &Configuration) -> f64 {
         let way = to.xi - from.xi;
         let round_trip = |way: f64, round: f64| way - round * (way / round).round();
@@ -133,7 +133,7 @@ impl Rigid {
 }
 
 impl Shape {
-    /// The foot of a point, given by X and u from any origin, on a surface that looks `outward`.
+    /// Projection of a point, given by X and u relative to any origin, on a surface with normal `outward`.
     fn project(
         &self,
         from: impl Fn(Vector2<f64>) -> [Vector2<f64>; 2],
@@ -157,7 +157,7 @@ impl Plane {
 }
 
 impl Circle {
-    /// Polar coordinates: g = ±(d − r), δ(arc) = r/d s·δx, δθ = ∓1/d s·δx. The centre has no foot.
+    /// Projection in polar coordinates: g = ±(d − r), δ(arc) = r/d s·δx, δθ = ∓1/d s·δx; undefined at the centre.
     ///
     /// d − r = (|X| − r) + (2 X·u + u·u)/(d + |X|), so that a large radius does not cancel what u changes.
     fn project(&self, [reference, displacement]: [Vector2<f64>; 2]) -> Option<Projection> {
@@ -176,7 +176,7 @@ impl Circle {
 }
 
 impl Polyline {
-    /// A polyline through two or more different corners.
+    /// Creates a polyline through two or more distinct corners.
     pub fn new(corners: Vec<Vector2<f64>>) -> Self {
         let lengths = corners.windows(2).map(|pair| (pair[1] - pair[0]).norm());
         let arcs = std::iter::once(0.0).chain(lengths.scan(0.0, |sum, length| {
@@ -195,8 +195,8 @@ impl Polyline {
         (self.corners[line + 1] - self.corners[line]).normalize()
     }
 
-    /// The nearest line that faces a point, given by X and u from any corner. Between two lines the foot is their corner;
-    /// past the ends there is none.
+    /// Projection on the nearest line that faces a point, given by X and u relative to any corner. Between two lines it is
+    /// their corner; beyond the ends there is none.
     fn project(
         &self,
         from: impl Fn(Vector2<f64>) -> [Vector2<f64>; 2],

@@ -1,5 +1,5 @@
-//! Where the points of a pair meet the master, and what follows from it: how a contact starts, how fast it slips, how deep the
-//! sides lie in each other.
+//! Projection of the points of a pair on the master, and its uses: initial state of a contact, slip rates, penetration of
+//! master nodes.
 
 use std::collections::BTreeSet;
 
@@ -20,15 +20,15 @@ use crate::mesh::configuration::Configuration;
 pub(super) type Met = Option<(Meeting, Kinematics)>;
 
 impl ContactPair {
-    /// Start closed: from now on every point's gap is counted so that its given pressure acts in the configuration `x`.
+    /// Starts the contact closed: the gap of every point is measured so that its given pressure acts in the configuration `x`.
     ///
     /// ```text
     /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
     /// ```
-    /// Under the augmented Lagrangian p_init is the first multiplier instead.
+    /// In the augmented Lagrangian method p_init is the first multiplier instead.
     ///
     /// # Errors
-    /// The number of the first point that no part of the master faces.
+    /// Returns the number of the first point without a projection on the master.
     pub fn start_closed(&mut self, initial: Vec<InitialTraction>, x: &Configuration) -> Result<(), usize> {
         let met = self.meetings(x, false);
         for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
@@ -39,8 +39,8 @@ impl ContactPair {
         Ok(())
     }
 
-    /// Tractions with which a stress σ of the slave's body by position ends at every point in the configuration `x`, less what a fluid
-    /// carries at the start; `None` where no part of the master faces it.
+    /// Tractions of a stress field σ of the slave's body at every point in the configuration `x`, minus the initial fluid
+    /// pressure; `None` for a point without a projection.
     ///
     /// ```text
     /// σ (−n) = p_total n − q s   →   p = −n·σ n − p_w,   q = s·σ n
@@ -59,10 +59,10 @@ impl ContactPair {
         self.points.iter().zip(self.meetings(x, false)).map(of).collect()
     }
 
-    /// Begin a shrink fit: what the surfaces overlap in the configuration `x` counts bit by bit.
+    /// Starts a shrink fit: the overlap of the surfaces in the configuration `x` is applied gradually.
     ///
     /// ```text
-    /// g(t) = g_surfaces + overlap × (1 − share of the first step that has passed)
+    /// g(t) = g_surfaces + overlap × (1 − elapsed fraction of the first step)
     /// ```
     pub fn start_fitting(&mut self, x: &Configuration) {
         let met = self.meetings(x, false);
@@ -71,8 +71,8 @@ impl ContactPair {
         }
     }
 
-    /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
-    /// that starts closed, under its initial tractions.
+    /// States at the start of a run: each point projected in the configuration `x`, friction in its stationary state or, in a
+    /// contact that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let state = |(k, (slave, met)): (usize, (&SlavePoint, Met))| {
             let given = self.initial.as_ref().map(|initial| initial[k]);
@@ -96,7 +96,7 @@ impl ContactPair {
         self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()
     }
 
-    /// Nodal forces of the initial tractions, and of a fluid at the start, in the configuration `x` [F].
+    /// Nodal forces of the initial tractions, and of an initial fluid pressure, in the configuration `x` [F].
     pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let points = self.points.iter().zip(self.initial.iter().flatten());
         let met = self.meetings(x, false).into_iter().zip(points);
@@ -107,7 +107,7 @@ impl ContactPair {
         met.flat_map(forces).collect()
     }
 
-    /// Switch to small sliding: every point keeps its projection in the configuration `x`.
+    /// Switches to small sliding: every point keeps its projection in the configuration `x`.
     pub fn slide_little(&mut self, x: &Configuration) {
         let met = self.meetings(x, false).into_iter().zip(&self.points);
         let point =
@@ -116,7 +116,7 @@ impl ContactPair {
         self.small = Some(SmallSliding { points: points.collect() });
     }
 
-    /// Projection of every point on the master, where it has one, with the gap of the surfaces; kinematics with
+    /// Projection of every point on the master, if there is one, with the gap of the surfaces; kinematics with
     /// variations if `varied`.
     pub(super) fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Met> {
         let index = Index::new(&self.master, x);
@@ -152,8 +152,8 @@ impl ContactPair {
         self.points.iter().enumerate().map(meet).collect()
     }
 
-    /// The master node that lies deepest in slave edges with closed points: place, depth [L], and depth over the length of
-    /// that edge [-].
+    /// Master node with the deepest penetration of slave edges with closed points: position, depth [L], and depth divided by
+    /// the length of that edge [-].
     pub fn deepest_master_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
         let Some(Reverse { nodes, slave: Master::Mesh(slave) }) = &self.reverse else { return None };
         let closed = self.points.iter().zip(states).filter(|(_, state)| state.friction.pressure > 0.0);
@@ -168,14 +168,13 @@ impl ContactPair {
             let met = index.project(point, None, x).filter(|met| met.gap < 0.0)?;
             let [a, b] = slave.segments[met.foot.segment].ends;
             let share = -met.gap / x.between(a, b).norm();
-            // What is farther in than an edge is long lies behind another part of the body.
+            // A node deeper than the length of the edge belongs to another part of the body.
             (share < 1.0 && closed.contains(&a) && closed.contains(&b)).then(|| (point.at(x), -met.gap, share))
         };
         nodes.iter().filter_map(depth).max_by(|a, b| a.2.total_cmp(&b.2))
     }
 
-    /// Rate at which each point slips along +s under nodal velocities, the variation of Δu_t; 0 where nothing faces it
-    /// [L/T].
+    /// Slip rate of each point along +s under nodal velocities, by the variation of Δu_t; 0 without a projection [L/T].
     pub fn slip_rates(&self, states: &[ContactState], x: &Configuration, velocity: &[f64]) -> Vec<f64> {
         let rate = |k: &Kinematics| {
             let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);

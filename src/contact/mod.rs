@@ -2,12 +2,12 @@
 //!
 //! | method | stress error in the contact patch test (level, slope 0.2) | use it for |
 //! |---|---|---|
-//! | `node_to_segment` | 8e-2 | points and corners; coarse answers at the least cost |
-//! | `gauss_to_segment`, 2 to 4 points | 1e-2 to 7e-4 | large sliding, rigid masters; with α_n at its default (higher, and the pressures of an edge's points part) |
-//! | `mortar` | below 1e-10 | non-matching meshes where pressures count, stiff penalties, quadratic edges |
+//! | `node_to_segment` | 8e-2 | points and corners; coarse results at the least cost |
+//! | `gauss_to_segment`, 2 to 4 points | 1e-2 to 7e-4 | large sliding, rigid masters; with α_n at its default (with higher values the pressures of an edge's points diverge) |
+//! | `mortar` | below 1e-10 | non-matching meshes where accurate pressures are needed, stiff penalties, quadratic edges |
 //!
-//! Signs (all files): n is the unit normal out of the master at the foot point, s = n turned by −90°, so (s, n) is
-//! right-handed. The gap g = (x_slave − x_foot)·n is positive when open, the pressure p positive in compression, and
+//! Signs (all files): n is the unit normal out of the master at the projection x_m, s = n turned by −90°, so (s, n) is
+//! right-handed. The gap g = (x_slave − x_m)·n is positive when open, the pressure p positive in compression, and
 //! the traction on the slave is t = p n − q s.
 
 pub mod boxes;

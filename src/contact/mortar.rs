@@ -1,9 +1,9 @@
 //! Mortar contact: gap and slip averaged around each slave node, integrated segment by segment.
 //!
 //! The multiplier λ = Σ φ_j t_j is linear from node to node of the slave. (On a quadratic edge the shape functions N_j of the
-//! ends are negative in part: the mean gap under them would not be one, and forces would ripple as nodes go by.) Each slave edge
-//! is cut where master nodes project on it along its own normal, and at its middle node; between two cuts all functions are
-//! smooth, and Gauss's rule integrates
+//! ends are partly negative: the gap weighted by them would not be a mean, and forces would oscillate as nodes slide past.)
+//! Each slave edge is divided at the projections of master nodes along its own normal, and at its middle node; in between, all
+//! functions are smooth, and Gauss quadrature integrates
 //!
 //! ```text
 //! A_j = ∫ φ_j ds,   W_ja = ∫ φ_j N_a ds (slave nodes),   −∫ φ_j N_a ds (master nodes)
@@ -12,22 +12,20 @@
 //! f_a = −Σ_j W_ja t_j
 //! ```
 //!
-//! n_j is the normal of the edges at the node, turned into the slave: s_j is the direction of ∫ φ_j dx. Since Σ_j φ_j = 1, a
-//! uniform pressure puts on both sides exactly what it should: the patch test is passed. The nodes at a corner of more than 45°
-//! count once a side.
-//! All variations come with [`Dual`] numbers.
+//! n_j is the normal of the edges at the node, oriented into the slave: s_j is the direction of ∫ φ_j dx. Since Σ_j φ_j = 1, a
+//! uniform pressure produces the exact forces on both sides: the patch test is passed. A node at a corner of more than 45°
+//! counts as one point per side. All variations are computed with [`Dual`] numbers.
 //!
-//! Against a rigid body nothing is cut, see below.
+//! Edges against a rigid body are not divided, see below.
 //!
 //! # Averages
 //!
-//! What mortar contact averages around a slave node, and what the averages say about its place.
+//! Averages around a slave node define its projection on the master.
 //!
 //! # Rigid masters
 //!
-//! Mortar contact with a rigid body: nothing is cut. g_j and Δu_t,j are the means of what the points of Gauss's rule between
-//! two nodes have, each with its own foot, and n_j is the direction of the mean of their normals. One function sums them up:
-//! every value comes with its variation.
+//! For a rigid body nothing is divided. g_j and Δu_t,j are means over the Gauss points between two nodes, each with its own
+//! projection, and n_j is the direction of the mean of their normals. One function sums all values with their variations.
 
 use std::iter::repeat;
 
@@ -47,18 +45,18 @@ use crate::mesh::configuration::Configuration;
 use crate::mesh::section::Section;
 use crate::mesh::shape;
 
-/// The slave side: its edges, and which of them meet at each contact point.
+/// The slave side: its edges, and the edges at each contact point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mortar {
     /// Edges (start, end[, middle]), the body on their left
     edges: Vec<Vec<usize>>,
     /// Edges at each point, with the number of its shape function there
     at: Vec<Vec<(usize, usize)>>,
-    /// Points of Gauss's rule around each point, their lengths times φ_j
+    /// Gauss points around each point, with their lengths multiplied by φ_j
     around: Vec<Vec<SlavePoint>>,
 }
 
-/// The weights of all points in the committed configuration. They stay as they are while an increment is iterated.
+/// Weights of all points in the committed configuration; constant during the iterations of an increment.
 #[derive(Clone, Debug, Default)]
 pub struct Committed {
     section: Section,
@@ -66,23 +64,23 @@ pub struct Committed {
     places: Vec<(usize, [Vector2<f64>; 2])>,
     trees: Trees,
     overlaps: Overlaps,
-    /// Memory of some points each
+    /// Buffers, each for several points
     rooms: Vec<Room>,
-    /// Weights of each point, none where no master faced it
+    /// Weights of each point, empty without a projection on the master
     weights: Vec<Weights>,
 }
 
 impl Committed {
-    /// Weights of a point, if the master faced it.
+    /// Weights of a point, if it has a projection on the master.
     pub fn weights(&self, point: usize) -> Option<&Weights> {
         self.weights.get(point).filter(|weights| !weights.is_empty())
     }
 }
 
-/// Points whose committed weights one thread finds at a time.
+/// Number of points whose committed weights one thread computes at a time.
 const TOGETHER: usize = 64;
 
-/// The nodes of the slave edges as contact points, each side of a corner a point of its own.
+/// Nodes of the slave edges as contact points; each side of a corner is a separate point.
 pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<SlavePoint>, Mortar) {
     let direction = |e: usize| (positions[edges[e][1]] - positions[edges[e][0]]).normalize();
     let mut nodes: Vec<usize> = Vec::new();
@@ -110,7 +108,7 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
     (points.collect(), Mortar { edges: edges.to_vec(), at, around })
 }
 
-/// The points of Gauss's rule between the nodes of an edge, that ∫ φ_a ds is the sum of their lengths.
+/// Gauss points between the nodes of an edge, whose lengths sum to ∫ φ_a ds.
 fn gauss_around(edge: &[usize], a: usize) -> Vec<SlavePoint> {
     let parts: &[[f64; 2]] = if edge.len() == 2 { &[[-1.0, 1.0]] } else { &[[-1.0, 0.0], [0.0, 1.0]] };
     let points = |&[start, end]: &[f64; 2]| {
@@ -125,7 +123,7 @@ fn gauss_around(edge: &[usize], a: usize) -> Vec<SlavePoint> {
 }
 
 impl Mortar {
-    /// The weights of all points in the configuration `x`, found anew unless they are there already.
+    /// Computes the weights of all points in the configuration `x`, unless they are available already.
     pub fn commit(&self, master: &Master, surface: &Surface, x: &Configuration, committed: &mut Committed) {
         let segments = || surface.segments.iter().flat_map(Segment::nodes);
         let nodes = || self.edges.iter().flatten().copied().chain(segments());
@@ -147,7 +145,7 @@ impl Mortar {
         });
     }
 
-    /// Cut all slave edges.
+    /// Divides all slave edges into mortar segments.
     pub fn cut(&self, surface: &Surface, index: &Index, x: &Configuration, overlaps: &mut Overlaps) {
         overlaps.0.resize_with(self.edges.len(), CutEdge::default);
         let edges = self.edges.par_iter().zip(&mut overlaps.0);
@@ -160,7 +158,7 @@ impl Mortar {
     }
 }
 
-/// Slave edges, the mesh surface that they face, and the cuts between the two.
+/// Slave edges, the mesh surface that they overlap, and the cuts between the two.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing<'a> {
     mortar: &'a Mortar,
@@ -185,7 +183,7 @@ impl Facing<'_> {
         }
     }
 
-    /// [`Facing::meet`] in numbers with or without variations.
+    /// [`Facing::meet`] with plain or dual numbers.
     fn meet_by<N: Number>(
         &self,
         point: usize,
@@ -227,7 +225,7 @@ impl Facing<'_> {
         Some(met)
     }
 
-    /// Write the weights of r_j in a configuration over `found`; none where no master faces the point.
+    /// Computes the weights of r_j in a configuration in place of `found`; empty without a projection on the master.
     pub fn weigh(&self, point: usize, x: &Configuration, room: &mut Room, found: &mut Weights) {
         let Averaging { frame, averages, .. } = &mut room.values;
         self.list(point, &mut frame.nodes);
@@ -238,7 +236,7 @@ impl Facing<'_> {
         }
     }
 
-    /// The facing segment nearest to a point along its edges.
+    /// Overlapping segment nearest to a point along its edges.
     fn foot(&self, point: usize) -> Option<MasterPoint> {
         let of_edge = |&(e, a): &(usize, usize)| self.overlaps.0[e].overlaps.iter().map(move |o| (o, NODE_AT[a]));
         let all = self.mortar.at[point].iter().flat_map(of_edge);
@@ -250,7 +248,7 @@ impl Facing<'_> {
         Some(MasterPoint { segment: nearest.segment, xi })
     }
 
-    /// Write all nodes that take part in the average at a point over `nodes`.
+    /// Lists all nodes that participate in the average at a point.
     fn list(&self, point: usize, nodes: &mut Vec<usize>) {
         nodes.clear();
         let Mortar { edges, at, .. } = self.mortar;
@@ -266,7 +264,7 @@ impl Facing<'_> {
         }
     }
 
-    /// Write the average at a point over `averages`; whether a master faces enough of its edges.
+    /// Computes the average at a point in `averages`; returns whether the master overlaps enough of its edges.
     fn average<N: Number>(&self, point: usize, frame: &Frame<N>, averages: &mut Averages<N>) -> bool {
         averages.clear(frame.nodes.len());
         let mut whole = 0.0;
@@ -284,8 +282,8 @@ impl Facing<'_> {
     }
 }
 
-/// A point whose average is taken over less than this share of its edges is not in contact: the mean over a sliver is
-/// lost in round-off.
+/// Smallest overlapping fraction of the edges for which a point counts as in contact: the mean over a sliver is
+/// dominated by round-off.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// ξ of the nodes of an edge: its ends, then its middle.
@@ -309,14 +307,14 @@ struct Averages<N> {
 }
 
 impl<N: Number> Averages<N> {
-    /// Clear the sums, for `nodes` nodes.
+    /// Resets the sums, for `nodes` nodes.
     pub fn clear(&mut self, nodes: usize) {
         self.weights.clear();
         self.weights.resize(nodes, N::default());
         self.length = N::default();
     }
 
-    /// Add the integrals over one overlap.
+    /// Adds the integrals over one overlap.
     pub fn integrate(
         &mut self,
         edge: &[usize],
@@ -357,12 +355,12 @@ impl<N: Number> Averages<N> {
     }
 }
 
-/// Memory for the averages around one point after the other.
+/// Buffer for the averages at one point after another.
 #[derive(Clone, Debug, Default)]
 pub struct Room {
     values: Averaging<f64>,
     duals: Averaging<Dual>,
-    /// What a point of Gauss's rule has against a rigid body, and the variations of the mean normal
+    /// Kinematics of a Gauss point against a rigid body, and the variations of the mean normal
     around: Kinematics,
     turns: [Vec<f64>; 2],
 }
@@ -376,7 +374,7 @@ struct Averaging<N> {
     relative: Vec<N>,
 }
 
-/// The mean place of a slave node on the master.
+/// Mean projection of a slave node on the master.
 struct MeanPlace<'a, N> {
     pub nodes: &'a [usize],
     /// W_ja/A_j
@@ -389,7 +387,7 @@ struct MeanPlace<'a, N> {
 }
 
 impl<N: Number> MeanPlace<'_, N> {
-    /// Write it, and how it varies if that is asked for, over the kinematics of the point.
+    /// Writes it, with its variations on request, to the kinematics of the point.
     pub fn write(self, k: &mut Kinematics) {
         let Self { nodes, relative, gap, slip, length, axes: [s, n] } = self;
         k.begin(Vector2::new(n.x.value(), n.y.value()));
@@ -422,7 +420,7 @@ struct Sums {
     gap: f64,
     slip: f64,
     along: Vector2<f64>,
-    /// That of the lever of a rigid body that moves
+    /// Lever of a moving rigid body
     arm: Vector2<f64>,
     foot: Option<MasterPoint>,
 }
@@ -439,8 +437,8 @@ impl Mortar {
         sum.normalized()
     }
 
-    /// Projection of a mortar point on a rigid body and its kinematics; `None` where no Gauss point has a projection.
-    /// The configurations are the committed one and that of the trial.
+    /// Projection of a mortar point on a rigid body and its kinematics; `None` if no Gauss point has a projection. The
+    /// configurations are the committed and the trial one.
     pub fn meet_rigid(
         &self,
         point: usize,
@@ -497,7 +495,7 @@ impl Mortar {
 }
 
 impl Sums {
-    /// Add what a point of Gauss's rule has; its weights and variations to those of the `mean`, those of n to the `turns`.
+    /// Adds a Gauss point; its weights and variations to those of the `mean`, those of n to the `turns`.
     fn add(&mut self, k: &Kinematics, gap: f64, mean: &mut Kinematics, turns: &mut [Vec<f64>; 2]) {
         let Kinematics { nodes, relative, dgap, dslip, dlength, drelative, dlever, .. } = mean;
         let local = |node: usize| nodes.iter().position(|other| *other == node).unwrap_or_default();
@@ -537,7 +535,7 @@ impl Sums {
     }
 }
 
-/// So many zeros in the memory of other values.
+/// `count` zeros in the memory of another list.
 fn zeros(mut values: Vec<f64>, count: usize) -> Vec<f64> {
     values.clear();
     values.resize(count, 0.0);

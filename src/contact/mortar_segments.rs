@@ -1,12 +1,13 @@
-//! The segments over which mortar contact integrates.
+//! Mortar segments, the integration domains of mortar contact.
 //!
 //! # Cuts
 //!
-//! Slave edges cut where master nodes project on them: which part of an edge each master segment faces.
+//! Slave edges are divided at the projections of master nodes, which gives the part of an edge overlapped by each master
+//! segment.
 //!
 //! # Lines
 //!
-//! Slave edges and master segments as functions of ξ, in numbers that carry their variations.
+//! Slave edges and master segments are functions of ξ, in numbers with variations.
 
 use nalgebra::Vector2;
 
@@ -19,18 +20,18 @@ use crate::mesh::few::Few;
 use crate::mesh::section::Section;
 use crate::mesh::shape;
 
-/// Master segments farther from a slave edge than this many of its lengths are not looked at: far enough for the deep
-/// penetrations of first iterates, which must not pass for contact lost.
+/// Largest distance of a master segment from a slave edge, in lengths of the edge: large enough for the deep penetrations of
+/// first iterates, which must not count as lost contact.
 const REACH: f64 = 10.0;
 
-/// A slave edge and a master segment face each other when the cosine between their outward normals is below this.
+/// Cosine between the outward normals below which a slave edge and a master segment face each other.
 const EDGE_ON: f64 = -0.01;
 
-/// A segment both of whose ends project farther beyond an end of a straight edge than this does not overlap it [half an
-/// edge]
+/// Distance beyond an end of a straight edge at which a segment with both ends projected there no longer overlaps it [half edge
+/// length]
 const BESIDE: f64 = 1e-3;
 
-/// A part of a slave edge that one master segment faces.
+/// Part of a slave edge overlapped by one master segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Overlap {
     pub segment: usize,
@@ -41,20 +42,20 @@ pub(super) struct Overlap {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
     pub xi: f64,
-    /// The master node that projects there; none at the ends of the edge
+    /// Master node that projects there; `None` at the ends of the edge
     pub node: Option<usize>,
 }
 
-/// The cuts of all slave edges in one configuration, written again and again in the same memory.
+/// Divisions of all slave edges in one configuration, stored in reused memory.
 #[derive(Clone, Debug, Default)]
 pub struct Overlaps(pub(super) Vec<CutEdge>);
 
-/// A slave edge, cut.
+/// A divided slave edge.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CutEdge {
-    /// Its parts that are faced, in order
+    /// Its overlapped parts, in order
     pub overlaps: Vec<Overlap>,
-    /// What each segment around it faces, whatever lies in between
+    /// Overlap with each segment around it, irrespective of segments in between
     candidates: Vec<Overlap>,
     cuts: Vec<Cut>,
     /// Segments around it
@@ -62,7 +63,7 @@ pub(super) struct CutEdge {
 }
 
 impl CutEdge {
-    /// Cut an edge where master nodes project on it; of several segments that face a part the nearest counts.
+    /// Divides an edge at the projections of master nodes; where several segments overlap, the nearest one counts.
     pub fn cut(&mut self, edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) {
         let Self { overlaps, candidates, cuts, around } = self;
         candidates.clear();
@@ -93,7 +94,7 @@ impl CutEdge {
     }
 }
 
-/// The part of a slave edge that each segment around it faces, whatever lies in between, added to the `candidates`.
+/// Adds the overlap of a slave edge with each segment around it, irrespective of segments in between, to the `candidates`.
 fn facing(
     edge: &[usize],
     surface: &Surface,
@@ -114,12 +115,12 @@ fn facing(
     index.around(edge, reach, x, around);
     for &segment in &*around {
         let [a, b] = surface.segments[segment].ends;
-        // On a straight edge the chord is the coordinate, but for round-off.
+        // On a straight edge the chord is the coordinate, apart from round-off.
         let [start, end] = [a, b].map(|node| chord(&levels(node)));
         if edge.len() == 2 && (start.min(end) > 1.0 + BESIDE || start.max(end) < -1.0 - BESIDE) {
             continue;
         }
-        // A segment is taken in nearly edge-on, where it faces next to nothing: the average must not jump as it turns.
+        // A segment is included until it is nearly edge-on, with almost no overlap: the average must not jump as it rotates.
         if normal_of(x.between(a, b).normalize()).dot(&normal) >= EDGE_ON {
             continue;
         }
@@ -152,7 +153,7 @@ impl Line<'_> {
         }
     }
 
-    /// Shape functions, first and second derivatives, as numbers.
+    /// Shape functions, their first and second derivatives, as numbers.
     pub fn shapes(&self, xi: f64) -> [Few<f64, 3>; 3] {
         let count = self.nodes().len();
         let (at, rate) = match self {
@@ -178,7 +179,7 @@ impl Line<'_> {
     }
 
     /// ξ where the line is level with a point, (x(ξ) − point)·along = 0, near `start`. One Newton step from the solution
-    /// brings the exact variation.
+    /// gives the exact variation.
     pub fn coordinate<N: Number>(
         &self,
         point: &DualVector<N>,
@@ -201,7 +202,7 @@ impl Line<'_> {
     }
 }
 
-/// ξ where Σ N_a(ξ) level_a = 0, by Newton's method: one step on a straight line, a few on a parabola.
+/// ξ where Σ N_a(ξ) level_a = 0, by Newton's method: one step for a straight line, a few for a parabola.
 fn root(shapes: impl Fn(f64) -> [Few<f64, 3>; 3], levels: &[f64], start: f64) -> f64 {
     let sum = |values: &[f64]| values.iter().zip(levels).map(|(v, l)| v * l).sum::<f64>();
     let mut xi = start;
@@ -220,7 +221,7 @@ fn root(shapes: impl Fn(f64) -> [Few<f64, 3>; 3], levels: &[f64], start: f64) ->
 #[derive(Clone, Debug)]
 pub(super) struct Frame<N> {
     pub nodes: Vec<usize>,
-    /// x of the first, and the section
+    /// x of the first node, and the section
     origin: (Vector2<f64>, Section),
     pub positions: Vec<DualVector<N>>,
 }
@@ -232,7 +233,7 @@ impl<N> Default for Frame<N> {
 }
 
 impl<N: Number> Frame<N> {
-    /// Find the positions of its nodes.
+    /// Computes the positions of its nodes.
     pub fn place(&mut self, x: &Configuration) {
         let Self { nodes, origin, positions } = self;
         let n = 2 * nodes.len();

@@ -1,12 +1,12 @@
-//! From the tractions of contact points to forces at the nodes.
+//! Nodal forces from the tractions of contact points.
 //!
 //! # Closed points
 //!
-//! What a closed point, or one in a fluid, adds to the equations: the forces of its traction on the nodes, and their derivative.
+//! A closed point, or one under fluid pressure, contributes the nodal forces of its traction, and their derivative.
 //!
 //! # Resultants
 //!
-//! What the tractions of a contact put on the nodes, and their resultant on the slave.
+//! The tractions of a contact give nodal forces and a resultant on the slave.
 
 use std::collections::BTreeSet;
 
@@ -19,39 +19,39 @@ use super::search::Index;
 use crate::laws::friction::FrictionResponse;
 use crate::mesh::configuration::Configuration;
 
-/// A point that is closed, or in a fluid: what it adds to the equations, and how its tractions vary with its nodes. Two dofs a
-/// node.
+/// Contribution to the equations of a point that is closed or under fluid pressure, with the variation of its tractions; two
+/// dofs per node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closed<'a> {
-    /// The nodes, in the order of the entries
+    /// Nodes, in the order of the entries
     pub nodes: &'a [usize],
     /// Internal force [F]
     pub force: &'a [f64],
-    /// ∂force/∂u, column by column; it and the next two are empty where only forces were asked for [F/L]
+    /// ∂force/∂u, column by column; this and the next two are empty if only forces are requested [F/L]
     pub tangent: &'a [f64],
     /// δp [F/L³]
     pub dpressure: &'a [f64],
     /// δq [F/L³]
     pub dtraction: &'a [f64],
-    /// The fluid's part of the force, as a load has it, −1 times that of an internal one; empty without a fluid [F]
+    /// Fluid part of the force as a load, with the opposite sign of an internal force; empty without a fluid [F]
     pub fluid: &'a [f64],
     /// p and q
     pub tractions: Tractions,
-    /// Whether only a fluid acts, and the point is open
+    /// Whether the point is open and only a fluid acts
     pub is_open: bool,
 }
 
 /// Actions at a point in addition to pressure and friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Beside {
-    /// What slip radiates, η v and its derivative by slip
+    /// Radiation damping η v and its derivative with respect to slip
     pub radiates: [f64; 2],
     /// p_w
     pub fluid: f64,
 }
 
 impl Closed<'_> {
-    /// p + δp and q + δq for a correction of the nodes' displacements; none where the pressure would be negative.
+    /// p + δp and q + δq for a correction of the nodes' displacements; zero where the pressure would be negative.
     pub fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
         let dofs = || self.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         let along = |rates: &[f64]| dofs().zip(rates).map(|(dof, rate)| rate * correction(dof)).sum::<f64>();
@@ -61,7 +61,7 @@ impl Closed<'_> {
     }
 }
 
-/// Contributions of the points in sequence, in a few common lists that the next evaluation reuses.
+/// Contributions of the points in sequence, in common lists reused by the next evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct ClosedPoints {
     points: Vec<Option<Place>>,
@@ -70,9 +70,9 @@ pub struct ClosedPoints {
     tangent: Vec<f64>,
     dpressure: Vec<f64>,
     dtraction: Vec<f64>,
-    /// Forces of a fluid, of all points as soon as one has any
+    /// Forces of a fluid, for all points once any point has one
     fluid: Vec<f64>,
-    /// δ(t ℓ) of the point at hand, its two components
+    /// δ(t ℓ) of the current point, its two components
     rows: [Vec<f64>; 2],
 }
 
@@ -81,14 +81,14 @@ pub struct ClosedPoints {
 struct Place {
     tractions: Tractions,
     is_open: bool,
-    /// Its first node, and how many there are
+    /// First node, and number of nodes
     nodes: [usize; 2],
     /// Start of its tangent
     tangent: usize,
 }
 
 impl ClosedPoints {
-    /// No points yet.
+    /// Removes all points.
     pub fn clear(&mut self) {
         let Self { points, nodes, force, tangent, dpressure, dtraction, fluid, .. } = self;
         points.clear();
@@ -96,7 +96,7 @@ impl ClosedPoints {
         [force, tangent, dpressure, dtraction, fluid].into_iter().for_each(Vec::clear);
     }
 
-    /// Contribution of a point, if it is closed.
+    /// Returns the contribution of a point, if it is closed.
     pub fn get(&self, point: usize) -> Option<Closed<'_>> {
         let Place { tractions, is_open, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
         let dofs = 2 * first..2 * (first + count);
@@ -115,7 +115,7 @@ impl ClosedPoints {
         })
     }
 
-    /// A point that is open, and what a fluid does to it; the length on which that acts.
+    /// Adds an open point, with its fluid pressure; returns the length on which that acts.
     pub(super) fn push_open(&mut self, k: &Kinematics, fluid: f64) -> Option<f64> {
         if fluid == 0.0 {
             self.points.push(None);
@@ -131,9 +131,9 @@ impl ClosedPoints {
         Some(k.length)
     }
 
-    /// A closed point: nodal forces of the traction and their derivative, the exact one unless tractions are promised or a
-    /// pressure carried. The variation of the pressure was added to [`ClosedPoints::dpressure`] before.
-    /// What acts beside is part of the forces and no part of what friction promises.
+    /// Adds a closed point: nodal forces of the traction and their derivative, which is exact unless tractions are predicted or
+    /// a pressure is carried. The variation of the pressure was added to [`ClosedPoints::dpressure`] before. Actions beside
+    /// friction are part of the forces but not of the predicted tractions.
     pub(super) fn push(
         &mut self,
         k: &Kinematics,
@@ -164,7 +164,7 @@ impl ClosedPoints {
         }
     }
 
-    /// The forces of a fluid on the nodes of the point at hand; those of all points before it have none where this is the first.
+    /// Adds the fluid forces on the nodes of the current point; all earlier points have none if it is the first.
     fn push_fluid(&mut self, k: &Kinematics, fluid: f64) {
         if fluid == 0.0 && self.fluid.is_empty() {
             return;
@@ -178,7 +178,7 @@ impl ClosedPoints {
         }
     }
 
-    /// δp = a δg + b δΔu_t of the next point.
+    /// Adds δp = a δg + b δΔu_t of the next point.
     pub(super) fn push_dpressure(&mut self, k: &Kinematics, [by_gap, by_slip]: [f64; 2]) {
         let rate =
             |(dgap, dslip): (&f64, &f64)| if by_slip == 0.0 { dgap * by_gap } else { dgap * by_gap + dslip * by_slip };
@@ -233,15 +233,15 @@ pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)
     k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).chain(moment).collect()
 }
 
-/// Force and moment that the master puts on the slave.
+/// Force and moment of the master on the slave.
 ///
 /// ```text
 /// F = Σ_j t_j ℓ_j,   M = Σ_j (x_j − x₀) × t_j ℓ_j,   t = p n − (q + η v) s
 /// ```
-/// What slip radiates, η v, is a traction of the surfaces like friction, 0 without radiation damping. The pressure p_w of a fluid is
-/// a load, and left out.
+/// Radiation damping η v is a traction of the surfaces like friction, 0 if not used. The pressure p_w of a fluid is a load
+/// and excluded.
 ///
-/// Of rings F_x sums up the radial parts of the full turn, and M is that of the section.
+/// In axisymmetry F_x is the sum of the radial parts over the full turn, and M refers to the section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resultant {
     /// F [F]
@@ -250,7 +250,7 @@ pub struct Resultant {
     pub moment: f64,
 }
 
-/// A closed point: where its traction acts on the slave, and the kinematics that say on which nodes.
+/// A closed point: the position of its traction on the slave, and its kinematics.
 struct Acting {
     point: usize,
     place: Weights,
@@ -258,8 +258,8 @@ struct Acting {
 }
 
 impl ContactPair {
-    /// x₀: the middle of the slave surface in the configuration `x`, the undeformed one if moments are to be about a point
-    /// that stays.
+    /// x₀: the center of the slave surface in the configuration `x`; pass the undeformed one for moments about a fixed
+    /// point.
     pub fn middle(&self, x: &Configuration) -> Vector2<f64> {
         let Some(first) = self.points.first().map(|point| point.at(x)) else { return Vector2::zeros() };
         let shares = self.points.iter().map(|point| (point.current_length(x), point.at(x) - first));
@@ -268,7 +268,7 @@ impl ContactPair {
         first + sum / length
     }
 
-    /// Nodal forces of accepted tractions on both sides, in the configuration `x` where they were accepted [F].
+    /// Nodal forces of accepted tractions on both sides, in their configuration `x` [F].
     pub fn forces_on_nodes(&self, states: &[ContactState], x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let acting = self.acting(states, x);
         let forces = acting.iter().flat_map(|acting| {
@@ -291,7 +291,7 @@ impl ContactPair {
         sum
     }
 
-    /// The closed points with their kinematics and tractions.
+    /// Closed points with their kinematics and tractions.
     fn acting(&self, states: &[ContactState], x: &Configuration) -> Vec<Acting> {
         let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].friction.pressure > 0.0).collect();
         if closed.is_empty() {
@@ -322,7 +322,7 @@ impl ContactPair {
         closed.into_iter().filter_map(acting).collect()
     }
 
-    /// Mean place on the slave of a mortar point: the slave's part of its weights.
+    /// Mean position on the slave of a mortar point: the slave's part of its weights.
     fn mean_place(&self, k: &Kinematics) -> Weights {
         let slaves = self.points.iter().flat_map(|point| &point.length).flat_map(|share| &share.at);
         let slaves: BTreeSet<usize> = slaves.map(|(node, _)| *node).collect();

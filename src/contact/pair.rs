@@ -1,22 +1,22 @@
-//! A slave surface, its master, and the laws between them.
+//! Contact pair: a slave surface, its master, and the laws between them.
 //!
 //! # Fluid
 //!
-//! A fluid between the surfaces of a contact, which pushes them apart.
+//! A fluid between the surfaces of a contact pushes them apart.
 //!
 //! ```text
-//! p_total = p + p_w        p: what the surfaces themselves carry (penalty or multiplier), under which friction answers
-//! f_a = −w_a p_w n ℓ       beside that of p and q, wherever the master faces the point, closed or open
+//! p_total = p + p_w        p: contact pressure of the surfaces (penalty or multiplier), used by friction
+//! f_a = −w_a p_w n ℓ       in addition to that of p and q, wherever the point has a projection, closed or open
 //! ```
 //!
-//! p_w is given, by the reference position of a slave point and the time: the fluid does not flow. That friction knows
-//! the effective pressure p alone is the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics, 1943,
-//! §6). Where p_w exceeds the contact pressure, the surfaces open and the fluid pressure continues to act, which makes
-//! nothing jump there. Its work is that of a load.
+//! p_w is prescribed as a function of the reference position of a slave point and time: fluid flow is not modelled. Friction
+//! depends on the effective pressure p only, by the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics,
+//! 1943, §6). Where p_w exceeds the contact pressure, the surfaces open and the fluid pressure continues to act, so that the
+//! traction is continuous there. Its work is that of a load.
 //!
 //! # Fields
 //!
-//! Fields of a contact by name, point by point: what outputs show and callers ask for.
+//! Fields of a contact are available by name, one value per point, for output and callers.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -36,10 +36,10 @@ use crate::laws::friction::{ContactLaw, FrictionState, LawFailure, Regime, Slidi
 use crate::mesh::configuration::Configuration;
 use crate::mesh::rigid::RigidBody;
 
-/// Laws that one thread resolves at a time.
+/// Number of laws that one thread resolves at a time.
 const PART: usize = 64;
 
-/// Two surfaces that may touch.
+/// Two surfaces that may come into contact.
 #[derive(Debug)]
 pub struct ContactPair {
     /// Name in the case file
@@ -48,43 +48,43 @@ pub struct ContactPair {
     pub points: Vec<SlavePoint>,
     /// The master
     pub master: Master,
-    /// The slave's edges if contact is averaged over them; else it is evaluated point by point
+    /// Slave edges for mortar averages; `None` for pointwise evaluation
     pub mortar: Option<Mortar>,
     /// α_n: normal penalty stiffness [F/L³]
     pub alpha_n: f64,
-    /// c: how far a pressure pushes the bodies in, about the depth of an element over λ + 2G; 0 for points without elements
-    /// [L³/F]
+    /// c: compliance of the bodies under contact pressure, about the depth of an element divided by λ + 2G; 0 for points
+    /// without elements [L³/F]
     pub compliance: f64,
-    /// Gap of an open point from which on it is apart from the master, far above the round-off of positions and far below an edge:
-    /// within it surfaces touch, whatever the last digit says [L]
+    /// Gap above which an open point counts as separated from the master, far above the round-off of positions and far below an
+    /// edge length [L]
     pub touch: f64,
-    /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
+    /// Largest penetration left by the augmented Lagrangian method; `None` for the plain penalty method [L]
     pub penetration: Option<f64>,
-    /// η: radiation damping in static steps, 0 for none [F T/L³]
+    /// η: radiation damping in static steps, 0 if not used [F T/L³]
     pub radiation: f64,
     /// Fluid that acts on the surfaces in addition to the contact pressure
     pub fluid: Option<Fluid>,
-    /// The friction laws, each with the parameters of some of the points, as they are at the start of the run. What holds at all
-    /// times is asked of these: α_t, the names of what they remember and show, and whether they rub and dilate
+    /// Friction laws, each with the parameters of some of the points at the start of the run. They also define the
+    /// time-independent properties: α_t, the names of internal variables and observables, and whether they have friction and
+    /// dilatancy
     pub laws: Vec<Arc<ContactLaw>>,
-    /// The laws in an increment, where parameters vary in time
+    /// Laws of an increment, where parameters vary in time
     pub in_time: Option<LawsInTime>,
-    /// Tractions of every point at the start of a contact that starts closed
+    /// Initial tractions of every point of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
-    /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
+    /// The pair with exchanged sides, for the penetration of master nodes into the slave
     pub reverse: Option<Reverse>,
-    /// Surface nodes of the slave's bodies that belong to no contact point, where the master is rigid
+    /// Surface nodes of the slave's bodies that belong to no contact point, if the master is rigid
     pub unseen: Vec<SlavePoint>,
-    /// G*: G/(1 − ν) of both sides, what slip that varies along the interface is resisted with; 0 where there are no bodies
-    /// [F/L²]
+    /// G*: G/(1 − ν) of both sides, the stiffness against slip that varies along the interface; 0 without bodies [F/L²]
     pub modulus: f64,
-    /// Body of the slave's edges, at its first point; of a group of points the only body there, if there is one
+    /// Body of the slave's edges at its first point; for a point group, the only body there, if there is one
     pub body: Option<usize>,
-    /// What every point keeps meeting, in small sliding
+    /// Constant operators of the points in small sliding
     pub small: Option<SmallSliding>,
 }
 
-/// The nodes of a mesh master as points, and the slave as their master.
+/// Nodes of a mesh master as slave points, with the slave as their master.
 #[derive(Clone, Debug)]
 pub struct Reverse {
     /// Master nodes
@@ -93,7 +93,7 @@ pub struct Reverse {
     pub slave: Master,
 }
 
-/// Tractions that act at a point of a contact when the run starts.
+/// Tractions at a contact point at the start of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InitialTraction {
     /// p [F/L²]
@@ -112,31 +112,31 @@ pub struct Arrival {
 }
 
 impl ContactPair {
-    /// The nodes of the slave's points, some of them several times.
+    /// Nodes of the slave's points, possibly repeated.
     pub fn slave_nodes(&self) -> impl Iterator<Item = usize> {
         self.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node))
     }
 
-    /// The nodes of both sides, some of them several times.
+    /// Nodes of both sides, possibly repeated.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
         let rigid = self.master.rigid_body().into_iter().flat_map(RigidBody::nodes);
         self.slave_nodes().chain(self.master.segments().iter().flat_map(|segment| segment.nodes())).chain(rigid)
     }
 
-    /// Whether the master is the slave itself.
+    /// Whether the master is the slave itself (self-contact).
     pub fn is_own(&self) -> bool {
         matches!(&self.master, Master::Mesh(surface) if surface.own_depth.is_some())
     }
 
-    /// Friction of a slave point at the start of the run.
+    /// Friction law of a slave point at the start of the run.
     pub fn law(&self, slave: &SlavePoint) -> &ContactLaw {
         &self.laws[slave.law]
     }
 
-    /// Ask friction of a slave point as it is from one time to another; at a time where both are the same.
+    /// Evaluates the friction law of a slave point over a time span, or at a time if both ends are equal.
     ///
     /// # Errors
-    /// [`LawFailure`] where its parameters have no good values then.
+    /// Returns [`LawFailure`] if its parameters are invalid then.
     pub fn ask_law<T>(
         &self,
         slave: &SlavePoint,
@@ -149,16 +149,16 @@ impl ContactPair {
         }
     }
 
-    /// Rates enter by their mean over an increment, all other parameters by their value at its end.
+    /// Rates are averaged over the increment; all other parameters take their value at its end.
     fn law_in_time(&self, laws: &LawsInTime, number: usize, [from, to]: [f64; 2]) -> Answered {
         let from = if self.laws[number].description.takes_means { from } else { to };
         laws.during(number, [from, to])
     }
 
-    /// All laws as they are from one time to another.
+    /// Returns all laws over a time span.
     ///
     /// # Errors
-    /// [`LawFailure`] of parameters without good values then, with the first point that has them.
+    /// Returns the first point with invalid parameters and the [`LawFailure`].
     pub fn laws_during(&self, span: [f64; 2]) -> Result<Cow<'_, [Arc<ContactLaw>]>, (usize, LawFailure)> {
         let Some(in_time) = &self.in_time else { return Ok(Cow::Borrowed(&self.laws)) };
         let laws =
@@ -174,7 +174,7 @@ impl ContactPair {
         self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
     }
 
-    /// Open, stick or slip; what has no friction slides freely, and is not called slipping.
+    /// Open, stick or slip; a frictionless point is not counted as slipping.
     pub fn regime(&self, slave: &SlavePoint, state: &ContactState) -> Regime {
         match state.regime() {
             Regime::Slip if self.law(slave).description.is_frictionless => Regime::Stick,
@@ -182,15 +182,16 @@ impl ContactPair {
         }
     }
 
-    /// Largest gap of a closed point that the multipliers of a pass leave, over the one allowed; 0 for the plain penalty.
+    /// Largest gap of a closed point left by the multipliers of an augmentation, divided by the allowed one; 0 for the plain
+    /// penalty method.
     pub fn excess(&self, trial: &[ContactState]) -> f64 {
         let Some(tolerance) = self.penetration else { return 0.0 };
         let closed = trial.iter().filter(|state| state.friction.pressure > 0.0);
         closed.map(|state| state.clearance().abs() / tolerance).fold(0.0, f64::max)
     }
 
-    /// α_n times what the iterations of an increment make it: more than one under the augmented Lagrangian alone, where answers
-    /// do not depend on it; less than one on the way to a start value.
+    /// α_n multiplied by the factor of the iteration: above one in the augmented Lagrangian method only, where the solution
+    /// does not depend on it; below one during the iterations for an initial guess.
     pub fn normal_stiffness(&self, stiffening: f64) -> f64 {
         if self.penetration.is_some() || stiffening < 1.0 { stiffening * self.alpha_n } else { self.alpha_n }
     }
@@ -201,7 +202,7 @@ impl ContactPair {
         self.fluid.as_ref().map_or(0.0, |fluid| fluid.pressure(at(), time))
     }
 
-    /// The first point at which the fluid pulls, or has no finite pressure.
+    /// First point with a negative or non-finite fluid pressure.
     pub fn bad_fluid_pressure(&self, x: &Configuration, time: f64) -> Option<BadPressure> {
         self.fluid.as_ref()?;
         let pressures = self.points.iter().map(|slave| (slave, self.fluid_pressure(slave, x, time)));
@@ -209,35 +210,34 @@ impl ContactPair {
         bad.map(|(slave, pressure)| BadPressure { at: x.apart(&slave.position, Vector2::zeros())[0], pressure })
     }
 
-    /// The larger of α_n and α_t; slip that lifts the surfaces, δp = α_n tan ψ δu and δq = μ δp, has α_n (1 + μ tan ψ), which is
-    /// below 2 α_n as long as μ is below 1 [F/L³].
+    /// The larger of α_n and α_t. Dilatant slip, δp = α_n tan ψ δu and δq = μ δp, has the stiffness α_n (1 + μ tan ψ), which is
+    /// below 2 α_n for μ < 1 [F/L³].
     pub fn stiffest(&self, slave: &SlavePoint) -> f64 {
         let law = &self.law(slave).description;
         let lifted = if law.opening.is_empty() { 1.0 } else { 2.0 };
         (lifted * self.alpha_n).max(law.stiffness)
     }
 
-    /// η v by the slip of an increment, and its derivative η/Δt [F/L²], [F/L³].
+    /// η v for the slip of an increment, and its derivative η/Δt [F/L²], [F/L³].
     pub fn radiated(&self, during: ContactIncrement, slip: f64) -> [f64; 2] {
         let damping = if during.radiates && during.dt > 0.0 { self.radiation / during.dt } else { 0.0 };
         [damping * slip, damping]
     }
 
-    /// d/p: approach of the surfaces per pressure after closure: the bodies deform by c p where they settle, and the
-    /// penalty by p/α_n [L³/F].
+    /// d/p: approach of the surfaces per pressure after closure: the deformation c p of the bodies if `settles`, and the
+    /// penalty compliance p/α_n [L³/F].
     pub fn compliance_after_touch(&self, settles: bool) -> f64 {
         let bodies = if settles { self.compliance } else { 0.0 };
         if self.penetration.is_some() { bodies } else { bodies + 1.0 / self.alpha_n }
     }
 
-    /// What friction may have to do with the slip before touch, at a point that was apart when the increment began and is
-    /// closed `now`, beside what the slip after touch would have lifted (surfaces do not ride up in the increment in which they
-    /// meet): the slip before touch lies between none and what it would have been, had the motion gone on as before until touch. `foreseen` is
-    /// the state that such a motion would have led to. 0 for any other point, and for one that slides at the limit of
-    /// friction in all these cases.
+    /// Uncertainty of friction by the slip before closure, for a point that was open at the start of the increment and is
+    /// closed `now`, including the omitted dilation after closure. The slip before closure lies between zero and its value had
+    /// the previous motion continued until closure; `foreseen` is the state predicted by that motion. The uncertainty is 0 for
+    /// any other point, and for one that slides at the friction limit in all these cases.
     ///
     /// # Errors
-    /// [`LawFailure`] when the law has no answer to one of the slips.
+    /// Returns [`LawFailure`] if the law has no response to one of the slips.
     pub fn arrival(
         &self,
         slave: &SlavePoint,
@@ -268,13 +268,12 @@ impl ContactPair {
         Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
     }
 
-    /// Pressure that remains at a point that closed within one iterate once the bodies have deformed under it: p/(1 +
-    /// α_n c).
+    /// Pressure that remains at a point that closed within one iterate after the bodies have deformed: p/(1 + α_n c).
     pub fn shared(&self, pressure: f64, stiffening: f64) -> f64 {
         pressure / (1.0 + self.normal_stiffness(stiffening) * self.compliance)
     }
 
-    /// The committed states with the pressures of a pass as multipliers, p̄ ← p (Uzawa's method).
+    /// Committed states with the pressures of an augmentation as multipliers, p̄ ← p (Uzawa's method).
     pub fn multiplied(&self, old: &[ContactState], trial: &[ContactState]) -> Vec<ContactState> {
         let multiplier = |new: &ContactState| if self.penetration.is_some() { new.friction.pressure } else { 0.0 };
         old.iter().zip(trial).map(|(old, new)| ContactState { multiplier: multiplier(new), ..*old }).collect()
@@ -286,7 +285,7 @@ impl ContactPair {
         if stiffness > 0.0 { friction.traction / stiffness } else { 0.0 }
     }
 
-    /// Ranges of points that follow each other along an unbroken surface.
+    /// Ranges of consecutive points along a continuous surface.
     pub fn lines(&self) -> Vec<Range<usize>> {
         let nodes = |point: &SlavePoint| -> Vec<usize> {
             point.length.iter().flat_map(|share| share.tangent.iter().map(|&(node, _)| node)).collect()
@@ -306,26 +305,26 @@ impl ContactPair {
     }
 }
 
-/// A law as it is at some time, or why it is none.
+/// A resolved law, or the failure of its parameters.
 type Answered = Result<Arc<ContactLaw>, LawFailure>;
 
-/// A law by its number, with its parameters at a time or, between two, with their mean.
+/// A law by its number, with its parameters at a time or with their mean over a time span.
 pub type LawAt = dyn Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync;
 
-/// The laws of a contact whose parameters vary in time. Each is resolved once per increment; the last is kept.
+/// Laws of a contact with time-dependent parameters, resolved once per increment; the last result is kept.
 pub struct LawsInTime {
     law: Box<LawAt>,
     last: Vec<Mutex<Option<Resolved>>>,
 }
 
-/// A law as it is from one time to another.
+/// A law resolved for a time span.
 struct Resolved {
     span: [f64; 2],
     law: Arc<ContactLaw>,
 }
 
 impl LawsInTime {
-    /// Laws that vary in time, `count` of them.
+    /// Creates `count` laws that vary in time.
     pub fn new(
         count: usize,
         law: impl Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync + 'static,
@@ -333,7 +332,7 @@ impl LawsInTime {
         Self { law: Box::new(law), last: (0..count).map(|_| Mutex::new(None)).collect() }
     }
 
-    /// The law of a number from one time to another.
+    /// Law of a number for a time span.
     fn during(&self, number: usize, span: [f64; 2]) -> Answered {
         let mut last = self.last[number].lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(Resolved { law, .. }) = last.as_ref().filter(|last| last.span == span) {
@@ -358,7 +357,7 @@ pub type PressureAt = dyn Fn(Vector2<f64>, f64) -> f64 + Send + Sync;
 pub struct Fluid(Box<PressureAt>);
 
 impl Fluid {
-    /// A fluid with the pressure p_w ≥ 0 as a function of reference position and time.
+    /// Creates a fluid with the pressure p_w ≥ 0 as a function of reference position and time.
     pub fn new(pressure: impl Fn(Vector2<f64>, f64) -> f64 + Send + Sync + 'static) -> Self {
         Self(Box::new(pressure))
     }
@@ -375,7 +374,7 @@ impl fmt::Debug for Fluid {
     }
 }
 
-/// A fluid pressure that is negative or not finite, and its place.
+/// A fluid pressure that is negative or not finite, with its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BadPressure {
     /// Reference position of the slave point
@@ -384,7 +383,7 @@ pub struct BadPressure {
     pub pressure: f64,
 }
 
-/// Names of the fields of some contacts: those that all have, and what their laws remember or let observe besides.
+/// Names of the fields of contacts: the common ones, and the internal variables and observables of their laws.
 pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
     let laws = pairs.iter().flat_map(|pair| &pair.laws).map(|law| &law.description);
     let always = observables::ALWAYS.iter().map(|(name, _)| *name);
@@ -394,9 +393,9 @@ pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
     of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).chain(fluid).collect()
 }
 
-/// Values of a field at the points of a contact, at a time after an increment of length Δt; the names are explained where outputs
-/// list them ([`quantities`](crate::output::quantities)). Any other name is what the laws observe under it: where a law has
-/// none, `R` and `mu` are 0 and `structure` is 1, and what else it does not know is NaN.
+/// Values of a field at the points of a contact, at a time after an increment of length Δt; the names are listed with the
+/// outputs ([`quantities`](crate::output::quantities)). Any other name is an observable of the laws: without a law, `R` and
+/// `mu` are 0 and `structure` is 1, and unknown names are NaN.
 pub fn field_values(pair: &ContactPair, states: &[ContactState], time: f64, dt: f64, name: &str) -> Vec<f64> {
     let rate = if dt > 0.0 { 1.0 / dt } else { 0.0 };
     let value = |(slave, state): (&SlavePoint, &ContactState)| {

@@ -1,4 +1,4 @@
-//! The foot of a point on one segment: closest point, gap and normal.
+//! Closest-point projection of a point on one segment: position, gap and normal.
 
 use nalgebra::Vector2;
 
@@ -8,38 +8,38 @@ use crate::mesh::configuration::Configuration;
 /// Closest-point projection of a slave point on a master.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
-    /// The foot
+    /// Projected point of the master
     pub foot: MasterPoint,
     /// g = (x − x_foot)·n, negative when penetrating [L]
     pub gap: f64,
     /// n: unit normal out of the master
     pub normal: Vector2<f64>,
-    /// What the foot is bound to
+    /// Dependence on the motion
     pub bound: Bound,
 }
 
 /// Dependence of a projection on the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// It slides on a segment
+    /// It slides along a segment
     Segment,
-    /// It stays at a node between two segments
+    /// It is fixed at a node between two segments
     Node(usize),
     /// It follows a motion δx of the point on a rigid body
     Rigid {
-        /// motion of the foot along s: `advance` s·δx [-]
+        /// motion of the projection along s: `advance` s·δx [-]
         advance: f64,
         /// δθ = `turn` s·δx [1/L]
         turn: f64,
     },
 }
 
-/// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
-/// body do not touch what its bottom rests on. A slave point of no edge faces every segment.
+/// Cosine between the outward normals below which a slave and a segment face each other: the sides of a body are not in
+/// contact with the ground below it. A slave point without edges faces every segment.
 pub const FACING: f64 = -0.1;
 
-/// The first and last segment of a surface reach beyond its end by this share of their length: a slave that ends flush
-/// with its master stays in contact when it bulges by a trifle; farther out it is off the edge, and open.
+/// Extension of the first and last segment of a surface beyond its end, as a fraction of their length: a slave that ends flush
+/// with its master stays in contact when it bulges slightly; farther out it is open.
 pub const OVERHANG: f64 = 0.05;
 
 /// s: n turned by −90°.
@@ -52,7 +52,7 @@ pub fn normal_of(tangent: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-tangent.y, tangent.x)
 }
 
-/// Foot of a slave point on one segment in the configuration `x`; `None` past the end of the surface.
+/// Projection of a slave point on one segment in the configuration `x`; `None` beyond the end of the surface.
 pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Option<Projection> {
     let found = on_curve(slave, surface, segment, x);
     let xi = found.foot.xi;
@@ -60,7 +60,7 @@ pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Con
     let side = if xi < 0.0 { 0 } else { 1 };
     match neighbour {
         Some(neighbour) if !(0.0..=1.0).contains(&xi) => {
-            // Smooth segments share the normal at their node: the foot goes over from one to the other.
+            // Smooth segments share the normal at their node: the projection passes from one to the other.
             let smooth = surface.segments[segment].beyond[side].and_then(|_| {
                 let found = on_curve(slave, surface, neighbour, x);
                 (-OVERHANG..=1.0 + OVERHANG).contains(&found.foot.xi).then_some(found)
@@ -72,7 +72,7 @@ pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Con
     }
 }
 
-/// Foot of a slave point on the line or curve of a segment.
+/// Projection of a slave point on the line or curve of a segment.
 pub fn on_curve(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Projection {
     let curve = &surface.segments[segment];
     let Nearest { xi, offset, slope, .. } = nearest(slave, curve, x);
@@ -89,24 +89,23 @@ pub struct Nearest {
     pub offset: Vector2<f64>,
     /// x′ [L]
     pub slope: Vector2<f64>,
-    /// Steps that Newton's method took
+    /// Number of Newton steps
     pub steps: usize,
 }
 
-/// Iterations for the foot on a curve; a few suffice unless the point is near the centre of curvature.
+/// Maximum number of iterations for the projection on a curve; a few suffice unless the point is near the centre of curvature.
 const MOST_STEPS: usize = 60;
 
-/// Beyond the ends by this share of its length a curve is of no interest, and may turn back: a foot is looked for no
-/// farther.
+/// Range of the projection beyond the ends of a curve, as a fraction of its length; farther out the curve may turn back.
 const BEYOND: f64 = 0.2;
 
-/// The closest point, (x_s − x(ξ))·x′ = 0: at once on a straight line, by Newton's method on a curve.
+/// The closest point, (x_s − x(ξ))·x′ = 0: directly on a straight line, by Newton's method on a curve.
 pub fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> Nearest {
     let [a, b] = curve.ends;
     let along = x.between(a, b);
     let mut xi = slave.offset(a, x).dot(&along) / along.norm_squared();
     if curve.is_straight() {
-        // By the weights on both ends: from the nearer one the offset is the more exact.
+        // Interpolated from both ends: relative to the nearer one the offset is more accurate.
         let offset = slave.offset(a, x) * (1.0 - xi) + slave.offset(b, x) * xi;
         return Nearest { xi, offset, slope: along, steps: 0 };
     }
@@ -126,7 +125,7 @@ pub fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> Neares
         let before = xi;
         xi = within(xi + apart.dot(&slope) / stiffness);
         steps += 1;
-        // What round-off in the offset leaves is no step any more; nor is one against the end.
+        // A step below the round-off of the offset ends the iteration, as does one against the end of the range.
         if (xi - before).abs() <= 4.0 * f64::EPSILON * (1.0 + (apart.norm_squared() / square).sqrt()) {
             break;
         }
@@ -134,10 +133,10 @@ pub fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> Neares
     Nearest { xi, offset: offset(xi), slope: slope(xi), steps }
 }
 
-/// A point nearer to a node than this share of the segment is on it.
+/// Distance from a node, as a fraction of the segment, below which a point coincides with it.
 const ON_NODE: f64 = 1e-13;
 
-/// Closest point is the node between two segments: outside a convex corner or, penetrating, inside a concave one.
+/// Projection on the node between two segments: outside a convex corner or, penetrating, inside a concave one.
 pub fn at_node(
     slave: &SlavePoint,
     surface: &Surface,
@@ -152,7 +151,7 @@ pub fn at_node(
     let node = surface.segments[segment].ends[end];
     let offset = slave.offset(node, x);
     let side = if offset.dot(&mean) < 0.0 { -1.0 } else { 1.0 };
-    // A point on the node has no direction of its own, and what round-off gives it is none.
+    // A point on the node has no direction of its own except round-off.
     let [a, b] = surface.segments[segment].ends;
     let on_node = offset.norm() <= ON_NODE * x.between(a, b).norm();
     let gap = if on_node { 0.0 } else { side * offset.norm() };

@@ -1,4 +1,4 @@
-//! The response of a contact pair, point by point.
+//! Response of a contact pair, point by point.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -18,14 +18,14 @@ use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, FrictionState,
 use crate::linear::system::Request;
 use crate::mesh::configuration::Configuration;
 
-/// Points that one thread evaluates at a time; fewer than this are not worth waking others for.
+/// Number of points that one thread evaluates at a time; fewer points are evaluated by one thread.
 const PART: usize = 64;
 
-/// Points whose laws are asked in one go.
+/// Number of points whose laws are evaluated together.
 const TOGETHER: usize = 16;
 
-/// Trial states of all points of a pair, in their order, and what the closed ones add to the equations. Handed from one
-/// evaluation of the pair to the next: then its lists are there already.
+/// Trial states of all points of a pair, in order, and the contributions of closed ones to the equations. Passed from one
+/// evaluation of the pair to the next to reuse its lists.
 #[derive(Clone, Debug, Default)]
 pub struct PairResponse {
     /// Trial states
@@ -39,18 +39,18 @@ pub struct PairResponse {
 struct Kept {
     /// Trees of the master
     trees: Trees,
-    /// What mortar averages over in the committed configuration, and in that of the trial
+    /// Mortar weights in the committed configuration, and mortar segments in the trial configuration
     committed: Committed,
     overlaps: Overlaps,
 }
 
-/// Points that one thread evaluates.
+/// Points evaluated by one thread.
 #[derive(Clone, Debug, Default)]
 struct Chunk {
     closed: ClosedPoints,
-    /// Kinematics of the points at hand
+    /// Kinematics of the current points
     kinematics: Vec<Kinematics>,
-    /// Memory for averages
+    /// Buffer for averages
     room: Room,
     failure: Option<(usize, LawFailure)>,
 }
@@ -66,30 +66,30 @@ impl PairResponse {
         self.parts.get(point / PART)?.closed.get(point % PART)
     }
 
-    /// The points that are closed or in a fluid.
+    /// Points that are closed or under fluid pressure.
     pub fn all_acting(&self) -> impl Iterator<Item = (&ContactState, Closed<'_>)> {
         self.states.iter().enumerate().filter_map(|(k, state)| Some((state, self.acting(k)?)))
     }
 }
 
-/// Input of one evaluation for every point.
+/// Input of one evaluation, common to all points.
 struct Question<'a, P> {
     pair: &'a ContactPair,
-    /// The laws that hold in the increment
+    /// Laws of the increment
     laws: Cow<'a, [Arc<ContactLaw>]>,
-    /// Increment of a point, and what is presumed about it
+    /// Increment of a point, and its presumptions
     during: ContactIncrement,
     presumed: P,
     varied: bool,
 }
 
 impl ContactPair {
-    /// Every point's trial state and what it adds to the equations in the configuration `x`, each with its own presumption, the
-    /// tangent on request; `before` is the committed configuration. Pure, and the same for any number of threads: whatever
-    /// `response` held, only its memory is used.
+    /// Evaluates every point's trial state and contribution to the equations in the configuration `x`, each with its own
+    /// presumption, and the tangent on request; `before` is the committed configuration. Pure, and the same for any number of
+    /// threads: only the memory of `response` is reused.
     ///
     /// # Errors
-    /// The number of the first point whose friction law fails, and why.
+    /// Returns the number of the first point whose friction law fails, and the failure.
     pub fn respond(
         &self,
         old: &[ContactState],
@@ -151,8 +151,8 @@ impl ContactPair {
 }
 
 impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
-    /// One answer a point; `place` says where it is, and fills in its kinematics if it is closed. The first failure by number,
-    /// whatever thread met it.
+    /// Evaluates every point; `place` locates it and computes its kinematics if it is closed. The failure of lowest number is
+    /// returned, whatever thread met it.
     fn each(
         &self,
         old: &[ContactState],
@@ -177,7 +177,7 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
 }
 
 impl Chunk {
-    /// Some points at a time: where they are, what their laws say, what follows.
+    /// Evaluates several points: location, responses of their laws, resulting states.
     fn evaluate<P: Fn(usize) -> Presumption>(
         &mut self,
         question: &Question<P>,

@@ -1,4 +1,4 @@
-//! Which part of the master a slave point meets: the nearest segment that faces it.
+//! Contact search: the nearest master segment that faces a slave point.
 
 use std::borrow::Cow;
 
@@ -12,18 +12,18 @@ use super::sight::{Branches, Sight};
 use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
-/// Segments looked at before a point is called free. Nearest come first, so more than a few mean that nothing faces it.
+/// Number of segments examined before a point counts as free. As the nearest come first, further ones do not face it.
 const CANDIDATES: usize = 8;
 
-/// The master in a spatial index at the current positions.
+/// Spatial index of the master at the current positions.
 pub enum Index<'a> {
-    /// Segments of a mesh surface in a tree of boxes, and what points of a surface that touches itself may meet
+    /// Segments of a mesh surface in a tree of boxes, and the visibility in self-contact
     Mesh(&'a Surface, Cow<'a, Boxes>, Option<Sight<'a>>),
-    /// A rigid body needs none
+    /// A rigid body, which needs no index
     Rigid(&'a Rigid),
 }
 
-/// The trees of a mesh surface.
+/// Search trees of a mesh surface.
 #[derive(Clone, Debug, Default)]
 pub struct Trees {
     boxes: Boxes,
@@ -32,7 +32,7 @@ pub struct Trees {
 }
 
 impl Trees {
-    /// Update the trees for the configuration `x` of an increment that began in `before`.
+    /// Updates the trees for the configuration `x` of an increment that began in `before`.
     fn update(&mut self, surface: &Surface, [before, x]: [&Configuration; 2]) {
         self.boxes.update(surface, x);
         if surface.own_depth.is_some() {
@@ -42,7 +42,7 @@ impl Trees {
 }
 
 impl<'a> Index<'a> {
-    /// Index the master in the configuration `x`, O(N).
+    /// Indexes the master in the configuration `x`, O(N).
     pub fn new(master: &'a Master, x: &'a Configuration) -> Self {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
@@ -55,8 +55,8 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// Index the master in the configuration `x` of an increment that began in another, by trees that are built anew only
-    /// where they no longer serve.
+    /// Indexes the master in the configuration `x` of an increment that began in `before`, by trees that are rebuilt only
+    /// where they are no longer valid.
     pub fn kept(master: &'a Master, [before, x]: [&'a Configuration<'a>; 2], trees: &'a mut Trees) -> Self {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
@@ -69,8 +69,8 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// The foot of a slave point that had another at the start of the increment, if it had one, and if a part of the master
-    /// faces it.
+    /// Projection of a slave point, if a part of the master faces it; `from` is its projection at the start of the increment,
+    /// if there was one.
     pub fn project(&self, slave: &SlavePoint, from: Option<MasterPoint>, x: &Configuration) -> Option<Projection> {
         let nearest = self.nearest(slave, from.map(|from| from.segment), x)?;
         match (self, from) {
@@ -89,9 +89,9 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// The foot presumed for a point that goes to and fro between two segments: their node, if they meet in a valley. The
-    /// closest point is the node only in a strip as narrow as the penetration times the turn of the normal, and Newton's
-    /// method steps over it from either side for ever.
+    /// Presumed projection of a point that alternates between two segments: their node, if they form a concave corner. The
+    /// closest point is the node only in a strip as narrow as the penetration times the change of the normal, which Newton's
+    /// method would step over from either side indefinitely.
     pub fn in_valley(&self, slave: &SlavePoint, [a, b]: [usize; 2], x: &Configuration) -> Option<Projection> {
         let Self::Mesh(surface, ..) = self else { return None };
         let [first, second] = if surface.next(a) == Some(b) { [a, b] } else { [b, a] };
@@ -101,7 +101,7 @@ impl<'a> Index<'a> {
         is_valley.then(|| at_node(slave, surface, first, second, 1.0, x)).filter(|at| at.gap < 0.0)
     }
 
-    /// The foot on what is nearest; by the tree, not by going through all. It may be near a segment.
+    /// Projection on the nearest segment, by the search tree, optionally starting at the segment `near`.
     fn nearest(&self, slave: &SlavePoint, near: Option<usize>, x: &Configuration) -> Option<Projection> {
         match self {
             Self::Rigid(body) => body.project(slave, x),
@@ -110,8 +110,8 @@ impl<'a> Index<'a> {
                     let viewer = sight.point(slave)?;
                     let may_meet = |level, number| sight.may_meet(&viewer, level, number);
                     let nearest = boxes.nearest_one(slave, surface, x, near, may_meet)?;
-                    // Only between two segments that it may meet can a point lie behind their node: a segment of the far
-                    // side of a hole is seen past its end, through the body, by points on the other side of the wall.
+                    // A point can lie behind the common node of two segments only if it may be in contact with both: points on
+                    // the other side of a wall see the far side of a hole beyond its end, through the body.
                     let beside = |at: &Projection| {
                         if at.foot.xi > 0.0 { surface.next(at.foot.segment) } else { surface.previous(at.foot.segment) }
                     };
@@ -127,8 +127,8 @@ impl<'a> Index<'a> {
                 }
                 let nearest = boxes.nearest(slave, surface, x).take(CANDIDATES);
                 let mut facing = nearest.filter(|&segment| facing(segment)).enumerate();
-                // A node is the foot only of a point that nothing nearer faces: past the end of a surface, where the
-                // last segment has no foot, each inner node would be one, far away and deep.
+                // A node is the projection only if no nearer segment faces the point: beyond the end of a surface, where the
+                // last segment has no projection, each inner node would be one, far away and deep.
                 facing.find_map(|(rank, segment)| {
                     let found = on_segment(slave, surface, segment, x)?;
                     (rank == 0 || found.bound == Bound::Segment).then_some(found)
@@ -137,7 +137,7 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// Write the segments of a mesh surface within a distance of a slave edge's bounding box over `found`, in order along it.
+    /// Lists the segments of a mesh surface within a distance of a slave edge's bounding box, in order along the surface.
     pub fn around(&self, edge: &[usize], reach: f64, x: &Configuration, found: &mut Vec<usize>) {
         found.clear();
         let Self::Mesh(surface, boxes, sight) = self else { return };
@@ -155,15 +155,15 @@ impl<'a> Index<'a> {
     }
 }
 
-/// Whether a segment faces a point whose surface looks `outward`, if it has a surface.
+/// Whether a segment faces a point with the surface normal `outward`, if it has one.
 fn faces(surface: &Surface, segment: usize, outward: Option<Vector2<f64>>, x: &Configuration) -> bool {
     let [a, b] = surface.segments[segment].ends;
     outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
 }
 
-/// Behind a ridge, where a point lies behind several segments, it belongs to the one on the side of its old foot. The
-/// nearest one changes at the bisector, and the normal with it, forwards and back as Newton's method goes; its old foot does
-/// not change within an increment.
+/// At a convex corner, a point behind several segments belongs to the one on the side of its old projection. The nearest
+/// one, and with it the normal, changes at the bisector and may alternate during Newton's iterations; the old projection is
+/// fixed within an increment.
 fn behind_ridge(
     slave: &SlavePoint,
     surface: &Surface,

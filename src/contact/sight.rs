@@ -1,17 +1,17 @@
-//! What a point of a surface may meet of the surface itself (self-contact).
+//! Visibility in self-contact: which parts of its own surface a point may come into contact with.
 //!
-//! A point may meet a segment that faces it and in front of which it lay when the increment began, but none that shares a
-//! node with its own edges. The other side of the body faces a point as well, back to back: the point is farther behind it
-//! than half the thinnest element of the body. All this is settled when the increment begins, so that nothing flips in it
-//! and a penetration of any depth is found.
+//! A point may contact a segment that faces it and in front of which it lay at the start of the increment, but none that shares
+//! a node with its own edges. The opposite side of the body also faces a point, back to back: the point lies farther behind it
+//! than half the thinnest element of the body. All this is determined at the start of the increment, so that it is constant
+//! within it and a penetration of any depth is found.
 //!
-//! The tree keeps the directions n(θ) in which the segments below a branch look. A branch is passed over where
+//! The tree stores the normal directions n(θ) of the segments below a branch. A branch is skipped where
 //!
 //! ```text
 //! n·n_point ≥ −0.1   or   n·(x_point − x) ≤ −depth      for every θ of the branch and every x of its box
 //! ```
 //!
-//! so a point searches neither its own side nor the other side of the body.
+//! so that a point searches neither its own side nor the opposite side of the body.
 
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
@@ -23,7 +23,7 @@ use super::projection::{FACING, normal_of};
 use super::surface::{Segment, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
-/// A surface as it was when the increment began.
+/// A surface at the start of the increment.
 pub struct Sight<'a> {
     surface: &'a Surface,
     before: &'a Configuration<'a>,
@@ -31,37 +31,37 @@ pub struct Sight<'a> {
     branches: Cow<'a, Branches>,
 }
 
-/// The tree of a surface in one configuration, which serves as long as no node of the surface moves.
+/// Tree of a surface in one configuration; valid as long as no node of the surface moves.
 #[derive(Clone, Debug, Default)]
 pub struct Branches {
     /// X and u of the nodes of the segments
     places: Vec<(usize, [Vector2<f64>; 2])>,
-    /// Level by level as in [`super::boxes::Boxes`]
+    /// Levels as in [`super::boxes::Boxes`]
     levels: Vec<Vec<Branch>>,
 }
 
-/// Some segments that follow each other.
+/// A range of consecutive segments.
 #[derive(Clone, Copy, Debug)]
 struct Branch {
     bounds: Box2,
-    /// Range of the angles of their normals, counted on from segment to segment
+    /// Range of the angles of their normals, continued from segment to segment
     turn: [f64; 2],
 }
 
-/// A point or an edge of the surface that looks out.
+/// A point or edge of the surface as an observer.
 pub struct Viewer<'a> {
-    /// Place relative to the surface's origin
+    /// Position relative to the surface's origin
     at: Vector2<f64>,
     outward: Vector2<f64>,
     angle: f64,
     own: Own<'a>,
 }
 
-/// Parts that a line of sight ignores.
+/// Parts excluded from visibility.
 enum Own<'a> {
-    /// The nodes of a point's edges
+    /// Nodes of a point's edges
     Point(&'a SlavePoint),
-    /// The nodes of an edge
+    /// Nodes of an edge
     Edge(&'a [usize]),
 }
 
@@ -78,7 +78,7 @@ impl Own<'_> {
 }
 
 impl Branches {
-    /// See to it that the tree is that of a surface in the configuration `x`, O(N).
+    /// Rebuilds the tree unless it is that of a surface in the configuration `x`, O(N).
     pub(super) fn update(&mut self, surface: &Surface, x: &Configuration) {
         let nodes = || surface.segments.iter().flat_map(Segment::nodes);
         let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
@@ -108,19 +108,19 @@ impl Branches {
 }
 
 impl<'a> Sight<'a> {
-    /// The segments of a surface that touches itself, in the configuration before the increment, whose tree is given; `depth`
-    /// is how far a point may lie behind what it touches.
+    /// Creates the visibility of a self-contact surface in the configuration before the increment, with its tree; `depth` is
+    /// the largest depth of a point behind a segment that it may contact.
     pub fn new(surface: &'a Surface, depth: f64, before: &'a Configuration<'a>, branches: Cow<'a, Branches>) -> Self {
         Self { surface, before, depth, branches }
     }
 
-    /// A slave point as a viewer; `None` for a point of no edge.
+    /// A slave point as an observer; `None` without edges.
     pub fn point<'b>(&self, slave: &'b SlavePoint) -> Option<Viewer<'b>> {
         let at = || slave.offset(self.surface.origin(), self.before);
         slave.outward(self.before).map(|outward| Viewer::new(at(), outward, Own::Point(slave)))
     }
 
-    /// An edge as a viewer, from its middle; the body is on its left.
+    /// An edge as an observer, from its middle; the body is on its left.
     pub fn edge<'b>(&self, edge: &'b [usize]) -> Viewer<'b> {
         let along = self.before.between(edge[0], edge[1]);
         let at = |node: usize| self.before.between(self.surface.origin(), node);
@@ -128,7 +128,7 @@ impl<'a> Sight<'a> {
         Viewer::new(middle, -normal_of(along.normalize()), Own::Edge(edge))
     }
 
-    /// Whether a viewer may meet a segment (level 0), or any below a branch: never false where one may be.
+    /// Whether an observer may contact a segment (level 0), or any below a branch; conservative for branches.
     pub fn may_meet(&self, viewer: &Viewer, level: usize, number: usize) -> bool {
         if level > 0 {
             let branch = &self.branches.levels[level][number];
@@ -166,14 +166,14 @@ impl Branch {
         self.away(viewer.angle + PI).cos() > -FACING
     }
 
-    /// Whether the viewer is in front of some segment or not deeper behind it than `depth`.
+    /// Whether the observer is in front of some segment or not deeper behind it than `depth`.
     fn is_before(&self, viewer: &Viewer, depth: f64) -> bool {
         let offset = viewer.at - self.bounds.centre();
         offset.norm() * self.away(offset.y.atan2(offset.x)).cos() + self.bounds.radius() > -depth
     }
 }
 
-/// An angle between −π and π.
+/// Maps an angle to −π … π.
 fn turn(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }

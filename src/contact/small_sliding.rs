@@ -1,24 +1,24 @@
-//! Small sliding: every point keeps meeting what it met in the reference configuration.
+//! Small sliding: every point keeps its projection of the reference configuration.
 //!
 //! ```text
 //! g = g₀ + n·Σ w_a u_a        Δu_t = s·Σ w_a Δu_a        Σ w_a x_a = x_s − x_foot
 //! f_a = −w_a (p n − q s) ℓ
 //! ```
 //!
-//! The foot, the weights w_a of slave and master, n, s and ℓ are those of the reference configuration: g and Δu_t are linear in
-//! the displacements, by the constant rows B_n = w_a n and B_t = w_a s, and the forces are what does work on them,
-//! f = −ℓ (p B_nᵀ − q B_tᵀ). With linear bodies nothing but opening and friction is nonlinear.
+//! Projection, weights w_a of slave and master, n, s and ℓ are those of the reference configuration: g and Δu_t are linear in
+//! the displacements, with the constant rows B_n = w_a n and B_t = w_a s, and the work-conjugate forces are
+//! f = −ℓ (p B_nᵀ − q B_tᵀ). With linear bodies only opening and friction are nonlinear.
 //!
-//! What is left out: that the foot moves on (the forces of the two sides are in balance, but leave the moment p ℓ d when a
-//! point has slid by d, besides the q ℓ g of finite sliding), and that the surfaces turn and stretch: small sliding is
-//! objective for small rotations only. All this is of the second order in the displacements; but not where a contact starts closed, whose
-//! initial traction turns and stretches by the first order in finite sliding, and not at all here. (Nor does the initial
-//! stress of `linear` bodies, with which it is in equilibrium.) A point that nothing faces in the reference configuration
-//! never touches.
+//! Neglected are the motion of the projection (the forces of the two sides are in balance, but leave the moment p ℓ d after a
+//! slip d, in addition to the q ℓ g of finite sliding) and the rotation and stretch of the surfaces: small sliding is objective
+//! for small rotations only. All this is of second order in the displacements, except in a contact that starts closed, whose
+//! initial traction rotates and stretches to first order in finite sliding and not at all here. (Nor does the initial stress of
+//! `linear` bodies, with which it is in equilibrium.) A point without a projection in the reference configuration never comes
+//! into contact.
 //!
-//! [`SmallPoint::departure`] says how far a point has left all this behind. A block pressed on another and slid by a tenth of
-//! an edge has the pressures of finite sliding within 4 to 13 % where they vary from edge to edge, and its forces and
-//! displacements within 1 %.
+//! [`SmallPoint::departure`] measures the deviation of a point from these assumptions. For a block compressed on another and
+//! slid by a tenth of an edge, the pressures agree with finite sliding within 4 to 13 % where they vary from edge to edge, its
+//! forces and displacements within 1 %.
 
 use nalgebra::Vector2;
 
@@ -27,15 +27,15 @@ use super::master::Master;
 use super::surface::{MasterPoint, Segment, SlavePoint};
 use crate::mesh::configuration::Configuration;
 
-/// The constant operators of a pair's points.
+/// Constant operators of the points of a pair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmallSliding {
-    /// Operator of each point, in their order; `None` where nothing faces it
+    /// Operator of each point, in order; `None` without a projection
     pub points: Vec<Option<SmallPoint>>,
 }
 
 impl SmallSliding {
-    /// Way up to which small sliding is no matter, where nodes are nearest to each other; none on a rigid body [L].
+    /// Slip up to which small sliding is accurate, at the smallest node distance; `None` on a rigid body [L].
     pub fn little_slip(&self) -> Option<f64> {
         let little = |point: &SmallPoint| match point.against {
             Against::Mesh { spacing, .. } => Some(LITTLE_SLIP * spacing),
@@ -45,12 +45,12 @@ impl SmallSliding {
     }
 }
 
-/// The constant operator of a point.
+/// Constant operator of a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmallPoint {
-    /// Nodes that take part
+    /// Participating nodes
     pub nodes: Vec<usize>,
-    /// w_a of each; they sum to zero on a master that may move, to one on a rigid one at rest
+    /// w_a of each node; their sum is zero for a master that may move, one for a fixed rigid one
     pub weights: Vec<f64>,
     /// Lever of a rigid master that may rotate
     pub lever: Option<Lever>,
@@ -62,45 +62,45 @@ pub struct SmallPoint {
     pub gap: f64,
     /// ℓ: tributary length of the point [L]
     pub length: f64,
-    /// The foot
+    /// Closest-point projection on the master
     pub foot: MasterPoint,
-    /// The part of the master that it stays with
+    /// Part of the master on which its projection stays
     against: Against,
 }
 
-/// The part of the master that a point stays with.
+/// Part of the master on which a projection stays.
 #[derive(Clone, Debug, PartialEq)]
 enum Against {
-    /// A segment with these ends, where nodes of either side are no nearer to each other than `spacing` [L]
+    /// A segment with these ends; `spacing` is the smallest distance between nodes of either side [L]
     Mesh { ends: [usize; 2], spacing: f64 },
-    /// A rigid body, whose normal at the foot of the point's node is this
+    /// A rigid body with this normal at the projection of the point's node
     Rigid { normal: Vector2<f64> },
 }
 
-/// Deviation of a point from the geometry that small sliding keeps.
+/// Deviation of a point from the assumptions of small sliding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Departure {
-    /// Way slid since the reference configuration [L]
+    /// Slip since the reference configuration [L]
     pub slid: f64,
-    /// Slip as a fraction of the distance between nodes, where it is shorter; 0 on a rigid body [-]
+    /// Slip as a fraction of the smaller distance between nodes; 0 on a rigid body [-]
     pub share: f64,
-    /// Angle by which its edges and the master's have turned, or the normal of a rigid body at its foot [rad]
+    /// Rotation of its edges and the master's, or of the normal of a rigid body at its projection [rad]
     pub turned: f64,
-    /// Share by which its edges have grown longer or shorter [-]
+    /// Relative change of length of its edges [-]
     pub stretched: f64,
 }
 
-/// Share of the distance between nodes up to which small sliding is no matter: of a linear edge, or half a quadratic one.
+/// Fraction of the distance between nodes (a linear edge, or half a quadratic one) up to which small sliding is accurate.
 pub const LITTLE_SLIP: f64 = 0.1;
 
-/// Weights below it are the round-off of those of a node that faces another.
+/// Weights below this are round-off of those of a node opposite another node.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Angle, and stretch, up to which it is none [rad, -].
+/// Rotation and stretch up to which small sliding is accurate [rad, -].
 pub const LITTLE_TURN: f64 = 0.02;
 
 impl SmallPoint {
-    /// The operator of a point with this projection in the reference configuration `x`.
+    /// Creates the operator of a point with this projection in the reference configuration `x`.
     pub fn new(met: Meeting, k: &Kinematics, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
         let Meeting { gap, foot } = met;
         let Kinematics { normal, tangent, length, .. } = *k;
@@ -127,8 +127,8 @@ impl SmallPoint {
         Self { nodes, weights, lever, normal, tangent, gap, length, foot, against }
     }
 
-    /// The slave's node and the one of the master that it faces, or the slave's alone on a rigid master; none where the point
-    /// is more than one node of either side, or the master may rotate.
+    /// The slave node and its opposite master node, or the slave node alone on a rigid master; `None` if the point involves
+    /// more than one node of either side, or the master may rotate.
     pub fn facing(&self) -> Option<(usize, Option<usize>)> {
         if self.lever.is_some() {
             return None;
@@ -145,7 +145,7 @@ impl SmallPoint {
         part.next().is_none().then_some((slave, master))
     }
 
-    /// Deviation of the point from the initial geometry; `None` where it has gone past the end of a rigid body.
+    /// Deviation of the point from the initial geometry; `None` beyond the end of a rigid body.
     pub fn departure(&self, slave: &SlavePoint, master: &Master, x: &Configuration) -> Option<Departure> {
         let slid = self.tangent.dot(&self.displacement(x)).abs();
         let stretched = edges(slave).map(|[a, b]| x.stretch(a, b).abs()).fold(0.0, f64::max);
@@ -178,7 +178,7 @@ impl SmallPoint {
         self.weights.iter().enumerate().flat_map(of)
     }
 
-    /// Σ w_a of some motion of the nodes; a common motion of both sides is taken out before it can leave its round-off.
+    /// Σ w_a of a motion of the nodes; a common motion of both sides is subtracted first to avoid its round-off.
     fn relative(&self, motion: impl Fn(usize) -> Vector2<f64>) -> Vector2<f64> {
         let common = match self.against {
             Against::Mesh { .. } => motion(self.nodes[0]),
@@ -188,7 +188,7 @@ impl SmallPoint {
         self.nodes.iter().zip(&self.weights).map(|(&node, &w)| (motion(node) - common) * w).chain(turned).sum()
     }
 
-    /// Motion of the point against its foot since the reference configuration [L].
+    /// Displacement of the point relative to its projection since the reference configuration [L].
     pub fn displacement(&self, x: &Configuration) -> Vector2<f64> {
         self.relative(|node| x.displacement(node))
     }

@@ -11,7 +11,7 @@ pub use super::point::{
 use crate::mesh::few::Few;
 use crate::mesh::shape;
 
-/// One edge of a mesh surface, run through along s: straight, a parabola through its middle node, or a part of a smooth
+/// One edge of a mesh surface, parametrized along s: straight, a parabola through its middle node, or a part of a smooth
 /// curve through the nodes of the surface.
 ///
 /// ```text
@@ -19,19 +19,19 @@ use crate::mesh::shape;
 /// d₁ = (x₂ − x₀)/2, d₂ = (x₃ − x₁)/2              x₀, x₃: nodes beyond the ends; without one, d = x₂ − x₁
 /// ```
 ///
-/// Two segments share d at their node, and with it the normal.
+/// Two adjacent segments share d at their node, and thereby the normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// Start and end node
     pub ends: [usize; 2],
     /// Middle node of a quadratic edge
     pub middle: Option<usize>,
-    /// Nodes beyond start and end, where the surface goes on smoothly
+    /// Nodes beyond start and end, where the surface continues smoothly
     pub beyond: [Option<usize>; 2],
 }
 
 impl Segment {
-    /// The nodes: start, end[, middle][, beyond].
+    /// Nodes: start, end[, middle][, beyond].
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
         self.ends.into_iter().chain(self.middle).chain(self.beyond.into_iter().flatten())
     }
@@ -89,7 +89,7 @@ impl Segment {
         .into()
     }
 
-    /// Coefficients c_k of x(ξ) = Σ c_k ξᵏ for nodes at the given places.
+    /// Coefficients c_k of x(ξ) = Σ c_k ξᵏ for given nodal positions.
     pub fn powers(&self, at: impl Fn(usize) -> Vector2<f64>) -> [Vector2<f64>; 4] {
         let [start, end] = self.ends;
         let [a, b] = [at(start), at(end)];
@@ -117,8 +117,8 @@ impl Segment {
     }
 }
 
-/// Edges that turn by more than 45° at a node have a corner there: the cosine, with a margin, so that round-off does not
-/// decide about the corners of an octagon.
+/// Cosine of the angle between adjacent edges below which their node is a corner: a turn of more than 45°, with a margin
+/// against round-off at the corners of an octagon.
 pub const CORNER: f64 = 0.7;
 
 /// Segments of a mesh surface, each running along s (the body on its right), chains in order.
@@ -126,9 +126,9 @@ pub const CORNER: f64 = 0.7;
 pub struct Surface {
     /// The segments
     pub segments: Vec<Segment>,
-    /// If the surface is the slave as well, how far a point may lie behind what it touches [L]
+    /// If the surface is also the slave, largest depth of a point behind a segment that it may contact [L]
     pub own_depth: Option<f64>,
-    /// The chain each segment belongs to
+    /// Chain of each segment
     chain_of: Vec<usize>,
     chains: Vec<Chain>,
 }
@@ -154,13 +154,13 @@ pub struct PathPart {
     pub end: f64,
 }
 
-/// The way along a surface from one material point to another.
+/// Path along a surface from one material point to another.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {
     surface: &'a Surface,
     from: MasterPoint,
     to: MasterPoint,
-    /// Whether it goes along s
+    /// Whether it runs along s
     ahead: bool,
 }
 
@@ -180,7 +180,7 @@ impl<'a> Path<'a> {
 }
 
 impl Surface {
-    /// A surface from edges (start, end[, middle]) with the body on their left.
+    /// Creates a surface from edges (start, end[, middle]) with the body on their left.
     pub fn new(edges: &[Vec<usize>]) -> Self {
         let pending: Vec<[usize; 2]> = edges.iter().map(|edge| [edge[1], edge[0]]).collect();
         let middles: BTreeMap<[usize; 2], Option<usize>> =
@@ -199,8 +199,8 @@ impl Surface {
         surface
     }
 
-    /// The same surface as a smooth curve through its nodes, broken only where two of its edges turn by more than 45° in
-    /// the given positions.
+    /// Returns the surface as a smooth curve through its nodes, with corners only where two edges turn by more than 45° in the
+    /// given positions.
     pub fn smoothed(mut self, positions: &[Vector2<f64>]) -> Self {
         let straight = self.segments.clone();
         let direction = |k: usize| {
@@ -216,37 +216,36 @@ impl Surface {
         self
     }
 
-    /// The same surface as the master of itself.
+    /// Makes the surface a self-contact master.
     pub fn against_itself(self, depth: f64) -> Self {
         Self { own_depth: Some(depth), ..self }
     }
 
-    /// A node that places on the surface may be counted from; 0 where there is no segment.
+    /// A node of the surface as the origin of relative positions; 0 without segments.
     pub fn origin(&self) -> usize {
         self.segments.first().map_or(0, |segment| segment.ends[0])
     }
 
-    /// Share of the slave's length that counts: half of a surface against itself, on which every contact is met from both
-    /// sides.
+    /// Fraction of the slave's length that counts: half in self-contact, where every contact is found from both sides.
     pub fn share(&self) -> f64 {
         if self.own_depth.is_some() { 0.5 } else { 1.0 }
     }
 
-    /// The segment after `segment` along s, if there is one.
+    /// The next segment along s, if there is one.
     pub fn next(&self, segment: usize) -> Option<usize> {
         let chain = self.chains[self.chain_of[segment]];
         let k = segment - chain.first + 1;
         if k < chain.length { Some(segment + 1) } else { chain.closed.then_some(chain.first) }
     }
 
-    /// The segment before `segment` along s, if there is one.
+    /// The previous segment along s, if there is one.
     pub fn previous(&self, segment: usize) -> Option<usize> {
         let chain = self.chains[self.chain_of[segment]];
         let last = chain.first + chain.length - 1;
         if segment > chain.first { Some(segment - 1) } else { chain.closed.then_some(last) }
     }
 
-    /// The way from one material point to another, the shorter one round a closed chain; `None` between chains.
+    /// Path from one material point to another, the shorter one around a closed chain; `None` between chains.
     pub fn path(&self, from: MasterPoint, to: MasterPoint) -> Option<Path<'_>> {
         let chain = self.chains[self.chain_of[from.segment]];
         if self.chain_of[to.segment] != self.chain_of[from.segment] {
@@ -265,7 +264,7 @@ pub fn in_order(edges: &[Vec<usize>]) -> Vec<Vec<usize>> {
     chains(&ends).concat().iter().filter_map(|pair| by_ends.get(pair).map(|&edge| edge.clone())).collect()
 }
 
-/// Join directed pairs end to start; open chains begin where nothing leads to, closed ones anywhere.
+/// Joins directed pairs end to start; open chains begin at their start, closed ones anywhere.
 fn chains(pairs: &[[usize; 2]]) -> Vec<Vec<[usize; 2]>> {
     let mut by_start: BTreeMap<usize, usize> = pairs.iter().enumerate().map(|(k, p)| (p[0], k)).collect();
     let ends: BTreeSet<usize> = pairs.iter().map(|p| p[1]).collect();

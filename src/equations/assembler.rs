@@ -1,12 +1,12 @@
-//! Residual and tangent of a model: the terms added up.
+//! Residual and tangent of a model as the sum of its terms.
 //!
 //! # Contacts
 //!
-//! What the assembler asks of the contacts, and what it keeps of their answers.
+//! The assembler evaluates the responses of the contacts and stores their states.
 //!
 //! # Parts
 //!
-//! Parts of the equations by themselves: the masses, and the tangent of one term.
+//! Parts of the equations can be assembled separately: the masses, and the tangent of one term.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -28,32 +28,32 @@ use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
 use crate::model::Model;
 
-/// Assembles a model; owns the pattern and the buffers that are used again.
+/// Assembles a model; owns the pattern and reused buffers.
 pub struct Assembler {
     model: Arc<Model>,
     layout: Layout,
     solids: Solids,
     evolving: Evolving,
     mass: Option<SparseMatrix>,
-    /// η M of the bodies' damping, and their η
+    /// η M of the bodies' damping, and the η of each body
     damping_mass: Option<ByMass>,
     /// w of prescribed dofs [F/L]
     weight: f64,
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
     equilibrium: ConvergenceCriterion,
-    /// Contacts where nothing is presumed, kept for their memory
+    /// Responses of contacts without presumptions, kept to reuse their memory
     responses: Vec<PairResponse>,
-    /// What was found at the last evaluated displacement
+    /// Results at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
     pub seconds: Seconds,
 }
 
-/// Terms that the displacements alone decide, whatever the scheme.
+/// Terms that depend on the displacements only, in every scheme.
 const OF_PLACE: [Term; 3] = [Term::Solids, Term::Interfaces, Term::Loads];
 
-/// These and the terms that depend on velocities, which in implicit schemes follow from the displacements.
+/// Terms that also depend on velocities, which in implicit schemes follow from the displacements.
 const OF_PLACE_AND_MOTION: [Term; 6] =
     [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
 
@@ -70,7 +70,7 @@ impl Assembler {
         ContactCounts::of(&self.model.contacts, &self.evaluation.contacts)
     }
 
-    /// An assembler of a model.
+    /// Creates the assembler of a model.
     pub fn new(model: &Arc<Model>) -> Self {
         let solids = Solids::new(model);
         Self {
@@ -94,19 +94,19 @@ impl Assembler {
         &self.model
     }
 
-    /// The present coupling of nodes.
+    /// The current coupling of nodes.
     pub fn coupling(&self) -> Arc<Coupling> {
         self.layout.coupling.clone()
     }
 
-    /// Couple the nodes as they were coupled before.
+    /// Restores a coupling of nodes.
     pub fn couple(&mut self, coupling: &Arc<Coupling>) {
         if self.layout.couple(coupling) {
             (self.mass, self.damping_mass) = (None, None);
         }
     }
 
-    /// A system on the current pattern.
+    /// Creates a system on the current pattern.
     pub fn system(&self) -> System {
         System {
             residual: vec![0.0; self.model.dofs()],
@@ -116,20 +116,21 @@ impl Assembler {
         }
     }
 
-    /// Residual at the displacement `u`, no presumption made.
+    /// Computes the residual at the displacement `u`, without presumptions.
     ///
     /// # Errors
-    /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
+    /// Returns [`TrialFailure`] if an element inverts, a friction law fails, or a load has no finite value.
     pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             assembler.assemble(trial, u, responses, Request::Residual, system)
         })
     }
 
-    /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
+    /// Computes the residual, and the tangent on request, at the displacement `u` with the given responses of the contact
+    /// points.
     ///
     /// # Errors
-    /// [`TrialFailure`] when an element inverts, or a load has no value.
+    /// Returns [`TrialFailure`] if an element inverts or a load has no finite value.
     pub fn assemble(
         &mut self,
         trial: Trial,
@@ -165,12 +166,12 @@ impl Assembler {
         Ok(())
     }
 
-    /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
-    /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last. With
-    /// velocities `v` the viscous forces of the bodies belong to it, and what they put on the nodes is written over the damping.
+    /// Computes the forces that depend on the displacement `u` only, and everything else that an accepted state takes from the
+    /// evaluation except rates, damping and reactions: the quantities needed by explicit increments, which find the velocities
+    /// last. With velocities `v` the forces include the viscous ones of the bodies, which also replace the damping.
     ///
     /// # Errors
-    /// As [`Assembler::residual`].
+    /// The same as for [`Assembler::residual`].
     pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             let clock = Instant::now();
@@ -185,7 +186,7 @@ impl Assembler {
         })
     }
 
-    /// Add the viscous forces of the bodies to those just found, and write what they put on the nodes over the damping.
+    /// Adds the viscous forces of the bodies to the forces, and stores their nodal values as the damping.
     fn add_viscous(&mut self, motion: [&[f64]; 2]) {
         let Evaluation { force, damping, .. } = &mut self.evaluation;
         self.solids.other_viscous(motion, damping);
@@ -197,8 +198,8 @@ impl Assembler {
         }
     }
 
-    /// Write the sums of some terms over those of the evaluation and over the tangent, if it is wanted, and add the forces'
-    /// magnitudes. A copy's share goes to the node it moves with. With velocities, see [`Solids::add`].
+    /// Sums some terms into the evaluation and, on request, the tangent, and adds the forces' magnitudes. The contribution of a
+    /// copy goes to its original node. For velocities, see [`Solids::add`].
     fn add(
         &mut self,
         terms: &[Term],
@@ -239,7 +240,7 @@ impl Assembler {
                     let momentum = damping::momentum(model, trial.step, layout, damping_mass);
                     damping::add_damping(model, solids, momentum, trial, u, damping, &mut sums);
                 }
-                // Blended with the forces of before, once all of these are known.
+                // Added after all forces are known, with which it is blended.
                 Term::Inertia => {}
             }
         }
@@ -250,8 +251,7 @@ impl Assembler {
         Ok(())
     }
 
-    /// The residual as the scheme blends it from the forces and those of the masses, velocities, accelerations, and what the
-    /// supports put on their nodes.
+    /// Combines forces, inertia, velocities, accelerations and reactions to the residual of the scheme.
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
         let Self { model, layout, mass, evaluation, magnitudes, .. } = self;
         let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
@@ -275,7 +275,7 @@ impl Assembler {
         (*velocity, *acceleration) = (inertia.velocity, inertia.acceleration);
     }
 
-    /// Make room in the pattern for all contact points.
+    /// Extends the pattern to all contact points.
     fn cover(&mut self, trial: Trial, responses: &[PairResponse]) {
         if self.layout.cover(responses, trial.old) {
             (self.mass, self.damping_mass) = (None, None);
@@ -284,10 +284,10 @@ impl Assembler {
 }
 
 impl Assembler {
-    /// Do something with the responses of all contact points where nothing is presumed.
+    /// Calls a function with the responses of all contact points without presumptions.
     ///
     /// # Errors
-    /// [`TrialFailure`] when a friction law fails, and those of what is done.
+    /// Returns [`TrialFailure`] if a friction law fails, and the errors of the function.
     pub fn with_responses<T>(
         &mut self,
         trial: Trial,
@@ -302,11 +302,11 @@ impl Assembler {
         done
     }
 
-    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
-    /// alone, a residual that may be accepted knows no presumptions. They come in `responses`, whose memory is used again.
+    /// Evaluates the responses of all contact points at the displacement `u`, with presumptions about each point of a pair for
+    /// a tangent only: a residual that may be accepted has none. The result is in `responses`, whose memory is reused.
     ///
     /// # Errors
-    /// [`TrialFailure`] when a friction law fails.
+    /// Returns [`TrialFailure`] if a friction law fails.
     pub fn interfaces(
         &mut self,
         trial: Trial,
@@ -324,7 +324,7 @@ impl Assembler {
         answer
     }
 
-    /// Keep the states of the contact points, and how large their forces are.
+    /// Stores the magnitudes of the contact forces.
     pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
         self.equilibrium.note_contacts(&self.model, trial, responses);
         self.keep_states(responses);
@@ -335,23 +335,23 @@ impl Assembler {
         self.equilibrium.contact_forces()
     }
 
-    /// |u|² of some nodes, as far as round-off of it counts [L²].
+    /// |u|² of some nodes, as far as relevant for round-off [L²].
     pub fn ways(&self, trial: Trial, u: &[f64], nodes: &[usize]) -> Vec<f64> {
         self.equilibrium.ways(trial.old, u, nodes)
     }
 
-    /// Square of what round-off of the contacts that were noted last can leave at nodes that have gone these ways [F²].
+    /// Square of the possible round-off of the contacts last noted at nodes with these |u|² [F²].
     pub fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
         self.equilibrium.contact_round_off(nodes, ways)
     }
 
-    /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
+    /// Square of the possible round-off at every node, at the last evaluated displacement [F²].
     pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
         self.equilibrium.round_off(&self.model, mass, trial, u, &self.magnitudes)
     }
 
-    /// Keep the trial states of the contact points for the accepted state.
+    /// Stores the trial states of the contact points for the accepted state.
     fn keep_states(&mut self, responses: &[PairResponse]) {
         let contacts = &mut self.evaluation.contacts;
         contacts.resize_with(responses.len(), Vec::new);
@@ -360,21 +360,21 @@ impl Assembler {
 }
 
 impl Assembler {
-    /// Number of the distinct stiffness matrices that the elements whose tangent never changes share.
+    /// Number of distinct stiffness matrices of the elements with constant tangent.
     pub fn stored_matrices(&self) -> usize {
         self.solids.matrices()
     }
 
-    /// The mass matrix on the current pattern.
+    /// Returns the mass matrix on the current pattern.
     pub fn mass(&mut self) -> &SparseMatrix {
         let Self { model, layout, mass, .. } = self;
         mass.get_or_insert_with(|| inertia::mass(model, layout))
     }
 
-    /// The tangent of one term by itself, with no supports: see [`Term::dependence`].
+    /// Returns the tangent of one term alone, without supports; see [`Term::dependence`].
     ///
     /// # Errors
-    /// As [`Assembler::residual`].
+    /// The same as for [`Assembler::residual`].
     pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
         self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
             assembler.tangent_with(term, trial, u, responses)

@@ -1,36 +1,36 @@
-//! The equations of the nodes at contacts alone, where all else is linear.
+//! Condensed equations of the nodes at contacts, for models that are linear otherwise.
 //!
 //! ```text
 //! r(u) = A u − b + (1 − α_f) f(u_K)                    f: contact; A: bodies, masses, dashpots and supports, constant
 //! ρ(x) = ρ₀ + S (x − x₀) + (1 − α_f) f(x)              S: A condensed on the nodes K at contacts; ρ₀: A u₀ − b condensed
 //! ```
 //!
-//! x are the displacements of K, x₀ and u₀ those to start from. r = 0 where ρ(x) = 0 and the others follow x; how far the
-//! bodies are from the origin, or have moved, does not enter.
+//! x are the displacements of the nodes K at contacts, x₀ and u₀ the start values. r = 0 where ρ(x) = 0 and the other nodes
+//! follow x; rigid motion and distance from the origin do not enter.
 //!
-//! In small sliding, nodes of the slave are counted from what they face for good, and x are their jumps (see below): with
-//! equal nodes on both sides ρ has half as many equations, and its tangent takes an eighth of the operations.
+//! In small sliding, x of slave nodes are jumps relative to their fixed opposite positions (see below): with as many nodes on
+//! both sides ρ has half as many equations, and its tangent takes an eighth of the operations.
 //!
-//! Where all nodes are counted so, nothing opens and the pressure is linear, the equations of the jumps along the normal do not
-//! vary, and are eliminated as well ([`crate::linear::Eliminated`]): an eighth of the operations again.
+//! If all slave nodes are jumps, nothing opens and the pressure is linear, the equations of the normal jumps are constant and
+//! eliminated as well ([`crate::linear::Eliminated`]): again an eighth of the operations.
 //!
 //! # Nodes at contacts
 //!
-//! The nodes at contacts, on which linear bodies are condensed.
+//! Linear bodies are condensed on the nodes at contacts.
 //!
 //! # Jumps
 //!
-//! Slave nodes counted from what they face, where that never changes: contact then acts on their jumps alone.
+//! If the opposite position of a slave node never changes, contact acts on its jump only.
 //!
 //! ```text
-//! u_s = J_s + Σ N_a u_a        u = T y: J in place of u_s         N_a: weights of the foot, in small sliding
-//! r_a ← r_a + N_a r_s          L r: what contact puts on s, and −N_a of it on a, cancels in a
+//! u_s = J_s + Σ N_a u_a        u = T y: J in place of u_s         N_a: weights of the projection, in small sliding
+//! r_a ← r_a + N_a r_s          L r: the contact forces f on s and −N_a f on a cancel in a
 //! L A T y = L b                                                   only where s and a are free: a support's equation stays
 //! ```
 //!
-//! So the nodes of the master need not be among those on which linear bodies are condensed, and a body that contact alone
-//! holds is held by its jumps. A node has none where it takes part in more than its own point, moves with another, or is
-//! supported while what it faces is not: what contact puts on that would be left over.
+//! The nodes of the master therefore need not be among those on which linear bodies are condensed, and a body constrained only
+//! by contact is constrained by its jumps. A node has no jump if it participates in more than its own point, is tied to
+//! another, or is supported while its opposite nodes are not: the contact force on these would not cancel.
 
 use std::sync::Arc;
 
@@ -47,7 +47,7 @@ use crate::linear::system::{Request, System};
 use crate::linear::{Condensed, Eliminated, Pattern, SparseMatrix, Steady, norm};
 use crate::model::{Model, Step};
 
-/// Whether everything but contact adds the same tangent in all increments of one length in a step.
+/// Whether all terms except contact have the same tangent in all increments of one length in a step.
 pub fn is_linear(model: &Model, step: &Step) -> bool {
     if bound_at_contacts(model, step) || !model.linkage.rigid.is_empty() {
         return false;
@@ -56,14 +56,14 @@ pub fn is_linear(model: &Model, step: &Step) -> bool {
     others.map(|term| term.dependence(model, step)).all(|dependence| dependence <= Dependence::StepSize)
 }
 
-/// Whether that tangent is another one in increments of another length.
+/// Whether that tangent depends on the length of the increment.
 pub fn depends_on_length(model: &Model, step: &Step) -> bool {
     let mut others = Term::ALL.into_iter().filter(|term| *term != Term::Interfaces);
     others.any(|term| term.dependence(model, step) == Dependence::StepSize)
 }
 
-/// Whether a node at a contact is held along an inclined direction, or follows others or leads them: its equations are no sums of
-/// its forces.
+/// Whether a node at a contact has an inclined support, or is follower or leader of other nodes: its equations are then no sums
+/// of its forces.
 fn bound_at_contacts(model: &Model, step: &Step) -> bool {
     let inclined = step.supports.iter().map(|support| support.at).filter(|at| at.inclined.is_some());
     let mut nodes: Vec<usize> = inclined.map(|at| at.node()).chain(model.linkage.nodes()).collect();
@@ -82,19 +82,19 @@ pub struct CondensedEquations<'a> {
     constant: Vec<f64>,
     /// Weight 1 − α_f of the contact forces at the end of the increment.
     share: f64,
-    /// Whether a dof has an equation of forces, not of its support or of a copy
+    /// Whether a dof has an equation of forces, not that of a support or copy
     free: Vec<bool>,
-    /// Square of what round-off in the bodies can leave at the nodes of each contact [F²]
+    /// Square of the possible round-off of the bodies at the nodes of each contact [F²]
     hidden: Vec<f64>,
-    /// |u|² of these nodes, as far as round-off of it counts [L²]
+    /// |u|² of these nodes, as far as relevant for round-off [L²]
     ways: Vec<Vec<f64>>,
     /// Norm of the forces in the bodies [F]
     forces: f64,
 }
 
 impl<'a> CondensedEquations<'a> {
-    /// Condensed equations about the displacement u₀, where ρ₀ is known; `bodies` without contact were just evaluated
-    /// there.
+    /// Creates the condensed equations about the displacement u₀ with known ρ₀, at which the `bodies` without contact were just
+    /// evaluated.
     pub fn new(
         nodes: &'a ContactNodes,
         bodies: &'a Condensed,
@@ -114,7 +114,7 @@ impl<'a> CondensedEquations<'a> {
         Self { nodes, bodies, start: nodes.gather(u), constant, share, free, hidden, ways, forces: system.forces }
     }
 
-    /// ρ at `x` with the given responses of the contact points, and its tangent on request.
+    /// Computes ρ at `x` with the given responses of the contact points, and its tangent on request.
     pub fn assemble(
         &self,
         assembler: &mut Assembler,
@@ -153,14 +153,14 @@ impl<'a> CondensedEquations<'a> {
         Closed { nodes: &closed.nodes[k..=k], force: &closed.force[own], tangent: rates, ..closed }
     }
 
-    /// Write the dofs of some nodes among those at contacts over `dofs`.
+    /// Finds the dofs of some nodes among those at contacts.
     fn find(&self, model: &Model, nodes: &[usize], dofs: &mut Vec<usize>) {
         let place = |node: usize| self.nodes.places[model.ties.original(node)].expect("nodes at contacts are kept");
         dofs.clear();
         dofs.extend(nodes.iter().flat_map(|&node| [0, 1].map(|i| 2 * place(node) as usize + i)));
     }
 
-    /// Add the forces and the tangent of a closed point with these dofs.
+    /// Adds the forces and the tangent of a closed point with these dofs.
     fn add(&self, closed: &Closed, dofs: &[usize], request: Request, system: &mut System) {
         let size = system.residual.len();
         for (&row, force) in dofs.iter().zip(closed.force).filter(|(row, _)| self.free[**row]) {
@@ -188,42 +188,42 @@ impl<'a> CondensedEquations<'a> {
         for (part, (forces, hidden)) in self.nodes.parts.iter().zip(assembler.contact_forces().iter().zip(hidden)) {
             let residual = part.iter().map(|&k| square(2 * k) + square(2 * k + 1)).sum::<f64>().sqrt();
             let share = if residual == 0.0 { 0.0 } else { residual / forces.max(hidden / tolerance) };
-            // Not a number is no equilibrium.
+            // NaN is not an equilibrium.
             system.imbalance = if share.is_nan() { f64::INFINITY } else { system.imbalance.max(share) };
         }
     }
 }
 
-/// The nodes at contacts: those of the slaves, and all that they may slide to unless the slaves are counted from these. Copies
-/// come with the nodes they move with.
+/// Nodes at contacts: those of the slaves, and all that they may slide to unless the slave nodes are jumps. Copies are
+/// represented by their originals.
 pub struct ContactNodes {
     /// The nodes, ascending
     pub nodes: Vec<usize>,
-    /// Place of each node among them
+    /// Index of each node among them
     places: Vec<Option<u32>>,
     jumps: Jumps,
-    /// Places of the nodes of each contact
+    /// Indices of the nodes of each contact
     parts: Vec<Vec<usize>>,
     /// All nodes of each contact
     sides: Vec<Vec<usize>>,
 }
 
 impl ContactNodes {
-    /// The nodes of all contacts of a model.
+    /// Collects the nodes of all contacts of a model.
     pub fn new(model: &Model) -> Self {
         let together: Vec<Vec<Vec<usize>>> = model.contacts.iter().map(|pair| nodes_of(model, pair)).collect();
         let jumps = Jumps::new(model, &together.concat());
         Self::counted_by(model, &together, jumps)
     }
 
-    /// The nodes of both sides of all contacts, in absolute displacements (no jumps).
+    /// Collects the nodes of both sides of all contacts, with absolute displacements (no jumps).
     pub fn of_both_sides(model: &Model) -> Self {
         let together: Vec<Vec<Vec<usize>>> = model.contacts.iter().map(|pair| nodes_of(model, pair)).collect();
         Self::counted_by(model, &together, Jumps::none(model))
     }
 
     fn counted_by(model: &Model, together: &[Vec<Vec<usize>>], jumps: Jumps) -> Self {
-        // A point that has a jump is alone with it: none of the nodes it is counted from has equations of contact.
+        // A point with a jump acts on that jump only: none of its opposite nodes has equations of contact.
         let own = |nodes: &Vec<usize>| match nodes.iter().find(|node| jumps.has(**node)) {
             Some(slave) => vec![*slave],
             None => nodes.clone(),
@@ -240,12 +240,12 @@ impl ContactNodes {
         Self { nodes, places, jumps, parts, sides }
     }
 
-    /// Place of a node among them.
+    /// Index of a node among them.
     pub(super) fn place(&self, node: usize) -> Option<usize> {
         self.places[node].map(|place| place as usize)
     }
 
-    /// A system of their equations, all coupled with each other: the values of a matrix are those of a dense one, column by
+    /// Creates a system of their equations, all coupled with each other: the values are those of a dense matrix, column by
     /// column.
     pub fn system(&self) -> System {
         let all: Vec<usize> = (0..self.nodes.len()).collect();
@@ -258,12 +258,12 @@ impl ContactNodes {
         }
     }
 
-    /// x from the displacements of all nodes.
+    /// Gathers x from the displacements of all nodes.
     pub fn gather(&self, u: &[f64]) -> Vec<f64> {
         self.nodes.iter().flat_map(|&node| self.jumps.of(node, u)).collect()
     }
 
-    /// Write what goes with x over the displacements of these nodes; the others stay.
+    /// Writes the displacements of these nodes for given x; the others are unchanged.
     pub fn scatter(&self, x: &[f64], u: &mut [f64]) {
         for (values, &node) in x.chunks_exact(2).zip(&self.nodes) {
             u[2 * node..2 * node + 2].copy_from_slice(values);
@@ -271,24 +271,24 @@ impl ContactNodes {
         self.jumps.resolve(u);
     }
 
-    /// The pattern of the equations of all nodes, these coupled with each other, from that of the bodies.
+    /// Extends the pattern of the bodies to jumps, with these nodes coupled with each other.
     pub fn around(&self, bodies: &Pattern) -> Arc<Pattern> {
         Arc::new(self.jumps.pattern(bodies, &self.nodes))
     }
 
-    /// The matrix on that pattern from the tangent of the bodies.
+    /// Transforms the tangent of the bodies to jumps, on that pattern.
     pub fn counted(&self, model: &Model, step: &Step, bodies: &SparseMatrix, pattern: &Arc<Pattern>) -> SparseMatrix {
         let mut sum = SparseMatrix::zero(pattern.clone());
         self.jumps.matrix(bodies, &fixed(model, step), &mut sum);
         sum
     }
 
-    /// Whether all of them are jumps: half of their equations do not vary while nothing opens.
+    /// Whether all of them are jumps, so that half of their equations are constant while nothing opens.
     pub fn halves(&self) -> bool {
         self.nodes.iter().all(|node| self.jumps.has(*node))
     }
 
-    /// Their equations along the normal eliminated from S of the bodies, if all of them are jumps.
+    /// Eliminates their normal equations from S of the bodies, if all of them are jumps.
     pub fn eliminated(&self, model: &Model, step: &Step, bodies: &Condensed) -> Option<Eliminated> {
         let (fixed, share) = (fixed(model, step), contact_share(step));
         let steady = |&node: &usize| {
@@ -298,14 +298,14 @@ impl ContactNodes {
         Eliminated::new(&bodies.stiffness, self.nodes.iter().map(steady).collect::<Option<_>>()?).ok()
     }
 
-    /// The right-hand side that goes with it.
+    /// Transforms the right-hand side accordingly.
     pub fn balanced(&self, model: &Model, step: &Step, residual: &[f64]) -> Vec<f64> {
         let mut balanced = residual.to_vec();
         self.jumps.balance(&fixed(model, step), &mut balanced);
         balanced
     }
 
-    /// Displacements of all nodes from a solution of it.
+    /// Displacements of all nodes from a solution in jumps.
     pub fn resolved(&self, mut solution: Vec<f64>) -> Vec<f64> {
         self.jumps.resolve(&mut solution);
         solution
@@ -317,14 +317,14 @@ fn contact_share(step: &Step) -> f64 {
     step.scheme.coefficients().map_or(1.0, |scheme| 1.0 - scheme.alpha_f)
 }
 
-/// Sorted, without duplicates.
+/// Sorts a list and removes duplicates.
 fn sorted(mut nodes: Vec<usize>) -> Vec<usize> {
     nodes.sort_unstable();
     nodes.dedup();
     nodes
 }
 
-/// Nodes that a contact couples, or may come to couple: those of each point by itself if they never change.
+/// Groups of nodes that a contact couples or may couple: those of each point separately if they never change.
 fn nodes_of(model: &Model, pair: &ContactPair) -> Vec<Vec<usize>> {
     if let Some(small) = &pair.small {
         let of_point = |point: &SmallPoint| model.ties.originals(point.nodes.iter().copied());
@@ -334,16 +334,16 @@ fn nodes_of(model: &Model, pair: &ContactPair) -> Vec<Vec<usize>> {
     vec![model.ties.originals(pair.nodes().chain(along.map(|&(node, _)| node)))]
 }
 
-/// A slave node, and what it is counted from.
+/// A slave node with its opposite position.
 struct Jump {
     slave: usize,
-    /// Nodes of the master and N_a, which sum to one; none on a rigid body
+    /// Nodes of the master and N_a, which sum to one; empty on a rigid body
     feet: Vec<(usize, f64)>,
-    /// What contact adds to its equation along the normal while it is closed: n and α_n ℓ
+    /// Constant contribution of contact to its normal equation while closed: n and α_n ℓ
     steady: Steady,
 }
 
-/// The slave nodes that are counted from what they face.
+/// Slave nodes expressed as jumps.
 struct Jumps {
     jumps: Vec<Jump>,
     /// Number of each node's jump
@@ -351,8 +351,8 @@ struct Jumps {
 }
 
 impl Jumps {
-    /// The jumps of a model, valid in all its steps; `together` are the nodes that contacts couple, each point of small
-    /// sliding by itself.
+    /// Creates the jumps of a model, valid in all its steps; `together` contains the nodes coupled by contacts, each point of
+    /// small sliding separately.
     pub fn new(model: &Model, together: &[Vec<usize>]) -> Self {
         let mut uses = vec![0; model.mesh.nodes.len()];
         together.iter().flatten().for_each(|&node| uses[node] += 1);
@@ -372,12 +372,12 @@ impl Jumps {
         Self { jumps, numbers }
     }
 
-    /// No jumps: all nodes in absolute displacements.
+    /// No jumps: all nodes with absolute displacements.
     pub fn none(model: &Model) -> Self {
         Self { jumps: Vec::new(), numbers: vec![None; model.mesh.nodes.len()] }
     }
 
-    /// Whether a node is counted from what it faces.
+    /// Whether a node is expressed as a jump.
     pub fn has(&self, node: usize) -> bool {
         self.numbers[node].is_some()
     }
@@ -386,27 +386,26 @@ impl Jumps {
         self.numbers[node].map_or(&[], |number| &self.jumps[number as usize].feet)
     }
 
-    /// Contribution of contact to the equation of a node's normal jump while it is closed, in the equations that are
-    /// not `fixed`.
+    /// Contribution of contact to the equation of a node's normal jump while it is closed, in equations that are not `fixed`.
     pub fn steady(&self, node: usize, fixed: &[bool]) -> Option<Steady> {
         let Steady { direction, stiffness } = self.jumps[self.numbers[node]? as usize].steady;
         let share: f64 = (0..2).filter(|i| !fixed[2 * node + i]).map(|i| direction[i].powi(2)).sum();
         Some(Steady { direction, stiffness: share * stiffness })
     }
 
-    /// 1 + Σ N_a²: the residual of all equations is that of a jump times the root of this, if the master's is zero in L r.
+    /// 1 + Σ N_a²: the residual of all equations is that of a jump times its square root, if the master's is zero in L r.
     pub fn share(&self, node: usize) -> f64 {
         1.0 + self.feet(node).iter().map(|(_, weight)| weight * weight).sum::<f64>()
     }
 
-    /// J of a node, or u of one that has none.
+    /// J of a node, or u of one without a jump.
     pub fn of(&self, node: usize, u: &[f64]) -> [f64; 2] {
         let at = |node: usize| [u[2 * node], u[2 * node + 1]];
         let base = self.base(node, u);
         [0, 1].map(|i| at(node)[i] - base[i])
     }
 
-    /// Σ N_a u_a. The motion of the first node is taken out: a common one leaves no round-off.
+    /// Σ N_a u_a; the motion of the first node is subtracted first to avoid round-off of a common motion.
     fn base(&self, node: usize, u: &[f64]) -> [f64; 2] {
         let Some((&(first, _), others)) = self.feet(node).split_first() else { return [0.0; 2] };
         [0, 1].map(|i| {
@@ -415,7 +414,7 @@ impl Jumps {
         })
     }
 
-    /// u from y, in place.
+    /// Computes u from y, in place.
     pub fn resolve(&self, y: &mut [f64]) {
         for &Jump { slave, .. } in &self.jumps {
             let base = self.base(slave, y);
@@ -423,7 +422,7 @@ impl Jumps {
         }
     }
 
-    /// L r, in place.
+    /// Computes L r, in place.
     pub fn balance(&self, fixed: &[bool], r: &mut [f64]) {
         for Jump { slave, feet, .. } in &self.jumps {
             for &(foot, weight) in feet {
@@ -444,7 +443,7 @@ impl Jumps {
         Pattern::new(plain.nodes(), groups.iter().map(|group| &group[..]))
     }
 
-    /// L A T, added to a matrix that has room for it.
+    /// Adds L A T to a matrix with a sufficient pattern.
     pub fn matrix(&self, plain: &SparseMatrix, fixed: &[bool], sum: &mut SparseMatrix) {
         let nodes = plain.pattern.nodes();
         let pairs =
@@ -467,7 +466,7 @@ impl Jumps {
     }
 }
 
-/// The points of a pair whose own position is one node that faces the same for good.
+/// Points of a pair whose position is a single node with fixed opposite nodes.
 fn of_pair(pair: &ContactPair) -> impl Iterator<Item = Jump> {
     let points = pair.small.iter().flat_map(|small| &small.points).zip(&pair.points);
     points.filter_map(|(point, slave)| match slave.position[..] {

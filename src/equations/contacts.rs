@@ -1,4 +1,4 @@
-//! Contact and friction: what the responses of all contact points add, and what they store, dissipate and take in.
+//! Contact and friction term: forces of all contact points, and their stored, dissipated and supplied energies.
 
 use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
@@ -10,13 +10,13 @@ use crate::laws::friction::Description;
 use crate::linear::system::Request;
 use crate::model::Model;
 
-/// Contact turns and comes and goes with the displacements, wherever there is one.
+/// The tangent of contact depends on the displacements, if there is any contact.
 pub(super) fn dependence(model: &Model) -> Dependence {
     if model.contacts.is_empty() { Dependence::Nothing } else { Dependence::Displacement }
 }
 
-/// Responses of all contact points at the displacement `u`, one a pair, with what is presumed about a point of a pair; tangents
-/// on request.
+/// Evaluates the responses of all contact points at the displacement `u`, one per pair, with presumptions about each point;
+/// tangents on request.
 pub(super) fn respond(
     model: &Model,
     trial: Trial,
@@ -44,7 +44,7 @@ pub(super) fn respond(
     Ok(())
 }
 
-/// Add the forces of the closed points and, if a tangent is asked for, theirs, for which there is room.
+/// Adds the forces of the closed points and, on request, their tangents, for which the pattern has room.
 pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
     let mut blocks = sums.layout.blocks_of_contacts();
     for (_, closed) in responses.iter().flat_map(PairResponse::all_acting) {
@@ -62,7 +62,7 @@ pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
     }
 }
 
-/// Add what fluids put on the nodes to the loads, whose work the audit knows; among the forces it is already.
+/// Adds the nodal forces of fluids to the loads, whose work is audited; the forces include them already.
 pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut [f64]) {
     let fluids = model.contacts.iter().zip(responses).filter(|(pair, _)| pair.fluid.is_some());
     for (_, closed) in fluids.flat_map(|(_, response)| response.all_acting()) {
@@ -72,17 +72,17 @@ pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut 
     }
 }
 
-/// Stored in the springs of a contact: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of its closed points.
+/// Energy stored in the springs of a contact: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of its closed points.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
-    /// All of it [F·L]
+    /// total [F·L]
     pub stored: f64,
-    /// What is numerical: an exact contact would not give way there [F·L]
+    /// numerical part, which an exact contact would not store [F·L]
     pub numerical: f64,
 }
 
 impl Springs {
-    /// Those of a contact in some state.
+    /// Energy of a contact in some state.
     pub fn of(pair: &ContactPair, states: &[ContactState]) -> Self {
         let mut springs = Self::default();
         for (point, state) in pair.points.iter().zip(states) {
@@ -97,24 +97,24 @@ impl Springs {
     }
 }
 
-/// Stored in the springs of all contacts [F·L].
+/// Energy stored in the springs of all contacts [F·L].
 pub fn stored(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
     model.contacts.iter().zip(contacts).map(|(pair, states)| Springs::of(pair, states).stored).sum()
 }
 
-/// Dissipated by friction from `old` to `new` [F·L].
+/// Energy dissipated by friction from `old` to `new` [F·L].
 pub fn dissipated(old: &[Vec<ContactState>], new: &[Vec<ContactState>]) -> f64 {
     let points = new.iter().flatten().zip(old.iter().flatten());
     points.map(|(new, old)| new.length * (new.friction.dissipation - old.friction.dissipation)).sum()
 }
 
-/// Radiated by slip from `old` to `new` [F·L].
+/// Energy radiated by slip from `old` to `new` [F·L].
 pub fn radiated(old: &[Vec<ContactState>], new: &[Vec<ContactState>]) -> f64 {
     let points = new.iter().flatten().zip(old.iter().flatten());
     points.map(|(new, old)| new.length * (new.radiated - old.radiated)).sum()
 }
 
-/// Work of bringing in the overlap of shrink fits: mean force × what of the overlap came in [F·L].
+/// Work of applying the overlap of shrink fits: mean force × applied increment of the overlap [F·L].
 pub fn fitted(model: &Model, [old, new]: [&[Vec<ContactState>]; 2], [t0, t1]: [f64; 2]) -> f64 {
     let [before, after] = [t0, t1].map(|time| model.steps[0].span.share(time));
     let force = |state: &ContactState| state.friction.pressure * state.length;

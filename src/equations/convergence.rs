@@ -1,4 +1,4 @@
-//! Whether forces balance: body by body and contact by contact, each measured by its own forces.
+//! Convergence criterion: equilibrium of each body and each contact, measured relative to its own forces.
 //!
 //! ```text
 //! ‖r‖ ≤ max(tolerance ‖f‖, ‖ρ‖)                                                                              (1)
@@ -9,11 +9,11 @@
 //! |u − ū| ≤ max(tolerance max |ū − u₀|, ε max |ū|)        prescribed dofs                                     (2)
 //! ```
 //!
-//! One norm over the whole model would let a stiff body hide what a soft one lacks. ρ is what round-off alone can leave at
-//! a node: that of strains in every element there, ε C h, and of the displacements, ε C |u|, with C = λ + 2G; at a closed
-//! contact point, α_n in place of C and the length ℓ it stands for, ε α_n ℓ (h + |u|); likewise in springs, and in rates,
-//! which are differences of displacements over Δt. How far a model lies from the origin does not enter: positions are only
-//! ever subtracted from each other.
+//! One norm of the whole model would let a stiff body hide the residual of a soft one. ρ is the possible round-off at a node:
+//! that of strains in every adjacent element, ε C h, and of the displacements, ε C |u|, with C = λ + 2G; at a closed
+//! contact point ε α_n ℓ (h + |u|), with α_n in place of C and the tributary length ℓ; likewise in springs, and in rates,
+//! which are differences of displacements over Δt. The distance of a model from the origin does not enter: positions are only
+//! subtracted from each other.
 
 use super::trial::Trial;
 use super::{links, supports};
@@ -26,32 +26,32 @@ use crate::model::boundary::Absorber;
 use crate::model::state::State;
 use crate::model::{Body, Damping, Model, Step};
 
-/// Errors of a force in units of ε: every element adds a few to each node.
+/// Error of a force in units of ε: every element adds a few to each node.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// The same for rates, as a share of it: they are exact differences of displacements, each known to ε of its size. Ringing of
-/// small amplitude far from the start lives above this, and must not be taken for round-off.
+/// The same for rates, as a fraction of it: they are exact differences of displacements, each known to ε of its size.
+/// Oscillations of small amplitude far from the start exceed this, and must not be taken for round-off.
 const RATES: f64 = 0.25;
 
-/// Displacements count for round-off up to this many times the size of the model and how far it has moved: an iterate farther
-/// away is lost, and must not pass for imprecise.
+/// Upper bound of displacements relevant for round-off, in multiples of the size and motion of the model: a larger iterate has
+/// diverged and must not count as inaccurate.
 const LOST: f64 = 10.0;
 
 /// Part of the model whose equilibrium is checked separately.
 #[derive(Clone, Debug)]
 struct BalancedSet {
     nodes: Vec<usize>,
-    /// Number of the contact whose forces measure it; all forces do if it is none
+    /// Number of the contact whose forces are the reference; `None` for all forces
     contact: Option<usize>,
 }
 
-/// The parts of a model, and what round-off can leave at their nodes.
+/// Parts of a model, and the possible round-off at their nodes.
 #[derive(Clone, Debug)]
 pub(super) struct ConvergenceCriterion {
     parts: Vec<BalancedSet>,
     /// Σ (C h)², Σ C² and Σ (τ C)² of the elements at each node
     stiffness: Vec<[f64; 3]>,
-    /// that of the bodies for which these are
+    /// damping of the bodies for which these hold
     dampings: Vec<Damping>,
     /// Longest edge of each contact [L]
     edges: Vec<f64>,
@@ -60,7 +60,7 @@ pub(super) struct ConvergenceCriterion {
     contact_forces: Vec<f64>,
     /// Σ (α_n ℓ)² (1, h²) of the closed contact points at each node at the last evaluation
     contact_stiffness: Vec<[f64; 2]>,
-    /// Magnitudes of one contact's forces, zero in between
+    /// Magnitudes of one contact's forces, otherwise zero
     own: Vec<f64>,
 }
 
@@ -103,7 +103,7 @@ impl ConvergenceCriterion {
         }
     }
 
-    /// Take the viscous stress that the bodies have in a step.
+    /// Sets the viscous stress of the bodies in a step.
     pub(super) fn retard(&mut self, model: &Model, step: &Step) {
         let dampings = model.dampings(step);
         if self.dampings == dampings {
@@ -120,7 +120,7 @@ impl ConvergenceCriterion {
         self.dampings = dampings;
     }
 
-    /// Keep how large the forces of every contact are, and how stiff it is.
+    /// Stores the magnitude of the forces of every contact, and its stiffness.
     pub(super) fn note_contacts(&mut self, model: &Model, trial: Trial, responses: &[PairResponse]) {
         self.contact_stiffness.fill([0.0; 2]);
         for (k, (pair, responses)) in model.contacts.iter().zip(responses).enumerate() {
@@ -150,7 +150,7 @@ impl ConvergenceCriterion {
 }
 
 impl ConvergenceCriterion {
-    /// Norm of the forces at work, and how far the worst part is from equilibrium, (1) and (2).
+    /// Computes the norm of all forces, and the largest relative residual of a part, (1) and (2).
     pub(super) fn measure(
         &self,
         model: &Model,
@@ -176,7 +176,7 @@ impl ConvergenceCriterion {
                 let hidden = part.nodes.iter().map(|&node| round_off[node]).sum::<f64>().sqrt();
                 residual / forces.max(hidden / tolerance)
             };
-            // Not a number is no equilibrium.
+            // NaN is not an equilibrium.
             system.imbalance = if share.is_nan() { f64::INFINITY } else { system.imbalance.max(share) };
         }
     }
@@ -186,18 +186,18 @@ impl ConvergenceCriterion {
         &self.contact_forces
     }
 
-    /// The largest displacement of which round-off counts: beyond it no solution lies [L].
+    /// Largest displacement relevant for round-off; no solution lies beyond it [L].
     fn farthest(&self, old: &State) -> f64 {
         LOST * (self.diagonal + old.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs())))
     }
 
-    /// |u|² of some nodes, as far as it counts [L²].
+    /// |u|² of some nodes, as far as relevant [L²].
     pub(super) fn ways(&self, old: &State, u: &[f64], nodes: &[usize]) -> Vec<f64> {
         let farthest = self.farthest(old);
         nodes.iter().map(|&node| square(u, node).min(farthest * farthest)).collect()
     }
 
-    /// Contribution of the contacts noted last to ρ², at nodes that have gone these [`ways`](Self::ways) [F²].
+    /// Contribution of the contacts last noted to ρ², at nodes with these [`ways`](Self::ways) [F²].
     pub(super) fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
         let of = |(&node, way): (&usize, &f64)| {
             let [apart, slid] = self.contact_stiffness[node];
@@ -257,8 +257,8 @@ impl ConvergenceCriterion {
     }
 }
 
-/// Largest |u − ū| over the largest motion that is prescribed, (2), or over what round-off leaves of the largest displacement of any
-/// dof: a support that stays at 0 is met but for the round-off of the linear solution. Copies are prescribed by the nodes they move with.
+/// Largest |u − ū| relative to the largest prescribed motion, (2), or to the round-off of the largest displacement of any
+/// dof: a support at rest is satisfied within the round-off of the linear solution. Copies are prescribed by their originals.
 fn missed(model: &Model, trial: Trial, u: &[f64]) -> f64 {
     let (mut missed, mut motion) = (links::missed(model, u), 0.0f64);
     let mut farthest = u.iter().fold(0.0f64, |most, u| most.max(u.abs()));
@@ -281,7 +281,7 @@ fn square(values: &[f64], node: usize) -> f64 {
     values[2 * node].powi(2) + values[2 * node + 1].powi(2)
 }
 
-/// Longest edge of a contact's surfaces; 0 where a point meets a rigid body [L].
+/// Longest edge of a contact's surfaces; 0 for a point on a rigid body [L].
 fn longest_edge(pair: &ContactPair, x: &Configuration) -> f64 {
     let slave = pair.points.iter().filter_map(|point| point.edge_length(x));
     let master = pair.master.segments().iter().map(|segment| x.between(segment.ends[0], segment.ends[1]).norm());

@@ -1,4 +1,4 @@
-//! Who couples with whom: the pattern of the tangent, and where every element finds its own blocks in it.
+//! Coupling of nodes: the pattern of the tangent, and the position of every element's blocks in it.
 
 use std::sync::Arc;
 
@@ -12,35 +12,35 @@ use crate::mesh::rigid::RigidBody;
 use crate::model::Model;
 use crate::model::state::State;
 
-/// Most segments ahead of a foot that the pattern gets room for.
+/// Maximum number of segments ahead of a projection for which the pattern has room.
 const FARTHEST: usize = 8;
 
-/// Nodes that the equations couple besides those of elements and loads. The order of elimination depends on it, and so the
-/// last bits of what is solved.
+/// Nodes coupled in addition to those of elements and loads. The order of elimination depends on it, and thereby the round-off
+/// of solutions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coupling {
-    /// Nodes of each contact point, and of those it may slide to
+    /// Nodes of each contact point, and of the segments that it may slide to
     groups: Vec<Vec<usize>>,
-    /// Segments ahead of each foot that there will be room for, when this turns out too small
+    /// Segments ahead of each projection to be included when the pattern becomes too small
     ahead: usize,
 }
 
 impl Coupling {
-    /// Couple all nodes of a group with each other.
+    /// Couples all nodes of a group with each other.
     pub fn of(group: Vec<usize>) -> Self {
         Self { groups: vec![group], ahead: 1 }
     }
 
-    /// Whether it couples some of so many nodes.
+    /// Whether all its nodes are below this number.
     pub fn fits(&self, nodes: usize) -> bool {
         self.groups.iter().flatten().all(|node| *node < nodes)
     }
 }
 
-/// The pattern of a model's tangent, and where each element is in it.
+/// Pattern of a model's tangent, and the position of each element in it.
 pub(super) struct Layout {
     model: Arc<Model>,
-    /// what is coupled at present
+    /// current coupling
     pub coupling: Arc<Coupling>,
     /// the pattern
     pub pattern: Arc<Pattern>,
@@ -48,14 +48,14 @@ pub(super) struct Layout {
     blocks: Vec<BlockPosition>,
     /// Start of each element's blocks
     starts: Vec<usize>,
-    /// Nodes of the closed points of contacts that were last given room, each list led by its length
+    /// Nodes of the closed contact points last included, each list preceded by its length
     contacts: Vec<usize>,
     /// Their blocks, point after point
     contact_blocks: Vec<BlockPosition>,
 }
 
 impl Layout {
-    /// The nodes of every element, load and pair of tied nodes.
+    /// Creates the layout of all elements, loads and pairs of tied nodes.
     pub fn new(model: &Arc<Model>) -> Self {
         let starts = std::iter::once(0).chain(model.mesh.elements.iter().scan(0, |sum, element| {
             *sum += element.nodes.len().pow(2);
@@ -74,7 +74,7 @@ impl Layout {
         layout
     }
 
-    /// Couple the nodes as they were coupled before; whether they were not.
+    /// Sets the coupling of nodes; returns whether it changed.
     pub fn couple(&mut self, coupling: &Arc<Coupling>) -> bool {
         let changes = !Arc::ptr_eq(coupling, &self.coupling);
         if changes {
@@ -84,7 +84,7 @@ impl Layout {
         changes
     }
 
-    /// Couple the nodes of all elements, loads and groups; find every element's blocks in the new pattern.
+    /// Couples the nodes of all elements, loads and groups, and finds every element's blocks in the new pattern.
     fn set(&mut self) {
         let groups = &self.coupling.clone().groups;
         let model = &*self.model.clone();
@@ -101,7 +101,7 @@ impl Layout {
         self.contact_blocks.clear();
     }
 
-    /// The groups that have copies in them, as the nodes that those move with, and every copy with its own.
+    /// Groups with copies, expressed by their originals, and every copy with its original.
     fn tied<'a>(&self, groups: impl Iterator<Item = &'a [usize]> + Clone) -> Vec<Vec<usize>> {
         let ties = &self.model.ties;
         let mut linked = self.linked(groups.clone());
@@ -116,7 +116,7 @@ impl Layout {
         tied
     }
 
-    /// The groups that have followers in them, with their leaders; and the leaders of rigid plates.
+    /// Groups with followers, with their leaders; and the leaders of rigid platens.
     fn linked<'a>(&self, groups: impl Iterator<Item = &'a [usize]>) -> Vec<Vec<usize>> {
         let linkage = &self.model.linkage;
         if linkage.is_empty() && linkage.rigid.is_empty() {
@@ -126,10 +126,10 @@ impl Layout {
         for follower in &linkage.followers {
             leaders[follower.node].extend(follower.leaders.iter().map(|(leader, _)| *leader));
         }
-        // What B couples with, the equations of A have as well.
+        // The equations of A include the coupling of B.
         linkage.rigid.iter().for_each(|&[a, b]| leaders[b].push(a));
         if self.model.steps.iter().any(|step| step.scheme.coefficients().is_some()) {
-            // In motion, what turns the plate about its center moves A.
+            // In motion, the moment about the center of the platen moves A.
             linkage.rigid.iter().for_each(|&[a, b]| leaders[a].push(b));
         }
         let with = |group: &[usize]| -> Vec<usize> {
@@ -144,7 +144,7 @@ impl Layout {
         linked
     }
 
-    /// The node that a node moves with.
+    /// Original of a node.
     pub fn original(&self, node: usize) -> usize {
         self.model.ties.original(node)
     }
@@ -154,21 +154,21 @@ impl Layout {
         &self.blocks[self.starts[element]..self.starts[element + 1]]
     }
 
-    /// Blocks between some nodes that the pattern couples, column by column.
+    /// Blocks between some coupled nodes, column by column.
     pub fn blocks_between(&self, nodes: &[usize]) -> Vec<BlockPosition> {
         let nodes: Vec<usize> = nodes.iter().map(|&node| self.original(node)).collect();
         let block = |row, column| self.pattern.block(row, column).expect("nodes are coupled before they are added");
         nodes.iter().flat_map(|&column| nodes.iter().map(move |&row| block(row, column))).collect()
     }
 
-    /// A matrix on the current pattern.
+    /// Creates a matrix on the current pattern.
     pub fn matrix(&self) -> SparseMatrix {
         SparseMatrix::zero(self.pattern.clone())
     }
 
-    /// Make sure the pattern has room for all contact points; whether it changed. If it has not, it gets room for one
-    /// segment more behind each foot and a few ahead, where the point slides to. Every time the room turns out too small
-    /// there will be twice as much, so that the pattern seldom changes as points slide.
+    /// Extends the pattern to all contact points; returns whether it changed. A changed pattern includes one segment behind
+    /// each projection and several ahead, in the direction of slip. Their number doubles each time the pattern is too small, so
+    /// that it rarely changes as points slide.
     pub fn cover(&mut self, responses: &[PairResponse], old: &State) -> bool {
         if self.find_contacts(responses) {
             return false;
@@ -204,7 +204,7 @@ impl Layout {
         true
     }
 
-    /// Find the blocks of all closed points, unless they are those of before; whether the pattern has them all.
+    /// Finds the blocks of all closed points, unless they are unchanged; returns whether the pattern contains them all.
     fn find_contacts(&mut self, responses: &[PairResponse]) -> bool {
         let closed = || responses.iter().flat_map(PairResponse::all_acting).map(|(_, closed)| closed.nodes);
         let listed = || closed().flat_map(|nodes| std::iter::once(nodes.len()).chain(nodes.iter().copied()));
@@ -228,7 +228,7 @@ impl Layout {
         coupled
     }
 
-    /// Blocks of the closed points of contacts that were last given room, point after point, each column by column.
+    /// Blocks of the closed contact points last included, point after point, each column by column.
     pub fn blocks_of_contacts(&self) -> &[BlockPosition] {
         &self.contact_blocks
     }

@@ -1,8 +1,8 @@
-//! Viscous forces: damping of bodies, dashpots, absorbing sides, and dashpots that stabilize statics.
+//! Viscous forces: damping of bodies, dashpots, absorbing sides, and stabilizing dashpots of static steps.
 //!
 //! # Bodies
 //!
-//! Damping of bodies: forces of Rayleigh's kind and their tangent.
+//! Rayleigh damping of bodies has the forces and tangent
 //!
 //! ```text
 //! F += η M v + f_v(u, v),   ∂F/∂u += η M ∂v/∂u + ∂f_v/∂u + ∂f_v/∂v ∂v/∂u
@@ -10,17 +10,17 @@
 //!
 //! # Dashpots and absorbing sides
 //!
-//! Dashpots and absorbing sides: force C (v_driver − v) on a node.
+//! Dashpots and absorbing sides exert the force C (v_driver − v) on a node.
 //!
-//! In implicit increments v follows from u. In explicit ones it comes last, and the dampers of each node are one matrix, with
-//! the share of the lumped masses that the damping of bodies says.
+//! In implicit increments v follows from u. In explicit ones it is computed last, and the dampers of each node form one matrix,
+//! including the mass-proportional damping with lumped masses.
 //!
 //! # Stabilization
 //!
-//! Dashpots that stabilize a static step and fade away in it.
+//! Stabilizing dashpots act in a static step and decrease to zero at its end:
 //!
 //! ```text
-//! f = −c₀ (1 − share of the step that has passed) (u − u₀)/Δt
+//! f = −c₀ (1 − elapsed fraction of the step) (u − u₀)/Δt
 //! ```
 
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ use crate::mesh::configuration::vector;
 use crate::model::boundary::Absorber;
 use crate::model::{Model, Step};
 
-/// Dependence of the damping forces: for linear materials on the velocity alone; none in static steps.
+/// Dependence of the damping forces: for linear materials on the velocity only; none in static steps.
 pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
     if step.scheme.coefficients().is_none() {
         return Dependence::Nothing;
@@ -56,7 +56,7 @@ pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
 /// η of the bodies, and η M.
 pub(super) type ByMass = (Vec<f64>, SparseMatrix);
 
-/// η M in a step, if bodies have a damping that is a share of their masses: as it was found, or anew.
+/// η M in a step, if bodies have mass-proportional damping; stored or recomputed.
 pub(super) fn momentum<'a>(
     model: &Model,
     step: &Step,
@@ -74,8 +74,8 @@ pub(super) fn momentum<'a>(
     Some(&known.get_or_insert_with(found).1)
 }
 
-/// Add the damping of bodies, `momentum` being η M if there is any; take it from the `damping` that acts on the nodes.
-/// Statics know none.
+/// Adds the damping of bodies, with `momentum` = η M if there is any, and subtracts it from the `damping` on the nodes. Static
+/// steps have none.
 pub(super) fn add_damping(
     model: &Model,
     solids: &mut Solids,
@@ -115,7 +115,7 @@ pub(super) fn damper_dependence(step: &Step) -> Dependence {
     if any { Dependence::StepSize } else { Dependence::Nothing }
 }
 
-/// Subtract the forces of the dashpots, which count as `damping`.
+/// Subtracts the forces of the dashpots, which count as `damping`.
 pub(super) fn add_dampers(
     model: &Model,
     trial: Trial,
@@ -123,7 +123,7 @@ pub(super) fn add_dampers(
     damping: &mut [f64],
     sums: &mut Sums,
 ) -> Result<(), TrialFailure> {
-    // Of rigid plates, v of one node follows from those of others.
+    // In rigid platens, v of one node follows from those of others.
     let turning = if model.linkage.rigid.is_empty() { None } else { motion(model, trial, u) };
     let velocity = |dof: usize| match &turning {
         Some((velocity, dvelocity)) => (velocity[dof], dvelocity[dof]),
@@ -154,7 +154,8 @@ pub(super) fn add_dampers(
     Ok(())
 }
 
-/// Work of the drivers of dashpots in an increment: mean force × way of the driver [F·L]. `way` is that of the node's dof.
+/// Work of the drivers of dashpots in an increment: mean force × displacement increment of the driver [F·L]. `way` is that of
+/// the node's dof.
 pub fn driven(model: &Model, step: &Step, [t0, t1]: [f64; 2], way: impl Fn(usize) -> f64) -> f64 {
     let driven = step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some());
     driven
@@ -167,7 +168,7 @@ pub fn driven(model: &Model, step: &Step, [t0, t1]: [f64; 2], way: impl Fn(usize
         .sum()
 }
 
-/// The dampers of a step, a matrix a node, by the number of the node; those of copies at the nodes they move with.
+/// Dampers of a step, one matrix per node, by node number; those of copies at their originals.
 pub fn by_node(model: &Model, step: &Step) -> Vec<Absorber> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
     for (body, damping) in model.bodies.iter().zip(model.dampings(step)).filter(|(_, damping)| damping.mass > 0.0) {
@@ -188,7 +189,7 @@ pub fn by_node(model: &Model, step: &Step) -> Vec<Absorber> {
     total.into_iter().map(|(node, coefficients)| Absorber { node, coefficients }).collect()
 }
 
-/// Write the force of every damper on its node over `pulls` [F].
+/// Computes the force of every damper on its node in `pulls` [F].
 pub fn pull(
     model: &Model,
     step: &Step,
@@ -208,12 +209,12 @@ pub fn pull(
     }
 }
 
-/// They fade with time.
+/// The stabilizing dashpots decrease with time.
 pub(super) fn stabilization_dependence(step: &Step) -> Dependence {
     if step.stabilization.is_empty() { Dependence::Nothing } else { Dependence::Time }
 }
 
-/// Subtract their forces, which count as `damping`; returns their norm.
+/// Subtracts their forces, which count as `damping`; returns their norm.
 pub(super) fn add_stabilization(trial: Trial, u: &[f64], damping: &mut [f64], sums: &mut Sums) -> f64 {
     let left = trial.stabilization_left();
     if trial.dt == 0.0 || left == 0.0 {
@@ -231,7 +232,7 @@ pub(super) fn add_stabilization(trial: Trial, u: &[f64], damping: &mut [f64], su
     squares.sqrt()
 }
 
-/// Dissipated in an increment, a part of what all dashpots dissipate: ∫ c v² dt [F·L].
+/// Energy dissipated by them in an increment, a part of that of all dashpots: ∫ c v² dt [F·L].
 pub fn stabilization_dissipated(step: &Step, [t0, t1]: [f64; 2], way: impl Fn(usize) -> f64) -> f64 {
     let left = 1.0 - step.span.share(t1);
     let work: f64 = step.stabilization.iter().enumerate().map(|(dof, c)| c * way(dof) * way(dof)).sum();

@@ -1,16 +1,16 @@
-//! What an evaluation of the equations leaves for the accepted state.
+//! Results of an evaluation of the equations for the accepted state.
 //!
 //! # Audit of energies
 //!
-//! The audit of energies: what flows in an increment, and what is stored at its end, each as its term says.
+//! The energy audit sums the energy flows of an increment and the energy stored at its end, term by term.
 //!
 //! ```text
 //! work       ½ (f₀ + f₁)·Δu of loads and reactions; drivers of dashpots; overlaps of shrink fits
-//! damping    −½ (d₀ + d₁)·Δu of the forces of dashpots on the nodes; drivers; what statics takes out of a motion
+//! damping    −½ (d₀ + d₁)·Δu of the forces of dashpots on the nodes; drivers; kinetic energy removed by statics
 //! friction   ∫ q v^p ds dt
 //! radiated   ½ (r₀ + r₁) Δu_t of the tractions r = η v of radiation damping
 //! ```
-//! Whatever the scheme, forces are taken at both ends of the increment.
+//! In every scheme, forces are taken at both ends of the increment.
 
 use super::{contacts, damping, links};
 use crate::contact::force::ContactState;
@@ -29,9 +29,9 @@ pub struct Evaluation {
     pub loads: Vec<f64>,
     /// forces of dashpots on the nodes [F]
     pub damping: Vec<f64>,
-    /// norm of the forces of those that stabilize [F]
+    /// norm of the stabilizing forces [F]
     pub stabilization: f64,
-    /// F + M a at every support, in their order: what it puts on the node [F]
+    /// F + M a at every support, in their order: its reaction on the node [F]
     pub reactions: Vec<f64>,
     /// v [L/T]
     pub velocity: Vec<f64>,
@@ -39,13 +39,13 @@ pub struct Evaluation {
     pub acceleration: Vec<f64>,
     /// trial states of all contact points
     pub contacts: Vec<Vec<ContactState>>,
-    /// What the materials remember at the end of the trial
+    /// Internal variables of the materials at the end of the trial
     pub memory: Vec<f64>,
     /// ∫ W dV [F·L]
     pub strain_energy: f64,
-    /// What the materials dissipated in the increment [F·L]
+    /// Energy dissipated by the materials in the increment [F·L]
     pub dissipated: f64,
-    /// Work of the temperatures that changed in the increment [F·L]
+    /// Work of the temperature change in the increment [F·L]
     pub heating: f64,
 }
 
@@ -62,7 +62,7 @@ pub struct ContactCounts {
 }
 
 impl ContactCounts {
-    /// Count the points of all pairs.
+    /// Counts the points of all pairs.
     #[doc(hidden)]
     pub fn of(pairs: &[ContactPair], contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
@@ -89,17 +89,17 @@ pub struct Seconds {
     pub contact: f64,
 }
 
-/// Degrees of freedom whose work one thread sums up.
+/// Number of degrees of freedom summed by one thread at a time.
 const CHUNK: usize = 8192;
 
 /// Energy flows in an increment [F·L].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flows {
-    /// work of what acts from outside
+    /// external work
     pub work: f64,
     /// dissipated by dashpots and viscous bodies
     pub damping: f64,
-    /// dissipated by dashpots that stabilize, a part of it
+    /// dissipated by stabilizing dashpots, part of `damping`
     pub stabilization: f64,
     /// dissipated by friction
     pub friction: f64,
@@ -108,8 +108,8 @@ pub struct Flows {
 }
 
 impl Flows {
-    /// Energy flows from a state to the evaluation at the displacement `u` at the end of an increment, the reactions
-    /// being among the loads.
+    /// Energy flows from a state to the evaluation at the displacement `u` at the end of an increment, with the reactions
+    /// included in the loads.
     pub fn between(model: &Model, step: &Step, old: &State, time: f64, u: &[f64], found: &Evaluation) -> Self {
         let (times, ends) = ([old.time, time], [&old.displacement, u]);
         let way = |dof: usize| u[dof] - old.displacement[dof];
@@ -142,8 +142,8 @@ fn relaxed(model: &Model, step: &Step, old: &State, u: &[f64]) -> f64 {
     -0.5 * (all - supported)
 }
 
-/// Σ ½ (f₀ + f₁) (u₁ − u₀): the work of forces known at both ends of an increment [F·L]. Halves are summed up in parallel,
-/// always the same ones.
+/// Σ ½ (f₀ + f₁) (u₁ − u₀): the work of forces known at both ends of an increment [F·L]. The parallel sum has a fixed
+/// order.
 fn mean_work([f0, f1]: [&[f64]; 2], [u0, u1]: [&[f64]; 2]) -> f64 {
     if u0.len() > CHUNK {
         let half = u0.len() / 2;

@@ -1,4 +1,4 @@
-//! Bodies that remember, or whose tangent is not symmetric: what they remember is committed and trial state.
+//! Bodies with internal variables or an unsymmetric tangent; internal variables are part of committed and trial state.
 
 use rayon::prelude::*;
 
@@ -9,10 +9,10 @@ use crate::linear::system::Contribution;
 use crate::model::Model;
 use crate::model::element::Memory;
 
-/// Elements whose contributions are held at once before they are added.
+/// Number of elements whose contributions are held at once before they are added.
 const BATCH: usize = 1024;
 
-/// Whether each element is one of such bodies; empty if none is.
+/// Whether each element belongs to such a body; empty if none does.
 #[derive(Clone, Debug)]
 pub(super) struct Evolving(Vec<bool>);
 
@@ -23,14 +23,14 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 }
 
 impl Evolving {
-    /// The evolving elements of the bodies, without those that are `constant`.
+    /// Finds the evolving elements of the bodies, except those that are `constant`.
     pub fn new(model: &Model, constant: &[bool]) -> Self {
         let own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
         let all: Vec<bool> = model.body_of_element.iter().zip(constant).map(own).collect();
         Self(if all.contains(&true) { all } else { Vec::new() })
     }
 
-    /// Add the forces of these elements; their variables at the end of the trial are written over `memory`.
+    /// Adds the forces of these elements, and stores their internal variables at the end of the trial in `memory`.
     pub fn add(
         &self,
         model: &Model,
@@ -41,7 +41,7 @@ impl Evolving {
     ) -> Result<Evolved, TrialFailure> {
         let old = &trial.old.memory;
         if memory.len() != old.len() {
-            // The initial stress of constant elements stays as it is.
+            // The initial stress of constant elements is unchanged.
             memory.clone_from(old);
         }
         let mut all = Evolved::default();
@@ -80,7 +80,7 @@ pub struct Evolved {
     pub stored: f64,
     /// Dissipation
     pub dissipated: f64,
-    /// Work of their temperatures
+    /// Work of the temperature change
     pub heating: f64,
 }
 

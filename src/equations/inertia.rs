@@ -1,8 +1,8 @@
-//! Masses: their matrix, their forces, and the equations as the scheme blends them.
+//! Inertia: mass matrix and forces, and the time-discrete equations of the scheme.
 //!
 //! # Velocities and accelerations
 //!
-//! Velocities and accelerations at a trial displacement, as the scheme and the supports say.
+//! Velocities and accelerations at a trial displacement follow from the scheme and the supports.
 
 use nalgebra::{DMatrix, Vector2};
 
@@ -15,12 +15,12 @@ use crate::model::scheme::{Coefficients, supported_rates};
 use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
 
-/// M ∂a/∂u: the mass over Δt².
+/// The tangent is M ∂a/∂u, the mass over Δt².
 pub(super) fn dependence(step: &Step) -> Dependence {
     if step.scheme.coefficients().is_some() { Dependence::StepSize } else { Dependence::Nothing }
 }
 
-/// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
+/// Returns the mass matrix on the current pattern: consistent in the elements, point masses on the diagonal.
 pub(super) fn mass(model: &Model, layout: &Layout) -> SparseMatrix {
     let mut mass = elements(model, layout, |_| 1.0);
     for point in &model.point_masses {
@@ -34,7 +34,7 @@ pub(super) fn mass(model: &Model, layout: &Layout) -> SparseMatrix {
     mass
 }
 
-/// Masses of the elements, each times what is said of its body.
+/// Masses of the elements, each multiplied by a factor of its body.
 pub(super) fn elements(model: &Model, layout: &Layout, share: impl Fn(usize) -> f64) -> SparseMatrix {
     let mut total = layout.matrix();
     for (e, element) in model.mesh.elements.iter().enumerate() {
@@ -53,11 +53,11 @@ pub(super) struct Inertia {
     pub acceleration: Vec<f64>,
     /// M a [F]
     pub force: Vec<f64>,
-    /// M times the accelerations as (1) of [`crate::model::scheme`] weighs them [F]
+    /// M times the accelerations weighted by (1) of [`crate::model::scheme`] [F]
     pub weighted: Vec<f64>,
     /// ∂(weighted a)/∂u of each dof: the factor of its column of M [1/T²]
     pub factors: Vec<f64>,
-    /// rigid plates, of which the factors are not all
+    /// rigid platens, whose tangent has further terms
     turning: Vec<Turning>,
     scheme: Coefficients,
     /// Δt [T]
@@ -65,7 +65,8 @@ pub(super) struct Inertia {
 }
 
 impl Inertia {
-    /// Inertia in a dynamic increment with the mass matrix M; prescribed dofs have the acceleration of their supports.
+    /// Computes the inertia in a dynamic increment with the mass matrix M; prescribed dofs have the acceleration of their
+    /// supports.
     pub fn at(model: &Model, trial: Trial, u: &[f64], mass: &SparseMatrix) -> Option<Self> {
         let Trial { old, step, dt, .. } = trial;
         let scheme = step.scheme.coefficients()?;
@@ -96,7 +97,7 @@ impl Inertia {
         Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme, dt })
     }
 
-    /// (1) of [`crate::model::scheme`]: blend the forces and their tangent, and add those of the masses.
+    /// (1) of [`crate::model::scheme`]: weights the forces and their tangent, and adds the inertia.
     pub fn add(
         &self,
         model: &Model,
@@ -114,14 +115,14 @@ impl Inertia {
         }
     }
 
-    /// Add the tangent of the weighted forces.
+    /// Adds the tangent of the weighted inertia.
     pub fn stiffen(&self, model: &Model, mass: &SparseMatrix, tangent: &mut SparseMatrix) {
         tangent.add_columns(mass, &self.factors);
         self.turning.iter().for_each(|plate| plate.stiffen(model, self.scheme, self.dt, &self.factors, mass, tangent));
     }
 }
 
-/// Stored: ½ vᵀ M v [F·L].
+/// Kinetic energy ½ vᵀ M v [F·L].
 pub fn kinetic_energy(mass: &SparseMatrix, velocity: &[f64]) -> f64 {
     let momentum = mass.multiply(velocity);
     0.5 * momentum.iter().zip(velocity).map(|(p, v)| p * v).sum::<f64>()
@@ -154,8 +155,8 @@ fn rates(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f
     (velocity, acceleration)
 }
 
-/// Dofs that follow supported ones: where their leaders are to be, and how their values follow. What follows a free one has the
-/// rates of its own displacement, which are the same in the solution.
+/// Dofs that follow supported ones, with the target of their leaders and their dependence on them. A follower of a free dof has
+/// the rates of its own displacement, which agree in the solution.
 fn followed<'a>(
     model: &'a Model,
     trial: Trial<'a>,
@@ -171,14 +172,15 @@ fn followed<'a>(
     })
 }
 
-/// d·u − ū of an inclined support, which vanishes in the solution: with it the rates of its node vary alike in all directions, and
-/// their tangent needs no turning. Along a coordinate the rates are those of the support wherever the dof is.
+/// d·u − ū of an inclined support, which vanishes in the solution. With it the rates of its node vary equally in all
+/// directions, so that their tangent needs no rotation. Along a coordinate the rates are those of the support whatever the
+/// value of the dof.
 pub(super) fn missed(support: &Prescribed, target: f64, u: &[f64]) -> f64 {
     if support.at.inclined.is_some() { support.at.of(u) - target } else { 0.0 }
 }
 
-/// v of one dof at the end of the increment, and ∂v/∂u: what [`rates`] says or, in statics, the mean of the increment. An
-/// increment of no length leaves v as it is.
+/// v of one dof at the end of the increment, and ∂v/∂u: from [`rates`] or, in statics, the mean of the increment. An
+/// increment of zero length leaves v unchanged.
 pub(super) fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
     let Trial { old, step, dt, .. } = trial;
     let dof = model.linkage.leading(2 * model.ties.original(dof / 2) + dof % 2);
@@ -203,7 +205,7 @@ pub(super) fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f
     }
 }
 
-/// v and ∂v/∂u of every dof in a dynamic increment; v alone at the start of dynamics, and nothing in statics.
+/// v and ∂v/∂u of every dof in a dynamic increment; v only at the start of dynamics, and `None` in statics.
 pub(super) fn motion(model: &Model, trial: Trial, u: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let Trial { old, step, dt, .. } = trial;
     if dt == 0.0 {

@@ -1,26 +1,27 @@
-//! Nodes that follow others ([`crate::model::linkage`]): their equations, and those of rigid plates.
+//! Follower nodes ([`crate::model::linkage`]): their equations, and those of rigid platens.
 //!
 //! ```text
 //! w (u_c − Σ G_k u_k) = 0                  a follower; its forces are with its leaders
-//! r_A + r_B = 0,   (J e)·r_B/L = 0         a rigid plate: forces, and moments about A
+//! r_A + r_B = 0,   (J e)·r_B/L = 0         a rigid platen: forces, and moments about A
 //! w (|e|² − L²)/(2 L) = 0                  its length
 //! ```
-//! In motion r has the inertia (below), and e in the moments is weighted with α_f, as the forces are.
+//! In motion r includes the inertia (below), and e in the moments is weighted with α_f, as the forces are.
 //!
 //! # Rigid plates in motion
 //!
-//! Rigid plates in motion: velocities and accelerations of their nodes, and what they add to the tangent of inertia.
+//! The velocities and accelerations of the nodes of a rigid platen, and its contribution to the tangent of inertia, are
 //!
 //! ```text
-//! x_c = x_R + (G_c − G_R) e                     R: the center of mass, or the node A if a support holds it
+//! x_c = x_R + (G_c − G_R) e                     R: the center of mass, or the node A if it is supported
 //! v_c = v_R + (G_c − G_R) ω J e                 u_R and the angle of e follow the scheme
 //! a_c = a_R + (G_c − G_R) (θ̈ J e − ω² e)
 //! weighted:   θ̈_m J e_f − (ω²)_f e_f            _m, _f: weighted with α_m and α_f, as masses and forces are
 //! ```
 //!
-//! Were the scheme that of the nodes one by one, the pull that keeps their distance would ring from increment to increment
-//! (Cardona & Géradin 1989, Comput. Struct. 33, 801). With R where the masses balance, momentum is that of the forces. While |e|
-//! is not L yet, what is missing moves by the scheme, so that a tangent that takes the nodes one by one lacks terms of ω Δt alone.
+//! If the scheme were applied node by node, the force that keeps their distance would oscillate from increment to increment
+//! (Cardona & Géradin 1989, Comput. Struct. 33, 801). With R at the center of mass, momentum changes by the external forces
+//! only. While |e| differs from L, the excess moves by the scheme, so that a node-by-node tangent lacks terms of order ω Δt
+//! only.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -36,7 +37,7 @@ use crate::model::linkage::Follower;
 use crate::model::scheme::Coefficients;
 use crate::model::state::State;
 
-/// e of a rigid plate at the start, and what has come to it at the displacements `u`.
+/// e of a rigid platen initially, and its change by the displacements `u`.
 fn arms(model: &Model, [a, b]: [usize; 2], u: &[f64]) -> [Vector2<f64>; 2] {
     [model.mesh.nodes[b] - model.mesh.nodes[a], relative([a, b], u)]
 }
@@ -56,7 +57,7 @@ fn blended(scheme: Coefficients, [before, after]: [Vector2<f64>; 2]) -> Vector2<
     before * scheme.alpha_f + after * (1.0 - scheme.alpha_f)
 }
 
-/// Make what B has against A `along`, where R with its G stays.
+/// Sets the values of B relative to A to `along`, keeping those of R with its G.
 pub fn give([a, b]: [usize; 2], reference: Matrix2<f64>, along: Vector2<f64>, values: &mut [f64]) {
     let shift = reference * (relative([a, b], values) - along);
     for i in 0..2 {
@@ -65,19 +66,19 @@ pub fn give([a, b]: [usize; 2], reference: Matrix2<f64>, along: Vector2<f64>, va
     }
 }
 
-/// Direction e and length L of a rigid plate.
+/// Direction e and length L of a rigid platen.
 fn arm(model: &Model, plate: [usize; 2], u: &[f64]) -> (Vector2<f64>, f64) {
     let [before, way] = arms(model, plate, u);
     (before + way, before.norm())
 }
 
-/// (|e|² − L²)/(2 L), to the last digit of small motions.
+/// (|e|² − L²)/(2 L), accurate for small motions.
 fn stretch(model: &Model, plate: [usize; 2], u: &[f64]) -> f64 {
     let [before, way] = arms(model, plate, u);
     way.dot(&(2.0 * before + way)) / (2.0 * before.norm())
 }
 
-/// The force on B, and against it on A, of a moment M on a rigid plate, f = M J e/|e|²; and ∂F/∂u of both, F taking it away.
+/// Force on B, and its opposite on A, of a moment M on a rigid platen, f = M J e/|e|²; and ∂F/∂u of both, where F subtracts it.
 pub(super) fn couple(model: &Model, plate: [usize; 2], u: &[f64], moment: f64) -> (Vector2<f64>, Matrix4<f64>) {
     let e = arm(model, plate, u).0;
     let (turned, square) = (perpendicular(e), e.norm_squared());
@@ -90,7 +91,7 @@ pub(super) fn couple(model: &Model, plate: [usize; 2], u: &[f64], moment: f64) -
     (turned * (moment / square), both)
 }
 
-/// Largest error of the constraints: followers against their leaders, rigid plates against their length [L].
+/// Largest error of the constraints: followers relative to their leaders, and lengths of rigid platens [L].
 pub(super) fn missed(model: &Model, u: &[f64]) -> f64 {
     let led = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.value(i, u)).abs();
     let followers = model.linkage.followers.iter().flat_map(|follower| follower.dofs().map(move |dof| (follower, dof)));
@@ -98,7 +99,7 @@ pub(super) fn missed(model: &Model, u: &[f64]) -> f64 {
     followers.map(led).chain(plates).fold(0.0, f64::max)
 }
 
-/// Forces without what keeps the length of rigid plates, which is with A instead of B: it is no force out of balance.
+/// Forces with the constraint force of rigid platens moved from B to A: it is no residual.
 pub fn relieved<'a>(model: &Model, u: &[f64], force: &'a [f64]) -> Cow<'a, [f64]> {
     let mut force = Cow::Borrowed(force);
     for &[a, b] in &model.linkage.rigid {
@@ -113,7 +114,7 @@ pub fn relieved<'a>(model: &Model, u: &[f64], force: &'a [f64]) -> Cow<'a, [f64]
     force
 }
 
-/// Before supports replace equations: those of leaders sum up what their followers have.
+/// Adds the equations of followers to those of their leaders, before supports replace equations.
 pub fn gather_rows(model: &Model, matrix: &mut SparseMatrix) {
     for follower in &model.linkage.followers {
         for (i, _) in follower.dofs() {
@@ -129,14 +130,14 @@ pub fn gather_rows(model: &Model, matrix: &mut SparseMatrix) {
     }
 }
 
-/// The residual of the same: rigid plates balance their forces at A.
+/// The same for the residual: rigid platens balance their forces at A.
 pub fn gather_residual(model: &Model, residual: &mut [f64]) {
     for &[a, b] in &model.linkage.rigid {
         (0..2).for_each(|i| residual[2 * a + i] += residual[2 * b + i]);
     }
 }
 
-/// Work of the moments on rigid plates, whose equations stand in the place of a force on B, beside what that would do.
+/// Work of the moments on rigid platens, whose equations replace a force on B, minus the work of that.
 pub fn missing_work<'a>(
     model: &'a Model,
     u: &'a [f64],
@@ -150,7 +151,7 @@ pub fn missing_work<'a>(
     })
 }
 
-/// The equations of followers, and of B of rigid plates, whose forces `r_B` were in the residual.
+/// Sets the equations of followers, and of B of rigid platens, whose forces `r_B` were in the residual.
 pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
     for follower in &model.linkage.followers {
         for (i, dof) in follower.dofs() {
@@ -181,7 +182,7 @@ pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tan
     }
 }
 
-/// Replace the equations of B by the moment of what they are, and by w e·(x_B − x_A)/L.
+/// Replaces the equations of B by their moment, and by w e·(x_B − x_A)/L.
 fn keep_length(
     model: &Model,
     [a, b]: [usize; 2],
@@ -198,7 +199,7 @@ fn keep_length(
     }
 }
 
-/// The equations of accelerations in a state, `weight` being a mass: e·(a_B − a_A) = −ω² L², and moments balance.
+/// Sets the equations of accelerations in a state, with a mass `weight`: e·(a_B − a_A) = −ω² L², and balance of moments.
 pub fn begin(model: &Model, weight: f64, state: &State, matrix: &mut SparseMatrix, right: &mut [f64]) {
     for &[a, b] in &model.linkage.rigid {
         let (e, length) = arm(model, [a, b], &state.displacement);
@@ -210,7 +211,7 @@ pub fn begin(model: &Model, weight: f64, state: &State, matrix: &mut SparseMatri
     follow(model, weight, matrix);
 }
 
-/// Make velocities those of rigid plates: A and what turns B about it stay.
+/// Projects velocities to those of rigid platens, keeping A and the rotation of B about it.
 pub fn stiffen_velocities(model: &Model, u: &[f64], velocity: &mut [f64]) {
     for &[a, b] in &model.linkage.rigid {
         let e = arm(model, [a, b], u).0;
@@ -221,7 +222,7 @@ pub fn stiffen_velocities(model: &Model, u: &[f64], velocity: &mut [f64]) {
     model.linkage.spread(velocity);
 }
 
-/// Replace the equations of followers by w (x_c − Σ G_k x_k) = 0.
+/// Replaces the equations of followers by w (x_c − Σ G_k x_k) = 0.
 fn follow(model: &Model, weight: f64, matrix: &mut SparseMatrix) {
     for follower in &model.linkage.followers {
         for (i, dof) in follower.dofs() {
@@ -234,7 +235,7 @@ fn follow(model: &Model, weight: f64, matrix: &mut SparseMatrix) {
     }
 }
 
-/// One rigid plate in an increment.
+/// A rigid platen in an increment.
 pub(super) struct Turning {
     leaders: [usize; 2],
     /// G_R
@@ -245,12 +246,12 @@ pub(super) struct Turning {
     spin: [f64; 2],
     /// θ̈ at the start and the end [1/T²]
     angular: [f64; 2],
-    /// What |e| is too long, as a vector, and ∂/∂e of it [L]
+    /// Excess length of |e| as a vector, and its ∂/∂e [L]
     excess: (Vector2<f64>, Matrix2<f64>),
 }
 
 impl Turning {
-    /// All plates in the increment to the displacement `u`.
+    /// All platens in the increment to the displacement `u`.
     pub fn all(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> Vec<Self> {
         (0..model.linkage.rigid.len()).map(|k| Self::of(model, trial, u, scheme, k)).collect()
     }
@@ -270,7 +271,7 @@ impl Turning {
         Self { leaders, reference, e, spin: [spin, end.0], angular: [angular, end.1], excess }
     }
 
-    /// Velocities from those of the scheme node by node, of which ∂v/∂u is `rate`.
+    /// Velocities from those of the scheme node by node, with ∂v/∂u = `rate`.
     pub fn velocities(&self, rate: f64, values: &mut [f64]) {
         self.give(perpendicular(self.e[1]) * self.spin[1] + self.excess.0 * rate, values);
     }
@@ -293,12 +294,12 @@ impl Turning {
         blend(scheme.alpha_f, self.spin[0].powi(2), self.spin[1].powi(2))
     }
 
-    /// Make what B has against A `relative`, and leave R what it has.
+    /// Sets the values of B relative to A to `relative`, keeping those of R.
     fn give(&self, relative: Vector2<f64>, values: &mut [f64]) {
         give(self.leaders, self.reference, relative, values);
     }
 
-    /// ∂(weighted acceleration of B against A)/∂e less `rate`, that of the scheme node by node [1/T²].
+    /// ∂(weighted acceleration of B relative to A)/∂e minus `rate`, that of the scheme node by node [1/T²].
     fn beyond(&self, scheme: Coefficients, rate: f64, dt: f64) -> Matrix2<f64> {
         let [e, turned] = [self.e[1], perpendicular(self.e[1])];
         let angle = turned.transpose() / e.norm_squared();
@@ -312,7 +313,7 @@ impl Turning {
         spun + (turn - pulled) * f + (self.excess.1 - Matrix2::identity()) * rate
     }
 
-    /// Add to the tangent what the weighted accelerations of the plate have beyond `factors`, those of the nodes one by one.
+    /// Adds to the tangent the part of the platen's weighted accelerations beyond `factors`, those of the scheme node by node.
     pub fn stiffen(
         &self,
         model: &Model,
@@ -341,7 +342,7 @@ impl Turning {
                 let Some(block) = tangent.pattern.block(row, node) else { continue };
                 for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                     tangent.values[block.value(i, j)] += sign * along[(i, j)];
-                    // A support says how A moves, whatever u is there: the others do not move with it.
+                    // If a support prescribes A independent of u, the other nodes do not move with it.
                     if node == a && i == j && factors[2 * a + j] == 0.0 {
                         tangent.values[block.value(i, j)] -= rate * total;
                     }
@@ -350,7 +351,7 @@ impl Turning {
         }
     }
 
-    /// Its nodes and their G.
+    /// Nodes and their G.
     fn nodes<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (usize, Matrix2<f64>)> + 'a {
         let [a, b] = self.leaders;
         let own = model.linkage.turning().filter(move |follower| follower.leaders[0].0 == a);
@@ -359,7 +360,7 @@ impl Turning {
     }
 }
 
-/// Give the other nodes of rigid plates what A and B have; ∂/∂u of the scheme node by node is `rate`.
+/// Gives the other nodes of rigid platens the values of A and B; ∂/∂u of the scheme node by node is `rate`.
 pub(super) fn spread_turning(model: &Model, rate: f64, u: &[f64], values: &mut [f64]) {
     for follower in model.linkage.turning() {
         for (i, dof) in follower.dofs() {
@@ -368,21 +369,21 @@ pub(super) fn spread_turning(model: &Model, rate: f64, u: &[f64], values: &mut [
     }
 }
 
-/// ω and θ̈ of a plate at the start of an increment.
+/// ω and θ̈ of a platen at the start of an increment.
 fn turning(model: &Model, leaders: [usize; 2], Trial { old, .. }: Trial) -> (f64, f64) {
     let e: Vector2<f64> = arms(model, leaders, &old.displacement).iter().sum();
     let of = |values: &[f64]| e.perp(&relative(leaders, values)) / e.norm_squared();
     (of(&old.velocity), of(&old.acceleration))
 }
 
-/// G_R of a plate.
+/// G_R of a platen.
 fn reference(model: &Model, trial: Trial, k: usize) -> Matrix2<f64> {
     let held = trial.step.supports.iter().any(|support| support.at.node() == model.linkage.rigid[k][0]);
     if held { Matrix2::zeros() } else { model.linkage.centers[k] }
 }
 
-/// Displacements of rigid plates at the end of an increment whose accelerations go evenly to those found at θ Δt, where the
-/// displacement is `ahead`; R and all others are at `u` already.
+/// Displacements of rigid platens at the end of an increment whose accelerations vary linearly up to those found at θ Δt, where
+/// the displacement is `ahead`; R and all other nodes are at `u` already.
 pub fn turning_at_end(model: &Model, end: Trial, [ahead, found]: [&[f64]; 2], scheme: Coefficients, u: &mut [f64]) {
     for (k, &leaders) in model.linkage.rigid.iter().enumerate() {
         let (spin, angular) = turning(model, leaders, end);
@@ -396,7 +397,7 @@ pub fn turning_at_end(model: &Model, end: Trial, [ahead, found]: [&[f64]; 2], sc
     model.linkage.spread(u);
 }
 
-/// The share `weight` of the old value and the rest of the new one.
+/// Weighted mean: `weight` times the old value plus the rest of the new one.
 pub(super) fn blend(weight: f64, old: f64, new: f64) -> f64 {
     weight * old + (1.0 - weight) * new
 }

@@ -1,5 +1,5 @@
-//! Loads: dead loads, pressures that follow the surface, springs, initial stress, and the reactions of freed supports.
-//! Their work is that of all external forces, see [`super::evaluation`].
+//! Loads: dead loads, follower pressures, springs, initial stress, and the reactions of released supports. Their work is part
+//! of that of all external forces, see [`super::evaluation`].
 
 use nalgebra::Vector2;
 
@@ -10,7 +10,7 @@ use crate::equations::sums::TrialFailure;
 use crate::model::element::follower_pressure;
 use crate::model::{Model, Step};
 
-/// A pressure is linear in the displacements and grows with time; springs are constant.
+/// A pressure is linear in the displacements and varies with time; springs are constant.
 pub(super) fn dependence(step: &Step) -> Dependence {
     match step.loads.pressures.is_empty() {
         _ if !step.loads.moments.is_empty() => Dependence::Displacement,
@@ -19,7 +19,7 @@ pub(super) fn dependence(step: &Step) -> Dependence {
     }
 }
 
-/// Whether a step has any.
+/// Whether a step has any loads.
 fn any(model: &Model, step: &Step) -> bool {
     let loads = &step.loads;
     !(model.prestress.is_empty()
@@ -30,7 +30,7 @@ fn any(model: &Model, step: &Step) -> bool {
         && step.released.is_empty())
 }
 
-/// Write all loads over `loads`, and subtract them from the forces.
+/// Sums all loads in `loads`, and subtracts them from the forces.
 pub(super) fn add(
     model: &Model,
     trial: Trial,
@@ -56,7 +56,7 @@ pub(super) fn add(
     Ok(())
 }
 
-/// Add all loads to `loads`, and their tangents.
+/// Adds all loads to `loads`, and their tangents.
 fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut Sums) {
     let (Trial { old, step, time, .. }, at) = (trial, trial.moment());
     loads.iter_mut().zip(&model.prestress).for_each(|(load, prestress)| *load += prestress);

@@ -6,23 +6,23 @@
 //! r    = w (u − ū)                                                prescribed dofs, w: a stiffness for scale
 //! ```
 //!
-//! Elements and contact points are evaluated in parallel and added in a fixed order: the same bits on any number of
-//! threads.
+//! Elements and contact points are evaluated in parallel and added in a fixed order: results are bitwise identical for any
+//! number of threads.
 //!
-//! The terms add up in [`assembler`], each with its forces, its tangent on request, what that depends on
-//! ([`sums::Dependence`]), and its share of the audit of energies ([`evaluation`]).
+//! The terms are summed in [`assembler`], each with its forces, its tangent on request, the dependence of the tangent
+//! ([`sums::Dependence`]), and its contribution to the energy audit ([`evaluation`]).
 //!
-//! | term | what it adds to F or r | its share of the audit |
+//! | term | contribution to F or r | contribution to the audit |
 //! |---|---|---|
 //! | `solids` | stress of the bodies | strain energy |
-//! | [`interfaces`] | contact and friction | stored in penalties, friction, shrink fits |
+//! | [`interfaces`] | contact and friction | energy in penalties, friction, shrink fits |
 //! | `loads` | −loads, springs, initial stress | work |
 //! | [`damping`] | dashpots, absorbing sides | damping, work of drivers |
-//! | [`damping`] | dashpots that fade | a part of damping |
+//! | [`damping`] | stabilizing dashpots | a part of damping |
 //! | [`damping`] | viscous bodies | damping |
 //! | [`inertia`] | M a | kinetic energy |
 //! | [`supports`] | the equations of prescribed dofs and copies | work of reactions |
-//! | [`links`] | the equations of nodes that follow others, and rigid plates in motion | none |
+//! | [`links`] | the equations of follower nodes, and rigid platens in motion | none |
 
 pub mod assembler;
 pub mod condensed;

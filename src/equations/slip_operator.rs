@@ -1,9 +1,9 @@
-//! Response of the bodies to an interface: tractions by displacement jumps across it, everything else being linear and
-//! without inertia.
+//! Slip operator: tractions on an interface as a function of displacement jumps, everything else being linear and without
+//! inertia.
 //!
-//! Of two nodes that face each other, one on each side, the jump j is the motion of the slave's against the master's; the
-//! master's own motion, and that of all other nodes of S, is m. With A condensed on the nodes at contacts
-//! ([`super::condensed`]) and ρ the forces that loads leave out of balance,
+//! For two matching nodes, one on each side, the jump j is the motion of the slave relative to the master; the motion of the
+//! master, and that of all other nodes of S, is m. With A condensed on the nodes at contacts ([`super::condensed`]) and ρ the
+//! residual forces of the loads,
 //!
 //! ```text
 //! S_mm m + S_mj j + ρ_m = 0                    equal and opposite on both sides: no contact force here                  (1)
@@ -12,8 +12,8 @@
 //! j = (0, s) − y/α                             s: slip; the contact's springs (α_n, α_t) are in series                 (4)
 //! y = (ℓ + K/α)⁻¹ (K_s s + ρ̂)                                                                                        (5)
 //! ```
-//! All of it by increments. One product with the matrix of (5) gives the tractions of a slip; on a rigid master j is the motion
-//! of the slave itself.
+//! All quantities are increments. One product with the matrix of (5) gives the tractions of a slip; on a rigid master j is the
+//! motion of the slave itself.
 
 use std::sync::Arc;
 
@@ -29,9 +29,9 @@ use crate::linear::system::{Request, System};
 use crate::linear::{Condensation, Condensed, DenseLu, LinearFailure};
 use crate::model::Model;
 
-/// A point of an interface whose nodes face each other.
+/// A contact point with matching nodes.
 struct Facing {
-    /// Places of the slave's node and the master's
+    /// Index of the slave node and of the master node
     slave: usize,
     master: Option<usize>,
     /// n and s
@@ -40,7 +40,7 @@ struct Facing {
     compliance: [f64; 2],
 }
 
-/// Response of linear bodies to slip of an interface.
+/// Response of linear bodies to slip on an interface.
 pub struct SlipOperator {
     /// The bodies, assembled without contact
     pub bodies: Assembler,
@@ -49,7 +49,7 @@ pub struct SlipOperator {
     nodes: ContactNodes,
     points: Vec<Facing>,
     condensed: Condensed,
-    /// Index of m for every place among the nodes; none for a slave on a rigid master
+    /// Index in m of every contact node; `None` for a slave on a rigid master
     moving: Vec<Option<usize>>,
     middles: usize,
     /// S_mm
@@ -63,7 +63,7 @@ pub struct SlipOperator {
     by_slip: Vec<f64>,
 }
 
-/// Effect of out-of-balance forces without slip.
+/// Effect of residual forces without slip.
 pub struct Shift {
     /// y: all p, then all −τ [F/L²]
     pub tractions: Vec<f64>,
@@ -71,12 +71,12 @@ pub struct Shift {
     pub displacement: Vec<f64>,
 }
 
-/// Why there is no such view of the bodies.
+/// Reason why the slip operator does not exist.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoSlipOperator {
     /// The bodies could not be assembled.
     Assembly(TrialFailure),
-    /// A matrix has no inverse.
+    /// A matrix is singular.
     Linear(LinearFailure),
 }
 
@@ -93,11 +93,11 @@ impl From<LinearFailure> for NoSlipOperator {
 }
 
 impl SlipOperator {
-    /// Slip operator of a model with small sliding and matching nodes, under the supports and springs of a trial's
+    /// Computes the slip operator of a model with small sliding and matching nodes, under the supports and springs of a trial's
     /// step.
     ///
     /// # Errors
-    /// [`NoSlipOperator`] where the bodies cannot be assembled, or are not held.
+    /// Returns [`NoSlipOperator`] if the bodies cannot be assembled or are not constrained.
     pub fn new(model: &Arc<Model>, trial: Trial) -> Result<Self, NoSlipOperator> {
         let nodes = ContactNodes::of_both_sides(model);
         let mut bodies = Assembler::new(model);
@@ -136,7 +136,7 @@ impl SlipOperator {
         self.points.len()
     }
 
-    /// y by s, a row a component: all p, then all −τ.
+    /// y by s, one row per component: all p, then all −τ.
     pub fn by_slip(&self) -> &[f64] {
         &self.by_slip
     }
@@ -179,7 +179,7 @@ impl SlipOperator {
         self.points[j % self.points.len()].compliance[j / self.points.len()]
     }
 
-    /// Forces on all nodes at contacts by a unit of a jump.
+    /// Forces on all contact nodes by a unit jump.
     fn column_of_jump(&self, j: usize) -> Vec<f64> {
         let Facing { slave, directions, .. } = &self.points[j % self.points.len()];
         let direction = directions[j / self.points.len()];
@@ -187,7 +187,7 @@ impl SlipOperator {
         x.iter().zip(y).map(|(x, y)| x * direction.x + y * direction.y).collect()
     }
 
-    /// Forces on all nodes at contacts by a unit of an m.
+    /// Forces on all contact nodes by a unit m.
     fn column_of_middle(&self, c: usize) -> Vec<f64> {
         let mut sum = vec![0.0; 2 * self.nodes.nodes.len()];
         for place in (0..self.moving.len()).filter(|&place| self.moving[place] == Some(c / 2)) {
@@ -201,7 +201,7 @@ impl SlipOperator {
         &self.condensed.stiffness[dof * size..(dof + 1) * size]
     }
 
-    /// Forces on the m and on the jumps from those on the nodes at contacts.
+    /// Forces on m and on the jumps from those on the contact nodes.
     fn gather(&self, forces: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; 2 * self.middles];
         for (place, m) in self.moving.iter().enumerate() {
@@ -219,7 +219,7 @@ impl SlipOperator {
         sums
     }
 
-    /// Effect of out-of-balance forces without slip; `residual` is A u − b of all equations.
+    /// Effect of residual forces without slip; `residual` is A u − b of all equations.
     pub fn shift(&mut self, residual: &[f64]) -> Shift {
         let forwarded = self.condensed.forward(residual);
         let mut middles = self.gather(&forwarded.right);
@@ -243,7 +243,7 @@ impl SlipOperator {
         tractions.iter().enumerate().map(jump).collect()
     }
 
-    /// u of all nodes that goes with jumps, no other forces acting.
+    /// u of all nodes for given jumps, without other forces.
     pub fn displacement(&self, jumps: &[f64]) -> Vec<f64> {
         let mut middles = vec![0.0; 2 * self.middles];
         self.follow(jumps, &mut middles);
@@ -258,7 +258,7 @@ impl SlipOperator {
         }
     }
 
-    /// A u = −r with r on its way: u of all nodes from the jumps and the m.
+    /// Back substitution of A u = −r: u of all nodes from the jumps and m.
     fn recover(&self, forwarded: &crate::linear::Forwarded, jumps: &[f64], middles: &[f64]) -> Vec<f64> {
         let n = self.points.len();
         let mut kept = vec![0.0; 2 * self.nodes.nodes.len()];
@@ -277,7 +277,7 @@ impl SlipOperator {
     }
 }
 
-/// The points of a pair with matching nodes, as checked when the model is built.
+/// Points of a pair with matching nodes, as checked when the model is built.
 fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes) -> Vec<Facing> {
     let inverse = |alpha: f64| if alpha > 0.0 { 1.0 / alpha } else { 0.0 };
     let place = |node: usize| nodes.place(model.ties.original(node)).expect("nodes at contacts are kept");

@@ -1,5 +1,5 @@
-//! What the terms of the equations have in common: where they put what they add, what their tangents depend on, and why
-//! they have no value at a trial state.
+//! Common parts of the terms of the equations: destination of their contributions, dependence of their tangents, and failures
+//! of their evaluation.
 
 use thiserror::Error;
 
@@ -12,20 +12,20 @@ use crate::model::Model;
 use crate::model::scheme::time_text;
 use crate::model::text::number;
 
-/// Forces on the nodes and, where they are asked for, their magnitudes and their tangent.
+/// Nodal forces and, on request, their magnitudes and tangent.
 pub(super) struct Sums<'a> {
     /// F [F]
     pub force: &'a mut [f64],
-    /// Sum of the magnitudes of what is added at each dof: the scale of the residual [F]
+    /// Sum of the magnitudes of all contributions at each dof: the scale of the residual [F]
     pub magnitudes: Option<&'a mut [f64]>,
     /// ∂F/∂u [F/L]
     pub tangent: Option<&'a mut SparseMatrix>,
-    /// who couples with whom
+    /// coupling of nodes
     pub layout: &'a Layout,
 }
 
 impl Sums<'_> {
-    /// Add a force at a dof.
+    /// Adds a force at a dof.
     pub fn add(&mut self, dof: usize, force: f64) {
         self.force[dof] += force;
         if let Some(magnitudes) = &mut self.magnitudes {
@@ -33,27 +33,27 @@ impl Sums<'_> {
         }
     }
 
-    /// Add ∂f_i/∂u_j between the dofs of one node.
+    /// Adds ∂f_i/∂u_j between the dofs of one node.
     pub fn stiffen(&mut self, node: usize, (i, j): (usize, usize), stiffness: f64) {
         if let Some(tangent) = &mut self.tangent {
             tangent.add_own(self.layout.original(node), (i, j), stiffness);
         }
     }
 
-    /// Add the forces and the tangent of one contact point or element.
+    /// Adds the forces and the tangent of one contact point or element.
     pub fn contribute(&mut self, contribution: &Contribution) {
         self.push(&contribution.nodes, contribution.force.as_slice());
         self.couple(&contribution.nodes, contribution.tangent.as_slice());
     }
 
-    /// Add forces of some nodes.
+    /// Adds forces of some nodes.
     pub fn push(&mut self, nodes: &[usize], force: &[f64]) {
         for (&node, force) in nodes.iter().zip(force.chunks_exact(2)) {
             (0..2).for_each(|i| self.add(2 * node + i, force[i]));
         }
     }
 
-    /// Add a tangent of some nodes, column by column.
+    /// Adds a tangent of some nodes, column by column.
     pub fn couple(&mut self, nodes: &[usize], local: &[f64]) {
         if let Some(tangent) = &mut self.tangent {
             let blocks = self.layout.blocks_between(nodes);
@@ -62,7 +62,7 @@ impl Sums<'_> {
     }
 }
 
-/// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).
+/// Adds a dense tangent of `n` nodes (column-major, two dofs per node) at the given blocks (column by column).
 pub(super) fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {
     for (columns, blocks) in local.chunks_exact(4 * n).zip(blocks.chunks_exact(n)) {
         for (j, column) in columns.chunks_exact(2 * n).enumerate() {
@@ -78,21 +78,21 @@ pub(super) fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], lo
 /// Dependence of a tangent during a step; each level includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
-    /// Nothing: it is the same matrix throughout
+    /// Constant during the step
     Nothing,
     /// Δt
     StepSize,
     /// t, Δt
     Time,
-    /// u, t, Δt and the state that the increment begins with
+    /// u, t, Δt and the state at the start of the increment
     Displacement,
 }
 
-/// Why the equations could not be evaluated at a trial state.
+/// Reason why the equations could not be evaluated at a trial state.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum TrialFailure {
-    /// An element has no volume left.
+    /// An element is inverted.
     #[error(
         "element {element} of body `{body}` is inverted (det F = {jacobian:.3e}) at ({}, {})", number(at[0]), number(at[1])
     )]
@@ -106,7 +106,7 @@ pub enum TrialFailure {
         /// det F
         jacobian: f64,
     },
-    /// An element has hardly any volume left.
+    /// An element is compressed to a small fraction of its size.
     #[error(
         "element {element} of body `{body}` is compressed to {share:.1e} of its size at ({}, {})", number(at[0]), number(at[1])
     )]
@@ -117,10 +117,10 @@ pub enum TrialFailure {
         body: String,
         /// its centre in the mesh
         at: [f64; 2],
-        /// what is left of its size
+        /// remaining fraction of its size
         share: f64,
     },
-    /// A material law could not answer.
+    /// A material law failed.
     #[error("element {element} of body `{body}` at ({}, {}): {cause}", number(at[0]), number(at[1]))]
     Material {
         /// its tag in the mesh file
@@ -129,20 +129,20 @@ pub enum TrialFailure {
         body: String,
         /// its centre in the mesh
         at: [f64; 2],
-        /// what the law said
+        /// failure reported by the law
         cause: MaterialFailure,
     },
-    /// A friction law could not answer.
+    /// A friction law failed.
     #[error("contact `{contact}`, point {point}: {cause}")]
     Friction {
         /// contact pair
         contact: String,
         /// slave point
         point: usize,
-        /// what the law said
+        /// failure reported by the law
         cause: LawFailure,
     },
-    /// A fluid pulls, or has no finite pressure.
+    /// A fluid pressure is negative or not finite.
     #[error(
         "contact `{contact}`: its fluid_pressure is {pressure} at ({}, {}) and time {}: it must be a finite number, zero or positive",
         at[0], at[1], time_text(*time)
@@ -168,7 +168,7 @@ pub enum TrialFailure {
 }
 
 impl TrialFailure {
-    /// The failure of a material law in an element, with the names of its file.
+    /// Returns the failure of a material law in an element, with its tag and body.
     pub(crate) fn material(model: &Model, e: usize, cause: MaterialFailure) -> Self {
         let (element, body, at) = named(model, e);
         match cause {
@@ -177,7 +177,7 @@ impl TrialFailure {
         }
     }
 
-    /// An element compressed to a small fraction of its size.
+    /// Returns the failure of an element compressed to a small fraction of its size.
     pub(crate) fn crushed(model: &Model, e: usize, share: f64) -> Self {
         let (element, body, at) = named(model, e);
         Self::Crushed { element, body, at, share }

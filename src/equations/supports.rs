@@ -13,7 +13,7 @@ use crate::linear::system::System;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
-/// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts [F/L].
+/// w: the largest stiffness of the materials and springs, or of the contacts in a model of points only [F/L].
 pub(super) fn weight(model: &Model) -> f64 {
     let solids = std::iter::once(model.stiffness());
     let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
@@ -22,7 +22,7 @@ pub(super) fn weight(model: &Model) -> f64 {
     largest(&mut solids.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
 }
 
-/// Dofs that have an equation of their own in a step, not one of forces: supported ones, copies, followers, and lengths of plates.
+/// Dofs whose equation in a step is not one of forces: supported ones, copies, followers, and lengths of platens.
 pub fn fixed(model: &Model, step: &Step) -> Vec<bool> {
     let mut fixed = vec![false; model.dofs()];
     step.supports.iter().for_each(|support| fixed[support.at.dof] = true);
@@ -32,25 +32,25 @@ pub fn fixed(model: &Model, step: &Step) -> Vec<bool> {
     fixed
 }
 
-/// The residual of the equations of forces, 0 at all other dofs.
+/// Residual of the equations of forces, 0 at all other dofs.
 pub fn free(model: &Model, step: &Step, residual: &[f64]) -> Vec<f64> {
     residual.iter().zip(fixed(model, step)).map(|(&residual, fixed)| if fixed { 0.0 } else { residual }).collect()
 }
 
-/// Work of the forces that are out of balance at the displacement `u` along a correction: the equations of inclined supports and of rigid
-/// plates are not those of their dofs [F·L].
+/// Work of the residual forces at the displacement `u` along a correction; the equations of inclined supports and of rigid
+/// platens are not those of their dofs [F·L].
 pub fn work(model: &Model, step: &Step, u: &[f64], residual: &[f64], way: &[f64]) -> f64 {
     let inclined = step.supports.iter().filter_map(|support| support.at.across());
     let across = inclined.map(|across| residual[across.dof] * (across.of(way) - way[across.dof]));
     dot(residual, way) + across.chain(links::missing_work(model, u, residual, way)).sum::<f64>()
 }
 
-/// The same where every equation is that of its dof.
+/// The same where every equation belongs to its dof.
 pub fn dot(residual: &[f64], way: &[f64]) -> f64 {
     residual.iter().zip(way).map(|(r, x)| r * x).sum()
 }
 
-/// Replace the equations of prescribed dofs and of copies.
+/// Replaces the equations of prescribed dofs and of copies.
 pub(super) fn prescribe(
     model: &Model,
     weight: f64,
@@ -85,7 +85,7 @@ pub(super) fn prescribe(
     Ok(())
 }
 
-/// Write `own` over the right side of the equation of a held direction, and what is across over that of the other.
+/// Sets the right-hand side of a supported direction to `own`, and that of the other component to the projection across it.
 pub fn turn(at: Direction, own: f64, values: &mut [f64]) {
     if let Some(across) = at.across() {
         values[across.dof] = across.of(values);
@@ -93,7 +93,7 @@ pub fn turn(at: Direction, own: f64, values: &mut [f64]) {
     values[at.dof] = own;
 }
 
-/// Replace the equation of a held direction by w d·u, and the other of an inclined one by what is across.
+/// Replaces the equation of a supported direction by w d·u, and the other of an inclined one by the projection across it.
 pub fn hold(at: Direction, weight: f64, matrix: &mut SparseMatrix) {
     match at.across() {
         None => matrix.replace_row(at.dof, weight),
@@ -101,7 +101,7 @@ pub fn hold(at: Direction, weight: f64, matrix: &mut SparseMatrix) {
     }
 }
 
-/// Replace the equations of copies by w (x_copy − x_original) = 0.
+/// Replaces the equations of copies by w (x_copy − x_original) = 0.
 pub fn tie(model: &Model, matrix: &mut SparseMatrix, weight: f64) {
     for &(copy, original) in model.ties.pairs() {
         for d in 0..2 {

@@ -15,7 +15,7 @@ pub enum Term {
     Loads,
     /// Dashpots and absorbing sides
     Dampers,
-    /// Dashpots that stabilize a static step
+    /// Stabilizing dashpots of a static step
     Stabilization,
     /// Damping of the bodies
     Damping,
@@ -24,7 +24,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// All of them, in the order in which they are added.
+    /// All terms, in the order in which they are added.
     pub const ALL: [Self; 7] =
         [Self::Solids, Self::Interfaces, Self::Loads, Self::Dampers, Self::Stabilization, Self::Damping, Self::Inertia];
 

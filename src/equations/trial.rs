@@ -7,7 +7,7 @@ use crate::model::state::State;
 use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
 
-/// One increment to be solved: from where, to when, under which step.
+/// One increment to be solved: initial state, end time and step.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
     /// committed state
@@ -18,22 +18,22 @@ pub struct Trial<'a> {
     pub time: f64,
     /// Δt [T]
     pub dt: f64,
-    /// Start and end of the increment beyond whose end equilibrium is asked for, if it is
+    /// Start and end of the increment, if equilibrium is required beyond its end
     pub beyond: Option<[f64; 2]>,
-    /// α_n is this many times the one given: above 1 for contacts under the augmented Lagrangian, below 1 for all on the way to
-    /// a start value
+    /// Factor on α_n: above 1 for contacts in the augmented Lagrangian method, below 1 for all contacts in the iterations for
+    /// an initial guess
     pub stiffening: f64,
-    /// Whether the bodies deform under the pressures that arise within the increment; central differences move first
+    /// Whether the bodies deform under the pressures that arise within the increment; false in central differences
     pub settles: bool,
 }
 
 impl<'a> Trial<'a> {
-    /// The increment from a state to a time.
+    /// Creates the increment from a state to a time.
     pub fn new(old: &'a State, step: &'a Step, time: f64, dt: f64) -> Self {
         Self { old, step, time, dt, beyond: None, stiffening: 1.0, settles: true }
     }
 
-    /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
+    /// Returns the increment to the time t + θ Δt at which the scheme requires equilibrium.
     pub fn ahead(self) -> Trial<'a> {
         let theta = self.step.scheme.theta();
         if theta == 1.0 {
@@ -54,7 +54,7 @@ impl<'a> Trial<'a> {
         1.0 - self.step.span.share(self.time)
     }
 
-    /// ū of a support at the end of the increment; not finite where its expression has no value [L].
+    /// ū of a support at the end of the increment; not finite if its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
         if self.beyond.is_some() {
             return self.thirds(support, model)[3];

@@ -1,4 +1,4 @@
-//! Laws of materials: friction of interfaces, stress of bodies.
+//! Constitutive laws: friction of interfaces, stress of bodies.
 
 pub mod bulk;
 pub mod friction;

@@ -1,27 +1,27 @@
-//! Parameters out of range, named with what is allowed.
+//! Errors of parameters out of range, with the allowed range.
 
 use std::borrow::Cow;
 
 use thiserror::Error;
 
-/// A parameter that is not allowed.
+/// A parameter out of range.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("\"{name}\" is {value}, but {allowed}")]
 #[non_exhaustive]
 pub struct InvalidParameter {
     /// key in the case file
     pub name: &'static str,
-    /// what the case file says
+    /// value in the case file
     pub value: f64,
-    /// what may be said
+    /// allowed range
     pub allowed: Cow<'static, str>,
 }
 
-/// Refuse a value unless it is finite and `fits`. What is allowed is written only where it is refused: laws whose parameters vary
-/// in time are checked at every increment.
+/// Refuses a value unless it is finite and `fits`. The text of `allowed` is made only if it is refused: laws with
+/// time-dependent parameters are checked at every increment.
 ///
 /// # Errors
-/// [`InvalidParameter`] with what is `allowed`.
+/// Returns [`InvalidParameter`] with what is `allowed`.
 pub fn require(name: &'static str, value: f64, fits: bool, allowed: impl ToString) -> Result<(), InvalidParameter> {
     match fits && value.is_finite() {
         true => Ok(()),
@@ -29,47 +29,47 @@ pub fn require(name: &'static str, value: f64, fits: bool, allowed: impl ToStrin
     }
 }
 
-/// Refuse a value that is not positive and finite.
+/// Refuses a value that is not positive and finite.
 ///
 /// # Errors
-/// [`InvalidParameter`].
+/// Returns [`InvalidParameter`] for such a value.
 pub fn require_positive(name: &'static str, value: f64) -> Result<(), InvalidParameter> {
     require(name, value, value > 0.0, "it must be positive and finite")
 }
 
-/// Refuse a value that is negative or not finite.
+/// Refuses a value that is negative or not finite.
 ///
 /// # Errors
-/// [`InvalidParameter`].
+/// Returns [`InvalidParameter`] for such a value.
 pub fn require_not_negative(name: &'static str, value: f64) -> Result<(), InvalidParameter> {
     require(name, value, value >= 0.0, "it must be zero or positive, and finite")
 }
 
-/// A name that no parameter of a law has.
+/// Error: no parameter of a law has this name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{name}` is not a parameter of this law; known are `{}`", known.join("`, `"))]
 #[non_exhaustive]
 pub struct UnknownParameter {
-    /// the name
+    /// requested name
     pub name: String,
-    /// those that there are
+    /// existing names
     pub known: Vec<String>,
 }
 
-/// Parameters of a law that are numbers, by the names that cases give them.
+/// Numerical parameters of a law, by their names in cases.
 pub trait Numbers {
     /// Names of the parameters.
     fn names(&self) -> Vec<String>;
 
-    /// The parameter of a name, if it is one of them.
+    /// The parameter of a name, if there is one.
     fn number(&mut self, name: &str) -> Option<&mut f64>;
 }
 
-/// [`Numbers`] of a type by names and fields; those in the second list may be left out in a case.
+/// Implements [`Numbers`] for a type by names and fields; those in the second list are optional in a case.
 macro_rules! numbers {
     ($parameters:ty: $($name:literal $field:ident),*; $($optional:literal $option:ident),*) => {
         impl $parameters {
-            /// Names of the parameters that are numbers.
+            /// Names of the numerical parameters.
             pub(crate) const NUMBERS: &'static [&'static str] = &[$($name,)* $($optional),*];
         }
 

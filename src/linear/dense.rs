@@ -1,20 +1,20 @@
-//! LU of a matrix whose nodes are all coupled with each other.
+//! LU of a matrix with all nodes coupled.
 //!
 //! # Halved
 //!
-//! LU of a dense matrix of two unknowns a node, in which nothing but every node's own block varies, and there nothing in the
-//! equation of one direction: these equations are eliminated once.
+//! LU of a dense matrix of two unknowns per node, in which only the diagonal block of every node varies, and in it not the
+//! equation of one direction: these constant equations are eliminated once.
 //!
 //! ```text
-//! A = S + diag(C_k),   C_k = [c_tt  c_tn]           n: direction of node k whose equation stays, t: across it
+//! A = S + diag(C_k),   C_k = [c_tt  c_tn]           n: direction of node k with a constant equation, t: perpendicular
 //!                            [ 0     α_k]
 //! A_NN = S_NN + α                                    N, T: the unknowns along n and t of all nodes
 //! G = A_NN⁻¹ S_NT,   y = A_NN⁻¹ b_N
 //! (S_TT − S_TN G + c_tt − c_tn G) x_T = b_T − S_TN y − c_tn y,   x_N = y − G x_T
 //! ```
 //!
-//! G and S_TT − S_TN G do not vary. What is left to factorize has half as many equations, an eighth of the operations. An A that
-//! has not that form is factorized whole, where that is worth it.
+//! G and S_TT − S_TN G are constant. The remaining matrix has half as many equations, an eighth of the operations. An A without
+//! that form is factorized as a whole, if that pays.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
@@ -25,24 +25,24 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{LinearFailure, LinearSolver, SparseMatrix};
 
-/// Dense LU with the exchange of rows, on one thread: a contact's few hundred unknowns are done sooner than another thread
-/// wakes up.
+/// Dense LU with row pivoting on one thread: the few hundred unknowns of a contact take less time than starting another
+/// thread.
 #[derive(Default)]
 pub struct DenseLu {
     size: usize,
     /// L and U, column by column
     factors: Vec<f64>,
-    /// Row at each place, and place of each row
+    /// Row at each position, and position of each row
     rows: Vec<usize>,
     places: Vec<usize>,
     room: Option<MemBuffer>,
 }
 
 impl DenseLu {
-    /// Factorize a matrix of this size, given column by column.
+    /// Factorizes a matrix of this size, given column by column.
     ///
     /// # Errors
-    /// [`LinearFailure::Singular`] when a pivot vanishes.
+    /// Returns [`LinearFailure::Singular`] if a pivot vanishes.
     pub fn factorize_columns(&mut self, size: usize, columns: Vec<f64>) -> Result<(), LinearFailure> {
         self.resize(size);
         if size == 0 {
@@ -60,7 +60,7 @@ impl DenseLu {
         }
     }
 
-    /// Solve for as many right-hand sides as there are columns.
+    /// Solves for as many right-hand sides as there are columns.
     pub fn solve_columns(&self, b: &mut [f64]) {
         if b.is_empty() {
             return;
@@ -74,7 +74,7 @@ impl DenseLu {
         solve::solve_in_place_with_conj(lu, lu, exchanges, faer::Conj::No, right, Par::Seq, MemStack::new(&mut room));
     }
 
-    /// Room for matrices of this size.
+    /// Allocates memory for matrices of this size.
     fn resize(&mut self, size: usize) {
         if self.size == size && self.room.is_some() {
             return;
@@ -115,7 +115,7 @@ pub struct Steady {
     pub stiffness: f64,
 }
 
-/// Share of a node's own block below which its steady equation counts as unchanged: what round-off leaves.
+/// Relative round-off of a node's diagonal block, within which its constant equation counts as unchanged.
 const UNCHANGED: f64 = 1e-12;
 
 /// S with the equations along n eliminated.
@@ -132,10 +132,10 @@ pub struct Eliminated {
 }
 
 impl Eliminated {
-    /// From the matrix S, stored by columns.
+    /// Eliminates the constant equations from the matrix S, stored by columns.
     ///
     /// # Errors
-    /// [`LinearFailure`] where A_NN has no inverse.
+    /// Returns [`LinearFailure`] if A_NN is singular.
     pub fn new(stiffness: &[f64], steady: Vec<Steady>) -> Result<Self, LinearFailure> {
         let count = steady.len();
         let block = |row: usize, column: usize| {
@@ -162,7 +162,7 @@ impl Eliminated {
         Ok(Self { steady, own, along, following, pulling, left })
     }
 
-    /// Bytes that so many nodes take.
+    /// Memory for this number of nodes [bytes].
     pub fn memory(nodes: usize) -> usize {
         4 * size_of::<f64>() * nodes * nodes
     }
@@ -182,7 +182,7 @@ impl Eliminated {
         self.steady.iter().zip(&self.own).enumerate().map(node).collect()
     }
 
-    /// The matrix that is left to factorize.
+    /// The remaining matrix to be factorized.
     fn halved(&self, varying: &[[f64; 2]]) -> Vec<f64> {
         let count = varying.len();
         let mut left = self.left.clone();
@@ -220,17 +220,17 @@ fn subtract_products(m: &[f64], x: &[f64], b: &mut [f64], size: usize) {
     matmul(b, Accum::Add, m, x, -1.0, Par::Seq);
 }
 
-/// Dense LU that eliminates what does not vary once.
+/// Dense LU that eliminates the constant part once.
 #[derive(Default)]
 pub struct HalvedLu {
     lu: DenseLu,
-    /// c_tt and c_tn of the matrix that is factorized by halves
+    /// c_tt and c_tn of a matrix factorized by halves
     varying: Option<Vec<[f64; 2]>>,
 }
 
 impl HalvedLu {
-    /// A solver for the matrices to come, given what of them is `eliminated`; `whole`: whether they are worth a complete
-    /// factorization.
+    /// Returns a solver for matrices with the constant part `eliminated`; `whole` permits a complete factorization of other
+    /// matrices.
     pub fn with<'a>(&'a mut self, eliminated: Option<&'a Eliminated>, whole: bool) -> impl LinearSolver + 'a {
         Halving { eliminated, whole, own: self }
     }

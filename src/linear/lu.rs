@@ -1,4 +1,4 @@
-//! faer's sparse LU with column ordering; its symbolic part is kept while the pattern stands.
+//! faer's sparse LU with column ordering; its symbolic part is kept while the pattern is unchanged.
 
 use std::sync::Arc;
 
@@ -25,7 +25,8 @@ struct Order {
     symbolic: SymbolicLu<usize>,
 }
 
-// One thread inside the factorization: its pivots, and so the bits of the answer, must not depend on the thread count.
+// The factorization uses one thread: its pivots, and therefore the bits of the result, must not depend on the number of
+// threads.
 const SERIAL: Par = Par::Seq;
 
 impl Order {
@@ -33,7 +34,7 @@ impl Order {
         let (columns, rows) = pattern.scalar();
         let n = columns.len() - 1;
         let scalar = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
-        // The automatic choice takes column-by-column elimination for a few thousand unknowns, which is 5 times slower.
+        // The automatic choice is column-by-column elimination for a few thousand unknowns, which is 5 times slower.
         let supernodal = SupernodalThreshold::FORCE_SUPERNODAL;
         let parameters = LuSymbolicParams { supernodal_flop_ratio_threshold: supernodal, ..Default::default() };
         let symbolic = factorize_symbolic_lu(scalar, parameters).map_err(failed)?;

@@ -1,27 +1,27 @@
-//! Free memory, as far as the system reports it, and whether something fits into it.
+//! Free memory as reported by the system, and checks of required memory.
 
 use std::fs::read_to_string;
 
 use thiserror::Error;
 
-/// Below this size the free memory is not checked [bytes].
+/// Size below which the free memory is not checked [bytes].
 pub const LITTLE: usize = 1 << 24;
 
-/// A need of memory above what is free.
+/// Error: the required memory exceeds the free memory.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{needed:.2} GiB of memory, and {available:.2} GiB are free")]
 pub struct NoRoom {
-    /// what is needed [GiB]
+    /// required [GiB]
     pub needed: f64,
-    /// what there is [GiB]
+    /// available [GiB]
     pub available: f64,
 }
 
-/// Refuse what needs more bytes than are free, as far as the system reports it: the process would be killed. Those that
-/// are `held` already are given back before.
+/// Refuses a request for more bytes than are free, as far as the system reports it, since the process would be killed. The
+/// bytes already `held` are released first.
 ///
 /// # Errors
-/// [`NoRoom`].
+/// Returns [`NoRoom`] with the required and the free memory.
 pub fn room_for(needed: usize, held: usize) -> Result<(), NoRoom> {
     if needed < held + LITTLE {
         return Ok(());
@@ -29,7 +29,7 @@ pub fn room_for(needed: usize, held: usize) -> Result<(), NoRoom> {
     available_memory().map_or(Ok(()), |free| fits(needed, held + free))
 }
 
-/// Whether bytes that are needed are available.
+/// Checks that the required bytes are available.
 fn fits(needed: usize, available: usize) -> Result<(), NoRoom> {
     match needed <= available {
         true => Ok(()),
@@ -37,13 +37,13 @@ fn fits(needed: usize, available: usize) -> Result<(), NoRoom> {
     }
 }
 
-/// Bytes in GiB.
+/// Converts bytes to GiB.
 pub(super) fn gibibytes(bytes: usize) -> f64 {
     bytes as f64 / (1u64 << 30) as f64
 }
 
-/// Bytes that this process can still take: what Linux says is available, what its control groups leave, and what the limit of
-/// its address space does (ulimit -v).
+/// Memory still available to this process [bytes]: the minimum of the available memory reported by Linux, the room left by its
+/// control groups, and that left by the limit of its address space (ulimit -v).
 pub fn available_memory() -> Option<usize> {
     let status = read_to_string("/proc/meminfo").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
@@ -61,8 +61,8 @@ pub fn address_space() -> Option<usize> {
     Some(limit.saturating_sub(1024 * used.trim().trim_end_matches("kB").trim().parse::<usize>().ok()?))
 }
 
-/// Room left by every control group of this process: its limit less what is used, caches that can be dropped not
-/// counted.
+/// Room left by every control group of this process: its limit minus the used memory, without caches that can be
+/// dropped.
 fn control_groups() -> impl Iterator<Item = usize> {
     const FIRST: (&str, [&str; 2]) = ("/sys/fs/cgroup/memory", ["memory.limit_in_bytes", "memory.usage_in_bytes"]);
     const SECOND: (&str, [&str; 2]) = ("/sys/fs/cgroup", ["memory.max", "memory.current"]);
@@ -88,7 +88,7 @@ fn control_groups() -> impl Iterator<Item = usize> {
     })
 }
 
-/// Bytes of files that a control group keeps in memory and can drop.
+/// Size of cached files that a control group can drop [bytes].
 fn dropped(folder: &str) -> usize {
     let statistics = read_to_string(format!("{folder}/memory.stat")).unwrap_or_default();
     let line = statistics.lines().find_map(|line| line.strip_prefix("inactive_file "));

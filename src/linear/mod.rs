@@ -1,4 +1,4 @@
-//! Sparse matrices of two unknowns a node, and the linear solvers behind one trait.
+//! Sparse matrices of two unknowns per node, and the linear solvers with a common trait.
 
 mod dense;
 mod lu;
@@ -14,14 +14,14 @@ pub use sparse::{BlockPosition, Pattern, SparseMatrix};
 
 use thiserror::Error;
 
-/// Why a linear system was not solved.
+/// Reason why a linear system was not solved.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum LinearFailure {
-    /// The matrix has no inverse, or none that double precision can find: what the solver met.
+    /// The matrix is singular, or numerically so: message of the solver.
     #[error("the linear system is singular ({0})")]
     Singular(String),
-    /// A matrix that is worth its factorization only while half of its equations do not vary ([`HalvedLu`]), and they do.
+    /// The matrix pays for a factorization only while half of its equations are constant ([`HalvedLu`]), and they are not.
     #[error("more of the matrix varies than was eliminated before")]
     Varies,
     /// The factors do not fit into memory.
@@ -32,22 +32,22 @@ pub enum LinearFailure {
     TooLarge {
         /// number of equations
         size: usize,
-        /// what they take [GiB]
+        /// required memory [GiB]
         needed: f64,
-        /// what there is [GiB]
+        /// free memory [GiB]
         available: f64,
     },
 }
 
-/// A direct solver: factorize once, solve often. The order of elimination is kept while the pattern stands.
+/// A direct solver: factorize once, solve often. The elimination order is kept while the pattern is unchanged.
 pub trait LinearSolver: Send {
-    /// Factorize A = LU.
+    /// Factorizes A = LU.
     ///
     /// # Errors
-    /// [`LinearFailure`] when no pivot is left.
+    /// Returns [`LinearFailure`] if no pivot remains.
     fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure>;
 
-    /// Overwrite b with A⁻¹ b of the last factorized matrix.
+    /// Overwrites b with A⁻¹ b of the last factorized matrix.
     fn solve(&mut self, b: &mut [f64]);
 
     /// Whether pivots are chosen among all rows, so that a solution needs no refinement: its backward error is of the order of
@@ -56,14 +56,14 @@ pub trait LinearSolver: Send {
         false
     }
 
-    /// Pivots of the last factorization that vanished and were replaced: what [`solve`](Self::solve) gives needs
-    /// refinement then, and may not satisfy the equations even so.
+    /// Number of pivots of the last factorization that vanished and were replaced; a result of [`solve`](Self::solve) then
+    /// needs refinement, and may not satisfy the equations even so.
     fn perturbed_pivots(&self) -> usize {
         0
     }
 }
 
-/// A solution and how well it satisfies its equations.
+/// A solution, and the accuracy to which it satisfies its equations.
 pub struct Solution {
     /// x
     pub x: Vec<f64>,
@@ -71,36 +71,36 @@ pub struct Solution {
     pub residual: f64,
     /// maxᵢ |b − A x|ᵢ / (|A| |x| + |b|)ᵢ: the relative change of the values of A and b that makes x exact [-]
     pub backward_error: f64,
-    /// Pivots that vanished and were replaced
+    /// Number of pivots that vanished and were replaced
     pub perturbed_pivots: usize,
-    /// Whether [`SparseLu`] took over because refinement stalled
+    /// Whether [`SparseLu`] was used because refinement stalled
     pub fallback: bool,
 }
 
 /// Backward error that needs no refinement.
 const EXACT: f64 = 1e-13;
 
-/// Backward error at which refinement counts as stalled, and a solver that exchanges all rows takes over.
+/// Backward error at which refinement counts as stalled, and a solver with full row pivoting is used.
 const STALLED: f64 = 1e-12;
 
-/// Most steps of refinement.
+/// Maximum number of refinement steps.
 const REFINEMENTS: usize = 3;
 
 /// Backward error above which a system with vanished pivots counts as singular.
 const HOPELESS: f64 = 1e-6;
 
-/// Factorize A, solve A x = b and refine x until its backward error is small or no longer falls.
+/// Factorizes A, solves A x = b and refines x until its backward error is small or no longer decreases.
 ///
 /// ```text
 /// d = (L U)⁻¹ (b − A x),   x ← x + d
 /// ```
 ///
 /// A system whose matrix lost pivots may still have a solution; see [`Solution::perturbed_pivots`]. If refinement stalls,
-/// [`SparseLu`], which is slower and exchanges rows without bounds, has its turn.
+/// [`SparseLu`] is used, which is slower and pivots among all rows.
 ///
 /// # Errors
-/// [`LinearFailure`] when the factors do not fit into memory, the factorization fails, the solution is not finite, or
-/// pivots vanished and nothing can make up for them.
+/// Returns [`LinearFailure`] if the factors do not fit into memory, the factorization fails, the solution is not finite, or
+/// pivots vanished and refinement cannot compensate for them.
 ///
 /// Source: Arioli, Demmel & Duff (1989), Solving sparse linear systems with sparse backward error, doi:10.1137/0610013.
 pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Result<Solution, LinearFailure> {
@@ -126,12 +126,12 @@ pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) ->
     Ok(solution)
 }
 
-/// Solve A x = b with the factors of an earlier [`solve`] on the same A, as they are.
+/// Solves A x = b with the factors of an earlier [`solve`] on the same A, without refactorization.
 pub fn solve_again(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Solution {
     refined(solver, matrix, b, 0)
 }
 
-/// Solve with the last factors, and refine so many times at most, as long as it helps.
+/// Solves with the last factors, with at most `most` refinement steps as long as they help.
 fn refined(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64], most: usize) -> Solution {
     let mut x = b.to_vec();
     solver.solve(&mut x);
@@ -156,10 +156,10 @@ fn refined(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64], most
     Solution { x, residual: relative(&residual, b), backward_error, perturbed_pivots, fallback: false }
 }
 
-/// The solution of a stable solver as it is.
+/// Returns the solution of a stable solver unrefined.
 fn stable(matrix: &SparseMatrix, x: Vec<f64>, b: &[f64]) -> Solution {
     let residual = relative(&matrix.residual(&x, b), b);
-    // What is no number has no backward error either, and another solver takes over.
+    // A non-finite residual has no backward error, so that another solver is used.
     let backward_error = if residual.is_finite() { 0.0 } else { f64::NAN };
     Solution { x, residual, backward_error, perturbed_pivots: 0, fallback: false }
 }
@@ -170,7 +170,7 @@ fn relative(residual: &[f64], b: &[f64]) -> f64 {
     if size > 0.0 { norm(residual) / size } else { 0.0 }
 }
 
-/// b − A x and its largest share of |A| |x| + |b|.
+/// b − A x, and its largest fraction of |A| |x| + |b|.
 fn backward_error(matrix: &SparseMatrix, x: &[f64], b: &[f64]) -> (Vec<f64>, f64) {
     let (residual, sizes) = matrix.residual_and_size(x, b);
     let share = |(r, size): (&f64, &f64)| match *r {

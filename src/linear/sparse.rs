@@ -7,7 +7,7 @@ use std::sync::Arc;
 pub struct Pattern {
     /// Start of each column node's list in `rows`; length nodes + 1
     starts: Vec<usize>,
-    /// Row nodes coupled with each column node, ascending, the node itself included
+    /// Row nodes coupled with each column node, ascending, including the node itself
     rows: Vec<usize>,
 }
 
@@ -26,7 +26,7 @@ impl BlockPosition {
 }
 
 impl Pattern {
-    /// Pattern of a set of node groups: all nodes of a group are coupled with each other.
+    /// Creates the pattern of a set of node groups: all nodes of a group are coupled with each other.
     pub fn new<'a>(nodes: usize, groups: impl Iterator<Item = &'a [usize]> + Clone) -> Self {
         let mut counts = vec![1; nodes];
         for group in groups.clone() {
@@ -59,7 +59,7 @@ impl Pattern {
         self.starts.len() - 1
     }
 
-    /// Nodes coupled with `node`, ascending, itself included.
+    /// Nodes coupled with `node`, ascending, including itself.
     pub fn neighbours(&self, node: usize) -> &[usize] {
         &self.rows[self.starts[node]..self.starts[node + 1]]
     }
@@ -113,7 +113,7 @@ pub struct SparseMatrix {
 }
 
 impl SparseMatrix {
-    /// The zero matrix on a pattern.
+    /// Creates the zero matrix on a pattern.
     pub fn zero(pattern: Arc<Pattern>) -> Self {
         let values = vec![0.0; pattern.values()];
         Self { pattern, values }
@@ -124,25 +124,25 @@ impl SparseMatrix {
         2 * self.pattern.nodes()
     }
 
-    /// Set every value to zero.
+    /// Sets every value to zero.
     pub fn clear(&mut self) {
         self.values.fill(0.0);
     }
 
-    /// Add `value` times the identity to the block of one dof: A_ii += value.
+    /// Adds `value` to the diagonal entry of one dof: A_ii += value.
     pub fn add_diagonal(&mut self, dof: usize, value: f64) {
         let (node, d) = (dof / 2, dof % 2);
         self.add_own(node, (d, d), value);
     }
 
-    /// Add to an entry (i, j) of a node's own block.
+    /// Adds to an entry (i, j) of a node's diagonal block.
     pub fn add_own(&mut self, node: usize, (i, j): (usize, usize), value: f64) {
         if let Some(block) = self.pattern.block(node, node) {
             self.values[block.value(i, j)] += value;
         }
     }
 
-    /// Add another matrix on the same pattern, each column times its factor.
+    /// Adds another matrix on the same pattern, each column multiplied by its factor.
     pub fn add_columns(&mut self, other: &SparseMatrix, factors: &[f64]) {
         let mut k = 0;
         for (column, factor) in factors.iter().enumerate() {
@@ -163,7 +163,7 @@ impl SparseMatrix {
             .collect()
     }
 
-    /// Mark, beside the nodes that are marked, all that values couple with them, over however many others.
+    /// Extends the marks to all nodes that nonzero values couple with marked ones, directly or through others.
     pub fn reach(&self, marked: &mut [bool]) {
         let couples = |row: usize, column: usize| {
             let of = |block: BlockPosition| (0..4).any(|k| self.values[block.value(k / 2, k % 2)] != 0.0);
@@ -182,10 +182,10 @@ impl SparseMatrix {
         }
     }
 
-    /// Replace the row of `dof` by `diagonal` on the diagonal and zeros elsewhere.
+    /// Replaces the row of `dof` by `diagonal` on the diagonal and zeros elsewhere.
     pub fn replace_row(&mut self, dof: usize, diagonal: f64) {
         let (node, d) = (dof / 2, dof % 2);
-        // The pattern is symmetric: the columns that meet this row are the neighbours of its node.
+        // The pattern is symmetric: the columns with an entry in this row are the neighbours of its node.
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
             if let Some(block) = self.pattern.block(node, column) {
@@ -196,7 +196,8 @@ impl SparseMatrix {
         }
     }
 
-    /// Add a share of the equation of one dof, (node, component), to that of another; whatever the first couples with, the other does.
+    /// Adds a multiple of the equation of one dof, (node, component), to that of another, which must be coupled with the same
+    /// nodes.
     pub fn add_row(&mut self, (from, i): (usize, usize), (to, j): (usize, usize), share: f64) {
         for k in self.pattern.starts[from]..self.pattern.starts[from + 1] {
             let column = self.pattern.rows[k];
@@ -210,8 +211,8 @@ impl SparseMatrix {
         }
     }
 
-    /// Turn the equations of a node: that of `dof` becomes Σ own_j x_j over its own two unknowns, the other Σ across_i times
-    /// both as they are.
+    /// Rotates the equations of a node: that of `dof` becomes Σ own_j x_j over its two unknowns, the other Σ across_i times
+    /// both original ones.
     pub fn turn_rows(&mut self, dof: usize, own: [f64; 2], across: [f64; 2]) {
         let (node, d) = (dof / 2, dof % 2);
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
@@ -231,7 +232,7 @@ impl SparseMatrix {
         y
     }
 
-    /// A x of several vectors, the values being read once.
+    /// A x for several vectors, reading the values once.
     pub fn multiply_all<const N: usize>(&self, all: [&[f64]; N]) -> [Vec<f64>; N] {
         let mut products = all.map(|x| vec![0.0; x.len()]);
         if self.pattern.rows.len() == self.pattern.nodes().pow(2) {
@@ -265,7 +266,7 @@ impl SparseMatrix {
         self.multiply(x).iter().zip(b).map(|(ax, b)| b - ax).collect()
     }
 
-    /// b − A x and |A| |x| + |b|: the residual, and what each of its terms sums up.
+    /// b − A x and |A| |x| + |b|: the residual, and the sum of the magnitudes of its terms.
     pub fn residual_and_size(&self, x: &[f64], b: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut residual = b.to_vec();
         let mut size: Vec<f64> = b.iter().map(|b| b.abs()).collect();

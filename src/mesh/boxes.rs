@@ -1,8 +1,8 @@
-//! Which of many boxes meet another one: a tree of boxes around boxes, each divided in halves along its longer side.
+//! Search for the boxes that intersect a given box: a tree of bounding boxes, each divided in halves along its longer side.
 
 use nalgebra::Vector2;
 
-/// A box along the axes [L].
+/// An axis-parallel box [L].
 #[derive(Clone, Copy, Debug)]
 pub struct Box2 {
     /// lower left corner
@@ -12,17 +12,17 @@ pub struct Box2 {
 }
 
 impl Box2 {
-    /// The smallest box around places; none around nothing.
+    /// Returns the bounding box of positions; `None` if there are none.
     pub fn around(places: impl IntoIterator<Item = Vector2<f64>>) -> Option<Self> {
         places.into_iter().map(|at| Self { low: at, high: at }).reduce(Self::with)
     }
 
-    /// The smallest box around two.
+    /// Returns the bounding box of two boxes.
     fn with(self, other: Self) -> Self {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
-    /// One that is larger by a margin on every side.
+    /// Returns the box extended by a margin on every side.
     #[must_use]
     pub fn wider(self, margin: f64) -> Self {
         Self { low: self.low.add_scalar(-margin), high: self.high.add_scalar(margin) }
@@ -38,17 +38,17 @@ impl Box2 {
     }
 }
 
-/// Boxes in a tree; each has the number of its place among those that were given.
+/// A tree of boxes; each keeps its number in the given order.
 #[derive(Debug)]
 pub struct Tree {
-    /// leaf by leaf
+    /// boxes in the order of the leaves
     boxes: Vec<(Box2, usize)>,
-    /// the box around each part of the tree; the halves of part k are 2 k + 1 and 2 k + 2
+    /// bounding box of each part of the tree; the halves of part k are 2 k + 1 and 2 k + 2
     around: Vec<Option<Box2>>,
 }
 
 impl Tree {
-    /// The tree of boxes, O(n log n).
+    /// Creates the tree of boxes, O(n log n).
     pub fn new(boxes: impl Iterator<Item = Box2>) -> Self {
         let mut boxes: Vec<(Box2, usize)> = boxes.zip(0..).collect();
         let mut around = vec![None; 2 * boxes.len().next_power_of_two()];
@@ -56,7 +56,7 @@ impl Tree {
         Self { boxes, around }
     }
 
-    /// The numbers of those that meet a box, ascending.
+    /// Returns the numbers of the boxes that intersect a box, ascending.
     pub fn meeting(&self, other: &Box2) -> Vec<usize> {
         let mut found = Vec::new();
         let mut parts = vec![(0, 0..self.boxes.len())];
@@ -76,7 +76,7 @@ impl Tree {
     }
 }
 
-/// Put the boxes of a part into two halves, and so on down to single ones.
+/// Divides the boxes of a part into two halves, recursively down to single ones.
 fn divide(boxes: &mut [(Box2, usize)], part: usize, around: &mut [Option<Box2>]) {
     let Some(all) = boxes.iter().map(|(own, _)| *own).reduce(Box2::with) else { return };
     around[part] = Some(all);

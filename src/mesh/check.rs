@@ -1,9 +1,9 @@
-//! The gate that every mesh passes: from what a reader found to a [`Mesh`] that keeps its promises.
+//! Check of every mesh: turns the data of a reader into a consistent [`Mesh`].
 //!
-//! A mesh as readers find it, before it is checked.
+//! The raw mesh is the data of a reader before the check.
 //!
-//! Elements that have an area and still cannot be computed with: sides of no length, and nodes nearer to each other than their
-//! positions are known.
+//! Degenerate elements with a positive area are refused as well: sides of negligible length, and nodes closer to each other
+//! than the accuracy of their positions.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 use super::{Edge, Element, Group, Mesh, MeshError};
 use crate::mesh::shape::ElementKind;
 
-/// The mesh, if the raw one makes sense: elements turned counter-clockwise, edges oriented, unused nodes dropped.
+/// Returns the checked mesh: elements counter-clockwise, edges oriented, unused nodes removed.
 pub(super) fn finish(raw: RawMesh) -> Result<Mesh, MeshError> {
     if raw.bodies.is_empty() && raw.points.is_empty() {
         return Err(MeshError::NoElements);
@@ -71,12 +71,12 @@ fn kind(group: &str, cell: &RawCell) -> Result<ElementKind, MeshError> {
 
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];
 
-/// The element itself, or its mirror image in the numbering if its corners run clockwise.
+/// Returns the element, with reversed numbering if its corners run clockwise.
 fn counter_clockwise(mut element: Element, positions: &[Vector2<f64>]) -> Element {
     let n = element.kind.corners();
     let (corners, rest) = element.nodes.split_at_mut(n);
     if signed_area(corners, positions) < 0.0 {
-        // The first corner stays, so the side from corner i to i + 1 becomes side n − 1 − i; a centre node stays too.
+        // The first corner is kept, so the side from corner i to i + 1 becomes side n − 1 − i; a centre node is kept too.
         corners[1..].reverse();
         let sides = rest.len().min(n);
         rest[..sides].reverse();
@@ -84,8 +84,8 @@ fn counter_clockwise(mut element: Element, positions: &[Vector2<f64>]) -> Elemen
     element
 }
 
-/// Area of the polygon of the corners, positive if they run counter-clockwise. Measured from the first corner, so that
-/// an element far from the origin keeps its digits.
+/// Area of the polygon of the corners, positive if they run counter-clockwise; computed relative to the first corner to avoid
+/// round-off far from the origin.
 fn signed_area(corners: &[usize], positions: &[Vector2<f64>]) -> f64 {
     let arms: Vec<_> = corners.iter().map(|&c| positions[c] - positions[corners[0]]).collect();
     arms.windows(2).map(|pair| 0.5 * pair[0].perp(&pair[1])).sum()
@@ -119,7 +119,7 @@ fn check_area(
 ) -> Result<(), MeshError> {
     let arms: Vec<_> = element.nodes.iter().map(|&n| positions[n] - positions[element.nodes[0]]).collect();
     let size = arms.iter().map(|arm| arm.norm()).fold(0.0, f64::max);
-    // A sliver of round-off width still has positive area; NaN has none.
+    // A sliver of round-off width still has positive area; NaN fails the test.
     let flat = 1e-12 * size * size;
     if gradients[&element.kind].iter().all(|gradient| jacobian(gradient, &arms) > flat) {
         Ok(())
@@ -134,7 +134,7 @@ fn jacobian(gradient: &[[f64; 2]], positions: &[Vector2<f64>]) -> f64 {
     along(0).perp(&along(1))
 }
 
-/// Two elements with the same corners would count their stiffness and mass twice.
+/// Refuses elements with the same corners, whose stiffness and mass would count twice.
 fn refuse_duplicates(mesh: &Mesh) -> Result<(), MeshError> {
     let mut by_corners: Vec<_> =
         mesh.elements.iter().enumerate().map(|(e, element)| (sorted_corners(element), e)).collect();
@@ -149,7 +149,7 @@ fn refuse_duplicates(mesh: &Mesh) -> Result<(), MeshError> {
     })
 }
 
-/// The corners in ascending order; a triangle is filled up with a number no node has.
+/// Corners in ascending order; a triangle is padded with a number that no node has.
 fn sorted_corners(element: &Element) -> [usize; 4] {
     let mut corners = [usize::MAX; 4];
     corners.iter_mut().zip(&element.nodes[..element.kind.corners()]).for_each(|(corner, &node)| *corner = node);
@@ -194,13 +194,13 @@ fn line_nodes(numbers: &NodeNumbers, group: &str, cell: &RawCell) -> Result<Vec<
     numbers.of("line", group, cell)
 }
 
-/// The two end nodes in ascending order: what an edge is known by, whichever way it runs.
+/// The two end nodes in ascending order: the key of an edge, independent of its direction.
 fn ends(nodes: &[usize]) -> [usize; 2] {
     [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])]
 }
 
-/// For the given edges only, every side of an element that coincides with one: the element, and the nodes of the side
-/// in the order that has the element on the left.
+/// Returns all element sides that coincide with one of the `wanted` edges: the element, and the nodes of the side in the order
+/// with the element on the left.
 fn adjacent_sides(mesh: &Mesh, wanted: impl Iterator<Item = [usize; 2]>) -> HashMap<[usize; 2], Vec<Edge>> {
     let mut sides: HashMap<_, Vec<Edge>> = wanted.map(|ends| (ends, Vec::new())).collect();
     for (number, element) in mesh.elements.iter().enumerate() {
@@ -215,7 +215,7 @@ fn adjacent_sides(mesh: &Mesh, wanted: impl Iterator<Item = [usize; 2]>) -> Hash
     sides
 }
 
-/// The one side that a line coincides with.
+/// Returns the one side with which a line coincides.
 fn edge(mesh: &Mesh, sides: &[Edge], line: &[usize], tag: u64, group: &str) -> Result<Edge, MeshError> {
     let group = group.to_string();
     match sides {
@@ -246,7 +246,7 @@ fn add_points(mesh: &mut Mesh, numbers: &NodeNumbers, sets: BTreeMap<String, Vec
     Ok(())
 }
 
-/// A node without an element is an equation without stiffness; only named points may stand alone.
+/// Removes nodes without an element, which would be equations without stiffness; only named points may be isolated.
 fn drop_unused_nodes(mesh: &mut Mesh) {
     let mut number = vec![0; mesh.nodes.len()];
     let mut kept = 0;
@@ -283,7 +283,7 @@ fn renumber_nodes(mesh: &mut Mesh, number: &[usize]) {
     }
 }
 
-/// A mesh as it was read. Cells name their nodes by tag; nothing is checked.
+/// A mesh as read. Cells refer to their nodes by tag; nothing is checked.
 #[derive(Debug, Default)]
 pub(super) struct RawMesh {
     /// tag and position of each node
@@ -292,7 +292,7 @@ pub(super) struct RawMesh {
     pub bodies: BTreeMap<String, Vec<RawCell>>,
     /// lines by name of the curve
     pub edges: BTreeMap<String, Vec<RawCell>>,
-    /// points, cells of one node, by name of the set
+    /// points as cells of one node, by name of the set
     pub points: BTreeMap<String, Vec<RawCell>>,
 }
 
@@ -307,7 +307,7 @@ pub(super) struct RawCell {
 struct NodeNumbers(HashMap<u64, usize>);
 
 impl NodeNumbers {
-    /// Numbers by tag, in the order given.
+    /// Numbers nodes by tag, in the given order.
     pub(super) fn new(nodes: &[(u64, Vector2<f64>)]) -> Result<Self, MeshError> {
         let mut numbers = HashMap::with_capacity(nodes.len());
         for (number, (tag, at)) in nodes.iter().enumerate() {
@@ -321,7 +321,7 @@ impl NodeNumbers {
         Ok(Self(numbers))
     }
 
-    /// Numbers of the nodes of a cell; `what` ("element", "line", "point") and `group` are for the message.
+    /// Returns the numbers of the nodes of a cell; `what` ("element", "line", "point") and `group` are for the message.
     pub(super) fn of(&self, what: &str, group: &str, cell: &RawCell) -> Result<Vec<usize>, MeshError> {
         let number = |&node: &u64| {
             self.0.get(&node).copied().ok_or_else(|| MeshError::UnknownNode {
@@ -334,13 +334,13 @@ impl NodeNumbers {
     }
 }
 
-/// A side that is shorter than this share of its element is none: a strain over it would be the round-off of others.
+/// Smallest side of an element, as a fraction of its size; the strain along a shorter one would be dominated by round-off.
 const SHORT: f64 = 1e-8;
 
-/// Round-off of the positions as a share of a side beyond which the shape of the element is not known.
+/// Largest round-off of the positions, as a fraction of a side, for which the shape of an element is defined.
 const VAGUE: f64 = 1e-3;
 
-/// Refuse an element of a group, naming its nodes.
+/// Refuses an element of a group, with the tags of its nodes.
 fn refuse(
     element: &Element,
     tag: u64,

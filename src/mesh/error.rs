@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh, said so that it can be mended.
+//! Errors of meshes, with their remedies.
 
 use std::io;
 use std::path::PathBuf;
@@ -7,45 +7,45 @@ use thiserror::Error;
 
 use super::names::in_line;
 
-/// Why a mesh was refused.
+/// Reason why a mesh was refused.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// Any of the others, in a file.
+    /// Another error, with its file.
     #[error("{}: {cause}", in_line(&file.to_string_lossy()))]
     InFile {
         /// the mesh file
         file: PathBuf,
-        /// what is wrong with it
+        /// the error
         cause: Box<MeshError>,
     },
 
     /// There is no file at this path.
     #[error("there is no such mesh file; check the path")]
     NoFile,
-    /// The path leads to a folder or a device.
+    /// The path refers to a folder or a device.
     #[error("this is not a file but a {0}; name the .msh file itself")]
     NotAFile(&'static str),
-    /// The system would not let us read.
+    /// The system does not allow reading.
     #[error("the mesh file cannot be read: {0}")]
     Unreadable(io::Error),
 
-    /// Something other than a gmsh mesh.
+    /// The file is not a gmsh mesh.
     #[error("this is not a gmsh mesh: it does not begin with $MeshFormat; {EXPORT}")]
     NotGmsh,
-    /// A gmsh mesh of another version.
+    /// The gmsh mesh has an unsupported version.
     #[error("the mesh is in MSH format {0}, and only 4.1 and 2.2 are read; {EXPORT}")]
     Version(String),
-    /// The line below `$MeshFormat` makes no sense.
+    /// The line below `$MeshFormat` is invalid.
     #[error("the format line of the mesh is `{0}`, where `4.1 0 8`, `4.1 1 8` or `2.2 0 8` was expected; {EXPORT}")]
     Format(String),
-    /// A section is not there.
+    /// A section is missing.
     #[error("the mesh has no ${0} section: the file is incomplete or was cut short; {EXPORT}")]
     NoSection(&'static str),
     /// A section has no end.
     #[error("the ${0} section has no $End{0}: the file was cut short; {EXPORT}")]
     Truncated(&'static str),
-    /// A count that the file is too small to hold.
+    /// A count exceeds what the file can hold.
     #[error("the ${section} section claims {claimed} entries, more than a file of {bytes} bytes can hold; {EXPORT}")]
     ImpossibleCount {
         /// section without the dollar
@@ -65,15 +65,15 @@ pub enum MeshError {
         /// sum over its blocks
         found: usize,
     },
-    /// The parser gave up.
+    /// The parser failed.
     #[error("the mesh cannot be understood at {at}: {what}; {EXPORT}")]
     Malformed {
         /// line or byte
         at: String,
-        /// what the parser was reading and what it says
+        /// what the parser was reading, and its message
         what: String,
     },
-    /// Nodes with coordinates on their curve or surface.
+    /// Nodes are given by parametric coordinates on their curve or surface.
     #[error("the nodes carry parametric coordinates; export with Mesh.SaveParametric = 0")]
     Parametric,
     /// The mesh is not plane.
@@ -91,7 +91,7 @@ pub enum MeshError {
         /// its z
         z: f64,
     },
-    /// An element that the solver does not have.
+    /// The solver does not have this element type.
     #[error(
         "element {element} is a {kind} (gmsh type {number}); only triangles with 3 or 6 nodes, quadrilaterals with \
          4, 8 or 9, lines with 2 or 3 and points are read: mesh in 2D with Mesh.ElementOrder = 1 or 2"
@@ -99,23 +99,23 @@ pub enum MeshError {
     UnsupportedElement {
         /// tag of the element
         element: u64,
-        /// what gmsh calls the type
+        /// gmsh's name of the type
         kind: String,
         /// gmsh's number of the type
         number: i32,
     },
-    /// Elements without a body.
+    /// Elements belong to no body.
     #[error(
         "{count} elements (the first is {first}) belong to no physical surface; put each surface into a \
          Physical Surface(\"name\"), or export without Mesh.SaveAll"
     )]
     NoBody {
-        /// how many
+        /// number of such elements
         count: usize,
         /// tag of the first
         first: u64,
     },
-    /// Elements with two bodies.
+    /// An element belongs to two bodies.
     #[error(
         "element {element} belongs to the physical surfaces `{first}` and `{second}`; an element has one body: \
          take its surface out of one of them"
@@ -129,13 +129,13 @@ pub enum MeshError {
         second: String,
     },
 
-    /// Nothing to solve for.
+    /// The mesh has no elements.
     #[error("the mesh has no triangles or quadrilaterals, and no named points; mesh it in 2D (gmsh -2)")]
     NoElements,
-    /// One name for two groups.
+    /// Two groups have the same name.
     #[error("two groups of the mesh are named `{0}`; give each its own name")]
     SameName(String),
-    /// One name for groups of two meshes that are joined.
+    /// Groups of two joined meshes have the same name.
     #[error(
         "the group `{group}` is in mesh {} and in mesh {} of those that are joined; give each its own name",
         meshes[0] + 1, meshes[1] + 1
@@ -143,41 +143,41 @@ pub enum MeshError {
     InTwoMeshes {
         /// name of the group
         group: String,
-        /// which meshes, from 0
+        /// the two meshes, counted from 0
         meshes: [usize; 2],
     },
-    /// A group without members.
+    /// A group has no members.
     #[error("the group `{0}` is empty; mesh what it names, or remove it")]
     EmptyGroup(String),
-    /// A tag that two nodes share.
+    /// Two nodes have the same tag.
     #[error("two nodes have the tag {0}; renumber the mesh")]
     SameNodeTag(u64),
-    /// A coordinate that is no number.
+    /// A coordinate is not finite.
     #[error("node {0} has a coordinate that is not finite")]
     NotFinite(u64),
-    /// A node that does not exist.
+    /// A node does not exist.
     #[error("{cell} of `{group}` uses node {node}, which the mesh does not have")]
     UnknownNode {
-        /// kind and tag of what uses it
+        /// kind and tag of the cell that refers to it
         cell: String,
         /// its group
         group: String,
         /// tag of the node
         node: u64,
     },
-    /// A number of nodes that no element or edge has.
+    /// A cell has an unsupported number of nodes.
     #[error("{cell} of `{group}` has {count} nodes; {expected}")]
     NodeCount {
-        /// kind and tag of what has them
+        /// kind and tag of the cell
         cell: String,
         /// its group
         group: String,
-        /// how many it has
+        /// its number of nodes
         count: usize,
-        /// how many there may be
+        /// allowed numbers of nodes
         expected: &'static str,
     },
-    /// An element that uses a node twice.
+    /// An element contains a node twice.
     #[error("element {element} of `{group}` is collapsed: it uses node {node} twice; remesh there")]
     RepeatedNode {
         /// tag of the element
@@ -187,7 +187,7 @@ pub enum MeshError {
         /// tag of the node
         node: u64,
     },
-    /// An element without area, or folded.
+    /// An element has no area or is folded.
     #[error(
         "element {element} of `{group}` has zero or negative area at a quadrature point: it is collapsed, folded or \
          badly curved; remesh there"
@@ -198,7 +198,7 @@ pub enum MeshError {
         /// its body
         group: String,
     },
-    /// A side without length.
+    /// A side of an element has negligible length.
     #[error(
         "element {element} of `{group}` is degenerate: its side from node {} to node {} is {length:.3e} long, and the element \
          {size:.3e}; merge the two nodes, or remesh there", ends[0], ends[1]
@@ -212,10 +212,10 @@ pub enum MeshError {
         ends: [u64; 2],
         /// length of the side [L]
         length: f64,
-        /// that of the longest side [L]
+        /// length of the longest side [L]
         size: f64,
     },
-    /// Positions with too few digits.
+    /// Positions are too inaccurate because of round-off.
     #[error(
         "element {element} of `{group}` lies so far from the origin that the positions of its nodes are known to {known:.1e} \
          only, and its shortest side is {side:.3e} long; move the mesh to the origin"
@@ -230,7 +230,7 @@ pub enum MeshError {
         /// length of the side [L]
         side: f64,
     },
-    /// The same element twice.
+    /// Two elements have the same corners.
     #[error(
         "element {first} of `{first_group}` and element {second} of `{second_group}` have the same corners; \
          remove one of them"
@@ -245,7 +245,7 @@ pub enum MeshError {
         /// its body
         second_group: String,
     },
-    /// A line that bounds nothing.
+    /// A line is not an element edge.
     #[error(
         "line {line} of `{group}` is not an edge of any element; the group must lie on the boundary of a meshed \
          physical surface"
@@ -256,7 +256,7 @@ pub enum MeshError {
         /// its group
         group: String,
     },
-    /// A line inside a body.
+    /// A line lies inside a body.
     #[error(
         "line {line} of `{group}` lies inside `{body}`, between two of its elements; an edge group must lie on the \
          boundary of one body"
@@ -269,7 +269,7 @@ pub enum MeshError {
         /// the body around it
         body: String,
     },
-    /// A line between two bodies that are glued together.
+    /// A line lies between two bodies that share its nodes.
     #[error(
         "line {line} of `{group}` lies between `{first}` and `{second}`, which share its nodes and so cannot slide or \
          separate; contact needs separate nodes on the two sides: draw the curve once for each body (in gmsh without \
@@ -285,7 +285,7 @@ pub enum MeshError {
         /// body on the other side
         second: String,
     },
-    /// A line of another order than its element.
+    /// A line differs in order from its element.
     #[error(
         "line {line} of `{group}` does not have the same middle node as the edge of its element; \
          mesh curves and surfaces at the same order"
@@ -296,7 +296,7 @@ pub enum MeshError {
         /// its group
         group: String,
     },
-    /// The same line twice in one group.
+    /// A line occurs twice in one group.
     #[error("line {line} of `{group}` is in the group twice; remove the curve that repeats it")]
     EdgeRepeated {
         /// tag of the line

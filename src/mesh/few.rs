@@ -1,8 +1,8 @@
-//! Short lists that need no memory of their own.
+//! Short lists without heap allocation.
 
 use std::ops::{Deref, DerefMut};
 
-/// At most N values, on the stack.
+/// A list of at most N values, on the stack.
 #[derive(Clone, Copy, Debug)]
 pub struct Few<T, const N: usize> {
     values: [T; N],
@@ -10,7 +10,7 @@ pub struct Few<T, const N: usize> {
 }
 
 impl<T: Copy + Default, const N: usize> Few<T, N> {
-    /// One value more; there must be room for it.
+    /// Appends a value; there must be room for it.
     pub fn push(&mut self, value: T) {
         self.values[self.count] = value;
         self.count += 1;

@@ -1,5 +1,4 @@
-//! Small meshes from code: blocks of Q4 elements, side by side or one on the other; and a mesh of a few nodes, written in the
-//! case file itself.
+//! Small meshes from code (blocks of Q4 elements) and meshes of a few nodes written in the case file.
 
 use std::collections::BTreeMap;
 
@@ -18,23 +17,23 @@ use super::{Mesh, MeshError, check};
 pub struct InlineMesh {
     /// Position [x, y] of each node
     pub nodes: Vec<[f64; 2]>,
-    /// Bodies: for each name its elements, an element as the list of its nodes: 3 or 6 for a triangle, 4, 8 or 9 for a
-    /// quadrilateral (corners in turn, then mid-side nodes in the same order, then the centre)
+    /// Bodies: list of elements by name, each element being a list of nodes: 3 or 6 for a triangle, 4, 8 or 9 for a
+    /// quadrilateral (corners in order, then mid-side nodes in the same order, then the centre)
     #[serde(default)]
     pub elements: BTreeMap<String, Vec<Vec<usize>>>,
-    /// Boundary curves: for each name its edges, an edge as [end, end] or [end, end, middle]
+    /// Boundary curves: list of edges by name, each edge given as [end, end] or [end, end, middle]
     #[serde(default)]
     pub edges: BTreeMap<String, Vec<Vec<usize>>>,
-    /// Sets of single nodes: for each name its nodes
+    /// Node sets: list of nodes by name
     #[serde(default)]
     pub points: BTreeMap<String, Vec<usize>>,
 }
 
 impl InlineMesh {
-    /// The mesh, checked like one from a file.
+    /// Returns the mesh, checked like one from a file.
     ///
     /// # Errors
-    /// [`MeshError`] when it is not a mesh; tags in the message count from 0.
+    /// Returns [`MeshError`] if the mesh is invalid; tags in the message count from 0.
     pub fn build(&self) -> Result<Mesh, MeshError> {
         check::finish(RawMesh {
             nodes: self.nodes.iter().enumerate().map(|(i, &[x, y])| (i as u64, Vector2::new(x, y))).collect(),
@@ -57,9 +56,9 @@ fn named_cells<T>(
 }
 
 impl InlineMesh {
-    /// Add a rectangle of n × m elements, from its lower left to its upper right corner [L]. One named `b` brings the group
-    /// `b` of its elements and the groups `b_bottom`, `b_right`, `b_top` and `b_left` of its edges. It shares no nodes with
-    /// other rectangles; one of a name that is there already joins its groups.
+    /// Adds a rectangle of n × m elements, given by its lower left and upper right corner [L]. A rectangle named `b` adds the
+    /// group `b` of its elements and the groups `b_bottom`, `b_right`, `b_top` and `b_left` of its edges. It shares no nodes
+    /// with other rectangles; if its name exists already, it extends those groups.
     ///
     /// ```
     /// use fecontact::mesh::InlineMesh;
@@ -72,8 +71,8 @@ impl InlineMesh {
         self.block(name, divisions, |s, t| [low[0] + s * (high[0] - low[0]), low[1] + t * (high[1] - low[1])])
     }
 
-    /// Add a block like [`InlineMesh::rectangle`], placed by a map from the unit square to the plane, which must not mirror
-    /// it.
+    /// Adds a block like [`InlineMesh::rectangle`], placed by a map from the unit square to the plane, which must preserve
+    /// orientation.
     pub fn block(mut self, name: &str, [n, m]: [usize; 2], map: impl Fn(f64, f64) -> [f64; 2]) -> Self {
         let first = self.nodes.len();
         let node = |i: usize, j: usize| first + j * (n + 1) + i;

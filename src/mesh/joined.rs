@@ -1,17 +1,17 @@
-//! Which of a number of things are joined, directly or through others.
+//! Connected components (union–find).
 
 use std::collections::BTreeMap;
 
-/// Things by their numbers, each pointing at one that it is joined with; the lowest of a group points at itself.
+/// Items by number, each pointing at an item of its component; the lowest of a component points at itself.
 pub struct Joined(Vec<usize>);
 
 impl Joined {
-    /// So many things, of which none are joined.
+    /// Creates `count` items, none of which are joined.
     pub fn new(count: usize) -> Self {
         Self((0..count).collect())
     }
 
-    /// The lowest of those joined with one.
+    /// Returns the lowest item of a component.
     pub fn lowest(&self, of: usize) -> usize {
         let mut at = of;
         while self.0[at] != at {
@@ -20,14 +20,14 @@ impl Joined {
         at
     }
 
-    /// Join two, and all that are joined with them.
+    /// Joins the components of two items.
     pub fn join(&mut self, a: usize, b: usize) {
         let [low, high] = [self.lowest(a).min(self.lowest(b)), self.lowest(a).max(self.lowest(b))];
-        // The ways from both are short from now on.
+        // Shortens the paths of both.
         [a, b, high].into_iter().for_each(|of| self.0[of] = low);
     }
 
-    /// Groups of those joined, each ascending, in the order of their lowest.
+    /// Returns the components, each ascending, in the order of their lowest items.
     pub fn groups(self) -> Vec<Vec<usize>> {
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for of in 0..self.0.len() {

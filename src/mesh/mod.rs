@@ -1,7 +1,8 @@
 //! Nodes, solid elements, and the named groups that a case refers to.
 //!
 //! A mesh comes from a gmsh file ([`gmsh::read`]), from blocks ([`Blocks`]), or node by node from the case file or from code
-//! ([`InlineMesh::build`]); several are put side by side by [`Mesh::join`]. Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
+//! ([`InlineMesh::build`]); [`Mesh::join`] combines several. Readers only fill in a raw mesh; one check turns it into a
+//! [`Mesh`], so that every mesh is consistent whatever its source.
 
 mod check;
 mod error;
@@ -60,13 +61,13 @@ pub struct Element {
     pub nodes: Vec<usize>,
 }
 
-/// An edge of the boundary of a body, oriented so that the body lies on its left.
+/// A boundary edge of a body, oriented with the body on its left.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Edge {
     /// node numbers: start, end, and the middle node of a quadratic edge
     pub nodes: Vec<usize>,
-    /// the solid element that it bounds
+    /// adjacent solid element
     pub element: usize,
 }
 
@@ -88,11 +89,11 @@ pub enum Group {
 pub struct Mesh {
     /// X: reference position of each node [L]
     pub nodes: Vec<Vector2<f64>>,
-    /// The tag each node has in its mesh file, for messages
+    /// Tag of each node in its mesh file, for messages
     pub node_tags: Vec<u64>,
     /// Solid elements
     pub elements: Vec<Element>,
-    /// The tag each element has in the mesh file (inline: its place in its list), for messages
+    /// Tag of each element in the mesh file (inline: its position in its list), for messages
     pub element_tags: Vec<u64>,
     /// Named groups
     pub groups: BTreeMap<String, Group>,
@@ -104,13 +105,13 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The configuration x = X + u.
+    /// Returns the configuration x = X + u.
     #[doc(hidden)]
     pub fn displaced<'a>(&'a self, displacement: &'a [f64]) -> Configuration<'a> {
         Configuration::new(&self.nodes, displacement).within(self.section)
     }
 
-    /// The reference configuration, without displacements.
+    /// Returns the reference configuration, without displacements.
     #[doc(hidden)]
     pub fn undeformed(&self) -> Configuration<'_> {
         Configuration::undeformed(&self.nodes).within(self.section)
@@ -121,15 +122,15 @@ impl Mesh {
         self.elements[element].nodes.iter().map(|&node| self.nodes[node]).collect()
     }
 
-    /// The vectors of the nodes of an element among those of all nodes.
+    /// Vectors of the nodes of an element, taken from a nodal array.
     pub fn vectors(&self, element: usize, values: &[f64]) -> Vec<Vector2<f64>> {
         self.elements[element].nodes.iter().map(|&node| vector(values, node)).collect()
     }
 
-    /// The group of this name.
+    /// Returns the group of this name.
     ///
     /// # Errors
-    /// [`UnknownGroup`] lists the groups there are.
+    /// Returns [`UnknownGroup`] with a list of the groups if there is none of this name.
     pub fn group(&self, name: &str) -> Result<&Group, UnknownGroup> {
         self.groups.get(name).ok_or_else(|| UnknownGroup {
             name: name.into(),
@@ -138,7 +139,7 @@ impl Mesh {
         })
     }
 
-    /// The nodes of a group, ascending, each once.
+    /// Returns the nodes of a group, ascending, each once.
     pub fn nodes_of(&self, group: &Group) -> Vec<usize> {
         let mut nodes: Vec<usize> = match group {
             Group::Elements(elements) => elements.iter().flat_map(|&e| &self.elements[e].nodes).copied().collect(),
@@ -150,25 +151,25 @@ impl Mesh {
         nodes
     }
 
-    /// Number of nodes without those of rigid bodies, which come last.
+    /// Number of nodes excluding those of rigid bodies, which come last.
     #[doc(hidden)]
     pub fn own_nodes(&self) -> usize {
         self.nodes.len() - self.rigid_bodies.iter().map(|body| body.nodes().len()).sum::<usize>()
     }
 
-    /// The rigid body of this name.
+    /// Returns the rigid body of this name.
     #[doc(hidden)]
     pub fn rigid_body(&self, name: &str) -> Option<&RigidBody> {
         self.rigid_bodies.iter().find(|body| body.name == name)
     }
 
-    /// The body (the group of elements) that an element belongs to.
+    /// Returns the body (the group of elements) of an element.
     pub fn body_of(&self, element: usize) -> Option<&str> {
         let holds = |group: &Group| matches!(group, Group::Elements(list) if list.binary_search(&element).is_ok());
         self.groups.iter().find(|(_, group)| holds(group)).map(|(name, _)| name.as_str())
     }
 
-    /// Lower left and upper right corner of the box around all nodes [L].
+    /// Lower left and upper right corner of the bounding box of all nodes [L].
     pub fn bounding_box(&self) -> [Vector2<f64>; 2] {
         let corner = |pick: fn(Vector2<f64>, Vector2<f64>) -> Vector2<f64>| {
             self.nodes.iter().copied().reduce(pick).unwrap_or_default()
@@ -176,7 +177,7 @@ impl Mesh {
         [corner(|a, b| a.inf(&b)), corner(|a, b| a.sup(&b))]
     }
 
-    /// Diagonal of the box around all nodes, the size of the model [L].
+    /// Diagonal of the bounding box of all nodes, the size of the model [L].
     pub fn diagonal(&self) -> f64 {
         let [low, high] = self.bounding_box();
         (high - low).norm()

@@ -1,13 +1,13 @@
-//! Names that a user gives: which known one is near a wrong one, and how they are shown.
+//! Names given by users: suggestions for misspelled ones, and their display.
 
 use std::borrow::Cow;
 
 use thiserror::Error;
 
-/// Names that agree in this share of their letters are near each other, a swap of neighbours counted once.
+/// Similarity above which names count as near: fraction of equal letters, a swap of neighbours counting as one difference.
 const NEAR: f64 = 0.6;
 
-/// The known name that was probably meant: one that begins the same, or differs by few letters.
+/// Returns the known name that was probably meant: one that starts the same, or differs by few letters.
 pub fn nearest<'n>(name: &str, known: impl DoubleEndedIterator<Item = &'n str>) -> Option<&'n str> {
     let name = name.to_lowercase();
     let near = |other: &&str| {
@@ -19,12 +19,12 @@ pub fn nearest<'n>(name: &str, known: impl DoubleEndedIterator<Item = &'n str>) 
     known.rev().filter(near).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
 }
 
-/// A text for a terminal: characters that steer it, or turn the direction of writing, are spelled out; line breaks are kept.
+/// Makes a text safe for a terminal: escapes control characters and those that change the writing direction; keeps line breaks.
 pub fn printable(text: &str) -> Cow<'_, str> {
     spelled(text, |c| c != '\n' && steers(c))
 }
 
-/// The text in one line, without line breaks.
+/// Returns the text in one line, without line breaks.
 pub fn in_line(text: &str) -> Cow<'_, str> {
     spelled(text, steers)
 }
@@ -37,7 +37,7 @@ fn spelled(text: &str, wanted: impl Fn(char) -> bool) -> Cow<'_, str> {
     text.chars().map(spell).collect::<String>().into()
 }
 
-/// Whether a character can stand in no name, table or figure: it steers a device, or XML has none such.
+/// Whether a character cannot occur in a name, table or figure: it is a control character or not allowed in XML.
 pub fn is_unwritable(c: char) -> bool {
     c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
@@ -48,16 +48,16 @@ fn steers(c: char) -> bool {
     direction || matches!(c, '\u{2028}' | '\u{2029}') || c.is_control()
 }
 
-/// A name that no group of the mesh has.
+/// Error: no group of the mesh has this name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("the mesh has no group `{name}`{}; it has {}", suggestion(nearest), listing(groups))]
 #[non_exhaustive]
 pub struct UnknownGroup {
-    /// the name that was asked for
+    /// requested name
     pub name: String,
-    /// the group whose name resembles it most
+    /// name of the most similar group
     pub nearest: Option<String>,
-    /// the groups there are
+    /// existing groups
     pub groups: Vec<String>,
 }
 

@@ -1,32 +1,32 @@
-//! Which node is meant by a point near it.
+//! Selection of the node nearest to a point.
 
 use nalgebra::Vector2;
 
-/// Two nodes whose distances differ by less than this share of the model's size are equally near.
+/// Relative difference of distances, as a fraction of the model's size, below which two nodes are equally near.
 const EQUALLY_NEAR: f64 = 1e-9;
 
-/// Why a point does not mean one node; nodes by their numbers.
+/// Reason why a point does not identify one node; nodes by number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotOne {
     /// A coordinate is not finite
     NoPlace,
     /// There are no nodes
     NoNodes,
-    /// Two are equally near
+    /// Two nodes are equally near
     Several([usize; 2]),
-    /// The nearest is farther away than the elements there are long
+    /// The nearest node is farther away than the adjacent elements are long
     Far {
-        /// the nearest
+        /// nearest node
         node: usize,
-        /// how far away it is [L]
+        /// its distance [L]
         distance: f64,
     },
 }
 
-/// The one node nearest to a point, which the elements there must reach.
+/// Returns the node nearest to a point; adjacent elements must reach the point.
 ///
 /// # Errors
-/// [`NotOne`], where it is not one node, or far away.
+/// Returns [`NotOne`] if no single node is nearest, or it is too far away.
 pub fn nearest<'e>(
     nodes: &[Vector2<f64>],
     elements: impl Iterator<Item = &'e [usize]>,

@@ -7,34 +7,34 @@
 //!                                                      first dof of the turning node: r θ     force on it: M/r, M about x_R
 //! ```
 //!
-//! The mass of a rigid body that moves by itself is that of a point at the reference node, its centre of mass; its moment of inertia I is a
-//! mass I/r² at the turning node: m a = F, I θ̈ = M.
+//! A freely moving rigid body has a point mass at the reference node, its centre of mass; its moment of inertia I is
+//! represented by a mass I/r² at the turning node: m a = F, I θ̈ = M.
 //!
-//! r is a length of the size of the model, so that all dofs are lengths and all forces on them forces. The second dof of the
-//! turning node does nothing, and is 0. In this way supports, reactions, energies, time schemes and checkpoints know of rigid
-//! bodies without being told.
+//! r is a length of the order of the model size, so that all dofs are lengths and their conjugates forces. The second dof of
+//! the turning node is unused and 0. Supports, reactions, energies, time schemes and checkpoints therefore need no special
+//! treatment of rigid bodies.
 
 use nalgebra::{Rotation2, Vector2};
 
 use super::configuration::Configuration;
 
-/// A rigid body, by the nodes that carry its motion.
+/// A rigid body, given by the nodes that carry its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidBody {
-    /// Its name, which is that of a group with its reference node
+    /// Name, also that of a group with its reference node
     pub name: String,
     /// The node at its reference point
     pub reference: usize,
-    /// The node that carries its rotation
+    /// Node that carries its rotation
     pub turning: usize,
     /// r: displacement of the turning node per angle [L]
     pub radius: f64,
-    /// Moment of inertia about the reference point, 0 where none is given [M L²]
+    /// Moment of inertia about the reference point, 0 if none is given [M L²]
     pub inertia: f64,
 }
 
 impl RigidBody {
-    /// Its nodes.
+    /// Its two nodes.
     pub fn nodes(&self) -> [usize; 2] {
         [self.reference, self.turning]
     }
@@ -54,7 +54,7 @@ impl RigidBody {
         Rotation2::new(self.angle(x))
     }
 
-    /// A point as the body sees it: X − origin and what has come to it, Qᵀ(u − u_R) + (Qᵀ − I)(X − X_R).
+    /// A point in the body-fixed frame: X − origin, and its displacement Qᵀ(u − u_R) + (Qᵀ − I)(X − X_R).
     pub fn seen(&self, weights: &[(usize, f64)], origin: Vector2<f64>, x: &Configuration) -> [Vector2<f64>; 2] {
         let [apart, u] = x.apart(weights, origin);
         let [arm, moved] = [x.apart(weights, x.reference(self.reference))[0], u - x.displacement(self.reference)];
@@ -62,7 +62,7 @@ impl RigidBody {
     }
 }
 
-/// (Q − I) a, to the last digit of small angles as well.
+/// (Q − I) a, accurate for small angles.
 pub fn turned(a: Vector2<f64>, angle: f64) -> Vector2<f64> {
     let (sine, versed) = (angle.sin(), 2.0 * (0.5 * angle).sin().powi(2));
     Vector2::new(-versed * a.x - sine * a.y, sine * a.x - versed * a.y)

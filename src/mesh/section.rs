@@ -1,4 +1,4 @@
-//! The kind of plane section that the model represents.
+//! Kind of plane section represented by the model.
 //!
 //! ```text
 //! ∫ f dV = ∫ f w(X) dA,   ∫ f ds = ∫ f w(x) dl,   F = [F_plane, F₃₃]
@@ -6,14 +6,14 @@
 //! | section | w | F₃₃ |
 //! |---|---|---|
 //! | plane strain | 1 | 1 |
-//! | plane stress | t, the undeformed thickness | what leaves σ_zz = 0 |
+//! | plane stress | t, the undeformed thickness | from σ_zz = 0 |
 //! | axisymmetry, x = r, y = z | 2π r | 1 + u_r/R, the hoop stretch |
 //!
-//! Integrals over reference bodies and edges (stress, masses, dead loads, absorbing sides) take w at the reference position,
-//! those over current surfaces (follower pressure, contact) at the current one, which varies: δw = ∂w/∂x·δx. So forces, masses and
-//! energies of rings are those of the full turn, and pressures are stresses; on a plate, pressures count the undeformed
-//! thickness. Whoever integrates asks here; no element, load or contact has a thickness of its own. Forces at nodes, point masses,
-//! springs, dashpots and the areas of contact points are given as a whole.
+//! Integrals over reference bodies and edges (stress, masses, dead loads, absorbing sides) use w at the reference position,
+//! those over current surfaces (follower pressure, contact) w at the current one, with the variation δw = ∂w/∂x·δx. Forces,
+//! masses and energies of axisymmetric bodies therefore refer to the full turn, and pressures are stresses; in plane stress,
+//! pressures refer to the undeformed thickness. All integrals obtain w here; no element, load or contact has a thickness of its
+//! own. Nodal forces, point masses, springs, dashpots and the areas of contact points are given as totals.
 
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
@@ -22,17 +22,17 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The kind of plane section that the model represents.
+/// Kind of plane section represented by the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Section {
-    /// A slice of thickness 1 of bodies that are unbounded out of plane: forces, masses and energies per unit of
+    /// A slice of thickness 1 of bodies that are unbounded out of plane: forces, masses and energies are per unit
     /// thickness
     #[default]
     PlaneStrain,
-    /// A plate, free of out-of-plane stress: forces, masses and energies of its whole thickness. Pressures and
-    /// tractions, those of contact included, count the undeformed thickness
+    /// A plate without out-of-plane stress: forces, masses and energies refer to the whole thickness. Pressures and
+    /// tractions, including those of contact, refer to the undeformed thickness
     PlaneStress {
         /// Undeformed thickness, above 0 [L]
         thickness: f64,
@@ -41,8 +41,7 @@ pub enum Section {
     /// full turn, pressures and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on
     /// the axis keep ux = 0 automatically. A contact's length is the area of its full turn
     Axisymmetric,
-    /// A depth w = `depth` + `slope`·x, F₃₃ = 1. No body has it: it is there for verification, since an integral that forgets
-    /// w or ∂w/∂x shows against it
+    /// A depth w = `depth` + `slope`·x, F₃₃ = 1, for verification only: it exposes an integral that omits w or ∂w/∂x
     #[serde(skip)]
     Graded {
         /// w at the origin
@@ -53,7 +52,7 @@ pub enum Section {
 }
 
 impl Section {
-    /// w at a place: depth of the bodies there, in the unit of thickness [-].
+    /// w at a position: depth of the bodies relative to unit thickness [-].
     pub fn weight(&self, at: Vector2<f64>) -> f64 {
         match self {
             Self::PlaneStrain => 1.0,
@@ -63,7 +62,7 @@ impl Section {
         }
     }
 
-    /// ∂w/∂x at a place; `None` where w is the same everywhere [1/L].
+    /// ∂w/∂x at a position; `None` where w is constant [1/L].
     pub fn slope(&self, _at: Vector2<f64>) -> Option<Vector2<f64>> {
         match self {
             Self::PlaneStrain | Self::PlaneStress { .. } => None,
@@ -72,18 +71,18 @@ impl Section {
         }
     }
 
-    /// Whether bodies are plates, which have no out-of-plane stress.
+    /// Whether the bodies are plates, without out-of-plane stress.
     pub fn is_plate(&self) -> bool {
         matches!(self, Self::PlaneStress { .. })
     }
 
-    /// Whether bodies are rings, whose hoops stretch when they move along x.
+    /// Whether the bodies are axisymmetric, with hoop strain u_x/x.
     pub fn is_axisymmetric(&self) -> bool {
         *self == Self::Axisymmetric
     }
 }
 
-/// One line: the section, and the unit thickness or turn that forces refer to.
+/// Describes the section in one line, with the unit thickness or full turn that forces refer to.
 impl Display for Section {
     fn fmt(&self, f: &mut Formatter) -> Result {
         match self {

@@ -1,10 +1,10 @@
-//! Meshes put side by side, sharing no nodes.
+//! Combination of meshes that share no nodes.
 
 use super::{Edge, Group, Mesh, MeshError};
 
 impl Mesh {
-    /// The meshes as one. They share no nodes; each keeps the tags of its own, so that a tag may occur several times. The section is
-    /// that of the first.
+    /// Combines meshes into one. They share no nodes; each keeps its own tags, so that a tag may occur several times. The
+    /// section is that of the first.
     ///
     /// ```
     /// use fecontact::mesh::{InlineMesh, Mesh};
@@ -17,7 +17,8 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// [`MeshError::InTwoMeshes`], where two have a group of the same name; [`MeshError::NoElements`], where there are none.
+    /// Returns [`MeshError::InTwoMeshes`] if two meshes have a group of the same name, [`MeshError::NoElements`] if there are
+    /// no meshes.
     pub fn join(meshes: impl IntoIterator<Item = Self>) -> Result<Self, MeshError> {
         let mut meshes = meshes.into_iter();
         let mut all = meshes.next().ok_or(MeshError::NoElements)?;

@@ -1,20 +1,21 @@
-//! Nodes that move as one: the two sides of a periodic model, and the nodes of a loading plate.
+//! Nodes with equal displacements: the two sides of a periodic model, and the nodes of a loading platen.
 //!
-//! Every node of a side is a copy of its partner on the other, and all nodes of a plate are copies of one: u, v and a are those of
-//! that node, and what acts on a copy acts on it. The copy keeps its own position, so that the elements beside it know their shape.
+//! Every node of a periodic side is a copy of its partner on the other side, and all nodes of a platen are copies of one node:
+//! u, v and a of a copy are those of that node, and forces on a copy act on it. A copy keeps its own position, and thereby the
+//! shape of the adjacent elements.
 
 use super::joined::Joined;
 
-/// Copies and the nodes they move with.
+/// Copies and the nodes that they follow.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ties {
-    /// (copy, the node it moves with, which is no copy), ascending
+    /// (copy, its original node, which is no copy), ascending
     pairs: Vec<(usize, usize)>,
 }
 
 impl Ties {
-    /// Ties between pairs of nodes. Nodes joined by several pairs, as the corners of a model that is periodic both ways, all
-    /// move with the first of them.
+    /// Ties pairs of nodes. Nodes joined by several pairs, such as the corners of a model that is periodic in both directions,
+    /// all follow the first of them.
     pub fn new(nodes: usize, joined: &[[usize; 2]]) -> Self {
         if joined.is_empty() {
             return Self::default();
@@ -27,17 +28,17 @@ impl Ties {
         Self { pairs }
     }
 
-    /// (copy, the node it moves with), ascending.
+    /// (copy, its original node), ascending.
     pub fn pairs(&self) -> &[(usize, usize)] {
         &self.pairs
     }
 
-    /// The node that a node moves with: itself unless it is a copy.
+    /// Original of a node: the node itself unless it is a copy.
     pub fn original(&self, node: usize) -> usize {
         self.pairs.binary_search_by_key(&node, |(copy, _)| *copy).map_or(node, |k| self.pairs[k].1)
     }
 
-    /// The nodes that some nodes move with, ascending, each once.
+    /// Originals of some nodes, ascending, each once.
     pub fn originals(&self, nodes: impl IntoIterator<Item = usize>) -> Vec<usize> {
         let mut originals: Vec<usize> = nodes.into_iter().map(|node| self.original(node)).collect();
         originals.sort_unstable();
@@ -45,7 +46,7 @@ impl Ties {
         originals
     }
 
-    /// Add what copies have, with `width` values a node, to the nodes they move with, and leave them nothing.
+    /// Adds the values of copies, `width` per node, to their originals, and sets those of the copies to zero.
     pub fn gather(&self, width: usize, values: &mut [f64]) {
         for &(copy, original) in &self.pairs {
             for i in 0..width {
@@ -54,7 +55,7 @@ impl Ties {
         }
     }
 
-    /// Give copies what the nodes have that they move with.
+    /// Copies the values of originals to their copies.
     pub fn spread(&self, width: usize, values: &mut [f64]) {
         for &(copy, original) in &self.pairs {
             values.copy_within(width * original..width * (original + 1), width * copy);

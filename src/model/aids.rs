@@ -18,23 +18,23 @@ pub struct Aids {
     pub pull: bool,
     /// Friction responds to a carried pressure: [`crate::solve::contact_iteration`]
     pub carried: bool,
-    /// A point that just closes is taken as closed and sticking: [`crate::solve::contact_iteration`]
+    /// A zero gap at the start of an increment is taken as closed and sticking: [`crate::solve::contact_iteration`]
     pub touch: bool,
     /// A point whose slip alternates in direction sticks: [`crate::solve::contact_iteration`]
     pub stick: bool,
-    /// It does so again if it slips for its own error: [`crate::solve::contact_iteration`]
+    /// It is presumed to stick once more if the predicted tractions would have held it: [`crate::solve::contact_iteration`]
     pub stick_again: bool,
-    /// A projection that alternates between two segments is put between them: [`crate::solve::contact_iteration`]
+    /// A projection that alternates between two segments is placed at their node: [`crate::solve::contact_iteration`]
     pub valley: bool,
-    /// Increments of linear bodies are solved on the nodes at contacts: [`crate::solve::interface`]
+    /// Increments of linear bodies are solved on the contact nodes: [`crate::solve::condensed_newton`]
     pub condense: bool,
-    /// Corrections with the factors of an earlier tangent: [`crate::solve::newton`]
+    /// Factors of an earlier tangent are reused for corrections: [`crate::solve::newton`]
     pub old_tangents: bool,
-    /// Corrections go only downhill where the residual stalls: [`crate::solve::newton`]
+    /// Line searches limit corrections where the residual stalls: [`crate::solve::newton`]
     pub downhill: bool,
-    /// The augmented Lagrangian stiffens where it is slow: [`crate::solve::equilibrium`]
+    /// The augmented Lagrangian method raises the penalty where it converges slowly: [`crate::solve::equilibrium`]
     pub stiffening: bool,
-    /// A static increment that is not solved starts anew from softer penalties: [`crate::solve::equilibrium`]
+    /// A static increment without equilibrium is restarted with softer penalties: [`crate::solve::equilibrium`]
     pub softening: bool,
 }
 

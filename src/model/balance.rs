@@ -1,10 +1,10 @@
-//! Whether bodies that are stressed at the start are at rest there.
+//! Equilibrium of the initial stress of bodies with their loads.
 //!
 //! ```text
-//! r = f(σ₀) − loads − contact        at u = 0 and the start of the first step, where no support holds
+//! r = f(σ₀) − loads − contact        at u = 0 and the start of the first step, at unsupported dofs
 //! ```
-//! f(σ₀) are the forces of the initial stress, contact those of initial tractions and fluids. What of r is left sets the bodies in
-//! motion, or is taken up by them in the first static increment.
+//! f(σ₀) are the forces of the initial stress, contact those of initial tractions and fluids. The remaining r accelerates the
+//! bodies, or is balanced by deformation in the first static increment.
 
 use nalgebra::Vector2;
 
@@ -14,10 +14,10 @@ use super::text::number;
 use super::{Body, Model, Step};
 use crate::mesh::configuration::vector;
 
-/// Share of the forces on a body out of balance that is worth a word. Stresses and weights are written with a few digits.
+/// Residual fraction of the forces on a body that causes a warning; stresses and weights are given with a few digits.
 const OUT_OF_BALANCE: f64 = 1e-6;
 
-/// Share of a resultant that is round-off.
+/// Relative round-off of a resultant.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Forces on every dof, and the sum of the magnitudes of their parts [F].
@@ -35,13 +35,13 @@ impl Forces {
     }
 }
 
-/// Imbalance of a body: the resultant, and the fraction of the acting forces.
+/// Imbalance of a body: the resultant, and its ratio to the acting forces.
 struct Imbalance {
     resultant: Vector2<f64>,
     share: f64,
 }
 
-/// Warnings about bodies whose initial stress is out of balance.
+/// Warnings about bodies whose initial stress is not in equilibrium.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
     let stressed = || model.bodies.iter().filter(|body| body.initial_stress.is_some());
     let Some(step) = model.steps.first().filter(|_| stressed().next().is_some()) else { return Vec::new() };
@@ -74,7 +74,7 @@ fn message(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> St
     )
 }
 
-/// Forces of the bodies' initial stress, less what acts on them, at a time of the first step.
+/// Forces of the bodies' initial stress minus the loads on them, at a time of the first step.
 fn forces(model: &Model, step: &Step, time: f64) -> Forces {
     let mut forces = Forces { sum: vec![0.0; model.dofs()], magnitude: vec![0.0; model.dofs()] };
     let initial = model.initial_memory();
@@ -87,7 +87,7 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
         let (mut new, mut force) = (old.to_vec(), vec![0.0; 2 * nodes.len()]);
         let memory = Memory { dt: 0.0, old, new: &mut new };
         let still = vec![Vector2::zeros(); nodes.len()];
-        // The undeformed body has an answer.
+        // The law has a response in the undeformed body.
         let _ = model.solids[e].evolve(&*body.material, memory, &still, &mut force, None);
         nodes.iter().zip(force.chunks_exact(2)).for_each(|(&node, f)| forces.add(node, Vector2::new(f[0], f[1])));
     }

@@ -1,4 +1,4 @@
-//! Bodies and point masses: their damping, and where each element finds what its material remembers.
+//! Bodies and point masses: their damping, and the layout of the internal variables of their elements.
 
 use std::sync::Arc;
 
@@ -17,26 +17,26 @@ pub struct Body {
     pub name: String,
     /// bulk law
     pub material: Arc<dyn Material>,
-    /// damping in dynamic steps that say nothing else
+    /// damping in dynamic steps that do not specify another
     pub damping: Damping,
-    /// stress at the start, if it has one
+    /// initial stress, if any
     pub initial_stress: Option<InitialStress>,
-    /// thermal expansion, if it has one
+    /// thermal expansion, if any
     pub thermal: Option<Thermal>,
-    /// its elements
+    /// elements
     pub elements: Vec<usize>,
-    /// its nodes, ascending
+    /// nodes, ascending
     pub nodes: Vec<usize>,
 }
 
 impl Body {
-    /// Whether it has an initial stress, or expands when it is heated.
+    /// Whether it has an initial stress or thermal expansion.
     pub fn is_imposed(&self) -> bool {
         self.initial_stress.is_some() || self.thermal.is_some()
     }
 }
 
-/// A mass at every node of a group.
+/// A point mass at every node of a group.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct PointMass {
@@ -44,7 +44,7 @@ pub struct PointMass {
     pub name: String,
     /// m of each node, the same in both directions [M]
     pub mass: f64,
-    /// its nodes, ascending
+    /// nodes, ascending
     pub nodes: Vec<usize>,
 }
 
@@ -57,26 +57,26 @@ pub struct PointMass {
 pub struct Damping {
     /// Force per momentum: damps slow motions most, free flight included [1/T]
     pub mass: f64,
-    /// Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps fast vibrations most,
-    /// and makes explicit increments shorter [T]
+    /// Kelvin-Voigt damping: retardation time by which the elastic stress of the strain rate is multiplied to give the viscous
+    /// stress; damps high frequencies most, and shortens explicit increments [T]
     #[serde(rename = "stiffness")]
     pub retardation: f64,
 }
 
 impl Damping {
-    /// With a force per momentum [1/T].
+    /// Sets the mass-proportional damping [1/T].
     pub fn mass(self, mass: f64) -> Self {
         Self { mass, ..self }
     }
 
-    /// With a viscous stress: this time times the elastic stress of the rate of strain [T].
+    /// Sets the retardation time of the viscous stress [T].
     pub fn retardation(self, retardation: f64) -> Self {
         Self { retardation, ..self }
     }
 }
 
-/// The part of every element in [`State::memory`](super::state::State::memory): one behind the other in the elements' order, as long
-/// as its points and variables ask for, and of no length where a material remembers nothing.
+/// Layout of [`State::memory`](super::state::State::memory): the internal variables of all elements in sequence, of zero length
+/// for materials without any.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Memories {
@@ -85,7 +85,7 @@ pub struct Memories {
 }
 
 impl Memories {
-    /// The memory layout of all elements, given the body of each.
+    /// Creates the layout for all elements, given the body of each.
     pub fn new(solids: &[SolidElement], bodies: &[Body], body_of_element: &[usize]) -> Self {
         let mut starts = vec![0];
         let mut end = 0;
@@ -96,18 +96,18 @@ impl Memories {
         Self { starts }
     }
 
-    /// Number of values of all elements together.
+    /// Total number of values.
     pub fn total(&self) -> usize {
         self.starts[self.starts.len() - 1]
     }
 
-    /// The part of one element.
+    /// Part of one element.
     pub fn of<'a>(&self, element: usize, memory: &'a [f64]) -> &'a [f64] {
         &memory[self.starts[element]..self.starts[element + 1]]
     }
 
-    /// The parts of all elements in their order, to be written over. Whoever wants some of them passes over the others: no part can
-    /// be handed to the wrong one.
+    /// Iterates over the mutable parts of all elements in order; the caller skips those not needed, so that no part can be
+    /// assigned to another element.
     pub fn each_mut<'a>(&'a self, memory: &'a mut [f64]) -> impl Iterator<Item = &'a mut [f64]> {
         let mut rest = memory;
         self.starts.windows(2).map(move |ends| {

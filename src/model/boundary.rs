@@ -1,5 +1,5 @@
-//! How what is prescribed or applied varies in time and space, and loads. Supports are in [`super::support`].
-//! Moments, and the spans of steps, are here as well.
+//! Variation of prescribed quantities in time and space, and loads. Supports are in [`super::support`]. Moments in time and
+//! step spans are also defined here.
 
 use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub use super::expression::Expression;
 use super::written::written;
 
-/// Prescribed quantity as a function of time and place.
+/// Prescribed quantity as a function of time and position.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
@@ -18,8 +18,8 @@ pub enum Drive {
     Rate(f64),
     /// Pairs of run time and value, times ascending; linear between, constant outside
     Table(Vec<[f64; 2]>),
-    /// Of a temperature: (coordinate, value) pairs along x (0) or y (1) of the reference position, linear between, constant outside,
-    /// reached at the end of the step, linearly from the value at its start
+    /// For a temperature: (coordinate, value) pairs along x (0) or y (1) of the reference position, linear between, constant
+    /// outside, reached linearly at the end of the step from the value at its start
     #[serde(skip)]
     ByPlace(usize, Vec<[f64; 2]>),
     /// Value at the end of the step, reached linearly
@@ -107,7 +107,7 @@ pub enum Profile {
     #[serde(skip)]
     #[schemars(!skip, untagged)]
     Constant(f64),
-    /// Expression in the reference position x, y and, where it says so, the run time t
+    /// Expression in the reference position x, y and, where permitted, the run time t
     #[serde(skip)]
     #[schemars(!skip, untagged)]
     Expression(Expression),
@@ -161,10 +161,10 @@ impl From<f64> for Drive {
 }
 
 impl Drive {
-    /// Whether its numbers are finite and the times of its table ascend.
+    /// Checks that its numbers are finite and the coordinates of its table ascend.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// Returns the error and its remedy if they do not.
     pub fn check(&self) -> Result<(), String> {
         let numbers: &[f64] = match self {
             Self::Constant(value) | Self::Rate(value) => &[*value],
@@ -189,7 +189,7 @@ impl Drive {
         }
     }
 
-    /// Whether it varies from place to place.
+    /// Whether it varies in space.
     pub fn depends_on_position(&self) -> bool {
         match self {
             Self::Expression(expression) => expression.depends_on_position(),
@@ -212,7 +212,7 @@ impl Drive {
         }
     }
 
-    /// The profile times a number.
+    /// The profile multiplied by a factor.
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
         let scaled = |table: &[[f64; 2]]| table.iter().map(|[at, value]| [*at, factor * value]).collect();
@@ -225,11 +225,11 @@ impl Drive {
         }
     }
 
-    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an
-    /// increment it is extrapolated linearly through the increment's start and end, wherever it bends or the step ends.
+    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an increment it is
+    /// extrapolated linearly through the increment's start and end, irrespective of kinks or the end of the step.
     pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, span: Span, start: f64) -> f64 {
         let Moment { time, beyond } = at.into();
-        // A rate is its own straight line.
+        // A rate is linear itself.
         if let (Some([from, to]), false) = (beyond, matches!(self, Self::Rate(_))) {
             let [first, last] = [from, to].map(|time| self.value(position, time, span, start));
             return first + (time - from) / (to - from) * (last - first);
@@ -244,7 +244,7 @@ impl Drive {
     }
 }
 
-/// Linear between the pairs (argument, value), whose arguments do not descend; constant outside.
+/// Interpolates linearly between pairs (argument, value) with non-descending arguments; constant outside.
 fn interpolate(table: &[[f64; 2]], at: f64) -> f64 {
     let after = table.partition_point(|[t, _]| *t <= at);
     match (after.checked_sub(1).and_then(|k| table.get(k)), table.get(after)) {
@@ -254,15 +254,15 @@ fn interpolate(table: &[[f64; 2]], at: f64) -> f64 {
     }
 }
 
-/// A drive over one step, and what it took over from at the step's start.
+/// A drive over one step, with the previous one at the step's start.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Amplitude {
-    /// how it varies
+    /// variation
     pub drive: Drive,
     /// the step
     pub span: Span,
-    /// what drove the quantity in the step before; zero if nothing did
+    /// amplitude of the previous step; zero if there was none
     pub before: Option<Box<Amplitude>>,
 }
 
@@ -272,13 +272,13 @@ impl Amplitude {
         self.drive.value(position, at, self.span, self.taken_over(position))
     }
 
-    /// Value at the start of a step: what was taken over if the drive is new in this step, else its own.
+    /// Value at the start of a step: that of the previous drive if this one is new in the step, otherwise its own.
     pub(super) fn at_start_of(&self, step: Span, position: Vector2<f64>) -> f64 {
         if step.start > self.span.start { self.value(position, step.start) } else { self.taken_over(position) }
     }
 
-    /// The same from a time on where it stays as it is then, and remembers no more than it needs: what a new drive takes over
-    /// from that is given many times in a step. What varies from place to place is left as it is.
+    /// Equivalent amplitude from a time on, with only the previous drives that it needs if it is constant then; otherwise
+    /// repeated changes within a step would accumulate. An amplitude that varies in space is unchanged.
     #[must_use]
     pub fn settled(&self, time: f64) -> Self {
         if self.chain().any(|amplitude| amplitude.drive.depends_on_position()) {
@@ -288,7 +288,7 @@ impl Amplitude {
         Self { drive: Drive::Table(vec![[time, value]]), span: self.span, before: None }
     }
 
-    /// It, and the drives that it remembers.
+    /// Itself and the previous amplitudes that it refers to.
     pub fn chain(&self) -> impl Iterator<Item = &Self> {
         std::iter::successors(Some(self), |amplitude| amplitude.before.as_deref())
     }
@@ -306,11 +306,11 @@ pub struct DeadLoad {
     pub component: usize,
     /// value per unit of `weight`
     pub amplitude: Amplitude,
-    /// (node, weight, reference position where the amplitude is taken)
+    /// (node, weight, reference position for the amplitude)
     pub shares: Vec<(usize, f64, Vector2<f64>)>,
 }
 
-/// Pressure on edges that follows the surface.
+/// Follower pressure on edges.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct FollowerPressure {
@@ -324,11 +324,11 @@ pub struct FollowerPressure {
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Spring {
-    /// dof it acts on
+    /// dof on which it acts
     pub dof: usize,
     /// k [F/L]
     pub stiffness: f64,
-    /// displacement of the far end; `None` is the ground [L]
+    /// displacement of the far end; `None` for the ground [L]
     pub driver: Option<Amplitude>,
 }
 
@@ -336,35 +336,35 @@ pub struct Spring {
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Dashpot {
-    /// dof it acts on
+    /// dof on which it acts
     pub dof: usize,
     /// c [F T/L]
     pub coefficient: f64,
-    /// velocity of the far end; `None` is the ground [L/T]
+    /// velocity of the far end; `None` for the ground [L/T]
     pub driver: Option<Amplitude>,
 }
 
 impl Dashpot {
-    /// v_driver, for the node's reference position [L/T].
+    /// v_driver for the node's reference position [L/T].
     pub fn driver_velocity(&self, position: Vector2<f64>, at: impl Into<Moment>) -> f64 {
         self.driver.as_ref().map_or(0.0, |driver| driver.value(position, at))
     }
 }
 
-/// A node's share of an absorbing side: force −C v, C = ∫ N_a ρ (c_p n⊗n + c_s s⊗s) dS with the side's reference normal
-/// n and tangent s. Plane waves that meet the side at a right angle leave as if the body went on.
+/// Nodal part of an absorbing side: force −C v, C = ∫ N_a ρ (c_p n⊗n + c_s s⊗s) dS with the side's reference normal
+/// n and tangent s. Plane waves at normal incidence leave as if the body continued.
 ///
 /// Source: Lysmer & Kuhlemeyer (1969), J. Eng. Mech. Div. ASCE 95, 859.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Absorber {
-    /// the node
+    /// node
     pub node: usize,
     /// C [F T/L]
     pub coefficients: Matrix2<f64>,
 }
 
-/// A moment on a rigid plate, counter-clockwise: a couple of forces on its leaders that turns with it.
+/// Moment on a rigid platen, counter-clockwise: a couple of forces on its master nodes that rotates with it.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct PlateMoment {
@@ -374,13 +374,13 @@ pub struct PlateMoment {
     pub amplitude: Amplitude,
 }
 
-/// Everything that acts on the model in one step.
+/// Loads on the model in one step.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
-    /// forces that stay as they are
+    /// forces of constant direction
     #[doc(hidden)]
     pub dead: Vec<DeadLoad>,
-    /// forces that turn with the surface
+    /// follower pressures
     #[doc(hidden)]
     pub pressures: Vec<FollowerPressure>,
     /// springs
@@ -392,14 +392,14 @@ pub struct Loads {
     /// absorbing sides
     #[doc(hidden)]
     pub absorbers: Vec<Absorber>,
-    /// moments on plates
+    /// moments on platens
     #[doc(hidden)]
     pub moments: Vec<PlateMoment>,
 }
 
 #[doc(hidden)]
 impl Loads {
-    /// What of them varies in time.
+    /// All time-dependent amplitudes.
     pub fn amplitudes(&mut self) -> impl Iterator<Item = &mut Amplitude> {
         let dead = self.dead.iter_mut().map(|load| &mut load.amplitude);
         let pressures = self.pressures.iter_mut().map(|load| &mut load.amplitude);
@@ -410,13 +410,13 @@ impl Loads {
     }
 }
 
-/// A moment at which it is asked how a quantity varies.
+/// Moment at which a time-dependent quantity is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Moment {
     /// t [T]
     pub time: f64,
-    /// Start and end of the increment beyond whose end the moment lies, where a scheme looks ahead
+    /// Start and end of the increment, if the scheme evaluates beyond its end
     pub beyond: Option<[f64; 2]>,
 }
 
@@ -436,7 +436,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Share of the span that has passed, 0 to 1.
+    /// Elapsed fraction of the span, 0 to 1.
     pub fn share(&self, time: f64) -> f64 {
         if self.end > self.start { ((time - self.start) / (self.end - self.start)).clamp(0.0, 1.0) } else { 1.0 }
     }

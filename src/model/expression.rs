@@ -3,9 +3,9 @@
 //! ```text
 //! sum = product {(+|-) product}      product = sign {(*|/) sign}      sign = [+|-] sign | power      power = atom [^ sign]
 //! ```
-//! As on paper: −x^2 is −(x²), x^y^z is x^(y^z), and all else goes from left to right.
+//! Precedence is the usual one: −x^2 is −(x²), x^y^z is x^(y^z), and equal operators are evaluated from left to right.
 //!
-//! From the text of an expression to its operations.
+//! A parser translates the text of an expression to operations.
 
 use std::borrow::Cow;
 use std::str::FromStr;
@@ -16,10 +16,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 
 use crate::mesh::names::{in_line, nearest};
 
-/// Longest expression that is read [bytes].
+/// Maximum length of an expression [bytes].
 const LONGEST_EXPRESSION: usize = 1000;
 
-/// Most values that wait for their operation.
+/// Maximum depth of the stack of values.
 const DEPTH: usize = 32;
 
 /// A parsed expression in x, y and t: operations on a stack of values.
@@ -33,7 +33,7 @@ pub struct Expression {
 #[derive(Clone, Copy, Debug)]
 enum Operation {
     Number(f64),
-    /// Its place among the variables
+    /// Index of the variable
     Variable(usize),
     Negate,
     Unary(fn(f64) -> f64),
@@ -41,7 +41,7 @@ enum Operation {
 }
 
 impl Operation {
-    /// Values that the stack has more after it.
+    /// Change of the stack depth.
     fn growth(self) -> isize {
         match self {
             Self::Number(_) | Self::Variable(_) => 1,
@@ -54,22 +54,22 @@ impl Operation {
 /// Variables of an expression in position and time.
 const PLACE: [&str; 3] = ["x", "y", "t"];
 
-/// Position of the time among them.
+/// Index of the time among them.
 const TIME: usize = 2;
 
 impl Expression {
-    /// Parse an expression.
+    /// Parses an expression.
     ///
     /// # Errors
-    /// What cannot be read, with a mark below the place.
+    /// Returns a message with a mark below the position that cannot be read.
     pub fn parse(text: &str) -> Result<Self, String> {
         Self::parse_in(text, &PLACE)
     }
 
-    /// The value of an expression in numbers that have names.
+    /// Evaluates an expression in named numbers.
     ///
     /// # Errors
-    /// As [`Expression::parse`]; also where it has no finite value.
+    /// The same as for [`Expression::parse`]; also if it has no finite value.
     pub fn constant(text: &str, names: &[&str], numbers: &[f64]) -> Result<f64, String> {
         let value = Self::parse_in(text, names)?.evaluate(numbers);
         if value.is_finite() { Ok(value) } else { Err(format!("\"{text}\" is {value}: must be finite")) }
@@ -103,7 +103,7 @@ impl Expression {
         Self { text: format!("-({})", self.text).into(), operations }
     }
 
-    /// The expression times a number.
+    /// The expression multiplied by a factor.
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
         let product = [Operation::Number(factor), Operation::Binary(|a, b| a * b)];
@@ -111,12 +111,12 @@ impl Expression {
         Self { text: format!("({})*{factor}", self.text).into(), operations }
     }
 
-    /// Whether t stands in it.
+    /// Whether it contains t.
     pub fn depends_on_time(&self) -> bool {
         self.operations.iter().any(|operation| matches!(operation, Operation::Variable(TIME)))
     }
 
-    /// Whether x or y stands in it.
+    /// Whether it contains x or y.
     pub fn depends_on_position(&self) -> bool {
         self.operations.iter().any(|operation| matches!(operation, Operation::Variable(which) if *which != TIME))
     }
@@ -207,7 +207,7 @@ const FUNCTIONS: [(&str, Function); 28] = [
     ("trunc", f64::trunc),
 ];
 
-/// Functions of two values. Where one is not defined, neither is the larger or smaller of it and another.
+/// Functions of two values. The larger or smaller of two is undefined if one of them is.
 const PAIRS: [(&str, Pair); 3] = [("atan2", f64::atan2), ("max", largest), ("min", smallest)];
 
 const CONSTANTS: [(&str, f64); 8] = [
@@ -229,24 +229,24 @@ fn smallest(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.min(b) }
 }
 
-/// Letters of a long expression that are shown on either side of what cannot be read.
+/// Number of characters of a long expression shown on either side of an error.
 const AROUND: usize = 30;
 
-/// Reads an expression from left to right.
+/// Parser of an expression, from left to right.
 struct Reader<'t> {
     text: &'t str,
-    /// names of its variables
+    /// names of the variables
     variables: &'t [&'t str],
-    /// place of what is read next [bytes]
+    /// current position [bytes]
     at: usize,
     operations: Vec<Operation>,
 }
 
-/// Result of parsing: the error has the place and a message.
+/// Result of parsing; an error contains its position and a message.
 type Read<T> = Result<T, (usize, String)>;
 
 impl<'t> Reader<'t> {
-    /// The operations in their order.
+    /// Returns the operations in their order.
     pub fn read(text: &'t str, variables: &'t [&'t str]) -> Result<Vec<Operation>, String> {
         let mut reader = Self { text, variables, at: 0, operations: Vec::new() };
         let read = reader.sum().and_then(|()| match reader.next() {
@@ -316,7 +316,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// A number as Rust and JSON write it, with an exponent such as 2.5e-3.
+    /// Parses a number in the format of Rust and JSON, with an exponent such as 2.5e-3.
     fn number(&mut self) -> Read<()> {
         let rest = &self.text[self.at..];
         let mantissa = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
@@ -358,7 +358,7 @@ impl<'t> Reader<'t> {
         Ok(())
     }
 
-    /// The values that a function is applied to, in brackets.
+    /// Parses the arguments of a function, in brackets.
     fn values(&mut self, function: &str, count: usize) -> Read<()> {
         let of = if count == 1 { "(…)" } else { "(…, …)" };
         let open = self.at;
@@ -392,7 +392,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// The next character that is no space; the place moves there.
+    /// Advances to the next character that is not a space, and returns it.
     fn next(&mut self) -> Option<char> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();
@@ -410,7 +410,7 @@ impl<'t> Reader<'t> {
     }
 }
 
-/// Whether it is something else, or no name.
+/// Whether a name is reserved or invalid as the name of a variable.
 fn refused_name(name: &str) -> Option<&'static str> {
     let mut letters = name.chars();
     let first = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_');
@@ -441,7 +441,7 @@ fn unknown(name: &str, variables: &[&str]) -> String {
     )
 }
 
-/// Error message with the surrounding text and a mark below the place.
+/// Error message with the surrounding text and a mark below the position.
 fn marked(text: &str, at: usize, what: &str) -> String {
     let before: Vec<char> = text[..at].chars().rev().take(AROUND + 1).collect();
     let after: Vec<char> = text[at..].chars().take(AROUND + 1).collect();

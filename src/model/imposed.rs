@@ -1,4 +1,4 @@
-//! What is imposed on bodies, and on each of their elements: an initial stress, temperatures and their work.
+//! Initial stress and temperatures of bodies and their elements, and the work of temperature changes.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -8,21 +8,21 @@ use super::boundary::{Amplitude, Moment, Profile};
 use super::{Model, Step};
 use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
-/// Initial stress of a body. Displacements and strains are measured from the initial state, stresses are total. The run
+/// Initial stress of a body. Displacements and strains are measured from the initial state; stresses are total. The run
 /// reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
-/// such as "-9.81" for a gravity, because a number grows from zero over the step
+/// such as "-9.81" for gravity, because a number increases from zero over the step
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum InitialStress {
     /// Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a plate
     Geostatic {
-        /// Level y at which the vertical stress is zero: the top of the body, or above it if it lies deeper [L]
+        /// Level y of zero vertical stress: the top of the body, or above it if the body lies deeper [L]
         surface: f64,
         /// γ: weight per volume, the density times gravity, above 0 [F/L³]
         weight: f64,
-        /// K₀: horizontal over vertical stress, zero or positive; 1 − sin φ of loose ground, ν/(1 − ν) of an elastic body that cannot
-        /// widen [-]
+        /// K₀: ratio of horizontal to vertical stress, zero or positive; 1 − sin φ for loose soil, ν/(1 − ν) for an elastic
+        /// body without lateral strain [-]
         #[serde(rename = "K0")]
         k0: f64,
     },
@@ -41,7 +41,7 @@ pub enum InitialStress {
 }
 
 impl InitialStress {
-    /// σ_xx, σ_yy, σ_xy, σ_zz at a reference position of a body, which in a plate has none out of plane [F/L²].
+    /// σ_xx, σ_yy, σ_xy, σ_zz at a reference position of a body; σ_zz is zero in plane stress [F/L²].
     pub fn at(&self, position: Vector2<f64>, in_plate: bool) -> [f64; 4] {
         match self {
             Self::Geostatic { surface, weight, k0 } => {
@@ -56,27 +56,27 @@ impl InitialStress {
     }
 }
 
-/// Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material is
-/// evaluated at F_e; a `linear` one at the strain less α (T − T₀).
+/// Thermal expansion of a body, whose `temperature` is given by the steps. With F = (1 + α (T − T₀)) F_e the material is
+/// evaluated at F_e; a `linear` one at the strain minus α (T − T₀).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Thermal {
-    /// α: strain per temperature, against the undeformed body [1/Θ]
+    /// α: strain per temperature, relative to the undeformed body [1/Θ]
     pub expansion: f64,
-    /// T₀: temperature of the undeformed body, which it has until a step gives another [Θ]
+    /// T₀: temperature of the undeformed body, in effect until a step specifies another [Θ]
     #[serde(default)]
     pub reference: f64,
 }
 
 impl Thermal {
-    /// Of a body that is undeformed at the temperature 0.
+    /// Creates the expansion of a body that is undeformed at temperature 0.
     pub fn new(expansion: f64) -> Self {
         Self { expansion, reference: 0.0 }
     }
 
-    /// Undeformed at another temperature [Θ].
+    /// Sets the temperature of the undeformed body [Θ].
     pub fn reference(self, reference: f64) -> Self {
         Self { reference, ..self }
     }
@@ -108,8 +108,8 @@ impl Model {
         memory
     }
 
-    /// Write T − T₀ over the variables of an element's material at a moment of a step. A body to which no step has given a
-    /// temperature stays as it is.
+    /// Writes T − T₀ to the variables of an element's material at a moment of a step. A body without a prescribed temperature
+    /// is unchanged.
     pub fn write_temperatures(&self, step: &Step, at: Moment, element: usize, old: &[f64], new: &mut [f64]) {
         let (body, Some((count, rise))) = (self.body_of_element[element], self.rises(element)) else { return };
         let reference = self.bodies[body].thermal.map_or(0.0, |thermal| thermal.reference);
@@ -125,15 +125,15 @@ impl Model {
         }
     }
 
-    /// T − T₀ at the points of an element in the memory of all elements; none where temperatures do nothing.
+    /// T − T₀ at the points of an element, from the internal variables of all elements; empty without thermal expansion.
     pub fn temperatures<'a>(&self, element: usize, memory: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let of =
             |(count, rise)| self.memories.of(element, memory).chunks_exact(count).map(move |point: &[f64]| point[rise]);
         self.rises(element).map(of).into_iter().flatten()
     }
 
-    /// Work that a change of temperature does on an element in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: what
-    /// it changes of the energy that a body stores without moving [F·L].
+    /// Work of a temperature change on an element in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: the change of
+    /// the stored energy at constant displacement [F·L].
     pub fn heating(&self, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
         let (Some((count, rise)), Some(thermal)) =
             (self.rises(element), self.bodies[self.body_of_element[element]].thermal)
@@ -147,7 +147,7 @@ impl Model {
         self.solids[element].point_volumes().iter().zip(points).map(of).sum()
     }
 
-    /// Number of variables of an element's material at a point, and which of them is T − T₀; none if it is not heated.
+    /// Number of variables of an element's material at a point, and the index of T − T₀; `None` without thermal expansion.
     fn rises(&self, element: usize) -> Option<(usize, usize)> {
         let body = &self.bodies[self.body_of_element[element]];
         let count = body.material.variables().len();

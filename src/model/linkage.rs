@@ -1,4 +1,4 @@
-//! Nodes whose displacements follow from others (master–slave constraints): plates with one equal component, and plates
+//! Nodes whose displacements follow from others (master–slave constraints): platens with one equal component, and platens
 //! that move as a rigid body.
 //!
 //! ```text
@@ -7,10 +7,10 @@
 //! rigid                     x_c = x_A + α e + β J e,   e = x_B − x_A,   |e| = L            J: turned by 90°
 //! ```
 //!
-//! α and β follow from the places at the start, so that a rigid plate is linear in the displacements of two of its nodes but for the
-//! length between them. Forces on c go to its leaders by Gᵀ: the work is the same.
+//! α and β follow from the initial positions, so that a rigid platen is linear in the displacements of two of its nodes, except
+//! for the constraint of their distance. Forces on c are transferred to its leaders by Gᵀ, which preserves work.
 //!
-//! Of loading plates it is here as well whose their reactions are.
+//! The assignment of reactions to platens is also defined here.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -27,21 +27,21 @@ pub struct Follower {
     pub leaders: Vec<(usize, Matrix2<f64>)>,
 }
 
-/// All nodes that follow others.
+/// All constraints between nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Linkage {
-    /// ascending by their nodes; a node whose components follow different ones is there twice
+    /// ascending by node; a node whose components follow different nodes occurs twice
     pub followers: Vec<Follower>,
     /// A and B of each rigid plate
     pub rigid: Vec<[usize; 2]>,
-    /// G of the center of mass of each, x_C = x_A + G e; that of A if it has no mass
+    /// G of the center of mass of each, x_C = x_A + G e; that of A for a platen without mass
     pub centers: Vec<Matrix2<f64>>,
-    /// nodes of each plate, ascending, and which components move with it
+    /// nodes of each platen, ascending, and the components that move with it
     pub plates: Vec<(Vec<usize>, [bool; 2])>,
 }
 
 impl Follower {
-    /// Its component i as its leaders have it.
+    /// Value of component i from its leaders.
     pub fn value(&self, i: usize, values: &[f64]) -> f64 {
         self.value_by(i, |dof| values[dof])
     }
@@ -63,7 +63,7 @@ impl Linkage {
         self.followers.is_empty()
     }
 
-    /// Add the forces of followers to their leaders, by Gᵀ, and clear them.
+    /// Adds the forces of followers to their leaders, by Gᵀ, and sets them to zero.
     pub fn gather(&self, values: &mut [f64]) {
         self.move_by(values, |g| g);
     }
@@ -84,12 +84,12 @@ impl Linkage {
         }
     }
 
-    /// The followers of rigid plates.
+    /// Followers of rigid platens.
     pub fn turning(&self) -> impl Iterator<Item = &Follower> {
         self.followers.iter().filter(|follower| follower.leaders.len() == 2)
     }
 
-    /// Give followers what their leaders have.
+    /// Sets the values of followers from their leaders.
     pub fn spread(&self, values: &mut [f64]) {
         for follower in &self.followers {
             for (i, dof) in follower.dofs() {
@@ -98,7 +98,7 @@ impl Linkage {
         }
     }
 
-    /// The dof that leads a dof alone: itself unless it follows.
+    /// The dof that a dof follows alone: itself unless it is a follower.
     pub fn leading(&self, dof: usize) -> usize {
         let first = self.followers.partition_point(|follower| follower.node < dof / 2);
         let own = self.followers[first..].iter().take_while(|follower| follower.node == dof / 2);
@@ -108,7 +108,7 @@ impl Linkage {
         }
     }
 
-    /// All nodes that follow or lead, ascending.
+    /// All followers and leaders, ascending.
     pub fn nodes(&self) -> Vec<usize> {
         let followers = self.followers.iter();
         let mut nodes: Vec<usize> =
@@ -120,7 +120,7 @@ impl Linkage {
     }
 }
 
-/// The followers of a plate with one equal component; its first node is the master.
+/// Followers of a platen with one equal component; its first node is the leader.
 pub fn alike(nodes: &[usize], component: usize) -> Vec<Follower> {
     let Some((&first, others)) = nodes.split_first() else { return Vec::new() };
     let components = [component == 0, component == 1];
@@ -129,7 +129,7 @@ pub fn alike(nodes: &[usize], component: usize) -> Vec<Follower> {
     others.iter().map(|&node| Follower { node, components, leaders: vec![(first, g)] }).collect()
 }
 
-/// The followers of a rigid plate that A and B lead.
+/// Followers of a rigid platen with the leaders A and B.
 pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vector2<f64>) -> Vec<Follower> {
     let e = place(b) - place(a);
     let follower = |&node: &usize| {
@@ -143,7 +143,7 @@ pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vecto
 
 #[doc(hidden)]
 impl Model {
-    /// The given nodes (sorted) whose reactions along x (0) or y (1) count for them; the reaction of a plate counts
+    /// The given nodes (sorted) whose reactions along x (0) or y (1) belong to them; the reaction of a platen is included
     /// only if all of its nodes are given.
     pub fn held(&self, nodes: &[usize], component: usize) -> Vec<usize> {
         let linked = self.linkage.plates.iter().filter(|(_, components)| components[component]).map(|(plate, _)| plate);

@@ -1,8 +1,8 @@
-//! Where contact is evaluated: as it is asked for, or as the surfaces need it.
+//! Contact method: as requested, or chosen for the surfaces.
 //!
-//! Pointwise contact passes the patch test of straight linear edges to about a percent. On quadratic edges two points leave
-//! the pressure to alternate, and between two faceted curves the gap itself alternates by the height of the facets, which
-//! the penalty turns into pressures far above those sought. There mortar averages.
+//! Pointwise contact passes the patch test for straight linear edges to about a percent. On quadratic edges with two points the
+//! pressure alternates, and between two faceted curves the gap itself alternates by the height of the facets, which the
+//! penalty converts into pressures far above the actual ones. In these cases mortar averages are used.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::surface::{CORNER, in_order};
 use crate::mesh::{Group, Mesh};
 
-/// Contact method: where contact is evaluated.
+/// Contact method: evaluation points of contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -24,7 +24,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Its name in a case.
+    /// Name in a case.
     pub fn name(self) -> &'static str {
         match self {
             Self::NodeToSegment => "node_to_segment",
@@ -39,11 +39,11 @@ impl Method {
 pub struct Chosen {
     /// method
     pub method: Method,
-    /// Gauss points an edge, for gauss_to_segment
+    /// Gauss points per edge, for gauss_to_segment
     pub points: usize,
-    /// Why, if it was left open
+    /// Reason, if it was chosen automatically
     pub because: Option<&'static str>,
-    /// What is known to suffer, and the remedy
+    /// Known weakness, and the remedy
     pub concern: Option<&'static str>,
 }
 
@@ -55,14 +55,14 @@ enum Looks {
     Quadratic,
 }
 
-/// Gauss points an edge unless given.
+/// Default number of Gauss points per edge.
 const POINTS: usize = 2;
 
-/// A surface of linear edges is curved where its direction turns by more than this between two corners; far above what
-/// round-off of coordinates does to a straight line, and below what facets do to the pressure [rad].
+/// Angle by which the direction of a linear-edge surface must vary between two corners for it to count as curved; far above the
+/// round-off of a straight line, and below facets that affect the pressure [rad].
 const CURVED: f64 = 0.0175;
 
-/// The method of a contact of two groups of edges, the second none for a rigid master.
+/// Chooses the method of a contact of two edge groups, the second `None` for a rigid master.
 pub fn choose(
     slave: &str,
     master: Option<&str>,
@@ -121,7 +121,7 @@ fn looks(mesh: &Mesh, group: &str) -> Looks {
         return Looks::Quadratic;
     }
     let edges = in_order(&edges.iter().map(|edge| edge.nodes.clone()).collect::<Vec<_>>());
-    // Angles counted on from one edge to the next, from corner to corner.
+    // Angles are accumulated from edge to edge between corners.
     let (mut angle, mut range) = (0.0f64, [0.0f64; 2]);
     for pair in edges.windows(2) {
         let [before, after] = [&pair[0], &pair[1]].map(|edge| mesh.nodes[edge[1]] - mesh.nodes[edge[0]]);

@@ -67,19 +67,19 @@ pub use step::{ForceComponent, Increments, Rupture, Step};
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct NewtonSettings {
-    /// Out-of-balance force relative to the forces at work
+    /// Residual force relative to the acting forces
     pub tolerance: f64,
-    /// Linear solves an increment before it is cut
+    /// Linear solves per increment before it is rejected
     pub max_iterations: usize,
 }
 
 impl NewtonSettings {
-    /// With another tolerance [-].
+    /// Sets the tolerance [-].
     pub fn tolerance(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
     }
 
-    /// With another limit of linear solves.
+    /// Sets the maximum number of linear solves.
     pub fn max_iterations(self, max_iterations: usize) -> Self {
         Self { max_iterations, ..self }
     }
@@ -91,7 +91,7 @@ impl Default for NewtonSettings {
     }
 }
 
-/// The model; it does not change while it is solved.
+/// The model; constant during a run.
 #[derive(Debug)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Model {
@@ -108,10 +108,10 @@ pub struct Model {
     /// nodes of periodic sides and of loading plates
     #[doc(hidden)]
     pub ties: Ties,
-    /// nodes constrained to others: plates that rotate, or with one equal component
+    /// nodes constrained to others: platens that rotate, or with one equal component
     #[doc(hidden)]
     pub linkage: Linkage,
-    /// nodes of each loading plate, ascending
+    /// nodes of each loading platen, ascending
     #[doc(hidden)]
     pub plates: Vec<Vec<usize>>,
     /// point masses
@@ -123,13 +123,13 @@ pub struct Model {
     /// integration geometry of each element
     #[doc(hidden)]
     pub solids: Vec<SolidElement>,
-    /// where each element finds what its material remembers, in [`State::memory`]
+    /// layout of the internal variables of all elements in [`State::memory`]
     #[doc(hidden)]
     pub memories: Memories,
     /// contact pairs
     #[doc(hidden)]
     pub contacts: Vec<ContactPair>,
-    /// where each contact is evaluated, and why; none for a slave group of points
+    /// method of each contact, and its reason; `None` for a point group as slave
     #[doc(hidden)]
     pub methods: Vec<Option<Chosen>>,
     /// steps, in order
@@ -137,22 +137,22 @@ pub struct Model {
     /// initial velocity of every dof [L/T]
     #[doc(hidden)]
     pub initial_velocity: Vec<f64>,
-    /// Forces of an initial stress of the bodies on every dof, which balance initial tractions of contacts, if any [F]
+    /// Forces of an initial stress of the bodies on every dof, balanced by initial tractions of contacts, if any [F]
     #[doc(hidden)]
     pub prestress: Vec<f64>,
-    /// what is recorded, and when
+    /// output requests
     #[doc(hidden)]
     pub requests: OutputRequests,
-    /// when Newton's method stops
+    /// stopping criteria of Newton's method
     pub newton: NewtonSettings,
-    /// what makes iterations converge, all of it unless switched off for an experiment
+    /// convergence aids, all active unless switched off for an experiment
     #[doc(hidden)]
     pub aids: Aids,
 }
 
 #[doc(hidden)]
 impl Model {
-    /// Number of dofs, two a node.
+    /// Number of dofs, two per node.
     pub fn dofs(&self) -> usize {
         2 * self.mesh.nodes.len()
     }
@@ -177,12 +177,12 @@ impl Model {
         self.dampings(step).iter().map(|damping| damping.retardation).collect()
     }
 
-    /// Whether some body has the viscous stress of Kelvin and Voigt in a step.
+    /// Whether some body has a Kelvin–Voigt viscous stress in a step.
     pub fn is_viscous(&self, step: &Step) -> bool {
         (0..self.bodies.len()).any(|body| self.damping(step, body).retardation > 0.0)
     }
 
-    /// Whether forces act before anything has moved: bodies are stressed, or contacts closed already.
+    /// Whether forces act in the initial state: bodies with initial stress, or closed contacts.
     pub fn starts_loaded(&self) -> bool {
         self.contacts.iter().any(|pair| pair.initial.is_some())
             || self.bodies.iter().any(|body| body.initial_stress.is_some())
@@ -200,7 +200,7 @@ impl Model {
         self.consistent(element, self.bodies[self.body_of_element[element]].material.density())
     }
 
-    /// ∫ N_a N_b dV of an element, as its mass is distributed [L³].
+    /// ∫ N_a N_b dV of an element, in accordance with its mass [L³].
     pub fn element_volumes(&self, element: usize) -> DMatrix<f64> {
         self.consistent(element, 1.0)
     }
@@ -228,7 +228,7 @@ impl Model {
             .expect("elements are checked when the model is built")
     }
 
-    /// (λ + 2G) w of the stiffest element, the scale of forces over displacements; 0 without elements [F/L].
+    /// (λ + 2G) w of the stiffest element, the ratio of force to displacement; 0 without elements [F/L].
     pub fn stiffness(&self) -> f64 {
         let of =
             |(solid, &body): (&SolidElement, &usize)| self.bodies[body].material.p_wave_modulus() * solid.mean_weight();

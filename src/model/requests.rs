@@ -1,9 +1,9 @@
-//! Output requests: what of a run is recorded, and when. Observers read them, and increments end at their times; no equation
-//! knows them.
+//! Output requests: what is recorded of a run, and when. Observers read them, and increments end at their times; no equation
+//! depends on them.
 
 use crate::mesh::Edge;
 
-/// What of a run is recorded, and when.
+/// Output requests of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[doc(hidden)]
 pub struct OutputRequests {
@@ -11,9 +11,9 @@ pub struct OutputRequests {
     pub watch: Vec<WatchedSet>,
     /// points of the bodies
     pub probes: Vec<Probe>,
-    /// Least time between two rows of the history of implicit steps, and between the results of explicit ones [T]
+    /// Minimum time between two rows of the history of implicit steps, and interval of the results of explicit ones [T]
     pub interval: Option<f64>,
-    /// Times that increments end at, ascending, because fields are written then [T]
+    /// Output times of fields, ascending, at which increments end [T]
     pub times: Vec<f64>,
 }
 
@@ -21,13 +21,13 @@ pub struct OutputRequests {
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct WatchedSet {
-    /// name in results: that of the group, or what says which node it is
+    /// name in results: that of the group, or one that identifies the node
     pub name: String,
-    /// its nodes, of which the displacement is the mean
+    /// nodes, whose mean displacement is reported
     pub nodes: Vec<usize>,
-    /// its edges, where it is a group of edges
+    /// edges, if it is an edge group
     pub edges: Vec<Edge>,
-    /// nodes whose reactions along x and y are its own
+    /// nodes whose reactions along x and y belong to it
     pub held: [Vec<usize>; 2],
 }
 
@@ -44,7 +44,7 @@ pub struct Probe {
 }
 
 impl OutputRequests {
-    /// Whether fields are requested at a time; round-off of the sum of increments does not matter.
+    /// Whether a time is an output time of fields, within round-off.
     pub fn is_time(&self, time: f64) -> bool {
         self.times.iter().any(|at| (at - time).abs() <= near(*at))
     }

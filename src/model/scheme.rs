@@ -1,4 +1,4 @@
-//! Time integration: how velocity and acceleration follow from displacement, and where equilibrium is asked for.
+//! Time integration: velocity and acceleration as functions of displacement, and the time of equilibrium.
 //!
 //! ```text
 //! (1 − α_m) M a₁ + α_m M a₀ + (1 − α_f) F₁ + α_f F₀ = 0          F: internal + contact − external forces     (1)
@@ -14,38 +14,40 @@
 //! | Wilson-θ | 0 | 0 | ½ | 1/6, over θ Δt | 2 | < 1 |
 //! | central differences | 0 | 0 | ½ | 0 | 2 | – |
 //!
-//! ρ(∞) is the share of a motion that the increments do not resolve, ω Δt → ∞, which is left after each of them.
+//! ρ(∞) is the fraction of an unresolved motion, ω Δt → ∞, that remains after each increment.
 //!
 //! # Wilson-θ
-//! The acceleration is linear in time (γ = ½, β = 1/6) and equilibrium is asked for at t + θ Δt, under the loads of that
-//! time; what lies there is a trial and is dropped. With a_θ found there,
+//! The acceleration is linear in time (γ = ½, β = 1/6) and equilibrium is required at t + θ Δt, under the loads of that
+//! time; the state there is a trial and is discarded. With a_θ found there,
 //! ```text
 //! a₁ = a₀ + (a_θ − a₀)/θ                                                                                     (4)
 //! ```
-//! and (2), (3) over Δt give u₁ and v₁. Loads go on to t + θ Δt in a straight line, f_θ = f₀ + θ (f₁ − f₀), and supports as the cubic
-//! through where they are at the start, thirds and end of the increment, wherever they bend or the step ends. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
-//! every Δt from θ = (1 + √3)/2 = 1.366 on.
+//! and (2), (3) over Δt give u₁ and v₁. Loads are extrapolated linearly to t + θ Δt, f_θ = f₀ + θ (f₁ − f₀), and supports by
+//! the cubic through their positions at the start, thirds and end of the increment, irrespective of kinks or the end of the
+//! step. At t + Δt equilibrium is satisfied only to the order of the scheme. The scheme is stable for every Δt if θ ≥ (1 +
+//! √3)/2 = 1.366.
 //!
 //! # Central differences
-//! In velocity-Verlet form, so that schemes can follow one another at any time; M is lumped, F has no dashpots in it, and
-//! those, with the coefficients c on the diagonal, act at t + Δt:
+//! The velocity-Verlet form permits a change of scheme at any time; M is lumped, F excludes dashpots, which act at t + Δt with
+//! the coefficients c on the diagonal:
 //! ```text
 //! v½ = v₀ + ½ Δt a₀,   u₁ = u₀ + Δt v½                                                                       (7)
 //! (M + ½ Δt c) a₁ = −F(u₁) + c (v_driver − v½),   v₁ = v½ + ½ Δt a₁                                          (8)
 //! ```
-//! It is of second order and stable while ω Δt ≤ 2 for every vibration ω; `explicit/` has the bound of ω.
+//! The scheme is of second order and stable while ω Δt ≤ 2 for every frequency ω; `explicit/` computes a bound of ω.
 //!
 //! # Quasi-dynamic steps
-//! Without inertia but for what slip radiates, an interface on linear bodies is a system of ordinary differential equations;
-//! `time/quasi_dynamic` has them.
+//! Without inertia except for radiation damping, an interface on linear bodies is a system of ordinary differential equations;
+//! see `time/quasi_dynamic`.
 //!
 //! # Supports
-//! A prescribed dof follows its support and not (2), by which a jerk would ring. Its velocity is that of the support, and
+//! A prescribed dof follows its support instead of (2), which would oscillate after a jerk. Its velocity is that of the
+//! support, and
 //! ```text
 //! a₁ = (v₁ − v₀)/Δt + ½ (ā₁ − ā₀)                                                                            (5)
 //! ```
-//! with ā the support's acceleration: of second order where the motion is smooth, and where the velocity jumps, from the
-//! step before or at a kink, the jump is spread over the increment. In (1) the accelerations of supports are weighted
+//! with ā the support's acceleration. This is of second order where the motion is smooth; a jump of the velocity, from the
+//! previous step or at a kink, is distributed over the increment. In (1) the accelerations of supports are weighted
 //! with α_f like the forces: they belong to t, those of free dofs to the time t + (α_m − α_f) Δt, to second order.
 //!
 //! # Local error
@@ -54,9 +56,9 @@
 //! ```text
 //! e = C Δt³ u⃛ + O(Δt⁴) ≈ C Δt² (a₁ − a₀),   C = β − 1/6 − ½ (α_f − α_m)                                     (6)
 //! ```
-//! By (2) this is C/β times the way from the Taylor polynomial u₀ + Δt v₀ + ½ Δt² a₀ to u₁: for the trapezoidal rule a
-//! third. So whatever happens within an increment, a slip or an impact, shows in the estimate by what it moves. Wilson-θ
-//! has no term (6): its error is of fourth order and takes accelerations of more than two times to see.
+//! By (2) this is C/β times the difference between u₁ and the Taylor polynomial u₀ + Δt v₀ + ½ Δt² a₀: a third of it for the
+//! trapezoidal rule. An event within an increment, such as slip or an impact, therefore contributes its displacement to the
+//! estimate. Wilson-θ has no term (6): its error is of fourth order and requires accelerations at more than two times.
 //!
 //! Sources: Newmark (1959), J. Eng. Mech. Div. ASCE 85, 67; Wilson, Farhoomand & Bathe (1973), Earthquake Eng. Struct. Dyn.
 //! 1, 241; Hilber, Hughes & Taylor (1977), Earthquake Eng. Struct. Dyn. 5, 283; Chung & Hulbert (1993), J. Appl. Mech.
@@ -184,7 +186,7 @@ impl Scheme {
         }
     }
 
-    /// θ: equilibrium is asked for at t + θ Δt; 1 but for Wilson's scheme.
+    /// θ: equilibrium is required at t + θ Δt; 1 except for Wilson-θ.
     pub fn theta(self) -> f64 {
         match self {
             Self::Wilson { theta } => theta,
@@ -207,10 +209,10 @@ impl Scheme {
         (self.theta() == 1.0 && constant > LEAST_ERROR_CONSTANT).then_some(constant)
     }
 
-    /// Check the parameters.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the one that is out of range.
+    /// Returns [`InvalidParameter`] with the one that is out of range.
     pub fn check(self) -> Result<(), InvalidParameter> {
         match self {
             Self::Static => Ok(()),
@@ -243,11 +245,11 @@ impl Scheme {
     }
 }
 
-/// Below this |C| the estimate (6) says nothing: all others of this file have |C| ≥ 1/12.
+/// |C| below which the estimate (6) is meaningless: all others of this file have |C| ≥ 1/12.
 const LEAST_ERROR_CONSTANT: f64 = 0.01;
 
 impl Coefficients {
-    /// γ and β for second order and the most damping of unresolved motions that α_m and α_f leave room for.
+    /// γ and β for second order with the strongest damping of unresolved motions for given α_m and α_f.
     fn of_second_order(alpha_m: f64, alpha_f: f64) -> Self {
         let shift = alpha_f - alpha_m;
         Self { alpha_m, alpha_f, beta: 0.25 * (1.0 + shift).powi(2), gamma: 0.5 + shift }
@@ -269,14 +271,14 @@ impl Coefficients {
         (v + dt * ((1.0 - self.gamma) * a + self.gamma * a1), a1)
     }
 
-    /// Δu of one dof from (v₀, a₀) and a₁: equation (2) the other way round.
+    /// Δu of one dof from (v₀, a₀) and a₁: the inverse of equation (2).
     pub fn increment(&self, v: f64, a: f64, a1: f64, dt: f64) -> f64 {
         dt * v + dt * dt * ((0.5 - self.beta) * a + self.beta * a1)
     }
 }
 
-/// (v₁, a₁) by (5) of a dof that comes with `v` into an increment in which its support goes through four places, at its
-/// start, thirds and end.
+/// (v₁, a₁) by (5) of a dof with the initial velocity `v`, in an increment in which its support passes through four positions
+/// at the start, thirds and end.
 pub fn supported_rates(places: [f64; 4], v: f64, dt: f64) -> (f64, f64) {
     let [start, first, second, end] = places;
     let v1 = (11.0 * end - 18.0 * second + 9.0 * first - 2.0 * start) / (2.0 * dt);
@@ -284,12 +286,12 @@ pub fn supported_rates(places: [f64; 4], v: f64, dt: f64) -> (f64, f64) {
     (v1, (v1 - v) / dt + 0.5 * (a1 - a0))
 }
 
-/// Velocity, at the start of an increment, of a support that goes through four places in it.
+/// Velocity of a support at the start of an increment, from its positions at the start, thirds and end.
 pub fn start_velocity([start, first, second, end]: [f64; 4], dt: f64) -> f64 {
     (-11.0 * start + 18.0 * first - 9.0 * second + 2.0 * end) / (2.0 * dt)
 }
 
-/// Acceleration, at the start of an increment, of a support that goes through four places in it.
+/// Acceleration of a support at the start of an increment, from its positions at the start, thirds and end.
 pub fn start_acceleration([start, first, second, end]: [f64; 4], dt: f64) -> f64 {
     9.0 * (2.0 * start - 5.0 * first + 4.0 * second - end) / (dt * dt)
 }

@@ -1,5 +1,5 @@
-//! Everything increment n + 1 needs from increment n. A new state replaces the old one when it is accepted; dropping it
-//! is the whole of a roll-back.
+//! State: all data of increment n needed by increment n + 1. A new state replaces the old one when it is accepted; roll-back is
+//! to drop it.
 
 use std::sync::Arc;
 
@@ -26,18 +26,18 @@ pub struct State {
     /// F: internal + contact − external forces [F]
     #[doc(hidden)]
     pub force: Vec<f64>,
-    /// Forces put on the nodes from outside: loads, and reactions at prescribed dofs [F]
+    /// Forces on the nodes from outside: loads, and reactions at prescribed dofs [F]
     #[doc(hidden)]
     pub external: Vec<f64>,
-    /// Forces that dashpots put on the nodes [F]
+    /// Forces of dashpots on the nodes [F]
     #[doc(hidden)]
     pub damping: Vec<f64>,
-    /// Reactions: what the supports put on the nodes [F]
+    /// Reactions of the supports on the nodes [F]
     pub reaction: Vec<f64>,
-    /// One list a contact pair, one entry a slave point
+    /// One list per contact pair, one entry per slave point
     #[doc(hidden)]
     pub contacts: Vec<Vec<ContactState>>,
-    /// What the materials remember, element by element ([`crate::model::Memories`])
+    /// Internal variables of the materials, element by element ([`crate::model::Memories`])
     #[doc(hidden)]
     pub memory: Vec<f64>,
     /// Displacement increment of the last increment of this step; `None` at its start, and after explicit increments
@@ -52,19 +52,19 @@ pub struct State {
 
 #[doc(hidden)]
 impl State {
-    /// Begin a step: what it counts from is the present state.
+    /// Begins a step, which refers to the present state.
     pub fn begin_step(&mut self) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
         self.step_start = Arc::new(StepStart { displacement, reaction });
         (self.dt, self.last_increment) = (0.0, None);
     }
 
-    /// Whether an explicit increment led to it: its accelerations are those of lumped masses.
+    /// Whether it was reached by an explicit increment, with accelerations of lumped masses.
     pub fn is_of_explicit(&self) -> bool {
         self.last_increment.is_none() && self.dt > 0.0
     }
 
-    /// Take the motion out of a state, as statics does. Its energy counts as damped.
+    /// Removes the motion from a state for statics; its energy counts as damping dissipation.
     pub fn stop(&mut self) {
         self.energy.damping_dissipation += std::mem::take(&mut self.energy.kinetic);
         self.velocity.fill(0.0);
@@ -80,11 +80,11 @@ pub struct LastIncrement {
     pub dt: f64,
     /// Δu [L]
     pub displacement: Vec<f64>,
-    /// Whether it ends at contact closure: the next one does not extrapolate it
+    /// Whether it ends at contact closure; it is then not extrapolated
     pub ends_in_touch: bool,
 }
 
-/// Data of supports from the start of a step.
+/// State of supported dofs at the start of the step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[doc(hidden)]
 pub struct StepStart {
@@ -106,13 +106,13 @@ pub struct Energy {
     pub contact_elastic: f64,
     /// ∫ q v^p ds dt
     pub friction_dissipation: f64,
-    /// ∫ c (v_driver − v)² dt of the dashpots, and what bodies turned into heat
+    /// ∫ c (v_driver − v)² dt of the dashpots, and dissipation in the bodies
     pub damping_dissipation: f64,
-    /// ∫ η v² ds dt: what slip radiates where contacts have a radiation damping
+    /// ∫ η v² ds dt: radiated by slip in contacts with radiation damping
     pub radiated: f64,
-    /// ∫ c v² dt of the dashpots that stabilize floating bodies, a part of the damping dissipation
+    /// ∫ c v² dt of stabilizing dashpots, a part of the damping dissipation
     pub stabilization: f64,
-    /// work of loads, springs, supports, drivers of dashpots, overlaps of shrink fits and changes of temperature on the model
+    /// work on the model of loads, springs, supports, drivers of dashpots, overlaps of shrink fits and temperature changes
     pub external_work: f64,
     /// kinetic + strain + contact energy at the start of the run
     pub initial: f64,

@@ -1,16 +1,16 @@
-//! A load step, as it is solved.
+//! A load step of the model.
 //!
 //! # Ends of steps
 //!
-//! What ends a step before its time: a reaction that reaches a value.
+//! A step can end early when a reaction reaches a value.
 //!
 //! ```text
 //! |F − F̄| ≤ tolerance max(|F̄|, |F₀|)                    F₀: at the start of the step
 //! ```
 //!
-//! An increment in which F passes F̄ on the straight way from old to new is repeated up to there, and one that comes near it is
-//! followed by one as long as it takes at the same rate. Where F jumps past F̄ in the shortest increment that the
-//! clock can tell, the step ends behind the jump.
+//! An increment in which F passes F̄ on the straight line from old to new is repeated up to that point; after an increment that
+//! ends close to it, the next length follows from the same rate. Where F jumps past F̄ within the shortest increment resolvable
+//! in time, the step ends after the jump.
 
 use nalgebra::Vector2;
 
@@ -27,17 +27,17 @@ use super::support::{Direction, Motion, Prescribed};
 pub struct Increments {
     /// first Δt [T]
     pub initial: f64,
-    /// below this a failed increment stops the run [T]
+    /// minimum; a failed increment of this length stops the run [T]
     pub min: f64,
-    /// never above this [T]
+    /// maximum [T]
     pub max: f64,
-    /// local error that an increment may make in a displacement or, in a static step, in the slip of a contact point [L]
+    /// allowed local error per increment of a displacement or, in a static step, of the slip of a contact point [L]
     pub error: Option<f64>,
 }
 
 impl Increments {
-    /// These settings, with no increment longer than `longest`: a stabilized step has a last increment after its
-    /// dashpots have faded.
+    /// Returns these settings with increments no longer than `longest`: a stabilized step needs a last increment after its
+    /// dashpots have vanished.
     #[doc(hidden)]
     pub fn at_most(self, longest: f64) -> Self {
         let Self { initial, min, max, error } = self;
@@ -60,34 +60,34 @@ pub struct Step {
     /// criteria of the automatic switch to explicit integration, if any
     #[doc(hidden)]
     pub rupture: Option<Box<Rupture>>,
-    /// prescribed directions, ascending by their dofs
+    /// prescribed directions, ascending by dof
     #[doc(hidden)]
     pub supports: Vec<Prescribed>,
-    /// directions that were prescribed in the step before and are free in this static one: their reaction is ramped off
+    /// directions that were prescribed in the previous step and are free in this static one: their reaction decreases to zero
     #[doc(hidden)]
     pub released: Vec<Direction>,
-    /// velocities that nodes take when the step begins [L/T]
+    /// velocities assigned to nodes at the start of the step [L/T]
     #[doc(hidden)]
     pub launch: Vec<(usize, [f64; 2])>,
     /// loads, springs and dashpots
     pub loads: Loads,
-    /// temperatures of the bodies that have been given one
+    /// prescribed temperatures of bodies
     #[doc(hidden)]
     pub temperatures: Vec<Temperature>,
     /// damping of every body
     #[doc(hidden)]
     pub damping: Vec<Damping>,
-    /// reaction that ends the step before its time
+    /// reaction that ends the step early
     #[doc(hidden)]
     pub until: Option<Until>,
-    /// c₀ of every dof: dashpots c₀ (1 − share of the step that has passed) that hold bodies until contact does [F T/L]
+    /// c₀ of every dof: stabilizing dashpots with the factor 1 − elapsed fraction of the step [F T/L]
     #[doc(hidden)]
     pub stabilization: Vec<f64>,
 }
 
 #[doc(hidden)]
 impl Step {
-    /// The step moved in time: everything that begins with this step or a later one.
+    /// The step shifted in time, including everything that begins with it or later.
     #[must_use]
     pub fn moved(mut self, to: &impl Fn(Span) -> Span) -> Self {
         fn amplitude(of: &mut Amplitude, to: &impl Fn(Span) -> Span) {
@@ -110,7 +110,7 @@ impl Step {
         self
     }
 
-    /// The support that says how a dof moves: its own, or an inclined one of its node.
+    /// The support that prescribes a dof: its own, or an inclined one of its node.
     pub fn support_at(&self, dof: usize) -> Option<&Prescribed> {
         let find = |dof: usize| self.supports.binary_search_by_key(&dof, |support| support.at.dof).ok();
         let inclined = || find(dof ^ 1).filter(|k| self.supports[*k].at.inclined.is_some());
@@ -122,18 +122,18 @@ impl Step {
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Rupture {
-    /// Slip rate of a contact point above which it does [L/T]
+    /// Slip rate of a contact point above which the step becomes explicit [L/T]
     pub slip_rate: f64,
-    /// Time over whose mean no point may slip that fast when it turns back: that of a shear wave across the model [T]
+    /// Averaging time over which no point may slip that fast for a return: travel time of a shear wave across the model [T]
     pub calm: f64,
     /// The step during explicit integration
     pub explicit: Step,
 }
 
-/// Attempts at an increment after which it is halved: where the reaction jumps, extrapolation by its rate fails.
+/// Number of attempts at an increment after which it is halved: where the reaction jumps, extrapolation by its rate fails.
 const PATIENCE: usize = 6;
 
-/// Share of the step below which an increment in which the reaction passes its value is not cut again.
+/// Fraction of the step below which an increment in which the reaction passes its value is not shortened again.
 const SHORTEST: f64 = 1e-9;
 
 /// A reaction that ends a step.
@@ -141,13 +141,13 @@ const SHORTEST: f64 = 1e-9;
 pub struct Until {
     /// name of the group, for messages
     pub on: String,
-    /// nodes whose reactions along x and y are its own
+    /// nodes whose reactions along x and y belong to it
     pub held: [Vec<usize>; 2],
-    /// which part of the sum of their reactions
+    /// component of the sum of their reactions
     pub part: ForceComponent,
     /// F̄ [F]
     pub value: f64,
-    /// Share of F̄ within which it is met [-]
+    /// Tolerance relative to F̄ [-]
     pub tolerance: f64,
 }
 
@@ -163,7 +163,7 @@ pub enum ForceComponent {
 }
 
 impl ForceComponent {
-    /// Its name in a case.
+    /// Name in a case.
     pub fn name(self) -> &'static str {
         match self {
             Self::X => "fx",
@@ -176,11 +176,11 @@ impl ForceComponent {
 /// Status of an increment with respect to the reaction that ends its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UntilStatus {
-    /// The reaction has its value: the step ends
+    /// The reaction has reached its value: the step ends
     Met,
-    /// It has passed it, and would meet it in an increment so long [T]
+    /// It has passed the value; length of the increment that would end at it [T]
     Passed(f64),
-    /// It has not come to it; at the same rate it will in an increment so long, if ever [T]
+    /// It has not reached the value; length of the increment that would, at the same rate, if any [T]
     Before(Option<f64>),
 }
 
@@ -200,8 +200,8 @@ impl Until {
         Vector2::new(sum(0), sum(1))
     }
 
-    /// Share of an increment at which a force that goes straight on first has the value; a size has it again where the force turns
-    /// round.
+    /// Fraction of an increment at which a linearly varying force first has the value; the magnitude has it again where the
+    /// force reverses.
     fn share(&self, [old, new]: [&State; 2]) -> Option<f64> {
         let [before, after] = [old, new].map(|state| self.vector(&state.reaction));
         let way = after - before;
@@ -235,7 +235,7 @@ impl Until {
         }
     }
 
-    /// Whether a state has the force within its tolerance.
+    /// Whether a state has the force within the tolerance.
     pub fn is_met(&self, state: &State) -> bool {
         let scale = self.value.abs().max(self.force(&state.step_start.reaction).abs());
         (self.force(&state.reaction) - self.value).abs() <= self.tolerance * scale

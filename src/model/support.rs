@@ -1,29 +1,29 @@
-//! Supports: along which direction the displacement of a node is prescribed, and how it moves.
+//! Supports: prescribed direction of a node's displacement, and its motion.
 
 use nalgebra::Vector2;
 
 use super::boundary::{Amplitude, Drive, Moment, Span};
 use crate::mesh::rigid::turned;
 
-/// A direction in which a node is held: a coordinate, or an inclined one.
+/// A supported direction of a node: a coordinate, or an inclined one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direction {
-    /// the dof, 2 × node + component; of an inclined direction that of its larger component: the equation of this dof is the
-    /// support's
+    /// the dof, 2 × node + component; for an inclined direction that of its larger component, whose equation is replaced by
+    /// that of the support
     pub dof: usize,
     /// unit vector d of an inclined direction
     pub inclined: Option<Vector2<f64>>,
 }
 
 impl From<usize> for Direction {
-    /// Along the coordinate of a dof.
+    /// Direction along the coordinate of a dof.
     fn from(dof: usize) -> Self {
         Self { dof, inclined: None }
     }
 }
 
 impl Direction {
-    /// Along a unit vector at a node.
+    /// Direction along a unit vector at a node.
     pub fn along(node: usize, d: Vector2<f64>) -> Self {
         Self { dof: 2 * node + usize::from(d.x.abs() < d.y.abs()), inclined: Some(d) }
     }
@@ -38,12 +38,12 @@ impl Direction {
         self.inclined.unwrap_or_else(|| Vector2::ith(self.dof % 2, 1.0))
     }
 
-    /// At the node of an inclined direction, that at a right angle to it; the other dof has its equation.
+    /// Direction perpendicular to an inclined one; its equation is that of the other dof.
     pub fn across(&self) -> Option<Self> {
         self.inclined.map(|d| Self { dof: self.dof ^ 1, inclined: Some(Vector2::new(-d.y, d.x)) })
     }
 
-    /// d·v of the node's vector among those of all dofs.
+    /// d·v of the node's vector in a nodal array.
     pub fn of(&self, values: &[f64]) -> f64 {
         let first = self.dof & !1;
         self.inclined.map_or_else(|| values[self.dof], |d| d.x * values[first] + d.y * values[first + 1])
@@ -57,7 +57,7 @@ impl Direction {
         }
     }
 
-    /// Make the node's vector an amount along d; along a coordinate the other component stays.
+    /// Sets the node's vector to an amount along d; for a coordinate the other component is kept.
     pub fn put(&self, amount: f64, values: &mut [f64]) {
         match self.inclined {
             None => values[self.dof] = amount,
@@ -65,7 +65,7 @@ impl Direction {
         }
     }
 
-    /// Make d·v a value; what is across stays.
+    /// Sets d·v to a value; the perpendicular component is kept.
     pub fn set(&self, value: f64, values: &mut [f64]) {
         match self.inclined {
             None => values[self.dof] = value,
@@ -74,23 +74,23 @@ impl Direction {
     }
 }
 
-/// A prescribed displacement of a node along one direction. A node that is held along two has one of each dof.
+/// A prescribed displacement of a node along one direction. A node with two prescribed directions has one for each dof.
 #[derive(Clone, Debug)]
 pub struct Prescribed {
-    /// along which direction
+    /// direction
     pub at: Direction,
-    /// its motion
+    /// motion
     pub motion: Motion,
 }
 
 /// Motion along a prescribed direction.
 #[derive(Clone, Debug)]
 pub enum Motion {
-    /// Displacement of the dof, counted from the one at the start of the step where the drive says so [L]
+    /// Displacement of the dof, relative to that at the start of the step if the drive requires it [L]
     Displacement(Drive, Span),
-    /// Sum of what inclined supports say [L]
+    /// Sum of the constraints of inclined supports [L]
     Inclined(Vec<Inclined>),
-    /// Rigid rotation about a fixed point of what is there at the start of the step, θ counter-clockwise [rad]:
+    /// Rigid rotation about a fixed point of the configuration at the start of the step, θ counter-clockwise [rad]:
     /// u = u₀ + (Q(θ − θ₀) − I)(X + u₀ − x_c)
     Rotation {
         /// x_c
@@ -100,10 +100,10 @@ pub enum Motion {
     },
 }
 
-/// Constraint of one support along d: share × ū(t), counted from d·u₀ at the start of the step where the drive says so.
+/// Constraint of one support along d: share × ū(t), relative to d·u₀ at the start of the step if the drive requires it.
 #[derive(Clone, Debug)]
 pub struct Inclined {
-    /// share of ū: 1 for the displacement along d itself
+    /// factor of ū: 1 for the displacement along d itself
     pub share: f64,
     /// d
     pub direction: Vector2<f64>,
@@ -114,7 +114,7 @@ pub struct Inclined {
 }
 
 impl Prescribed {
-    /// Displacement of a dof.
+    /// Creates a prescribed displacement of a dof.
     pub fn displacement(dof: usize, drive: Drive, span: Span) -> Self {
         Self { at: dof.into(), motion: Motion::Displacement(drive, span) }
     }
@@ -138,9 +138,9 @@ impl Prescribed {
         }
     }
 
-    /// ū at the start, thirds and end of an increment, from a time to a moment. What is linear in time is taken straight from end to
-    /// end: the kinks of a table are jumps of the velocity and no accelerations. Beyond an increment the motion goes on as the cubic
-    /// through its start, thirds and end: what comes after has no say in it [L].
+    /// ū at the start, thirds and end of an increment, from a time to a moment. Motion linear in time is interpolated between
+    /// its ends: kinks of a table are jumps of the velocity, not accelerations. Beyond an increment the motion continues as the
+    /// cubic through its start, thirds and end, independent of what follows [L].
     pub fn thirds(
         &self,
         position: Vector2<f64>,
@@ -168,10 +168,10 @@ impl Prescribed {
     }
 }
 
-/// Start, thirds and end as shares.
+/// Start, thirds and end as fractions.
 const THIRDS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
 
-/// The cubic through four places at the start, thirds and end, at a share of the whole (Lagrange).
+/// Evaluates the cubic through four positions at the start, thirds and end, at a fraction of the whole (Lagrange).
 fn cubic(places: [f64; 4], share: f64) -> f64 {
     let factor = |k: usize| {
         let others = THIRDS.into_iter().enumerate().filter(|(j, _)| *j != k);

@@ -1,6 +1,6 @@
 //! Numbers and counts in text.
 
-/// A number with at most six digits, in powers of ten where it is very large or small.
+/// Formats a number with at most six digits, with an exponent where it is very large or small.
 pub fn number(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse().unwrap_or(value);
     match rounded {
@@ -10,7 +10,7 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// A count with what is counted.
+/// Formats a count with its noun.
 pub fn count(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

@@ -12,18 +12,18 @@ use crate::model::method::Chosen;
 use crate::model::scheme::Scheme;
 use crate::model::{Model, Step};
 
-/// Round-off of a gap, as a share of the positions that it is the difference of.
+/// Round-off of a gap, relative to the positions of which it is the difference.
 const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
 
-/// Overlap, as a share of the slave's edge, that presses with nothing: 10⁻¹¹ (λ + 2G) with the default penalty.
+/// Negligible overlap, relative to the slave's edge: its pressure is 10⁻¹¹ (λ + 2G) with the default penalty.
 const OF_EDGE: f64 = 1e-12;
 
 impl Model {
-    /// Warnings before anything is solved.
+    /// Warnings before the run starts.
     pub fn warnings(&self) -> Vec<String> {
         let farthest = farthest(&self.mesh);
         let of_contact = |pair: &ContactPair| {
-            // What starts closed has no gaps, and a surface commonly lies free of itself at the start.
+            // A contact that starts closed has no gaps, and self-contact usually starts open.
             let warnings = match pair.initial.is_some() || pair.is_own() {
                 true => Vec::new(),
                 false => Gaps::of(self, pair, farthest).warnings(),
@@ -41,7 +41,7 @@ impl Model {
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
     }
 
-    /// Methods chosen by the program, for contacts without a given method.
+    /// Methods chosen by the program, for contacts that do not specify one.
     #[doc(hidden)]
     pub fn choices(&self) -> Vec<String> {
         self.about_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
@@ -65,8 +65,8 @@ fn uncertain_times(model: &Model) -> Option<String> {
     ))
 }
 
-/// A slave whose outside is everywhere that of its rigid master lies in it, and nothing pushes it out as it should. (Edges of a
-/// mesh that do not face a slave are not met at all.)
+/// Warns of a slave whose outward normal equals that of its rigid master everywhere: it lies inside, and contact cannot push it
+/// out correctly. (Edges of a mesh master that do not face a slave are not in contact with it.)
 fn faces_away(model: &Model, pair: &ContactPair) -> Option<String> {
     let Master::Rigid(rigid) = &pair.master else { return None };
     let x = model.mesh.undeformed();
@@ -95,11 +95,11 @@ fn lost_velocity(model: &Model) -> Option<String> {
     })
 }
 
-/// Increments that are worth a warning: each is a row of the history, and explicit ones are quick.
+/// Number of increments that causes a warning: each is a row of the history; explicit ones are fast.
 const MANY: [f64; 2] = [1e6, 1e7];
 
-/// The least number of increments: of implicit steps by their longest, of explicit ones by the time that a wave takes along the
-/// shortest side.
+/// Lower bound of the number of increments: from the longest one of implicit steps, and from the travel time of a wave along
+/// the shortest side for explicit ones.
 fn many_increments(model: &Model) -> Option<String> {
     let fastest =
         model.bodies.iter().map(|body| body.material.p_wave_modulus() / body.material.density()).fold(0.0, f64::max);
@@ -123,7 +123,7 @@ fn many_increments(model: &Model) -> Option<String> {
     }
 }
 
-/// Warning about a radiation damping without effect in any step.
+/// Warns of a radiation damping without effect in any step.
 fn idle_radiation(model: &Model) -> Option<String> {
     let pair = model.contacts.iter().find(|pair| pair.radiation > 0.0)?;
     model.steps.iter().all(|step| step.scheme.is_dynamic()).then(|| {
@@ -134,7 +134,7 @@ fn idle_radiation(model: &Model) -> Option<String> {
     })
 }
 
-/// A share of the shortest edge to which positions should be known: displacements of interest are thousands of times larger.
+/// Required accuracy of positions relative to the shortest edge: displacements of interest are thousands of times larger.
 const KNOWN: f64 = 1e-8;
 
 /// Shortest side of all elements [L].
@@ -151,7 +151,7 @@ pub fn farthest(mesh: &Mesh) -> f64 {
     mesh.nodes.iter().fold(0.0, |most: f64, node| most.max(node.amax()))
 }
 
-/// Positions are known to ε |X|. What that is beside an element is an error of its shape, and of gaps and overlaps.
+/// Warns if the round-off ε |X| of positions is large relative to an element, which affects its shape, gaps and overlaps.
 fn coarse_positions(mesh: &Mesh) -> Option<String> {
     let farthest = farthest(mesh);
     let shortest = shortest_side(mesh);
@@ -166,7 +166,7 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// The gaps of a contact that does not start closed, as text, in a mesh that extends to [`farthest`].
+/// Describes the gaps of a contact that does not start closed, in a mesh that extends to [`farthest`].
 pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) -> String {
     let gaps = Gaps::of(model, pair, farthest);
     let fit = gaps.fit.map(|(overlap, at)| {
@@ -183,16 +183,16 @@ pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) 
     gaps.message() + &fit
 }
 
-/// Initial gaps of a contact; what is round-off of the positions is no gap and no overlap.
+/// Initial gaps of a contact; round-off of the positions counts as zero.
 struct Gaps {
     /// Whether points without a projection never come into contact (small sliding)
     small: bool,
     points: usize,
     facing: usize,
-    /// The smallest, and where [L]
+    /// Smallest gap, and its position [L]
     low: (f64, Vector2<f64>),
     high: f64,
-    /// The largest overlap of a shrink fit, and where [L]
+    /// Largest overlap of a shrink fit, and its position [L]
     fit: Option<(f64, Vector2<f64>)>,
 }
 

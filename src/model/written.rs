@@ -1,45 +1,45 @@
-//! Input that may be written as a number, a text, a list or an object, told apart by the JSON type, so that a complaint about the inside of
-//! the object names its place.
+//! Input that may be written as a number, a text, a list or an object. The JSON type determines the form, so that an error
+//! inside the object is reported with its place.
 
 use std::marker::PhantomData;
 
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
 
-/// Input given as a text or an object, in some cases as a number or a list. [`written!`] writes the implementation.
+/// Input given as a text or an object, in some cases as a number or a list. [`written!`] generates the implementation.
 pub trait Written: Sized {
-    /// The forms there are, for messages
+    /// Description of the possible forms, for messages
     const EXPECTING: &'static str;
 
-    /// The value from a number, if numbers are allowed.
+    /// Returns the value from a number, if numbers are allowed.
     fn number(_value: f64) -> Option<Self> {
         None
     }
 
-    /// The value from a text.
+    /// Returns the value from a text.
     ///
     /// # Errors
-    /// What cannot be read.
+    /// Returns a message if it cannot be read.
     fn text(text: &str) -> Result<Self, String>;
 
-    /// The value from a list, if lists are allowed.
+    /// Returns the value from a list, if lists are allowed.
     ///
     /// # Errors
-    /// The deserializer's.
+    /// Returns the error of the deserializer.
     fn list<'de, A: SeqAccess<'de>>(_list: A) -> Result<Self, A::Error> {
         Err(A::Error::invalid_type(Unexpected::Seq, &Forms::<Self>(PhantomData)))
     }
 
-    /// The value from an object.
+    /// Returns the value from an object.
     ///
     /// # Errors
-    /// The deserializer's.
+    /// Returns the error of the deserializer.
     fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error>;
 
-    /// Read whichever form is there.
+    /// Reads the value in whichever form it has.
     ///
     /// # Errors
-    /// The deserializer's, with what is expected for a value of another type.
+    /// Returns the error of the deserializer, with the expected forms for a value of another type.
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(Forms(PhantomData))
     }
@@ -85,12 +85,12 @@ impl<'de, T: Written> Visitor<'de> for Forms<T> {
     }
 }
 
-/// Reads and writes an enum with a variant that is a plain text, perhaps one that is a plain number, and others that are objects of
-/// one key: `written!(Type, "what is expected", number: Variant, text: Variant)`. The type derives the form of the objects with
-/// `#[serde(remote = "Self")]`, and skips the plain variants there.
+/// Implements reading and writing of an enum with a variant that is a plain text, optionally one that is a plain number, and
+/// others that are objects of one key: `written!(Type, "expected forms", number: Variant, text: Variant)`. The type derives the
+/// form of the objects with `#[serde(remote = "Self")]`, and skips the plain variants there.
 ///
-/// With `object: Inner => make` behind them an object is read as another type, of which `make` makes the enum, and what is written the
-/// enum derives itself.
+/// With `object: Inner => make`, an object is read as another type, which `make` converts to the enum; writing is derived by
+/// the enum itself.
 macro_rules! written {
     ($type:ident, $expecting:literal, $(number: $number:ident,)? text: $text:ident) => {
         $crate::model::written::written!(@ $type, $expecting, [$($number)?], $text, |object| Self::deserialize(object));

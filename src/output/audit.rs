@@ -1,16 +1,16 @@
-//! Whether the energies of a run balance, and what to do if they do not.
+//! Energy balance of a run, and remedies for an energy error.
 //!
 //! ```text
 //! error = initial + external work − (kinetic + strain + contact) − dissipation                  0 if all is resolved
 //! ```
 //!
-//! The error is measured by the most that there was to be stored or dissipated: initial energy and external work.
+//! The error is measured relative to the energy available for storage or dissipation: initial energy and external work.
 //!
-//! # How much contacts give way
+//! # Energy in contact penalties
 //!
-//! An exact contact stores nothing along its normal, and nothing while it sticks. What penalties store there, beside the energy of
-//! bodies and contacts at the time when that was largest, tells how far the answer is off by them; as p²/2α_n it falls with the
-//! penalty.
+//! An exact contact stores no energy along its normal, and none while it sticks. The energy stored in the penalties, relative
+//! to the elastic energy of bodies and contacts when that was largest, measures the error of the penalty method; as p²/2α_n it
+//! falls with the penalty.
 
 use crate::equations::contacts::Springs;
 use crate::model::scheme::{Scheme, time_text};
@@ -18,40 +18,40 @@ use crate::model::state::State;
 use crate::model::{Model, Step};
 use serde::{Deserialize, Serialize};
 
-/// Energy error worth a warning, as a fraction of the energy supplied.
+/// Energy error that causes a warning, as a fraction of the energy supplied.
 const WORTH_TELLING: f64 = 0.01;
 
 /// Errors within this multiple of the work of round-off in the forces are ignored.
 const ROUND_OFF: f64 = 100.0;
 
-/// The balance of energies so far.
+/// Energy balance of the run so far.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Audit {
     /// Largest initial energy + external work [F·L]
     pub supplied: f64,
     /// Error at the last row [F·L]
     error: f64,
-    /// Its largest value, and when [F·L, T]
+    /// Largest error, and its time [F·L, T]
     worst: (f64, f64),
-    /// Contribution of every step, and its remedy
+    /// Error contributed by every step, and its remedy
     steps: Vec<(String, f64, String)>,
     /// Possible work of round-off in the forces [F·L]
     noise: f64,
-    /// How much contacts give way
+    /// Energy in the contact penalties
     pub give: Give,
 }
 
-/// How much of the elastic energy of bodies and contacts was in penalties of contacts, when that energy was largest.
+/// Fraction of the elastic energy of bodies and contacts that was stored in contact penalties when that energy was largest.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Give {
     /// Elastic energy [F·L]
     elastic: f64,
-    /// What of it was in penalties [F·L]
+    /// Part of it in penalties [F·L]
     penalties: f64,
 }
 
 impl Audit {
-    /// Record a row, from the state before it.
+    /// Records a row, given the state before it.
     pub fn record(&mut self, model: &Model, step: &Step, old: &State, new: &State) {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
@@ -69,7 +69,7 @@ impl Audit {
         self.noise += round_off(model, new) * ways.fold(0.0, f64::max);
     }
 
-    /// Warning at the end of a run, if the energies do not balance.
+    /// Warning at the end of a run if the energies do not balance.
     pub fn concern(&self) -> Option<String> {
         let (worst, time) = self.worst;
         if worst.abs() <= (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise) {
@@ -99,7 +99,7 @@ impl Give {
         }
     }
 
-    /// The share of the penalties, if anything was stored [-]
+    /// Fraction stored in penalties, if any energy was stored [-]
     pub fn share(&self) -> Option<f64> {
         (self.elastic > 0.0).then(|| self.penalties / self.elastic)
     }

@@ -1,4 +1,4 @@
-//! How bodies move as a whole.
+//! Rigid-body motion of bodies: momentum, center of mass, rotation.
 //!
 //! ```text
 //! P = ∫ ρ v dV                                    momentum
@@ -6,9 +6,10 @@
 //! L = ∫ ρ (x − c) × v dV                          angular momentum about the centre of mass
 //! tan θ = ∫ ρ (X − C) × (x − c) dV / ∫ ρ (X − C)·(x − c) dV      mean rotation: that of the rigid body nearest to it
 //! ```
-//! Integrals go by the consistent mass of the body's elements, with what is moved away from massless nodes, but P and L after
-//! explicit increments by the lumped masses, which are those that keep them; point masses are not of the body. A body without density has the centre of its volume. Of rings they go over the full turn: x components
-//! sum up radial parts, c_x is the mean radius, and L and θ refer to the section only.
+//! Integrals use the consistent mass of the body's elements, with the mass moved away from massless nodes; P and L after
+//! explicit increments use the lumped masses, which conserve them. Point masses do not belong to the body. A body without
+//! density has the centre of its volume. In axisymmetry the integrals cover the full turn: x components are sums of radial
+//! parts, c_x is the mean radius, and L and θ refer to the section only.
 
 use nalgebra::Vector2;
 
@@ -16,7 +17,7 @@ use crate::mesh::configuration::vector;
 use crate::model::state::State;
 use crate::model::{Body, Model};
 
-/// Constants of a body for its means.
+/// Constants of a body for its mean values.
 #[derive(Clone, Debug)]
 pub struct BodyMeans {
     density: f64,
@@ -107,7 +108,7 @@ impl BodyMeans {
         if self.density > 0.0 && state.velocity.iter().any(|v| *v != 0.0) {
             let place =
                 |node: usize| (model.mesh.nodes[node] - self.centre) + (vector(&state.displacement, node) - shift);
-            // Lumped masses have their centre where they put it.
+            // The center of lumped masses follows from their positions.
             let centre = match is_lumped {
                 true => self.shares.iter().map(|share| place(share.node) * (share.lumped / self.volume)).sum(),
                 false => Vector2::zeros(),
@@ -125,7 +126,7 @@ impl BodyMeans {
     }
 }
 
-/// One entry a pair of nodes.
+/// Sums entries of equal pairs, so that each pair has one.
 fn summed(mut pairs: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
     pairs.sort_by_key(|&(a, b, _)| (a, b));
     let entry = |entries: &[(usize, usize, f64)]| {

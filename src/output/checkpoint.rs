@@ -1,11 +1,11 @@
-//! `checkpoint.bin`: what a run can be taken up from, to the same bits.
+//! `checkpoint.bin`: state from which a run resumes with bitwise identical results.
 //!
 //! ```text
 //! "fecontact checkpoint\n"   version u32   length u64   crc32 u32   postcard of a Checkpoint       little-endian
 //! ```
 //!
-//! A checkpoint is written to a new file, brought to the disk and moved into place; the one before is kept as
-//! `checkpoint_prev.bin`, and read where the newest is damaged.
+//! A checkpoint is written to a new file, synchronized to the disk and moved into place; the previous one is kept as
+//! `checkpoint_prev.bin` and read if the newest is damaged.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -26,22 +26,22 @@ pub const NEWEST: &str = "checkpoint.bin";
 pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
-/// Version of the file's content; every change of it gets a new number.
+/// Version of the file content; every change of the layout requires a new number.
 pub const VERSION: u32 = 8;
 const HEAD: usize = MAGIC.len() + 16;
 
-/// A run as it was, and what it belongs to.
+/// Saved run, and the program, case and mesh that it belongs to.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// version of the program
     pub program: String,
-    /// the case (JSON), with the steps of those it begins with
+    /// case (JSON), including the steps of the cases that it continues
     pub case: String,
-    /// how many of its steps are theirs
+    /// number of steps taken over from those cases
     pub taken_over: usize,
-    /// how many of its steps had begun
+    /// number of steps that had begun
     pub begun: usize,
-    /// whether all had ended
+    /// whether all steps had ended
     pub complete: bool,
     /// the mesh
     pub mesh: MeshPrint,
@@ -49,7 +49,7 @@ pub struct Checkpoint {
     pub run: RunBytes,
 }
 
-/// A mesh as far as a checkpoint depends on it: numbers of its parts, and fingerprints of them.
+/// Identification of a mesh: numbers of its parts, and their checksums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MeshPrint {
     nodes: (usize, u32),
@@ -95,27 +95,27 @@ impl MeshPrint {
     }
 }
 
-/// Why a checkpoint cannot be used.
+/// Reason why a checkpoint cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Unusable {
     /// There is no checkpoint.
     #[error("there is none")]
     Missing,
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("it cannot be read: {0}")]
     Unreadable(String),
-    /// It is not what was written.
+    /// The content does not match its checksum.
     #[error("it is damaged: {0}")]
     Damaged(String),
-    /// It was written by another edition of the program.
+    /// The file was written by another version of the program.
     #[error("it has the format {0}, and this program reads {VERSION}: take the version of the program that wrote it")]
     Foreign(u32),
 }
 
-/// Write a checkpoint into a folder; what was the newest becomes the previous one.
+/// Writes a checkpoint into a folder; the newest one becomes the previous one.
 ///
 /// # Errors
-/// [`Error::Output`]; the checkpoints that were there are still there then.
+/// Returns [`Error::Output`] if it cannot be written; existing checkpoints are then kept.
 pub fn write(folder: &Path, checkpoint: &Checkpoint) -> Result<(), Error> {
     let newest = folder.join(NEWEST);
     let body = postcard::to_allocvec(checkpoint).map_err(|cause| failed(&newest, &cause))?;
@@ -132,8 +132,8 @@ pub fn write(folder: &Path, checkpoint: &Checkpoint) -> Result<(), Error> {
     files::replace_for_good_after(&newest, &bytes, keep).map_err(|cause| failed(&newest, &cause))
 }
 
-/// Let the newest checkpoint be the previous one as well, in one move: at any moment there is a previous one. Where a file
-/// cannot have two names, it is the previous one alone.
+/// Links the newest checkpoint as the previous one in one operation, so that a previous one always exists. Without hard
+/// links, the file is moved.
 fn kept(newest: &Path, previous: &Path) -> std::io::Result<()> {
     let second = files::aside(previous);
     files::remove(&second)?;
@@ -143,10 +143,10 @@ fn kept(newest: &Path, previous: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Read a checkpoint.
+/// Reads a checkpoint.
 ///
 /// # Errors
-/// [`Unusable`].
+/// Returns [`Unusable`] if it is missing, unreadable, damaged or of another version.
 pub fn read(path: &Path) -> Result<Checkpoint, Unusable> {
     let bytes = fs::read(path).map_err(|cause| match cause.kind() {
         ErrorKind::NotFound => Unusable::Missing,
@@ -155,10 +155,10 @@ pub fn read(path: &Path) -> Result<Checkpoint, Unusable> {
     from_bytes(&bytes)
 }
 
-/// A checkpoint from its bytes.
+/// Decodes a checkpoint from its bytes.
 ///
 /// # Errors
-/// [`Unusable`].
+/// Returns [`Unusable`] if the bytes are damaged or of another version.
 pub fn from_bytes(bytes: &[u8]) -> Result<Checkpoint, Unusable> {
     let damaged = |what: &str| Unusable::Damaged(what.into());
     let (magic, rest) = bytes.split_at_checked(MAGIC.len()).ok_or_else(|| damaged("it is too short"))?;
@@ -185,10 +185,10 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Checkpoint, Unusable> {
     postcard::from_bytes(body).map_err(|cause| Unusable::Damaged(cause.to_string()))
 }
 
-/// The newest usable checkpoint of a folder, and what was wrong with a newer one.
+/// Returns the newest usable checkpoint of a folder, and the defect of a newer one.
 ///
 /// # Errors
-/// What is wrong with the newest, with the file, where there is no other.
+/// Returns the file and defect of the newest checkpoint if none is usable.
 pub fn newest(folder: &Path) -> Result<(Checkpoint, Option<String>), (PathBuf, Unusable)> {
     let [newest, previous] = [NEWEST, PREVIOUS].map(|name| folder.join(name));
     match read(&newest) {

@@ -1,9 +1,9 @@
-//! A table on disk: comma, dot, header row, full double precision. Every row reaches the file within a blink, and whole: a
-//! table never ends within a row, whether its run is killed or its disk full.
+//! CSV tables on disk: comma, decimal point, header row, full double precision. Every row reaches the file within 50 ms and as
+//! a whole: a table never ends within a row, even if the run is killed or the disk is full.
 //!
 //! # Memory
 //!
-//! What observers remember, as bytes.
+//! Observers store their memory as bytes.
 
 use std::fs::File;
 use std::io::{self, BufRead, Read, Seek, SeekFrom, Write};
@@ -18,13 +18,13 @@ use crate::model::Model;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Row};
 
-/// Rows written within this time of each other go to the system together: the call would cost as much as the row.
+/// Time within which rows are written to the system together: a call costs as much as a row.
 const BLINK: Duration = Duration::from_millis(50);
 
-/// Rows of so many bytes do so at once.
+/// Number of bytes at which rows are written at once.
 const MANY: usize = 1 << 16;
 
-/// Extent of a written table: number of bytes, their checksum, and the row that is held.
+/// Extent of a written table: number of bytes, their checksum, and the row held back.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Standing {
     length: u64,
@@ -38,11 +38,11 @@ pub struct Table {
     path: PathBuf,
     file: File,
     header: Vec<String>,
-    /// whole rows that are not yet in the file
+    /// complete rows that are not yet in the file
     rows: Vec<u8>,
-    /// the row so far, a comma behind every cell
+    /// current row, with a comma behind every cell
     row: Vec<u8>,
-    /// a whole row that is written if an event follows
+    /// complete row that is written only if an event follows
     held: Vec<u8>,
     /// bytes in the file, and their checksum so far
     length: u64,
@@ -51,7 +51,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Create the file and write its header.
+    /// Creates the file and writes its header.
     pub fn create(path: &Path, header: Vec<String>) -> Result<Self, Error> {
         let file = files::create(path).map_err(|cause| failed(path, &cause))?;
         let line = header.join(",");
@@ -62,7 +62,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Open the file of an earlier run, to be [`cut`](Self::cut) and gone on with.
+    /// Opens the file of an earlier run, to be [`cut`](Self::cut) and continued.
     pub fn reopen(path: &Path, header: Vec<String>) -> Result<Self, Error> {
         let file = files::open(path).map_err(|cause| failed(path, &cause))?;
         Ok(Self::of(path, file, header))
@@ -82,34 +82,34 @@ impl Table {
         }
     }
 
-    /// Add a cell with a text.
+    /// Adds a cell with a text.
     pub fn text(&mut self, text: &str) {
         self.row.extend_from_slice(text.as_bytes());
         self.row.push(b',');
     }
 
-    /// Add a cell with a number that reads back as the same double.
+    /// Adds a cell with a number that reads back as the same double.
     pub fn number(&mut self, value: f64) {
         self.text(zmij::Buffer::new().format(value));
     }
 
-    /// Add cells with numbers.
+    /// Adds cells with numbers.
     pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) {
         numbers.into_iter().for_each(|number| self.number(number));
     }
 
-    /// Add a cell with a whole number.
+    /// Adds a cell with an integer.
     pub fn count(&mut self, value: usize) {
         // Writing to a Vec cannot fail.
         let _ = write!(self.row, "{value},");
     }
 
-    /// End and write the row.
+    /// Ends and writes the row.
     pub fn end_row(&mut self) -> Result<(), Error> {
         self.end_row_as(Row::Written)
     }
 
-    /// Write the row, with the one that was held or without, or hold it.
+    /// Writes the row, with or without the one held back, or holds it back.
     pub fn end_row_as(&mut self, row: Row) -> Result<(), Error> {
         if let Some(comma) = self.row.last_mut() {
             *comma = b'\n';
@@ -125,20 +125,19 @@ impl Table {
         if self.rows.len() < MANY { Ok(()) } else { self.flush() }
     }
 
-    /// Hand the rows so far to the system, so that a killed run loses nothing, unless that was done a blink ago.
+    /// Writes pending rows to the system, so that a killed run loses nothing, unless that was done within the last 50 ms.
     pub fn share(&mut self) -> Result<(), Error> {
         if self.flushed.elapsed() < BLINK { Ok(()) } else { self.flush() }
     }
 
-    /// Extent of the file, after it is flushed to the disk.
+    /// Returns the extent of the file, after flushing it to the disk.
     pub fn standing(&mut self) -> Result<Standing, Error> {
         self.flush()?;
         self.file.sync_data().map_err(|cause| failed(&self.path, &cause))?;
         Ok(Standing { length: self.length, crc: self.crc.clone().finalize(), held: self.held.clone() })
     }
 
-    /// Whether the file can be continued: its content is unchanged, and no column of it would be lost. Nothing is
-    /// changed.
+    /// Checks, without changes, whether the file can be continued: its content is unchanged, and no column would be lost.
     pub fn check(&self, stood: &Standing) -> Result<(), Error> {
         self.can_go_on_from(stood).map_err(|cause| failed(&self.path, &cause))
     }
@@ -177,7 +176,7 @@ impl Table {
         }
     }
 
-    /// The columns under which the file was written.
+    /// Columns in the header of the file.
     fn columns_there(&self, length: u64) -> io::Result<Vec<String>> {
         let mut line = String::new();
         io::BufReader::new(self.first(length)?).read_line(&mut line)?;
@@ -191,8 +190,7 @@ impl Table {
         Ok(file.take(length))
     }
 
-    /// Take back what was written after this stood in the file. Where it had other columns then, the new ones are not a number
-    /// in the rows so far.
+    /// Removes what was written after the given extent. Columns that the file did not have then become NaN in its earlier rows.
     pub fn cut(&mut self, stood: Standing) -> Result<(), Error> {
         self.rows.clear();
         self.row.clear();
@@ -216,7 +214,7 @@ impl Table {
         self.file.seek(SeekFrom::End(0)).map(drop)
     }
 
-    /// The rows so far under the header of now.
+    /// Returns the earlier rows under the current header.
     fn with_columns_of_now(&self, had: &[String], length: u64) -> io::Result<String> {
         let places: Vec<Option<usize>> =
             self.header.iter().map(|name| had.iter().position(|column| column == name)).collect();
@@ -231,7 +229,7 @@ impl Table {
         Ok(rewritten)
     }
 
-    /// Hand the rows so far to the system.
+    /// Writes pending rows to the system.
     pub fn flush(&mut self) -> Result<(), Error> {
         self.flushed = Instant::now();
         let rows = std::mem::take(&mut self.rows);
@@ -253,12 +251,12 @@ impl Table {
         Ok(())
     }
 
-    /// A file that cannot take more keeps whole rows.
+    /// Truncates a file that cannot grow to complete rows.
     fn ended_in_a_row(&mut self, written: &[u8], cause: io::Error) -> Error {
         let half = written.iter().rev().take_while(|byte| **byte != b'\n').count() as u64;
         let length = self.file.metadata().map_or(0, |file| file.len());
         if half > 0 && length >= half {
-            // That the file is incomplete is reported anyway.
+            // The incomplete file is reported in any case.
             let _ = self.file.set_len(length - half);
         }
         failed(&self.path, &cause)
@@ -267,58 +265,58 @@ impl Table {
 
 impl Drop for Table {
     fn drop(&mut self) {
-        // Whoever wants to hear of a failure flushes before.
+        // Callers that handle failures flush before.
         let _ = self.flush();
     }
 }
 
-/// An output error of a path.
+/// Returns the output error of a path.
 pub fn failed(path: &Path, cause: &dyn std::fmt::Display) -> Error {
     Error::Output { path: path.to_owned(), cause: cause.to_string() }
 }
 
-/// The bytes of what an observer remembers.
+/// Encodes the memory of an observer.
 pub fn remembered(memory: &impl Serialize) -> Result<Vec<u8>, Error> {
     postcard::to_allocvec(memory).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// The memory decoded from its bytes.
+/// Decodes the memory of an observer.
 pub fn recalled<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, Error> {
     postcard::from_bytes(bytes).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// Rows of a table that a run writes, and their memory from row to row.
+/// Rows of a table written by a run, with their memory from row to row.
 pub trait Rows: Sized {
-    /// Name of the table without its ending, by which its memory is found as well
+    /// name of the table without extension, under which its memory is saved
     const NAME: &'static str;
 
-    /// The rows of a model, and their header.
+    /// Creates the rows of a model, and their header.
     fn new(model: &Model) -> (Self, Vec<String>);
 
-    /// Write the rows of an attempt, if it has any.
+    /// Writes the rows of an attempt, if it has any.
     ///
     /// # Errors
-    /// [`Error::Output`] when the file cannot take them.
+    /// Returns [`Error::Output`] if the file cannot be written.
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
-    /// The memory in bytes; empty by default.
+    /// Returns the memory in bytes; empty by default.
     ///
     /// # Errors
-    /// [`Error::Output`] where it cannot be made bytes.
+    /// Returns [`Error::Output`] if it cannot be encoded.
     fn save(&self) -> Result<Vec<u8>, Error> {
         Ok(Vec::new())
     }
 
-    /// Go on from what was remembered.
+    /// Resumes from the saved memory.
     ///
     /// # Errors
-    /// [`Error::Output`] where the bytes are not what was remembered.
+    /// Returns [`Error::Output`] if the bytes cannot be decoded.
     fn restore(&mut self, _memory: &[u8]) -> Result<(), Error> {
         Ok(())
     }
 }
 
-/// Writes the table of some rows while a run continues.
+/// Observer that writes a table during a run.
 #[derive(Debug)]
 pub struct Sheet<R> {
     table: Table,
@@ -326,19 +324,19 @@ pub struct Sheet<R> {
 }
 
 impl<R: Rows> Sheet<R> {
-    /// Create the table in `folder`.
+    /// Creates the table in `folder`.
     ///
     /// # Errors
-    /// [`Error::Output`] when it cannot be written.
+    /// Returns [`Error::Output`] if it cannot be written.
     pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
         let (rows, header) = R::new(model);
         Ok(Self { table: Table::create(&file::<R>(folder), header)?, rows })
     }
 
-    /// The table that is there, to be restored.
+    /// Opens the existing table, to be restored.
     ///
     /// # Errors
-    /// [`Error::Output`] when it cannot be opened.
+    /// Returns [`Error::Output`] if it cannot be opened.
     pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
         let (rows, header) = R::new(model);
         Ok(Self { table: Table::reopen(&file::<R>(folder), header)?, rows })

@@ -1,14 +1,14 @@
-//! Events of slip: what each was, from its onset to its end.
+//! Slip events, from their onset to their end.
 //!
-//! An event of a contact begins when a point of it slips faster than the threshold while no other does, and ends when
-//! none does. Its points are those that a front has reached in it. Their slip s, traction q and work ∫ |q| ds count
+//! An event of a contact begins when one of its points slips faster than the threshold while no other does, and ends when none
+//! does. Its points are those reached by a front during the event. Their slip s, traction q and work ∫ |q| ds count
 //! from the increment before the event; means are weighted by the tributary lengths of the points.
 //!
 //! ```text
 //! stress drop       q before − q after, positive where slip has unloaded
-//! fracture energy   ∫ (q − q_min) ds up to where q is least, q_min: what weakening takes beyond sliding at its end
+//! fracture energy   ∫ (q − q_min) ds up to the minimum of q, q_min: work in excess of sliding at that traction
 //! released          Δ(external work − strain energy − elastic energy of contacts), of the whole model
-//! radiated          released − Δ(dissipation by friction): kinetic energy, and what dampers and absorbing sides took
+//! radiated          released − Δ(dissipation by friction): kinetic energy, and energy absorbed by dampers and absorbing sides
 //! front speed       slope of the distance from where it began over the arrivals, by least squares
 //! ```
 //!
@@ -17,15 +17,15 @@
 //!
 //! # Measures
 //!
-//! What events of slip amount to.
+//! The measures of an event are its row in `events.csv`.
 //!
 //! # Passages
 //!
-//! What the points of an interface did so far: when fronts passed them, in which events.
+//! The passages of fronts are recorded per point of an interface, with their events.
 //!
 //! # Wave speeds
 //!
-//! Speeds of elastic waves, with which fronts are compared.
+//! Speeds of elastic waves serve as reference for the speed of fronts.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,17 +36,17 @@ use crate::laws::bulk::Material;
 use crate::model::Model;
 use crate::model::state::State;
 
-/// An event so far, or as it was.
+/// A slip event, complete or in progress.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SlipEvent {
     /// Number in its contact, from 1
     pub number: usize,
-    /// Time up to which it is known, and whether that is its end
+    /// Time up to which it is recorded, and whether that is its end
     pub until: f64,
     pub over: bool,
     /// Energies of the model at the onset, and at `until`
     pub energies: [Energies; 2],
-    /// What each point did
+    /// Record of each point
     pub courses: Vec<PointRecord>,
 }
 
@@ -95,13 +95,13 @@ impl Mark {
 }
 
 impl SlipEvent {
-    /// It begins after the increment before, by whose end points were left with their marks, and the model with its energies.
+    /// Starts an event at the end of the previous increment, given the marks of the points and the energies of the model there.
     pub fn begin(number: usize, marks: impl Iterator<Item = Mark>, until: f64, energies: Energies) -> Self {
         let course = |mark: Mark| PointRecord { before: mark, least: mark, last: mark, peak_rate: 0.0 };
         Self { number, until, over: false, energies: [energies; 2], courses: marks.map(course).collect() }
     }
 
-    /// An increment of it; `over` if none slips any more.
+    /// Adds an increment; `over` if no point slips any more.
     pub fn go_on(&mut self, state: &State, marks: impl Iterator<Item = (Mark, f64)>, over: bool) {
         for (course, (mark, rate)) in self.courses.iter_mut().zip(marks) {
             if mark.traction.abs() < course.least.traction.abs() && mark.slip != course.before.slip {
@@ -120,12 +120,12 @@ impl PointRecord {
         self.last.slip - self.before.slip
     }
 
-    /// Fall of the traction in the direction of slip
+    /// Decrease of the traction in the direction of slip
     pub fn stress_drop(&self) -> f64 {
         (self.before.traction - self.last.traction) * self.slip().signum()
     }
 
-    /// Work beyond that at the least traction
+    /// Work in excess of that at the minimum traction
     pub fn fracture_energy(&self) -> f64 {
         let slip = (self.least.slip - self.before.slip).abs();
         (self.least.work - self.before.work - self.least.traction.abs() * slip).max(0.0)
@@ -151,7 +151,7 @@ pub(super) struct Measures {
 }
 
 impl Measures {
-    /// Measures of an event; `None` if no front has reached a point.
+    /// Returns the measures of an event; `None` if no front has reached a point.
     pub fn of(event: &SlipEvent, interface: &ContactPoints) -> Option<Self> {
         let reached: Vec<(&Point, &PointRecord, f64)> = interface
             .points
@@ -188,7 +188,7 @@ impl Measures {
     }
 }
 
-/// Slope of the distance from the first point of a line over the time of arrival; NaN where there is none.
+/// Slope of the distance from the first point of a line over the time of arrival; NaN if undefined.
 fn front_speed(first: &Point, onset: f64, reached: &[(&Point, &PointRecord, f64)]) -> f64 {
     let near = reached.iter().filter(|(point, ..)| point.line == first.line);
     let pairs: Vec<[f64; 2]> =
@@ -201,7 +201,7 @@ fn front_speed(first: &Point, onset: f64, reached: &[(&Point, &PointRecord, f64)
     if square > 0.0 { both / square } else { f64::NAN }
 }
 
-/// A point of the slave surface: where it is, and what it did so far.
+/// A point of the slave surface: its place, and its history so far.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Point {
     /// Number of its unbroken line
@@ -211,7 +211,7 @@ pub(super) struct Point {
     pub at: [f64; 2],
     /// Tributary length of the point [L]
     pub length: f64,
-    /// Whether it has friction: what slides freely has no fronts
+    /// Whether it has friction; frictionless points have no fronts
     pub rubs: bool,
     /// State after the last increment
     pub mark: Mark,
@@ -228,7 +228,7 @@ pub(super) struct Arrival {
     pub time: f64,
     /// Number of the event of the contact, from 1; 0 outside of events
     pub event: usize,
-    /// What loads and stored energies had given since the start of the run [F·L]
+    /// Energy supplied by loads and released by stored energies since the start of the run [F·L]
     pub given: f64,
 }
 
@@ -238,7 +238,7 @@ pub(super) struct ContactPoints {
     pub name: String,
     pub speeds: Option<WaveSpeeds>,
     pub points: Vec<Point>,
-    /// Events so far; the last one may not be over
+    /// Events so far; the last one may be in progress
     pub events: Vec<SlipEvent>,
 }
 
@@ -246,7 +246,7 @@ pub(super) struct ContactPoints {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrontsInput {
-    /// Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a point of the contact
+    /// Slip rate that marks the arrival of a front when it is exceeded; a slip event lasts while any point of the contact
     /// slips faster [L/T]
     pub slip_rate: f64,
     /// Criterion for arrivals instead of the slip rate
@@ -256,24 +256,24 @@ pub struct FrontsInput {
 /// Criterion for the arrival of a front at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum ArrivalInput {
-    /// R passes this value from below [-]
+    /// R exceeds this value [-]
     R(f64),
-    /// μ passes this value from above [-]
+    /// μ falls below this value [-]
     #[serde(rename = "mu")]
     Mu(f64),
 }
 
-/// An increment as fronts see it.
+/// Data of an increment for the detection of fronts.
 #[derive(Clone, Copy)]
 pub(super) struct Passing<'a> {
     pub criterion: FrontsInput,
     /// Time and energies of the model at the ends of the last two increments
     pub last: [(f64, Energies); 2],
-    /// State at the end of this one
+    /// State at the end of this increment
     pub after: &'a State,
 }
 
-/// An event of a contact: its arrivals in order of time, each with the length that it had broken by then.
+/// An event of a contact: its arrivals in order of time, each with the rupture length up to then.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Event {
     pub reached: Vec<(Arrival, f64)>,
@@ -289,8 +289,8 @@ impl Event {
 }
 
 impl Passing<'_> {
-    /// The arrival of a front at a point in this increment, by the signal at its end. Slip rates are those of the
-    /// middles of increments, other signals those of their ends.
+    /// The arrival of a front at a point in this increment, by the signal at its end. Slip rates refer to the midpoints of
+    /// increments, other signals to their ends.
     fn arrival(&self, point: &Point, signal: f64, event: usize) -> Option<Arrival> {
         let (level, mean) = match self.criterion.arrival {
             None => (self.criterion.slip_rate, true),
@@ -310,7 +310,7 @@ impl Passing<'_> {
         Some(Arrival { time, event, given: self.given_at(time) })
     }
 
-    /// Energy released by a time, linear over each increment [F·L].
+    /// Energy released up to a time, interpolated linearly within each increment [F·L].
     fn given_at(&self, time: f64) -> f64 {
         let [(t0, e0), (t1, e1)] = self.last;
         let (t2, e2) = (self.after.time, Energies::of(self.after));
@@ -343,7 +343,7 @@ impl ContactPoints {
         Self { name: pair.name.clone(), speeds, points, events: Vec::new() }
     }
 
-    /// The contact after an increment.
+    /// Updates the contact after an increment.
     pub fn pass(&mut self, pair: &ContactPair, passing: &Passing, states: &[ContactState]) {
         let Passing { criterion, after, last: [_, before] } = *passing;
         let dt = after.time - before.0;
@@ -378,7 +378,7 @@ impl ContactPoints {
         }
     }
 
-    /// Repeated onsets of slip within an event, per point and time.
+    /// Number of repeated onsets of slip within an event, per point and time.
     pub fn chatter(&self, time: f64) -> f64 {
         let again = |point: &Point| point.arrivals.windows(2).filter(|pair| pair[0].event == pair[1].event).count();
         let rubbing = self.points.iter().filter(|point| point.rubs).count();
@@ -392,7 +392,7 @@ impl ContactPoints {
         for point in &self.points {
             let mut last = 0;
             for arrival in point.arrivals.iter().filter(|arrival| arrival.event > 0) {
-                // A point that stops and sets out again within an event has broken once.
+                // A point that stops and restarts within an event counts once in its rupture length.
                 let length = if arrival.event == last { 0.0 } else { point.length };
                 last = arrival.event;
                 events[last - 1].reached.push((*arrival, length));
@@ -442,12 +442,12 @@ pub struct WaveSpeeds {
 }
 
 impl WaveSpeeds {
-    /// Wave speeds of the body behind the slave of a contact, if there is one.
+    /// Returns the wave speeds of the body of the slave of a contact, if it has one.
     pub fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
         Some(Self::of(&*model.bodies[pair.body?].material))
     }
 
-    /// Wave speeds of a material; infinite without density.
+    /// Returns the wave speeds of a material; infinite without density.
     ///
     /// ```text
     /// (2 − ξ²)² = 4 √(1 − ξ²) √(1 − ξ² c_s²/c_p²),   ξ = c_R/c_s
@@ -456,7 +456,7 @@ impl WaveSpeeds {
         let speed = |modulus: f64| (modulus / material.density()).sqrt();
         let (shear, pressure) = (speed(material.shear_modulus()), speed(material.p_wave_modulus()));
         let ratio = material.shear_modulus() / material.p_wave_modulus();
-        // Negative below the root but for the trivial one at 0, positive above.
+        // Negative below the root, except at the trivial root 0, positive above.
         let excess = |square: f64| (2.0 - square).powi(2) - 4.0 * ((1.0 - square) * (1.0 - square * ratio)).sqrt();
         let (mut low, mut high) = (0.1, 1.0);
         for _ in 0..60 {
@@ -467,7 +467,7 @@ impl WaveSpeeds {
     }
 }
 
-/// c_R, c_s and c_p of the body behind the first contact's slave; 0 if there is none, or it has no density [L/T].
+/// c_R, c_s and c_p of the slave's body of the first contact; 0 if there is none, or it has no density [L/T].
 pub fn wave_speeds(model: &Model) -> [f64; 3] {
     let speeds = model.contacts.first().and_then(|pair| WaveSpeeds::behind(model, pair));
     let finite = speeds.filter(|speeds| speeds.pressure.is_finite());

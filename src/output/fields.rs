@@ -1,7 +1,7 @@
-//! `solid.pvd`, `contact.pvd` and `points.pvd`: what ParaView shows, one VTU file a frame. A frame is listed soon after it is
-//! whole, and no longer listed before it is taken back: a list is valid at any moment of a run.
+//! `solid.pvd`, `contact.pvd` and `points.pvd`: frames for ParaView, one VTU file per frame. A frame is listed shortly after it
+//! is complete, and removed from the list before it is deleted: the list is valid at any moment of a run.
 //!
-//! Whether there is memory for a frame, before it is made.
+//! Disk space is checked before a frame is written.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,29 +32,29 @@ pub struct Fields {
     rows: usize,
     /// Times of the frames so far [T]
     times: Vec<f64>,
-    /// What the writer is to do; `None` when there is no more
+    /// Tasks for the writer; `None` when there are no more
     frames: Option<SyncSender<Task>>,
-    /// `None` when it has ended
+    /// `None` when the writer has ended
     writer: Option<JoinHandle<Result<(), Error>>>,
 }
 
-/// The frames to write.
+/// Selection and format of the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// The states that have frames
+    /// Selection of the states with frames
     pub of: Selection,
-    /// Whether the integration points have frames
+    /// Whether frames of the integration points are written
     pub points: bool,
     /// Whether values are written in double precision
     pub exact: bool,
 }
 
-/// The states that have frames, besides the first, those at times that the model names, and the last of each step.
+/// States with frames, in addition to the first, those at times named by the model, and the last of each step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Selection {
     /// Every n-th row of the history
     Rows(usize),
-    /// Of each step so many: the first row of the history at or after the end of each part of its duration
+    /// This many per step: the first row of the history at or after the end of each equal part of its duration
     Parts(usize),
     /// No others
     Named,
@@ -66,17 +66,17 @@ enum Task {
     Show(Box<Shown>),
     /// Remove all frames except those at these times
     Keep(Vec<f64>),
-    /// Reply when everything is written
+    /// Reply when all frames are written
     Tell(SyncSender<()>),
 }
 
-/// Part of a time that may be lost to round-off.
+/// Relative round-off allowed in comparing times.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Frames that may wait for the writer; a run that is faster waits, so that memory stays bounded.
+/// Number of frames that may wait for the writer; a faster run waits, so that memory stays bounded.
 const WAITING: usize = 1;
 
-/// The longest that a frame waits to be listed: a list is written as a whole.
+/// Longest delay before a frame is listed; a list is rewritten as a whole.
 const UNLISTED: Duration = Duration::from_millis(200);
 
 /// A time series of VTU files and the `.pvd` that lists them.
@@ -91,20 +91,20 @@ struct Collection {
 }
 
 impl Fields {
-    /// Start the series in `folder`, with the state at rest as the first frame.
+    /// Starts the series in `folder`, with the initial state as the first frame.
     ///
     /// # Errors
-    /// [`Error::Output`] when a file cannot be written.
+    /// Returns [`Error::Output`] if a file cannot be written.
     pub fn create(folder: &Path, model: Arc<Model>, start: &State, frames: Frames) -> Result<Self, Error> {
         let mut fields = Self::reopen(folder, model.clone(), frames)?;
         fields.write(&model, start)?;
         Ok(fields)
     }
 
-    /// The series that is there, to be restored.
+    /// Opens the existing series, to be restored.
     ///
     /// # Errors
-    /// [`Error::Output`] when there is no place for it.
+    /// Returns [`Error::Output`] if the disk space is insufficient.
     pub fn reopen(folder: &Path, model: Arc<Model>, frames: Frames) -> Result<Self, Error> {
         let (frames_of, rows) = (frames, 0);
         let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
@@ -114,7 +114,7 @@ impl Fields {
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
         let (room, writer) = (Room::of(folder, &model), std::thread::Builder::new().name("frames".into()));
         let writer = writer.spawn(move || {
-            // What it computes, it computes itself: the threads of the run may be waiting for it.
+            // The writer computes on one thread of its own: the threads of the run may be waiting for it.
             let alone = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
             alone
                 .map_err(|cause| failed(Path::new("frames"), &cause))
@@ -125,14 +125,14 @@ impl Fields {
         Ok(Self { folder, room, names, frames_of, rows, times, frames: Some(frames), writer: Some(writer) })
     }
 
-    /// Hand a state to the writer. One that has ended has failed, and says why.
+    /// Sends a state to the writer. A writer that has ended has failed and returns its error.
     fn write(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         self.room.check()?;
         self.times.push(state.time);
         self.ask(Task::Show(Box::new(Shown::new(model, state))))
     }
 
-    /// Whether no frame has come yet since the last of the equal parts of a step that have ended.
+    /// Whether no frame has been written since the end of the last completed equal part of a step.
     fn is_in_a_new_part(&self, span: Span, parts: usize, time: f64) -> bool {
         let ended =
             |time: f64| (parts as f64 * (time - span.start) / (span.end - span.start) * (1.0 + ROUND_OFF)).floor();
@@ -145,11 +145,11 @@ impl Fields {
         if taken { Ok(()) } else { self.finish() }
     }
 
-    /// Wait until all is written.
+    /// Waits until all frames are written.
     fn settle(&mut self) -> Result<(), Error> {
         let (done, all_written) = sync_channel(1);
         self.ask(Task::Tell(done))?;
-        // A writer that has ended says why.
+        // A writer that has ended returns its error.
         all_written.recv().or_else(|_| self.finish())
     }
 }
@@ -160,7 +160,7 @@ fn written(model: &Model, mut collections: Vec<Collection>, tasks: Receiver<Task
     done.and(listed(&mut collections))
 }
 
-/// Do what is asked for, until there is no more.
+/// Carries out the tasks until there are no more.
 fn followed(model: &Model, collections: &mut [Collection], tasks: Receiver<Task>) -> Result<(), Error> {
     loop {
         match tasks.recv_timeout(UNLISTED) {
@@ -170,7 +170,7 @@ fn followed(model: &Model, collections: &mut [Collection], tasks: Receiver<Task>
             Ok(Task::Keep(times)) => collections.iter_mut().try_for_each(|collection| collection.keep(&times))?,
             Ok(Task::Tell(done)) => {
                 listed(collections)?;
-                // Whoever has asked may have gone.
+                // The receiver may have been dropped.
                 let _ = done.send(());
             }
             Err(RecvTimeoutError::Timeout) => listed(collections)?,
@@ -250,7 +250,7 @@ impl Collection {
         file(self.name, number)
     }
 
-    /// Write one frame and list it, so that a running or killed run can be looked at.
+    /// Writes one frame and lists it, so that the results of a running or killed run can be viewed.
     fn show(&mut self, model: &Model, shown: &Shown) -> Result<(), Error> {
         let path = self.folder.join(self.file(self.times.len()));
         let frame = match self.name {
@@ -261,7 +261,7 @@ impl Collection {
         frame(model, shown, &mut self.grid);
         let written = self.grid.write(&path);
         if written.is_err() {
-            // Half a frame is of no use.
+            // An incomplete frame is deleted.
             let _ = files::remove(&path);
         }
         written.map_err(|cause| failed(&path, &cause))?;
@@ -270,10 +270,10 @@ impl Collection {
         if is_early { Ok(()) } else { self.list() }
     }
 
-    /// The frames of these times are kept, and those after them taken back.
+    /// Keeps the frames of these times and removes later ones.
     fn keep(&mut self, times: &[f64]) -> Result<(), Error> {
         times.clone_into(&mut self.times);
-        // What is taken back is no longer listed when it goes.
+        // Removed frames are first deleted from the list.
         self.listed.0 = usize::MAX;
         self.list()?;
         for number in times.len().. {
@@ -286,7 +286,7 @@ impl Collection {
         Ok(())
     }
 
-    /// List the frames, unless all are.
+    /// Lists the frames, unless all are listed.
     fn list(&mut self) -> Result<(), Error> {
         if self.listed.0 == self.times.len() {
             return Ok(());
@@ -303,10 +303,10 @@ impl Collection {
     }
 }
 
-/// Bytes a node or contact point takes in a frame: its state once more, fourteen numbers, and their text.
+/// Bytes per node or contact point in a frame: the state, fourteen numbers, and their text.
 const PER_NODE: usize = 600;
 
-/// The room that a frame takes while it is made.
+/// Memory and disk space needed by a frame.
 #[derive(Debug)]
 struct Room {
     folder: PathBuf,
@@ -320,10 +320,10 @@ impl Room {
         Self { folder: folder.join("solid"), bytes: PER_NODE * (model.mesh.nodes.len() + points) }
     }
 
-    /// Refuse a frame that does not fit.
+    /// Checks that a frame fits.
     ///
     /// # Errors
-    /// [`Error::Output`] with what it takes and what is free.
+    /// Returns [`Error::Output`] with the needed and the free space if it does not.
     pub fn check(&self) -> Result<(), Error> {
         let message =
             |cause| failed(&self.folder, &format!("a frame takes {cause}; leave them out (\"fields\": false)"));

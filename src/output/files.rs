@@ -1,14 +1,14 @@
-//! Files and folders, made so that nothing of a user's is lost: never through a link, and whole or not at all where a reader
-//! might look at them half written.
+//! Safe writing of files and folders: nothing of a user's is overwritten, links are not followed, and files that may be read
+//! while they are written are replaced as a whole.
 //!
 //! # Lock
 //!
-//! One process at a time writes into a folder. A lock names it: its number, the computer it runs on, and since when.
+//! One process at a time writes into a folder. The lock file names it: process id, host, and start time.
 //!
-//! The system holds the lock as long as the process lives, whatever ends it, so that what a killed one leaves is no lock any
-//! more. Where the system has no locks, what stands in it decides. Locks of a network file system are not always seen from
-//! another computer: one that another computer wrote counts as left behind once the system's lock is free and its heartbeat,
-//! the time of the file, is over ten minutes old.
+//! The system holds the lock until the process ends for whatever reason, so a killed process leaves no lock. Where the
+//! system has no locks, the content of the file decides. Locks of a network file system are not always visible to
+//! other hosts: the lock of another host counts as abandoned once the system's lock is free and its heartbeat, the time of
+//! the file, is over ten minutes old.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -19,28 +19,28 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-/// A new file in the place of an earlier one.
+/// Creates a new file in place of an earlier one.
 ///
 /// # Errors
-/// What the system says; a link or a folder in its place is left alone.
+/// Returns the error of the system; a link or a folder of that name is not touched.
 pub fn create(path: &Path) -> io::Result<File> {
     remove(path)?;
     File::options().read(true).write(true).create_new(true).open(path)
 }
 
-/// A file that is there already, to be continued.
+/// Opens an existing file, to be continued.
 ///
 /// # Errors
-/// As [`create`].
+/// The same as for [`create`].
 pub fn open(path: &Path) -> io::Result<File> {
     plain(path)?;
     File::options().read(true).write(true).open(path)
 }
 
-/// Remove a file, if it is there.
+/// Removes a file if it exists.
 ///
 /// # Errors
-/// As [`create`].
+/// The same as for [`create`].
 pub fn remove(path: &Path) -> io::Result<()> {
     match plain(path) {
         Ok(()) => fs::remove_file(path),
@@ -49,8 +49,8 @@ pub fn remove(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Whether a file of its own has these words among its first: they distinguish our files from a user's file of that
-/// name.
+/// Whether a file, not a link, contains these words near its start; they distinguish files of the program from a user's file
+/// of that name.
 pub fn bears(path: &Path, words: &str) -> bool {
     let mut start = Vec::new();
     let read = |file: File| file.take(1024).read_to_end(&mut start);
@@ -58,7 +58,7 @@ pub fn bears(path: &Path, words: &str) -> bool {
         && String::from_utf8_lossy(&start).contains(words)
 }
 
-/// Whether it is a file of its own.
+/// Checks that a path is a regular file, not a link.
 fn plain(path: &Path) -> io::Result<()> {
     let kind = fs::symlink_metadata(path)?.file_type();
     match (kind.is_file(), kind.is_symlink()) {
@@ -68,10 +68,10 @@ fn plain(path: &Path) -> io::Result<()> {
     }
 }
 
-/// A folder below that of the results, which must be one of its own.
+/// Creates a subfolder of the results, which must not be a link.
 ///
 /// # Errors
-/// As [`create`].
+/// The same as for [`create`].
 pub fn folder(path: &Path) -> io::Result<()> {
     match fs::symlink_metadata(path) {
         Ok(known) if known.is_dir() => Ok(()),
@@ -80,33 +80,32 @@ pub fn folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Put a text into the place of a file, which is the old one or the new one at any moment, and never a part of it.
+/// Replaces the content of a file; at any moment it is the old or the new one as a whole.
 ///
 /// # Errors
-/// What the system says; the old file is still there then.
+/// Returns the error of the system; the old file is then kept.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let aside = aside(path);
     let written = create(&aside).and_then(|mut file| file.write_all(bytes)).and_then(|()| into_place(&aside, path));
     if written.is_err() {
-        // What is left of it would only be in the way.
+        // The incomplete file is of no use.
         let _ = remove(&aside);
     }
     written
 }
 
-/// As [`replace`], and on the disk when it returns.
+/// Replaces a file as [`replace`] and synchronizes it to the disk.
 ///
 /// # Errors
-/// As [`replace`].
+/// The same as for [`replace`].
 pub fn replace_for_good(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_for_good_after(path, bytes, || Ok(()))
 }
 
-/// As [`replace_for_good`]; something is done once the new file is complete, before it takes its
-/// place.
+/// Replaces a file as [`replace_for_good`] and calls `then` once the new file is complete, before it is renamed.
 ///
 /// # Errors
-/// As [`replace`], and those of what is done.
+/// The same as for [`replace`], and those of `then`.
 pub fn replace_for_good_after(path: &Path, bytes: &[u8], then: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
     let aside = aside(path);
     let filled = create(&aside).and_then(|mut file| {
@@ -120,23 +119,23 @@ pub fn replace_for_good_after(path: &Path, bytes: &[u8], then: impl FnOnce() -> 
     written
 }
 
-/// Move a file into the place of another.
+/// Renames a file to the path of another.
 ///
 /// # Errors
-/// As [`create`].
+/// The same as for [`create`].
 pub fn into_place(aside: &Path, path: &Path) -> io::Result<()> {
     match plain(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
         _ => fs::rename(aside, path)?,
     }
-    // Two names of one file stay as they are (POSIX).
+    // Renaming one of two hard links of a file to the other has no effect (POSIX).
     remove(aside)
 }
 
-/// A renamed file has its new name for good only once its folder is on the disk.
+/// Synchronizes the folder, without which a renamed file may revert to its old name.
 fn sync_folder(path: &Path) -> io::Result<()> {
     match path.parent() {
-        // Where folders cannot be opened there is nothing to be done.
+        // Where folders cannot be opened, nothing can be done.
         Some(folder) => File::open(folder).map_or(Ok(()), |folder| folder.sync_all()),
         None => Ok(()),
     }
@@ -149,19 +148,19 @@ pub fn aside(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Name of the lock in the folder.
+/// Name of the lock file in the folder.
 pub const LOCK: &str = "fecontact.lock";
 
-/// Room that the lock keeps: given back when a disk is full, so that the end of a run can still be recorded [bytes].
+/// Disk space reserved by the lock, released on a full disk so that the end of a run can still be recorded [bytes].
 const RESERVE: usize = 64 << 10;
 
-/// Between two beats of a lock.
+/// Time between two heartbeats of a lock.
 const BEAT: Duration = Duration::from_secs(30);
 
-/// A lock of another computer without a beat for so long was left behind.
+/// Time without a heartbeat after which a lock of another host counts as abandoned.
 const LEFT_BEHIND: Duration = Duration::from_secs(600);
 
-/// A folder is locked by this process until it is dropped.
+/// Lock of a folder, held by this process until it is dropped.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
@@ -169,10 +168,10 @@ pub struct Lock {
     _heart: Heart,
 }
 
-/// A thread that sets the time of a lock as long as the lock is held.
+/// Thread that updates the time of a lock while it is held.
 #[derive(Debug)]
 struct Heart {
-    /// `None` once it is to stop
+    /// `None` once the thread is to stop
     beating: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -182,23 +181,23 @@ struct Heart {
 struct Holder {
     process: u32,
     computer: String,
-    /// Seconds since 1970
+    /// start time, in seconds since 1970
     since: u64,
 }
 
 impl Lock {
-    /// Lock a folder.
+    /// Locks a folder.
     ///
     /// # Errors
-    /// Who is at work in it, or why the lock cannot be written.
+    /// Returns a message that names the holder of the lock, or the reason why it cannot be written.
     pub fn take(folder: &Path) -> Result<Self, String> {
         Self::beating(folder, BEAT)
     }
 
-    /// As [`take`](Self::take), with so long between two beats.
+    /// Locks a folder as [`take`](Self::take), with a given time between two heartbeats.
     ///
     /// # Errors
-    /// As [`take`](Self::take).
+    /// The same as for [`take`](Self::take).
     pub fn beating(folder: &Path, beat: Duration) -> Result<Self, String> {
         let path = folder.join(LOCK);
         let message = |cause: io::Error| format!("results cannot be written here: {LOCK}: {cause}");
@@ -213,7 +212,7 @@ impl Lock {
                 if silent <= LEFT_BEHIND {
                     return Err(elsewhere(holder, silent));
                 }
-                // Its holder, if it is at work after all, notices that another file stands in its place, and ends.
+                // A previous holder that is still active detects the replaced file and stops.
                 if same(&path, &file) {
                     fs::remove_file(&path).map_err(message)?;
                 }
@@ -238,19 +237,19 @@ impl Lock {
         written.map_err(message)?;
         match lock.is_there() {
             true => Ok(lock),
-            // Whoever held it has just ended and taken it away.
+            // The previous holder has just ended and removed it.
             false => Err(busy(None)),
         }
     }
 
-    /// Whether the lock, and so its folder, is still there.
+    /// Whether the lock file, and therefore the folder, still exists.
     pub fn is_there(&self) -> bool {
         same(&self.path, &self.file)
     }
 
-    /// Give back the room that was kept for the end.
+    /// Releases the reserved disk space.
     pub fn give_room(&mut self) {
-        // Without it there is just less room.
+        // On failure there is only less space.
         let _ = self.file.set_len(512);
     }
 }
@@ -258,7 +257,7 @@ impl Lock {
 impl Heart {
     fn of(lock: &File, beat: Duration) -> Self {
         let (beating, ends) = channel::<()>();
-        // Without it, the lock would only count as left behind too early, and only on another computer.
+        // Without a heartbeat the lock would count as abandoned too early, and only on another host.
         let beats = |lock: File| {
             std::thread::Builder::new().name("lock".into()).spawn(move || {
                 while ends.recv_timeout(beat) == Err(RecvTimeoutError::Timeout) {
@@ -275,19 +274,19 @@ impl Drop for Heart {
     fn drop(&mut self) {
         self.beating = None;
         if let Some(thread) = self.thread.take() {
-            // It only sets times, and nobody needs what it returns.
+            // The result of the thread is not needed.
             let _ = thread.join();
         }
     }
 }
 
-/// Time since the last beat of a lock; none for one from a clock that is ahead, or without a time.
+/// Time since the last heartbeat of a lock; zero if the clock is ahead or the file has no time.
 fn silent_for(lock: &File) -> Duration {
     let beat = lock.metadata().and_then(|known| known.modified());
     beat.ok().and_then(|beat| SystemTime::now().duration_since(beat).ok()).unwrap_or_default()
 }
 
-/// Whether a process of this computer writes into a folder, as far as can be seen without disturbing it.
+/// Whether a process of this host writes into a folder, as far as can be detected without interfering.
 pub fn at_work(folder: &Path) -> bool {
     let holder = File::open(folder.join(LOCK)).ok().and_then(|mut file| Holder::read(&mut file));
     holder.is_some_and(|holder| holder.lives(&Holder::this()))
@@ -296,7 +295,7 @@ pub fn at_work(folder: &Path) -> bool {
 impl Drop for Lock {
     fn drop(&mut self) {
         if self.is_there() {
-            // One that stays is found to be nobody's.
+            // A remaining file is found to be abandoned.
             let _ = std::fs::remove_file(&self.path);
         }
     }
@@ -306,7 +305,7 @@ fn open_lock(path: &Path) -> io::Result<File> {
     match open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => {
             match File::options().read(true).write(true).create_new(true).open(path) {
-                // Somebody was faster.
+                // Another process was faster.
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => open(path),
                 created => created,
             }
@@ -340,7 +339,7 @@ impl Holder {
         serde_json::from_str(&text).ok()
     }
 
-    /// Whether its process is at work, as far as this computer can know.
+    /// Whether its process is active, as far as this host can determine.
     fn lives(&self, me: &Self) -> bool {
         self.computer == me.computer
             && self.process != me.process
@@ -368,7 +367,7 @@ fn elsewhere(Holder { process, computer, .. }: &Holder, silent: Duration) -> Str
     )
 }
 
-/// Name of this computer.
+/// Name of this host.
 fn computer() -> String {
     let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
     let name = name.or_else(|| std::env::var("HOSTNAME").ok()).or_else(|| std::env::var("COMPUTERNAME").ok());

@@ -1,7 +1,7 @@
-//! The folder of results: whose files may be replaced in it.
+//! Results folder: determines which of its files may be replaced.
 //!
-//! `summary.json` lists the files that its run writes. A later run takes those away, and no others: a file of the user's that
-//! is in the way is named, and nothing is written.
+//! `summary.json` lists the files that its run writes. A later run removes these and no others: a user's file of the same name
+//! is reported, and nothing is written.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use super::summary::SUMMARY;
 use super::{checkpoint, files, report, store};
 use crate::run::error::Error;
 
-/// Files that commands write; a folder ends in `/` and holds numbered frames.
+/// Files written by the commands; a name that ends in `/` is a folder of numbered frames.
 const KNOWN: [&str; 17] = [
     "history.csv",
     "newton.csv",
@@ -33,7 +33,7 @@ const KNOWN: [&str; 17] = [
     report::FILE,
 ];
 
-/// Figures that earlier versions have drawn beside results: of these names, ...
+/// Names of figures drawn beside results by earlier versions, ...
 const FIGURES: [&str; 11] = [
     "law.svg",
     "displacement.svg",
@@ -47,29 +47,29 @@ const FIGURES: [&str; 11] = [
     "events.svg",
     "traction.svg",
 ];
-/// ... and with these words at their beginning, unless they are a user's own.
+/// ... with this text near their beginning; other files are a user's own.
 const OUR_FIGURE: &str = "data-drawn-by=\"fecontact\"";
 
-/// The store of the interfaces, a folder of its own kind.
+/// Store of the interfaces, a folder of a separate kind.
 pub const INTERFACE: &str = "interface.zarr/";
 
-/// A folder that this process alone writes into.
+/// Results folder locked by this process.
 #[derive(Debug)]
 pub struct Folder {
-    /// where it lies
+    /// path
     pub path: PathBuf,
-    /// held as long as it is written into
+    /// held while the folder is written
     pub lock: Lock,
-    /// what the runs in it write, this one's included
+    /// files written by the runs in it, including this one
     pub files: Vec<String>,
 }
 
 impl Folder {
-    /// Lock a folder, made if it is not there; `inputs` are read by the run, and `outputs` written. Earlier results are taken
-    /// away, unless the run goes on from them.
+    /// Locks a folder, creating it if necessary; `inputs` are the files read by the run, `outputs` those written. Earlier
+    /// results are removed, unless the run continues them.
     ///
     /// # Errors
-    /// The place that is in the way, and why.
+    /// Returns the path that prevents it, and the reason.
     pub fn claim(path: &Path, inputs: &[PathBuf], outputs: &[&str], goes_on: bool) -> Result<Self, (PathBuf, String)> {
         let cannot = |what: &Path, cause: &dyn std::fmt::Display| {
             (what.to_owned(), format!("results cannot be written here: {cause}"))
@@ -93,18 +93,18 @@ impl Folder {
             Ok(Self { path: path.to_owned(), lock, files })
         });
         if claimed.is_err() && made {
-            // It stays if something else has come into it.
+            // The folder is kept if it is no longer empty.
             let _ = std::fs::remove_dir(path);
         }
         claimed
     }
 
-    /// The files of a run that has ended: a short one has kept no second checkpoint.
+    /// Removes files of a completed run that were never written from the list; a short run has no second checkpoint.
     pub fn forget_what_never_came(&mut self) {
         self.files.retain(|name| name != checkpoint::PREVIOUS || self.path.join(name).exists());
     }
 
-    /// Where a run could not write, give it the room that was kept to say so.
+    /// Releases the reserved disk space after a write error, so that the error can be recorded.
     pub fn make_room_after(&mut self, result: &Result<(), Error>) {
         if matches!(result, Err(Error::Output { .. })) {
             self.lock.give_room();
@@ -112,7 +112,7 @@ impl Folder {
     }
 }
 
-/// Whether a file lies where a run is going to write.
+/// Whether an input file is at a path that the run will write.
 fn is_written(input: &Path, folder: &Path, outputs: &[&str]) -> bool {
     let (Ok(input), Ok(folder)) = (input.canonicalize(), folder.canonicalize()) else { return false };
     let Ok(below) = input.strip_prefix(folder) else { return false };
@@ -140,7 +140,7 @@ fn earlier(folder: &Path) -> Result<Vec<String>, (PathBuf, String)> {
     Ok(names.filter(|name| KNOWN.contains(name)).map(String::from).collect())
 }
 
-/// Refuse paths of results at which something other than earlier results exists.
+/// Refuses output paths at which something other than earlier results exists.
 fn in_the_way(folder: &Path, outputs: &[&str], earlier: &[String]) -> Result<(), (PathBuf, String)> {
     let strange =
         |path: PathBuf| Err((path, "is in the way: no earlier run wrote it; move it, or choose another --out".into()));
@@ -162,7 +162,7 @@ fn in_the_way(folder: &Path, outputs: &[&str], earlier: &[String]) -> Result<(),
     Ok(())
 }
 
-/// Take away what the runs before have written.
+/// Removes the files of earlier runs.
 fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Error)> {
     let remove = |path: PathBuf| files::remove(&path).map_err(|cause| (path, cause));
     for name in earlier {
@@ -183,13 +183,13 @@ fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Err
     Some(folder.join(report::FILE)).filter(|path| report::is_page(path)).map_or(Ok(()), remove)
 }
 
-/// The files of ours in a folder of a kind.
+/// Files of the program in a folder of a given kind.
 fn parts(folder: &Path, name: &str) -> Vec<PathBuf> {
-    // A folder that cannot be read has nothing that could be taken away.
+    // An unreadable folder contains nothing to remove.
     if name == INTERFACE { store::files_of(folder).unwrap_or_default() } else { frames(folder) }
 }
 
-/// The frames in a folder of its own; nothing where it is a link.
+/// Frames in a folder; none where it is a link.
 fn frames(folder: &Path) -> Vec<PathBuf> {
     if !folder.symlink_metadata().is_ok_and(|known| known.is_dir()) {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! What a frame shows of a state: bodies, interfaces, integration points.
+//! Content of frames: bodies, interfaces, integration points.
 
 use nalgebra::Vector2;
 
@@ -12,13 +12,13 @@ use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 use crate::model::state::State;
 
-/// Content of a frame: a state, and what is computed from it before the frame is written. Contacts are searched by all
-/// threads, which may be waiting for the writer of frames.
+/// Content of a frame: a state and the quantities computed from it before the frame is written. The search for contacts uses
+/// all threads, which may be waiting for the writer of frames.
 #[derive(Debug)]
 pub struct Shown {
     /// the state
     pub state: State,
-    /// what contacts put on every node [F]
+    /// contact forces on every node [F]
     contact_forces: Vec<f64>,
 }
 
@@ -29,11 +29,11 @@ impl Shown {
     }
 }
 
-/// Fills the grid of the bodies. Rigid bodies have no cells, and what their nodes carry is no field.
+/// Fills the grid of the bodies. Rigid bodies have no cells and no fields.
 pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) {
     let stresses = nodal_stresses(model, state);
     let nodes = model.mesh.own_nodes();
-    // A body has one material, and a material serves one body: the two ids agree.
+    // Each body has exactly one material, so the two ids agree.
     let body = || model.body_of_element.iter().map(|&body| body as i32);
     grid.begin(|| {
         let cell = |element: &Element| (cell_type(element.kind), element.nodes.clone());
@@ -61,7 +61,7 @@ fn contact_forces(model: &Model, state: &State) -> Vec<f64> {
     forces
 }
 
-/// The integration points of the bodies, with their stresses and what the materials remember there.
+/// Fills the grid of the integration points of the bodies, with stresses and internal variables.
 pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
     let elements = &model.mesh.elements;
     let mut names: Vec<&str> = Vec::new();
@@ -75,7 +75,7 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
     for (e, element) in elements.iter().enumerate() {
         let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
-        // An element without an answer never occurs in an accepted state.
+        // Accepted states contain no element whose material law fails.
         let none = || (0..model.solids[e].quadrature_points()).map(|_| CauchyStress::default()).collect();
         let found = model.solids[e].stresses(material, memory, &u).unwrap_or_else(|_| none());
         for (k, (point, stress)) in element.kind.quadrature().iter().zip(found).enumerate() {
@@ -108,8 +108,8 @@ fn add_stresses(grid: &mut Grid, stresses: &[CauchyStress]) {
     grid.at_points("pressure", 1, stresses.iter().map(CauchyStress::pressure));
 }
 
-/// Cauchy stress at the nodes, averaged over the elements that meet there. An element that the
-/// material law cannot answer leaves no trace: it never occurs in an accepted state.
+/// Cauchy stress at the nodes, averaged over the adjacent elements. An element whose material law fails is skipped; it never
+/// occurs in an accepted state.
 fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
     let elements = &model.mesh.elements;
     let stresses_of = |e: usize| {
@@ -134,7 +134,7 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
     sums.into_iter().map(mean).collect()
 }
 
-/// The interfaces: a polyline through the contact points along each slave surface.
+/// Fills the grid of the interfaces: a polyline through the contact points along each slave surface.
 pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
     let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
     let undeformed = model.mesh.undeformed();

@@ -1,4 +1,4 @@
-//! How the friction of a contact went, in a few numbers: how much it bore, and when stick turned into slip.
+//! Summary of the friction history of a contact: its forces, and the onset of slip.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::text::number;
 
-/// Shares that are the same but for round-off.
+/// Relative round-off allowed in comparing fractions.
 const ROUND_OFF: f64 = 1e-9;
 
 /// The forces of a contact at one time.
@@ -20,26 +20,26 @@ pub struct Borne {
     pub ratio: f64,
 }
 
-/// Friction history of a contact over the accepted increments, in a few numbers.
+/// Summary of the friction history of a contact over the accepted increments.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionHistory {
-    /// when a point slipped first [T]
+    /// time at which a point first slipped [T]
     pub first_slip: Option<f64>,
-    /// when all that was closed slipped at once for the first time [T]
+    /// time at which all closed points first slipped simultaneously [T]
     pub full_slip: Option<f64>,
-    /// the largest magnitude of the tangential force
+    /// force with the largest tangential magnitude
     pub largest: Option<Borne>,
-    /// at the end
+    /// force at the end
     pub last: Option<Borne>,
 }
 
 impl FrictionHistory {
-    /// Record the forces [F] and the slipping fraction of the closed length [-].
+    /// Records the forces [F] and the slipping fraction of the closed length [-].
     pub fn note(&mut self, time: f64, normal: f64, tangential: f64, slipping: f64) {
         let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
         let borne = Borne { time, tangential_force: tangential, ratio };
         self.last = Some(borne);
-        // Of a force that stays as it is, the beginning.
+        // A constant force keeps its first time.
         let more = |largest: Borne| tangential.abs() > (1.0 + ROUND_OFF) * largest.tangential_force.abs();
         if self.largest.is_none_or(more) {
             self.largest = Some(borne);
@@ -52,7 +52,7 @@ impl FrictionHistory {
         }
     }
 
-    /// Whether there was any friction.
+    /// Whether any friction occurred.
     pub fn is_friction(&self) -> bool {
         self.largest.is_some_and(|largest| largest.tangential_force != 0.0)
     }

@@ -1,19 +1,20 @@
-//! `fronts.csv`: the fronts that run along interfaces. `events.csv`: what the events were that they made (`events.rs`).
+//! `fronts.csv`: passages of slip fronts along interfaces. `events.csv`: the slip events (`events.rs`).
 //!
-//! The slip rate is the plastic slip since the increment before over the time since. A front arrives where it passes a threshold
-//! from below, in time linear between the middles of the two intervals. Its local speed is the distance of the two
-//! neighbours along the slave over the difference of their arrivals nearest in time (of one, where it passed no other).
+//! The slip rate is the plastic slip of an increment divided by its length. A front arrives where the rate exceeds a threshold,
+//! interpolated linearly in time between the midpoints of two increments. Its local speed is the distance of the two
+//! neighbours along the slave divided by the difference of their arrivals nearest in time (of one neighbour, if it did not pass
+//! the other).
 //!
-//! An event of a contact begins when a point of it passes the threshold while no other is above, and ends when none is.
-//! Its rupture length at an arrival is the tributary length of the points reached by then, its energy released what
-//! loads and stored energies of the whole model gave since its first arrival:
+//! An event of a contact begins when one of its points exceeds the threshold while no other does, and ends when none does.
+//! Its rupture length at an arrival is the tributary length of the points reached by then; its energy released is the energy
+//! supplied by loads and stored energies of the whole model since its first arrival:
 //!
 //! ```text
 //! Δ(external work − strain energy − elastic energy of contacts) = Δ(kinetic energy + dissipation)
 //! ```
 //!
-//! Arrivals may be defined by R or μ instead, which pass a value at the points; an event is still one of slip, and an
-//! arrival outside of events is of event 0. A contact without friction has no fronts.
+//! Arrivals may instead be defined by threshold values of R or μ at the points; an event is still one of slip, and an
+//! arrival outside of events has the event number 0. A frictionless contact has no fronts.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,24 +29,24 @@ use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 
-/// Writes `fronts.csv` and `events.csv` at the end.
+/// Observer that writes `fronts.csv` and `events.csv` at the end of the run.
 #[derive(Debug)]
 pub struct Fronts {
     folder: PathBuf,
     criterion: FrontsInput,
     interfaces: Vec<ContactPoints>,
-    /// Time at the start
+    /// Start time of the run
     start: f64,
     /// Time and energies of the model at the ends of the last two increments
     last: [(f64, Energies); 2],
 }
 
 impl Fronts {
-    /// Watch for fronts; `start` is the state before the first increment.
+    /// Creates the observer; `start` is the state before the first increment.
     pub fn new(folder: &Path, model: &Model, start: &State, criterion: FrontsInput) -> Self {
         let mut interfaces: Vec<ContactPoints> =
             model.contacts.iter().map(|pair| ContactPoints::new(model, pair)).collect();
-        // What had slipped before is no event of this run.
+        // Earlier slip belongs to no event of this run.
         let points =
             interfaces.iter_mut().zip(&start.contacts).flat_map(|(of, states)| of.points.iter_mut().zip(states));
         points.for_each(|(point, state)| point.mark = Mark::of(state));
@@ -62,7 +63,7 @@ impl Fronts {
         self.last = [last[1], (after.time, Energies::of(after))];
     }
 
-    /// Repeated onsets of slip within an event, per point and time, by contact [1/T].
+    /// Number of repeated onsets of slip within an event, per point and time, by contact [1/T].
     pub fn chatter(&self) -> BTreeMap<String, f64> {
         let time = self.last[1].0 - self.start;
         self.interfaces.iter().map(|interface| (interface.name.clone(), interface.chatter(time))).collect()

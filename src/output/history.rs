@@ -1,4 +1,4 @@
-//! `history.csv`: a row per accepted increment, or those that an interval leaves (`run/observer.rs`).
+//! `history.csv`: one row per accepted increment, or those selected by an interval (`run/observer.rs`).
 
 use std::slice;
 
@@ -26,15 +26,15 @@ use crate::run::observer::Attempt;
 /// Observer that writes `history.csv`.
 pub type History = Sheet<HistoryRows>;
 
-/// The rows of `history.csv`.
+/// Rows of `history.csv`.
 #[derive(Debug)]
 pub struct HistoryRows {
     /// Observables of each contact whose means are written
     observed: Vec<Vec<&'static str>>,
-    /// Middle of each undeformed slave surface, about which the moments are
+    /// Center of each undeformed slave surface, the reference point of moments
     middles: Vec<Vector2<f64>>,
     bodies: Vec<BodyMeans>,
-    /// ∫ N_a ds of the watched sets that are edges
+    /// ∫ N_a ds of the watched edge sets
     edges: Vec<EdgeMeans>,
     memory: Memory,
 }
@@ -42,7 +42,7 @@ pub struct HistoryRows {
 /// Memory from row to row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Memory {
-    /// Rotation of each body, turns counted; none before the first increment [rad]
+    /// Rotation of each body, with full turns; empty before the first increment [rad]
     rotations: Vec<f64>,
     /// Frictional heat of each contact so far [F·L]
     heat: Vec<f64>,
@@ -161,7 +161,7 @@ impl History {
     }
 }
 
-/// Whether slip radiates, and the energies have a column for it.
+/// Whether slip radiates, which adds a column to the energies.
 fn radiates(model: &Model) -> bool {
     model.contacts.iter().any(|pair| pair.radiation > 0.0)
 }
@@ -178,7 +178,8 @@ fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {
     ]
 }
 
-/// The columns of one contact: forces are ∫ p ds and ∫ q ds, with what slip radiates, ∫ (q + η v) ds, means are taken over the closed length.
+/// Columns of one contact. The forces are ∫ p ds and ∫ q ds, with radiation damping ∫ (q + η v) ds; means are taken over the
+/// closed length.
 fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len()] {
     let (mut normal, mut tangential, mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut largest_elastic, mut elastic) = (0.0f64, 0.0f64, 0.0);
@@ -217,7 +218,7 @@ fn watched_row(set: &WatchedSet, state: &State) -> [f64; WATCHED.len()] {
     [mean(0), mean(1), total(&set.held[0], &state.reaction, 0), total(&set.held[1], &state.reaction, 1)]
 }
 
-/// The shares of a watched set of edges; none where it has no length of its own.
+/// Tributary fractions of a watched edge set; `None` where it has no length of its own.
 ///
 /// ```text
 /// ū = ∫ u ds/∫ ds                         along the undeformed edges, over the area of rings
@@ -242,7 +243,7 @@ fn edge_means(model: &Model, set: &WatchedSet) -> Option<EdgeMeans> {
     Some((set.name.clone(), shares))
 }
 
-/// An angle with the turns that bring it nearest to the one before.
+/// Adds full turns to an angle so that it is closest to the previous one.
 fn nearest_turn(before: f64, angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     angle + turn * ((before - angle) / turn).round()

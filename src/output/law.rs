@@ -1,4 +1,4 @@
-//! `law.csv`: what a friction law driven alone answered.
+//! `law.csv`: responses of a friction law in a law test.
 
 use std::path::Path;
 
@@ -16,20 +16,20 @@ pub struct LawTable<'a> {
 }
 
 impl<'a> LawTable<'a> {
-    /// Create `law.csv` of a law in `folder`; what else it shows has columns at the end.
+    /// Creates `law.csv` of a law in `folder`; its further observables have columns at the end.
     ///
     /// # Errors
-    /// [`Error::Output`] when it cannot be written.
+    /// Returns [`Error::Output`] if it cannot be written.
     pub fn create(folder: &Path, law: &'a dyn FrictionLaw) -> Result<Self, Error> {
         let header =
             names(&LAW).chain(observables::further([&law.description()]).into_iter().map(String::from)).collect();
         Ok(Self { table: Table::create(&folder.join("law.csv"), header)?, law })
     }
 
-    /// Write a row.
+    /// Writes a row.
     ///
     /// # Errors
-    /// [`Error::Output`] when it cannot be written.
+    /// Returns [`Error::Output`] if it cannot be written.
     pub fn write(&mut self, row: &LawRow) -> Result<(), Error> {
         let Self { table, law } = self;
         let LawRow { time, slip, response, .. } = row;
@@ -44,10 +44,10 @@ impl<'a> LawTable<'a> {
         table.end_row()
     }
 
-    /// Hand all rows to the system.
+    /// Writes all pending rows to the system.
     ///
     /// # Errors
-    /// [`Error::Output`] when they cannot be written.
+    /// Returns [`Error::Output`] if they cannot be written.
     pub fn finish(mut self) -> Result<(), Error> {
         self.table.flush()
     }

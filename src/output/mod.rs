@@ -1,10 +1,10 @@
-//! What a run leaves behind: observers of every attempt, and the files they write.
+//! Output of a run: observers of every attempt, and the files they write.
 
 mod csv;
 mod frames;
 pub mod results;
 
-// What writes these files: the program's own.
+// The writers of these files are internal to the program.
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
         pub mod audit;

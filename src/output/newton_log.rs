@@ -1,6 +1,7 @@
-//! `newton.csv`: a row per linear solve, those of failed attempts included; an attempt that was given up before its first
-//! solve has a row as well, its `iteration` 0. On how many contact points each aid acted in its tangent ([`Acted`]), what became
-//! of the attempt ([`crate::run::observer::Verdict`]) and why it was given up ([`Attempt::reason`]) stand at the end.
+//! `newton.csv`: one row per linear solve, including those of failed attempts; an attempt rejected before its first
+//! solve has one row with `iteration` 0. The last columns contain the number of contact points at which each convergence aid
+//! acted in its tangent ([`Acted`]), the outcome of the attempt ([`crate::run::observer::Verdict`]) and the reason of a
+//! rejection ([`Attempt::reason`]).
 
 use super::csv::{Rows, Sheet, Table};
 use super::quantities::{NEWTON, VERDICT, names};
@@ -14,7 +15,7 @@ use crate::solve::contact_iteration::Acted;
 /// Observer that writes `newton.csv`.
 pub type NewtonLog = Sheet<NewtonRows>;
 
-/// The rows of `newton.csv`.
+/// Rows of `newton.csv`.
 #[derive(Debug)]
 pub struct NewtonRows;
 
@@ -52,14 +53,14 @@ impl Rows for NewtonRows {
     }
 }
 
-/// The first cells of a row: whose it is.
+/// Writes the first cells of a row, which identify the attempt.
 fn begin_row(table: &mut Table, attempt: &Attempt, iteration: usize) {
     table.text(&attempt.step.name);
     [attempt.old.increment + 1, attempt.number, iteration].into_iter().for_each(|count| table.count(count));
     table.number(attempt.old.time + attempt.dt);
 }
 
-/// The last cells: what became of the attempt. A comma would end the cell.
+/// Writes the last cells: outcome and reason. A comma would end the cell.
 fn end_row(table: &mut Table, attempt: &Attempt, reason: &str) -> Result<(), Error> {
     table.text(attempt.verdict.name());
     table.text(reason);

@@ -1,6 +1,4 @@
-//! `probes.csv`: what gauges at points of the bodies read, at the rows of the history.
-//!
-//! What a gauge at a point of a body reads.
+//! `probes.csv`: readings of gauges at points of the bodies, at the rows of the history.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -12,7 +10,7 @@ use crate::model::{Model, Probe};
 use crate::run::error::Error;
 use crate::run::observer::Attempt;
 
-/// The columns of every probe of a model.
+/// Columns of all probes of a model.
 fn readings(model: &Model) -> impl Iterator<Item = String> {
     names(&PROBE).chain(model.mesh.section.is_axisymmetric().then(|| HOOP.name.into()))
 }
@@ -20,7 +18,7 @@ fn readings(model: &Model) -> impl Iterator<Item = String> {
 /// Observer that writes `probes.csv`.
 pub type Probes = Sheet<ProbeRows>;
 
-/// The rows of `probes.csv`.
+/// Rows of `probes.csv`.
 #[derive(Debug)]
 pub struct ProbeRows;
 
@@ -48,13 +46,14 @@ impl Rows for ProbeRows {
     }
 }
 
-/// Values at a probe.
+/// Reading of a probe.
 ///
 /// ```text
 /// u = Σ N_a u_a,  v likewise                    by the shape functions of the element
 /// E = ½ (FᵀF − 1)                               Green–Lagrange; of `linear` materials ε = sym grad u
 /// ```
-/// Strain and Cauchy stress are the (bi)linear functions of the element nearest to their values at the integration points.
+/// Strain and Cauchy stress are evaluated from the (bi)linear functions of the element that fit its integration-point values
+/// best.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
     /// u [L]
@@ -63,14 +62,14 @@ pub struct Reading {
     pub velocity: Vector2<f64>,
     /// E_xx, E_yy, E_xy, referred to the undeformed axes [-]
     pub strain: [f64; 3],
-    /// E_zz of rings, along the hoops; 0 of other sections [-]
+    /// E_zz in axisymmetric bodies (hoop strain); 0 in other sections [-]
     pub hoop_strain: f64,
     /// σ [F/L²]
     pub stress: CauchyStress,
 }
 
 impl Reading {
-    /// Reading of a probe in a state. Stress and strain are NaN where the material law fails, which it does not in an
+    /// Evaluates a probe in a state. Stress and strain are NaN where the material law fails, which does not occur in an
     /// accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
         let (element, solid) = (&model.mesh.elements[probe.element], &model.solids[probe.element]);

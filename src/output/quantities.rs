@@ -1,5 +1,5 @@
-//! Quantities: what is recorded is called the same in tables, frames and the store of the interface. Here stands what each is,
-//! and in which unit; columns and arrays follow it in this order, readers of results know it by it, and `fecontact schema
+//! Recorded quantities, with the same name in tables, frames and the store of the interface. This module defines the meaning
+//! and unit of each. Columns and arrays follow this order, readers of results identify quantities by it, and `fecontact schema
 //! results` prints it.
 //!
 //! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY` and `PROBE` stand
@@ -12,18 +12,18 @@ use serde_json::{Map, Value, json};
 /// A recorded quantity: a column of a table, or an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
-    /// its name
+    /// name
     pub name: &'static str,
-    /// its unit
+    /// unit
     pub unit: Unit,
-    /// what it is
+    /// meaning
     pub meaning: &'static str,
 }
 
 /// Unit of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {
-    /// the name under which a case may label it, as it labels `length`, `force` and `time`
+    /// name under which a case may label it, as for `length`, `force` and `time`
     pub name: &'static str,
     /// powers of force, length and time
     powers: [i8; 3],
@@ -33,7 +33,7 @@ const fn unit(name: &'static str, powers: [i8; 3]) -> Unit {
     Unit { name, powers }
 }
 
-/// A number, or a word.
+/// Dimensionless number, or a word.
 pub const NONE: Unit = unit("none", [0, 0, 0]);
 /// L
 pub const LENGTH: Unit = unit("length", [0, 1, 0]);
@@ -54,7 +54,7 @@ const SPIN: Unit = unit("angular_momentum", [1, 1, 1]);
 const STIFFNESS: Unit = unit("stiffness_per_area", [1, -3, 0]);
 
 impl Unit {
-    /// Made of force, length and time: `F/L²`; nothing for a number.
+    /// Formats the unit from those of force, length and time: `F/L²`; empty for a dimensionless number.
     pub fn made_of(self, [force, length, time]: [&str; 3]) -> String {
         let raised = |power: i8| match power.abs() {
             2 => "²",
@@ -72,7 +72,7 @@ impl Unit {
         }
     }
 
-    /// The unit as the CF conventions write it: `N mm-2`.
+    /// Formats the unit according to the CF conventions: `N mm-2`.
     pub fn of_store(self, [force, length, time]: [&str; 3]) -> String {
         let parts = [force, length, time].into_iter().zip(self.powers).filter(|(_, power)| *power != 0);
         let mut parts: Vec<(&str, i8)> = parts.collect();
@@ -81,7 +81,7 @@ impl Unit {
         parts.into_iter().map(part).collect::<Vec<_>>().join(" ")
     }
 
-    /// Its label in a case: the one given, or `made` of those of force, length and time, if those it needs are known.
+    /// Label in a case: the given one, or one composed by `made` of force, length and time, if those needed are known.
     pub fn label(self, units: &BTreeMap<String, String>, made: fn(Self, [&str; 3]) -> String) -> Option<String> {
         if let Some(label) = units.get(self.name) {
             return Some(label.clone());
@@ -143,7 +143,7 @@ pub const WATCHED: [Quantity; 4] = [
     q("fy", FORCE, "along y"),
 ];
 
-/// Rotation of a rigid body, and the moment that its supports put on it.
+/// Rotation of a rigid body, and the moment of its supports.
 pub const RIGID: [Quantity; 2] = [
     q("angle", ANGLE, "rotation about the reference point, counter-clockwise [rad]"),
     q("moment", ENERGY, "reaction moment about the reference point where it is now, counter-clockwise"),
@@ -166,7 +166,7 @@ pub const BODY: [Quantity; 6] = [
     q("rotation", ANGLE, "mean rotation: that of the nearest rigid motion, full turns counted [rad]"),
 ];
 
-/// Means by length of a watched set of edges.
+/// Length-weighted means of a watched edge set.
 pub const EDGES: [Quantity; 2] = [
     q("edge_ux", LENGTH, "length-weighted mean displacement of a set of edges along x, ∫ u_x ds/∫ ds"),
     q("edge_uy", LENGTH, "along y"),
@@ -199,7 +199,7 @@ pub const PROBE: [Quantity; 11] = [
 /// Column of every probe in axisymmetric bodies, after its other columns.
 pub const HOOP: Quantity = q("strain_zz", NONE, "hoop strain, of axisymmetric bodies");
 
-/// Points of a contact, as they lie before anything moves.
+/// Positions of the points of a contact in the undeformed configuration.
 pub const PLACE: [Quantity; 4] = [
     q("position", LENGTH, "arc length along the undeformed slave, from the start of its connected line"),
     q("x", LENGTH, "x of the points, undeformed"),
@@ -222,14 +222,14 @@ const STATE: Quantity =
     q("state", NONE, "0 open, 1 sticking (or closed without friction), 2 slipping, as the law says");
 const DISSIPATION: Quantity = q("dissipation", WORK_PER_AREA, "work of friction so far, per area");
 
-/// At the points of every contact, in frames: rates since the increment before.
+/// Quantities at the points of every contact in frames; rates are means since the previous increment.
 pub const IN_FRAMES: [Quantity; 11] =
     [GAP, PRESSURE, TRACTION, SLIP, ELASTIC_SLIP, SLIP_RATE, RATIO, MU, STRUCTURE, STATE, DISSIPATION];
 
-/// At the points of every contact, in the store: rates since the row before.
+/// Quantities at the points of every contact in the store; rates are means since the previous row.
 pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
 
-/// At the points of some contacts, in both; other internal variables and observables have names given by their law.
+/// Quantities at the points of some contacts, in both; names of other internal variables and observables come from their law.
 pub const OF_SOME: [Quantity; 4] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
     q("dilation", LENGTH, "opening by dilatancy"),
@@ -237,15 +237,15 @@ pub const OF_SOME: [Quantity; 4] = [
     q("fluid_pressure", STRESS, "p_w: pressure of the fluid, in addition to the contact pressure"),
 ];
 
-/// Names of quantities of the store in earlier versions, and present names.
+/// Names of quantities of the store in earlier versions, with their present names.
 pub const FORMER: [(&str, &str); 3] = [("p", "pressure"), ("q", "traction"), ("p_w", "fluid_pressure")];
 
-/// A quantity of the store; `None` for one that only a law knows.
+/// Returns a quantity of the store; `None` for one defined by a law.
 pub fn in_store(name: &str) -> Option<Quantity> {
     IN_STORE.into_iter().chain(OF_SOME).find(|quantity| quantity.name == name)
 }
 
-/// Columns of `fronts.csv`: a row a passage of a front at a contact point.
+/// Columns of `fronts.csv`: one row per passage of a front at a contact point.
 pub const FRONTS: [Quantity; 14] = [
     q("contact", NONE, "the contact"),
     q("point", NONE, "number of the point, from 0, as in `interface.zarr`"),
@@ -263,7 +263,7 @@ pub const FRONTS: [Quantity; 14] = [
     q("energy_released", ENERGY, "energy released since the first arrival: Δ(external work − stored energies)"),
 ];
 
-/// Columns of `events.csv`: a row an event of a contact.
+/// Columns of `events.csv`: one row per event of a contact.
 pub const EVENTS: [Quantity; 18] = [
     q("contact", NONE, "the contact"),
     q("event", NONE, "number in its contact, from 1"),
@@ -285,7 +285,7 @@ pub const EVENTS: [Quantity; 18] = [
     q("front_speed_over_c_R", NONE, "over the Rayleigh wave speed of the body behind the slave"),
 ];
 
-/// Columns of `law.csv` that every law has.
+/// Columns of `law.csv` common to all laws.
 pub const LAW: [Quantity; 12] = [
     q("time", TIME, "t"),
     q("slip", LENGTH, "slip along the path, elastic and plastic"),
@@ -301,7 +301,7 @@ pub const LAW: [Quantity; 12] = [
     q("evaluations", NONE, "how often the law was evaluated within the step"),
 ];
 
-/// Columns of `newton.csv`; those of the aids stand before `verdict` and `reason`.
+/// Columns of `newton.csv`; those of the convergence aids stand before `verdict` and `reason`.
 pub const NEWTON: [Quantity; 15] = [
     q("step", NONE, "name of the step"),
     q("increment", NONE, "number of the increment, from 1"),
@@ -320,7 +320,7 @@ pub const NEWTON: [Quantity; 15] = [
     q("pass", NONE, "number of the augmentation (augmented Lagrangian)"),
 ];
 
-/// ... which are these.
+/// Last columns of `newton.csv`.
 pub const VERDICT: [Quantity; 2] = [
     q("verdict", NONE, "outcome of the attempt (below)"),
     q("reason", NONE, "why it was rejected; empty where accepted, commas as semicolons"),
@@ -349,7 +349,7 @@ const INTEGRATION_POINTS: [Quantity; 5] = [
     q("body", NONE, "number of the body"),
 ];
 
-/// Quantities, and whose they are: what stands before the dot in a name.
+/// Quantities and their owner, the part of the name before the dot.
 pub type Group = (&'static str, &'static [Quantity]);
 
 /// All quantities by their files, in the order of their columns.
@@ -424,7 +424,7 @@ pub fn schema() -> Value {
     ALL.iter().map(|(file, groups)| (file.to_string(), groups.iter().flat_map(of_group).collect::<Value>())).collect()
 }
 
-/// Data for a page: labels of units by their names, and label and name of every quantity.
+/// Data for a page: labels of units by their names, and label and unit name of every quantity.
 pub fn labels(units: &BTreeMap<String, String>) -> Value {
     let (mut of_units, mut quantities) = (Map::new(), Map::new());
     // newton.csv counts slipping points under the name of a length.

@@ -1,6 +1,6 @@
-//! What a folder of results holds, as plain numbers: for those who show it.
+//! Content of a results folder as plain numbers, for viewers.
 //!
-//! Frames of bodies and interfaces: what a `.pvd` lists, and the VTU files behind it.
+//! Frames of bodies and interfaces: the list of a `.pvd` file, and its VTU files.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -20,13 +20,13 @@ use std::path::{Path, PathBuf};
 
 use vtkio::model::{Attribute, Attributes, DataSet, UnstructuredGridPiece, VertexNumbers};
 
-/// A frame that is listed.
+/// A listed frame.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Frame {
     /// [T]
     pub time: f64,
-    /// its file, below the folder of results
+    /// file, relative to the results folder
     pub file: String,
 }
 
@@ -34,25 +34,25 @@ pub struct Frame {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Array {
-    /// what they are
+    /// name
     pub name: String,
-    /// values a point or cell
+    /// number of values per point or cell
     pub components: usize,
-    /// all of them
+    /// all values
     pub values: Vec<f64>,
 }
 
-/// Points and cells with what is known there.
+/// Points and cells with their values.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Grid {
-    /// places before anything moves [L]
+    /// undeformed positions [L]
     pub points: Vec<[f64; 2]>,
     /// points of the cells, one cell after the other
     pub connectivity: Vec<u32>,
-    /// where each cell ends in these
+    /// end of each cell in `connectivity`
     pub ends: Vec<u32>,
-    /// VTK's numbers of the kinds of cells
+    /// VTK cell types
     pub kinds: Vec<u8>,
     /// values at the points
     pub at_points: Vec<Array>,
@@ -60,10 +60,10 @@ pub struct Grid {
     pub at_cells: Vec<Array>,
 }
 
-/// The frames that `NAME.pvd` lists, in order of time; `None` where there is no such file.
+/// Returns the frames listed by `NAME.pvd`, in order of time; `None` if there is no such file.
 ///
 /// # Errors
-/// What is wrong with the file.
+/// Returns a description of the defect if the file cannot be read.
 pub fn frames(folder: &Path, name: &str) -> Result<Option<Vec<Frame>>, String> {
     let file = format!("{name}.pvd");
     let path = folder.join(&file);
@@ -82,21 +82,21 @@ pub fn frames(folder: &Path, name: &str) -> Result<Option<Vec<Frame>>, String> {
     Ok(Some(frames))
 }
 
-/// Whether a file lies below the folder that names it.
+/// Whether a path is inside the results folder.
 fn below(file: &str) -> bool {
     PathBuf::from(file).components().all(|part| matches!(part, std::path::Component::Normal(_)))
 }
 
 impl Grid {
-    /// Read a VTU file.
+    /// Reads a VTU file.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// Returns a description of the defect if the file cannot be read.
     pub fn read(path: &Path) -> Result<Self, String> {
         if !path.is_file() {
             return Err("is missing".into());
         }
-        // Damaged files may lead the reader anywhere.
+        // The VTU reader may panic on damaged files.
         let read = std::panic::catch_unwind(|| Self::import(path));
         read.unwrap_or_else(|_| Err("is damaged".into()))
     }
@@ -130,7 +130,7 @@ impl Grid {
         })
     }
 
-    /// Whether all arrays are as long as they should be.
+    /// Whether all arrays have the required length.
     fn is_whole(&self) -> bool {
         let cells = self.ends.len();
         let long = |arrays: &[Array], count: usize| arrays.iter().all(|of| of.values.len() == count * of.components);

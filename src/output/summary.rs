@@ -1,4 +1,4 @@
-//! `summary.json`: how a run or test ended, and what it took.
+//! `summary.json`: outcome and cost of a run or law test.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -19,28 +19,28 @@ use crate::run::law::LawReport;
 /// File that every folder of results has.
 pub const SUMMARY: &str = "summary.json";
 
-/// Origin of the results, and what their readers need to know of it.
+/// Origin of the results and information for their readers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct About {
-    /// the case file
+    /// case file
     pub case: String,
-    /// what it shows
+    /// title
     pub title: String,
     /// labels of the units
     pub units: BTreeMap<String, String>,
-    /// section of the model, and what forces and energies are counted by; nothing for a law alone
+    /// section of the model, and the reference length of forces and energies; `None` for a law test
     #[serde(skip_serializing_if = "Option::is_none")]
     pub section: Option<String>,
     /// friction law of each contact
     pub friction: BTreeMap<String, FrictionParameters>,
     /// Rayleigh, shear and pressure wave speeds of the first contact's slave body [L/T]
     pub wave_speeds: [f64; 3],
-    /// slip rate that makes a front, if the case asks for fronts [L/T]
+    /// slip rate that defines a front, if the case requests fronts [L/T]
     pub front_slip_rate: Option<f64>,
-    /// the case as `check` prints it: headings with their lines
+    /// case as printed by `check`: headings with their lines
     pub understood: Vec<(String, Vec<String>)>,
-    /// the case as it is written, but for a mesh given node by node; nothing for a law alone
+    /// case as written, except for a mesh given node by node; null for a law test
     #[serde(skip_serializing_if = "Value::is_null")]
     pub given: Value,
 }
@@ -50,16 +50,16 @@ pub struct About {
 pub struct Ending {
     /// "running", "completed", "stopped" or "interrupted"
     pub status: &'static str,
-    /// why it stopped
+    /// reason for stopping
     pub reason: Option<String>,
     /// version of the program
     pub version: &'static str,
-    /// files that it writes, or may write, beside this one; a name that ends in / is a folder of frames
+    /// files that it writes or may write in addition to this one; a name that ends in / is a folder of frames
     pub files: Vec<String>,
 }
 
 impl Ending {
-    /// Status of a run or test that is active.
+    /// Status of a run or test in progress.
     pub fn running(files: &[String]) -> Self {
         Self { status: "running", reason: None, version: env!("CARGO_PKG_VERSION"), files: files.to_vec() }
     }
@@ -80,27 +80,27 @@ impl Ending {
     }
 }
 
-/// The content of `summary.json` of a law driven alone.
+/// Content of `summary.json` of a law test.
 #[derive(Clone, Debug, Serialize)]
 pub struct LawSummary {
-    /// how it ended
+    /// status
     #[serde(flatten)]
     pub ending: Ending,
-    /// the test
+    /// test
     #[serde(flatten)]
     pub about: About,
-    /// what it amounts to
+    /// results
     #[serde(flatten)]
     pub report: LawReport,
 }
 
-/// The content of `summary.json` of a run.
+/// Content of `summary.json` of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// how it ended
+    /// status
     #[serde(flatten)]
     pub ending: Ending,
-    /// the case
+    /// case
     #[serde(flatten)]
     pub about: About,
     /// number of dofs
@@ -116,13 +116,12 @@ pub struct Summary {
     /// counts and times
     #[serde(flatten)]
     pub report: RunReport,
-    /// how often a point set out again within an event of its contact, a point and time, by contact, if the case asks for
-    /// fronts [1/T]
+    /// number of repeated onsets of slip within an event, per point and time, by contact, if the case requests fronts [1/T]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chatter: Option<BTreeMap<String, f64>>,
-    /// how the friction of each contact went; none of those that bore none
+    /// friction history of each contact with friction
     pub friction_course: BTreeMap<String, FrictionHistory>,
-    /// how much of the elastic energy of bodies and contacts was in penalties of contacts when it was largest; nothing without
+    /// fraction of the elastic energy of bodies and contacts stored in contact penalties when it was largest; `None` without
     /// contacts [-]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy_in_penalties: Option<f64>,
@@ -133,7 +132,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Summarize a run.
+    /// Summarizes a run.
     pub fn new(ending: Ending, about: About, model: &Model, report: RunReport, warnings: Vec<String>) -> Self {
         Self {
             ending,
@@ -153,20 +152,20 @@ impl Summary {
     }
 }
 
-/// Write a [`Summary`] or [`LawSummary`] as `summary.json` into `folder`: the old file or the new one is there at any moment.
+/// Writes a [`Summary`] or [`LawSummary`] as `summary.json` into `folder`; the old or the new file exists at any moment.
 ///
 /// # Errors
-/// [`Error::Output`] when it cannot be written.
+/// Returns [`Error::Output`] if it cannot be written.
 pub fn write(summary: &impl Serialize, folder: &Path) -> Result<(), Error> {
     let path = folder.join(SUMMARY);
     let text = serde_json::to_string_pretty(summary).map_err(|cause| failed(&path, &cause))?;
     files::replace_for_good(&path, (text + "\n").as_bytes()).map_err(|cause| failed(&path, &cause))
 }
 
-/// The unfinished run that a folder holds; `None` where nothing is there.
+/// Returns the unfinished run of a folder; `None` if the folder is empty.
 ///
 /// # Errors
-/// What is there instead.
+/// Returns a description of other contents.
 pub fn unfinished(folder: &Path) -> Result<Option<About>, String> {
     #[derive(Deserialize)]
     struct Begun {
@@ -174,7 +173,7 @@ pub fn unfinished(folder: &Path) -> Result<Option<About>, String> {
         #[serde(flatten)]
         about: About,
     }
-    // A run that was killed when it had just begun leaves its lock, and half a summary.
+    // A run killed right after its start leaves its lock and an incomplete summary.
     let passing = [files::LOCK.into(), files::aside(Path::new(SUMMARY)).into_os_string()];
     let is_empty = match folder.read_dir() {
         Ok(mut entries) => entries.all(|entry| entry.is_ok_and(|entry| passing.contains(&entry.file_name()))),

@@ -1,12 +1,12 @@
-//! VTU files, compressed in blocks as their head says:
+//! VTU files, compressed in blocks as described in their header:
 //!
 //! ```text
 //! base64(number of blocks, bytes of a block, bytes of the last one if it is shorter, compressed bytes of each)  base64(blocks)
 //! ```
 //!
-//! A frame is a grid that hardly ever changes, and values that do: the text of the grid is made once and kept. That is why frames
-//! are written here and not by [`vtkio`], which reads them back. Places have 64 bits; values at points have 32, unless they are
-//! asked for as they are.
+//! A frame is a grid that rarely changes, and values that do: the text of the grid is made once and kept. For this reason
+//! frames are written here and not by [`vtkio`], which only reads them. Positions have 64 bits; values at points have 32, or 64
+//! if requested.
 //!
 //! Source: VTK file formats, "XML file formats", inline binary data,
 //! <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
@@ -23,13 +23,13 @@ pub use vtkio::model::CellType;
 use super::files;
 use crate::mesh::shape::ElementKind;
 
-/// Bytes of a block before compression: many, since every block begins with tables of its own.
+/// Block size before compression; large, since every block starts with tables of its own.
 const BLOCK: usize = 1 << 18;
 
-/// Level of zlib: the quickest, since frames are written while the run continues.
+/// zlib level: the fastest, since frames are written while the run continues.
 const LEVEL: u8 = 1;
 
-/// VTK's name of an element.
+/// VTK cell type of an element.
 pub fn cell_type(kind: ElementKind) -> CellType {
     match kind {
         ElementKind::T3 => CellType::Triangle,
@@ -55,19 +55,19 @@ pub struct Grid {
 struct Mesh {
     points: usize,
     cells: usize,
-    /// Arrays of places and cells
+    /// Arrays of positions and cells
     text: String,
 }
 
 const SECTIONS: [&str; 2] = ["PointData", "CellData"];
 
 impl Grid {
-    /// A grid, not filled yet; `exact`: whether values at points are written in double precision, and not in single.
+    /// Creates an empty grid; `exact`: values at points are written in double instead of single precision.
     pub fn new(exact: bool) -> Self {
         Self { exact, mesh: None, values: Default::default() }
     }
 
-    /// Begin a frame; the grid is asked for once.
+    /// Starts a frame; `grid` is called once only.
     pub fn begin(&mut self, grid: impl FnOnce() -> (Vec<Vector2<f64>>, Vec<(CellType, Vec<usize>)>)) {
         self.values.iter_mut().for_each(String::clear);
         self.mesh.get_or_insert_with(|| {
@@ -76,7 +76,7 @@ impl Grid {
         });
     }
 
-    /// Values at the points, of some components each.
+    /// Adds values at the points, with several components each.
     pub fn at_points(&mut self, name: &str, components: usize, values: impl Iterator<Item = f64>) {
         let text = &mut self.values[0];
         match self.exact {
@@ -88,20 +88,20 @@ impl Grid {
         }
     }
 
-    /// Vectors at the points; VTK wants the third component, too.
+    /// Adds vectors at the points; VTK requires a third component.
     pub fn vectors(&mut self, name: &str, values: &[f64]) {
         self.at_points(name, 3, values.chunks_exact(2).flat_map(|v| [v[0], v[1], 0.0]));
     }
 
-    /// Numbers of the cells.
+    /// Adds integers at the cells.
     pub fn at_cells(&mut self, name: &str, values: impl Iterator<Item = i32>) {
         array(&mut self.values[1], Array { kind: "Int32", name, components: 1 }, values.map(i32::to_le_bytes));
     }
 
-    /// Write the file.
+    /// Writes the file.
     ///
     /// # Errors
-    /// What the system says.
+    /// Returns the error of the system.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         let Some(Mesh { points, cells, text }) = &self.mesh else { return Err(io::Error::other("has no grid")) };
         let mut file = BufWriter::new(files::create(path)?);
@@ -148,7 +148,7 @@ struct Array<'a> {
     components: usize,
 }
 
-/// Append an array.
+/// Appends an array.
 fn array<const N: usize>(text: &mut String, is: Array, values: impl Iterator<Item = [u8; N]>) {
     let Array { kind, name, components } = is;
     let bytes: Vec<u8> = values.flatten().collect();
@@ -158,7 +158,7 @@ fn array<const N: usize>(text: &mut String, is: Array, values: impl Iterator<Ite
     *text += "</DataArray>\n";
 }
 
-/// Append packed bytes in base64.
+/// Appends packed bytes in base64.
 fn encode(bytes: &[u8], text: &mut String) {
     let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(|block| compress_to_vec_zlib(block, LEVEL)).collect();
     let sizes = blocks.iter().map(Vec::len);

@@ -1,7 +1,7 @@
-//! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, errors in time
-//! larger than allowed, fronts that the mesh does not resolve, contacts that never close, and energy errors.
+//! Warnings about results: deep penetration, pressure above the uniqueness bound of the law, time errors above the tolerance,
+//! fronts not resolved by the mesh, contacts that never close, and energy errors.
 //!
-//! Warnings about single points of a contact are here too.
+//! This includes warnings about single points of a contact.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -30,25 +30,25 @@ use crate::time::touching::DOUBT;
 /// slave's longest edge.
 const UNSEEN: f64 = 0.05;
 
-/// Collects warnings; each kind once a contact or step, where it is met first.
+/// Collects warnings, each kind once per contact or step, at its first occurrence.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Warnings {
     /// the warnings so far
     pub list: Vec<String>,
     given: BTreeSet<(usize, Kind)>,
-    /// Names of the steps whose error in time has been warned about
+    /// Names of the steps with a warning about their time error
     inexact: BTreeSet<String>,
-    /// Names of the steps in which friction after touch was in doubt
+    /// Names of the steps with a warning about friction after closure
     doubtful: BTreeSet<String>,
-    /// Steps whose linear systems have been warned about
+    /// Steps with a warning about their linear systems
     perturbed: BTreeSet<String>,
-    /// Contacts that have not closed yet, with name and least gap
+    /// Contacts that have not closed yet, with name and smallest gap
     open: BTreeMap<usize, (String, Option<f64>)>,
     /// Contacts that have closed once
     closed: BTreeSet<usize>,
-    /// The balance of energies so far
+    /// Energy balance so far
     pub audit: Audit,
-    /// Callback that receives them when they arise, and how many it has received
+    /// Callback for new warnings, and the number already passed to it
     #[serde(skip)]
     warn: Option<Warn>,
     #[serde(skip)]
@@ -69,7 +69,7 @@ impl Observer for Warnings {
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         *self = Self { warn: self.warn.take(), ..csv::recalled::<Warnings>(memory)? };
-        // Those were reported when they arose.
+        // These were reported when they arose.
         self.reported = self.list.len();
         Ok(())
     }
@@ -122,7 +122,7 @@ impl Observer for Warnings {
 }
 
 impl Warnings {
-    /// After those of a model, which have been reported already: all others are reported to `warn` when they arise.
+    /// Continues the warnings of a model, which have been reported already; all others are passed to `warn` when they arise.
     pub fn reporting(list: Vec<String>, warn: Warn) -> Self {
         Self { reported: list.len(), list, warn: Some(warn), ..Self::default() }
     }
@@ -151,9 +151,9 @@ impl Warnings {
         }
     }
 
-    /// Master nodes that penetrate the slave between its points, which detect nothing there. (Where gaps are not those
-    /// of the surfaces there is nothing to compare with: under initial tractions, and while a shrink fit is brought in.
-    /// Explicit increments are too many to look at.)
+    /// Master nodes that penetrate the slave between its points, where contact is not checked. (Excluded where gaps differ from
+    /// those of the surfaces: under initial tractions and while a shrink fit is applied; and explicit increments, which are too
+    /// many.)
     fn deep_master_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
         if self.given.contains(&(number, Kind::DeepMasterNode)) {
             return;
@@ -169,7 +169,7 @@ impl Warnings {
         ));
     }
 
-    /// Track contacts that have never closed. (Self-contact need not close.)
+    /// Tracks contacts that have never closed. (Self-contact need not close.)
     fn never_closed(&mut self, number: usize, pair: &ContactPair, states: &[ContactState]) {
         if self.closed.contains(&number) || pair.is_own() {
             return;
@@ -203,7 +203,7 @@ impl Warnings {
         }
     }
 
-    /// A reaction that jumped past the value that ends its step.
+    /// A reaction that jumped past the target value of its step.
     fn passed(&mut self, attempt: &Attempt, state: &State) {
         let Step { name, until: Some(until), .. } = attempt.step else { return };
         if state.time < attempt.step.span.end && attempt.ends_step(state) && !until.is_met(state) {
@@ -257,26 +257,26 @@ impl Warnings {
     }
 }
 
-/// Where and when something is found.
+/// Describes place and time.
 fn place(pair: &ContactPair, at: Vector2<f64>, time: f64) -> String {
     format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, time_text(time))
 }
 
-/// What is found of an increment that could not be made shorter.
+/// Describes an increment that could not be shortened.
 fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
     let start =
         format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, time_text(old.time));
     format!("{start}, and {found}; lower dt.min")
 }
 
-/// Penetration, as a share of the slave's edge, that is worth a warning.
+/// Penetration that causes a warning, as a fraction of the slave's edge.
 const DEEP: f64 = 0.01;
 
-/// Process zone of friction that weakens at a steady rate, over G*/(p |dμ/dδ|). Source: Palmer & Rice (1973), Proc. R. Soc. A 332, 527;
-/// Day et al. (2005), J. Geophys. Res. 110, B12307.
+/// Process zone of linearly slip-weakening friction, divided by G*/(p |dμ/dδ|). Source: Palmer & Rice (1973), Proc. R. Soc. A
+/// 332, 527; Day et al. (2005), J. Geophys. Res. 110, B12307.
 const PROCESS_ZONE: f64 = 9.0 * std::f64::consts::PI / 32.0;
 
-/// Kinds of warnings about a contact, each given once.
+/// Kinds of warnings about a contact, each issued once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Kind {
     /// A slave point penetrates the master
@@ -287,7 +287,7 @@ enum Kind {
     DeepUnseen,
     /// Edges are longer than the process zone of friction
     Unresolved,
-    /// The pressure passes the law's bound of uniqueness
+    /// The pressure exceeds the uniqueness bound of the law
     SeveralAnswers,
     /// Points have slid far in small sliding
     SlidFar,
@@ -295,7 +295,7 @@ enum Kind {
     TurnedFar,
     /// Edges have been stretched far in small sliding
     StretchedFar,
-    /// Surfaces that dilate more than they rub
+    /// Dilatancy does more work than friction dissipates
     YieldsWork,
 }
 

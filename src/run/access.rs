@@ -1,4 +1,4 @@
-//! What a caller may ask a run for, and lead, between its increments: groups, contacts and fields by their names.
+//! Queries and prescribed motions between the increments of a run: groups, contacts and fields by their names.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -19,38 +19,38 @@ use crate::model::support::{Direction, Motion, Prescribed};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Unknown {
-    /// No group of the mesh.
+    /// The mesh has no such group.
     #[error(transparent)]
     Group(#[from] UnknownGroup),
-    /// There is no such contact.
+    /// The model has no such contact.
     #[error("there is no contact `{name}`; there are {known}")]
     Contact {
-        /// what was asked for
+        /// requested name
         name: String,
-        /// what there is
+        /// contacts of the model
         known: String,
     },
-    /// No field of a contact.
+    /// Contacts have no such field.
     #[error("contacts have no field `{name}`; they have {known}")]
     Field {
-        /// what was asked for
+        /// requested name
         name: String,
-        /// what there is
+        /// fields of contacts
         known: String,
     },
-    /// There is no support of that kind.
+    /// The group has no such support.
     #[error("`{group}` has no support along {axis} in step `{step}` that could be driven")]
     Support {
         /// the group
         group: String,
         /// x or y
         axis: char,
-        /// the step under way
+        /// current step
         step: String,
     },
 }
 
-/// A direction of a displacement.
+/// Component of a displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// x
@@ -60,20 +60,20 @@ pub enum Axis {
 }
 
 impl Simulation {
-    /// Number of the step of the next increment.
+    /// Returns the number of the step of the next increment.
     pub fn step_number(&self) -> usize {
         self.control.step
     }
 
-    /// Whether a reaction has ended a step before its time, so that those after it begin earlier than the model says.
+    /// Whether a step has ended early at its target reaction, so that later steps begin before their planned times.
     pub fn has_ended_early(&self) -> bool {
         !self.control.ended.is_empty()
     }
 
-    /// Sum of what the supports of a group put on its nodes [F].
+    /// Returns the sum of the support reactions on the nodes of a group [F].
     ///
     /// # Errors
-    /// [`Unknown::Group`].
+    /// Returns [`Unknown::Group`] if the mesh has no such group.
     pub fn reaction(&self, group: &str) -> Result<Vector2<f64>, Unknown> {
         let nodes = self.nodes(group)?;
         let sum =
@@ -81,20 +81,20 @@ impl Simulation {
         Ok(Vector2::new(sum(0), sum(1)))
     }
 
-    /// Mean displacement of the nodes of a group [L].
+    /// Returns the mean displacement of the nodes of a group [L].
     ///
     /// # Errors
-    /// [`Unknown::Group`].
+    /// Returns [`Unknown::Group`] if the mesh has no such group.
     pub fn displacement(&self, group: &str) -> Result<Vector2<f64>, Unknown> {
         let nodes = self.nodes(group)?;
         let sum: Vector2<f64> = nodes.iter().map(|&node| vector(&self.state().displacement, node)).sum();
         Ok(sum / nodes.len() as f64)
     }
 
-    /// A field of a contact by its name, see [`pair::field_values`], one value a slave point in their order.
+    /// Returns a field of a contact by its name (see [`pair::field_values`]), one value per slave point in their order.
     ///
     /// # Errors
-    /// [`Unknown::Contact`], [`Unknown::Field`].
+    /// Returns [`Unknown::Contact`] or [`Unknown::Field`] if there is no such contact or field.
     pub fn contact_field(&self, contact: &str, field: &str) -> Result<Vec<f64>, Unknown> {
         let (pair, states) = self.contact(contact)?;
         let names = pair::field_names(&self.model().contacts);
@@ -104,21 +104,21 @@ impl Simulation {
         Ok(pair::field_values(pair, states, self.state().time, self.state().dt, field))
     }
 
-    /// Positions of the slave points of a contact, in their order [L].
+    /// Returns the positions of the slave points of a contact, in their order [L].
     ///
     /// # Errors
-    /// [`Unknown::Contact`].
+    /// Returns [`Unknown::Contact`] if the model has no such contact.
     pub fn contact_positions(&self, contact: &str) -> Result<Vec<Vector2<f64>>, Unknown> {
         let (pair, _) = self.contact(contact)?;
         let x = self.model().configuration(&self.state().displacement);
         Ok(pair.points.iter().map(|point| point.at(&x)).collect())
     }
 
-    /// Force of a contact on its slave, as `force_x` and `force_y` of the history: pressure, friction and radiation
+    /// Returns the force of a contact on its slave, as `force_x` and `force_y` of the history: pressure, friction and radiation
     /// damping, without fluid pressure [F].
     ///
     /// # Errors
-    /// [`Unknown::Contact`].
+    /// Returns [`Unknown::Contact`] if the model has no such contact.
     pub fn contact_force(&self, contact: &str) -> Result<Vector2<f64>, Unknown> {
         let (pair, states) = self.contact(contact)?;
         let x = self.model().configuration(&self.state().displacement);
@@ -134,11 +134,12 @@ impl Simulation {
         Ok((&contacts[k], &self.state().contacts[k]))
     }
 
-    /// Drive the supports of a group linearly from their present position to a displacement at a time, and hold them
-    /// there, as the piston of a testing machine is controlled between two increments.
+    /// Drives the supports of a group linearly from their current position to the displacement `to` at the time `by`, and holds
+    /// them there, as the piston of a testing machine is controlled between two increments.
     ///
     /// # Errors
-    /// [`Unknown::Group`], and [`Unknown::Support`] where a node is not supported in this direction.
+    /// Returns [`Unknown::Group`] if the mesh has no such group, [`Unknown::Support`] if a node is not supported in this
+    /// direction.
     pub fn lead(&mut self, group: &str, axis: Axis, to: f64, by: f64) -> Result<(), Unknown> {
         let model = self.model();
         let dofs: Vec<usize> = self
@@ -150,7 +151,7 @@ impl Simulation {
             let of_node = |support: &&Prescribed| support.at.node() == dof / 2;
             let mut all = self.step().supports.iter().filter(of_node);
             let straight = all.clone().any(|support| support.at == Direction::from(*dof));
-            // What inclined supports say of a node does not follow one of its components.
+            // The condition of an inclined support couples both components and cannot follow one of them.
             straight && !all.any(|support| matches!(support.motion, Motion::Inclined(_)))
         };
         if !dofs.iter().all(held) {
@@ -170,11 +171,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// Bound the increments of the step under way, from the next one to its end: as `max` and `min` of its `dt`, of which the one
-    /// that is not given stays, but for a `min` above the new `max`, which comes down to it.
+    /// Bounds the increments of the current step from the next one to its end, as `max` and `min` of its `dt`. A bound that is
+    /// not given is kept, except that a `min` above the new `max` is lowered to it.
     ///
     /// # Errors
-    /// [`ModelError`] as of the `dt` of a step; the bounds are then as they were.
+    /// Returns the [`ModelError`] that `dt` of a step would give; the bounds are then unchanged.
     pub fn bound_increments(&mut self, max: Option<f64>, min: Option<f64>) -> Result<(), ModelError> {
         let Step { increments, span, scheme, .. } = self.step();
         let max = max.unwrap_or(increments.max);

@@ -1,7 +1,7 @@
 //! One attempt: the next implicit increment, or explicit ones up to the next output.
 //!
-//! What the next attempt needs first: a step that begins, explicit or quasi-dynamic increments, or implicit ones again; and the
-//! phase that one leads to.
+//! Preparation of an attempt (start of a step, explicit or quasi-dynamic increments, return to implicit ones) and the phase
+//! that follows from it.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -23,11 +23,11 @@ use crate::time::quasi_dynamic::{Gone, QuasiDynamic};
 use crate::time::step_size::{Judgement, bounded, fastest_slip, judge, on_ladder};
 use crate::time::touching::Touching;
 
-/// Cut of the increment after one that could not be solved.
+/// Factor on Δt after an increment that could not be solved.
 const CUT: f64 = 0.5;
 
 impl Simulation {
-    /// An implicit or static increment.
+    /// Tries an implicit or static increment.
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
         let Self { model, step, state: old, work, .. } = self;
         let wanted = bounded(step, old.time, dt, None);
@@ -93,14 +93,15 @@ impl Simulation {
         Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause, suspicion })
     }
 
-    /// Start of explicit increments within an implicit step.
+    /// Phase of the explicit increments within an implicit step.
     fn rupture(&self) -> Phase {
         let calm = self.step.rupture.as_ref().map_or(f64::INFINITY, |rupture| rupture.calm);
         let interval = self.model.requests.interval.unwrap_or(f64::INFINITY).min(calm / RESULTS);
         Phase::Rupture { outputs: Outputs::new(self.state.time, interval), before: self.state.clone(), pace: 0.0 }
     }
 
-    /// Explicit increments to the next output; in a rupture slip is `watched` since a state, before which it was so fast.
+    /// Tries explicit increments to the next output. In a rupture, `watched` is the state since which slip is monitored, and
+    /// the fastest slip before it.
     pub(super) fn explicit(&mut self, outputs: Outputs, watched: Option<(Arc<State>, f64)>) -> Candidate {
         let (time, following) = outputs.next(self.step.span, self.model.requests.next_time(self.state.time));
         let (from, before_pause) =
@@ -122,7 +123,7 @@ impl Simulation {
         Candidate { explicit, ..self.without_iterations(outputs.attempt, dt, accepted, increments, outcome) }
     }
 
-    /// Quasi-dynamic steps to the next result.
+    /// Tries quasi-dynamic steps to the next result.
     pub(super) fn quasi_dynamic(&mut self, dt: f64) -> Candidate {
         let mut state = State::clone(&self.state);
         let clock = Instant::now();
@@ -131,13 +132,13 @@ impl Simulation {
         let (length, increments) = (state.time - self.state.time, gone.as_ref().map_or(0, |gone| gone.steps));
         let (accepted, outcome) = match gone {
             Ok(Gone { next, .. }) => (Some(Arc::new(state)), Outcome::Accepted(Phase::QuasiDynamic { dt: next })),
-            // How short its steps came to be, and whether that is to blame, the cause says itself.
+            // The cause itself reports the shortest step and whether it is the reason.
             Err(cause) => (None, Outcome::Stopped(self.unsolvable(cause))),
         };
         self.without_iterations(1, length, accepted, increments, outcome)
     }
 
-    /// What came of an attempt that solved no equations.
+    /// Candidate of an attempt without Newton iterations.
     fn without_iterations(
         &self,
         number: usize,
@@ -151,7 +152,7 @@ impl Simulation {
         Candidate { number, dt, iterations, accepted, local_error, doubt, increments, outcome, coupling, explicit }
     }
 
-    /// A rupture is over when no point has slipped fast over the time of calm.
+    /// Phase after an output; a rupture ends when no point has slipped fast during the calm time.
     fn after_output(&self, outputs: Outputs, watched: Option<(Arc<State>, f64)>, state: &Arc<State>) -> Phase {
         let (Some((before, pace)), Some(rupture)) = (watched, &self.step.rupture) else {
             return Phase::Explicit(outputs);
@@ -183,14 +184,14 @@ fn after(step: &Step, new: &State, course: Option<UntilStatus>, next: f64, touch
     Phase::Implicit { dt, attempt: 1, touching }
 }
 
-/// Tangents of the pass that took most: the augmented Lagrangian solves an increment several times.
+/// Number of tangents of the augmentation that took most; the augmented Lagrangian method solves an increment several times.
 fn hardest_pass(iterations: &[IterationRecord]) -> usize {
     let tangents = |pass: &[IterationRecord]| pass.iter().filter(|iteration| iteration.newton.factorized).count();
     iterations.chunk_by(|a, b| a.pass == b.pass).map(tangents).max().unwrap_or(0)
 }
 
 impl Simulation {
-    /// Begin what the next attempt needs: a step, explicit increments, or implicit ones again after them.
+    /// Prepares the next attempt: starts a step or explicit increments, or returns to implicit ones.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         if let Phase::Missed = self.control.phase {
             return Err(self.not_reached());
@@ -209,14 +210,14 @@ impl Simulation {
         begun.map_err(|cause| self.unsolvable(cause))
     }
 
-    /// Continue under the loads that the caller has changed.
+    /// Continues under the loads that the caller has changed.
     fn take_note(&mut self) -> Result<(), IncrementFailure> {
         let state = after_change(&self.model, &self.step, &self.state, &mut self.work)?;
         self.state = state.map_or_else(|| self.state.clone(), Arc::new);
         Ok(())
     }
 
-    /// The error of a step whose reaction has not come to its value.
+    /// Error of a step that ended before its reaction reached the target value.
     fn not_reached(&self) -> Error {
         let (step, state) = (&*self.step, &*self.state);
         let Some(until) = &step.until else { return Error::Ended("the step ended".into()) };
@@ -283,7 +284,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Shorter explicit increments from the accepted state, after others collapsed.
+    /// Restarts with shorter explicit increments from the last accepted state after the longer ones collapsed.
     pub(super) fn more_carefully(&mut self, collapsed: Arc<State>, cause: IncrementFailure) -> Result<(), Error> {
         let mut state = State::clone(&self.state);
         let Some(explicit) = &mut self.explicit else { return Err(self.unsolvable(cause)) };
@@ -299,8 +300,8 @@ impl Simulation {
         Err(self.unsolvable(cause.after_all()))
     }
 
-    /// Break out of an implicit step: from its state, or with the motion that its static increments could not follow on. Returns
-    /// how fast slip has been there.
+    /// Starts explicit increments within an implicit step, from its state or with the velocities that its static increments
+    /// could not follow. Returns the highest slip rate of that motion.
     fn break_out(&mut self) -> f64 {
         let Some((moving, pace)) = self.control.moving.take() else {
             self.report.ruptures += 1;
@@ -310,7 +311,7 @@ impl Simulation {
         pace
     }
 
-    /// Enter the phase that a candidate led to, or the next step.
+    /// Enters the phase that a candidate led to, or the next step.
     pub(super) fn enter(&mut self, mut phase: Phase) {
         let implicit = |phase: &Phase| matches!(phase, Phase::Implicit { .. });
         if let (Phase::Implicit { .. }, Phase::Rupture { before, pace, .. }) = (&self.control.phase, &mut phase) {

@@ -1,4 +1,4 @@
-//! Where a run is between two increments, and what an attempt at the next one found.
+//! State of the run control between two increments, and outcome of an attempt at the next one.
 //!
 //! Counts and times of a run.
 
@@ -21,11 +21,11 @@ use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
 use crate::time::touching::Touching;
 
-/// Results of an explicit step if the case does not say how many, and of the time that a shear wave takes across the model
-/// where a step is explicit while a contact slips fast.
+/// Number of results of an explicit step if the case does not specify it; in a step that is explicit only during fast slip,
+/// per travel time of a shear wave across the model.
 pub(super) const RESULTS: f64 = 100.0;
 
-/// Share of the time between two outputs within which an output falls on the end of a step.
+/// Fraction of the output interval within which an output coincides with the end of the step.
 const NEAR_END: f64 = 1e-6;
 
 /// Control state of a run: together with the state it determines the next increment.
@@ -34,19 +34,19 @@ pub(super) struct Control {
     /// number of the step
     pub step: usize,
     pub phase: Phase,
-    /// which nodes the equations couple, and so the order of their elimination
+    /// nodes coupled by the equations, which determine the elimination order
     pub coupling: Arc<Coupling>,
-    /// ends of steps that a reaction has ended, as they were planned and as they came [T]
+    /// planned and actual ends of the steps that a reaction has ended [T]
     pub ended: Vec<[f64; 2]>,
-    /// the motion, with its fastest slip, that a static step has stopped although slip became faster, until an increment of it is
-    /// accepted
+    /// motion that a static step has stopped although slip accelerated, with its fastest slip, until the step accepts an
+    /// increment
     pub moving: Option<(Arc<State>, f64)>,
     /// time of the last row of the results [T]
     pub last_row: f64,
 }
 
 impl Control {
-    /// The step that it is in, moved to when it began if one before has ended early.
+    /// Current step, shifted in time to its start if an earlier step has ended early.
     pub(super) fn step_of(&self, model: &Model) -> Option<Step> {
         let step = model.steps.get(self.step)?.clone();
         if self.ended.is_empty() {
@@ -60,7 +60,7 @@ impl Control {
         Some(step.moved(&moved))
     }
 
-    /// Whether it is one of this model; steps may have come since.
+    /// Whether it belongs to this model; steps may have been appended since.
     pub(super) fn fits(&self, model: &Model) -> bool {
         let exists = match &self.phase {
             Phase::Complete => self.step <= model.steps.len(),
@@ -75,7 +75,8 @@ impl Control {
     }
 }
 
-/// Whether a state is one of a model: as many dofs, contact points and memories, and feet on its masters.
+/// Whether a state belongs to a model: the numbers of dofs, contact points and internal variables agree, and all projections
+/// lie on its masters.
 pub(super) fn is_of(state: &State, model: &Model) -> bool {
     let State { displacement, velocity, acceleration, force, external, damping, reaction, .. } = state;
     let start = &state.step_start;
@@ -112,31 +113,31 @@ pub(super) enum Phase {
     /// Explicit increments within an implicit step, while a contact slips fast
     Rupture {
         outputs: Outputs,
-        /// the state since which slip is watched
+        /// state since which slip is monitored
         before: Arc<State>,
-        /// fastest slip in the calm time before that [L/T]
+        /// fastest slip in the calm time before that state [L/T]
         pace: f64,
     },
-    /// Quasi-dynamic steps, some at a time
+    /// Quasi-dynamic steps, several at a time
     QuasiDynamic {
-        /// length of the next [T]
+        /// length of the next step [T]
         dt: f64,
     },
     /// After explicit increments, before the next implicit one
     Resume {
-        /// fastest slip in the time of calm, if it was faster than before [L/T]
+        /// fastest slip during the calm time, if it exceeds the earlier one [L/T]
         gains: Option<f64>,
     },
     /// After the last step
     Complete,
-    /// The reaction that ends the step has its value
+    /// The reaction that ends the step has reached its value
     Met,
     /// The step has ended before its reaction reached the value
     Missed,
 }
 
 impl Phase {
-    /// The step in this phase: explicit while a contact slips fast.
+    /// Step in the variant of this phase: explicit while a contact slips fast.
     pub(super) fn of<'a>(&self, step: &'a Step) -> &'a Step {
         match (self, &step.rupture) {
             (Self::Rupture { .. }, Some(rupture)) => &rupture.explicit,
@@ -151,7 +152,7 @@ pub(super) struct Outputs {
     start: f64,
     interval: f64,
     next: u32,
-    /// number of the next attempt to get there
+    /// number of the next attempt to reach this output
     pub(super) attempt: usize,
 }
 
@@ -160,7 +161,7 @@ impl Outputs {
         Self { start, interval, next: 1, attempt: 1 }
     }
 
-    /// The next time of output, or a time asked for that comes before, and the outputs that follow.
+    /// Returns the next output time, or an earlier requested time, and the outputs that follow.
     pub(super) fn next(self, span: Span, asked: Option<f64>) -> (f64, Self) {
         let (time, near) = (self.time(span), NEAR_END * self.interval);
         match asked.filter(|asked| *asked <= span.end && *asked <= time + near) {
@@ -180,16 +181,16 @@ impl Outputs {
     }
 }
 
-/// Explicit increments on their way to an output.
+/// Explicit increments since the last output.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Midway {
-    /// the state they have come to
+    /// current state
     pub state: Arc<State>,
     /// their number
     pub increments: usize,
 }
 
-/// An attempt at one increment, or at explicit ones up to the next output. Nothing has changed yet.
+/// Attempt at one increment, or at explicit ones up to the next output; the run itself is not changed yet.
 #[must_use]
 pub struct Candidate {
     pub(super) number: usize,
@@ -198,7 +199,7 @@ pub struct Candidate {
     pub(super) accepted: Option<Arc<State>>,
     pub(super) local_error: Option<f64>,
     pub(super) doubt: Option<f64>,
-    /// Accepted increments in it
+    /// number of accepted increments in it
     pub(super) increments: usize,
     pub(super) outcome: Outcome,
     pub(super) coupling: Arc<Coupling>,
@@ -207,17 +208,17 @@ pub struct Candidate {
 
 /// Outcome of an attempt.
 pub(super) enum Outcome {
-    /// A new state, and how it goes on
+    /// Accepted as the new state, with the phase that follows
     Accepted(Phase),
-    /// Solved, but repeated: why, and how it goes on
+    /// Solved but repeated, with the reason and the phase that follows
     Rejected(Verdict, Phase),
-    /// Not solved, and why; a shorter one may be
+    /// Not solved, with the cause; a shorter increment may be
     Cut(IncrementFailure, Phase),
-    /// Explicit increments paused on their way to an output
+    /// Explicit increments paused before the next output
     Paused(Midway),
-    /// Explicit increments collapsed at this state; shorter ones may not
+    /// Explicit increments collapsed at this state; shorter ones may succeed
     Collapsed(Arc<State>, IncrementFailure),
-    /// No other attempt can help
+    /// No other attempt can succeed
     Stopped(Error),
 }
 
@@ -226,21 +227,21 @@ pub(super) enum Outcome {
 pub struct Increment {
     /// its step
     pub step: Arc<Step>,
-    /// the state it started from
+    /// state at its start
     pub old: Arc<State>,
-    /// the state it led to
+    /// state at its end
     pub state: Arc<State>,
     /// its linear solves
     pub iterations: Vec<IterationRecord>,
 }
 
 impl Candidate {
-    /// Whether it only paused on its way.
+    /// Whether explicit increments paused before the next output.
     pub fn is_paused(&self) -> bool {
         matches!(self.outcome, Outcome::Paused(_))
     }
 
-    /// Whether no attempt follows it.
+    /// Whether the run stops after it.
     pub fn stops(&self) -> bool {
         match &self.outcome {
             Outcome::Stopped(_) => true,
@@ -258,7 +259,7 @@ impl Candidate {
         }
     }
 
-    /// Why no equilibrium was found, if none was.
+    /// Cause of the failure if no equilibrium was found.
     pub fn cause(&self) -> Option<&IncrementFailure> {
         match &self.outcome {
             Outcome::Cut(cause, _) | Outcome::Collapsed(_, cause) => Some(cause),
@@ -272,7 +273,7 @@ impl Candidate {
         self.accepted.is_some()
     }
 
-    /// The state it leads to, if it does.
+    /// The new state, if there is one.
     pub fn state(&self) -> Option<&State> {
         self.accepted.as_deref()
     }
@@ -301,11 +302,11 @@ pub struct RunReport {
     pub increments: usize,
     /// attempts that could not be solved
     pub cutbacks: usize,
-    /// attempts that were solved, and repeated because their error was too large or they met an event of contact
+    /// attempts that were solved but repeated, because of their error or a contact event
     pub rejected: usize,
-    /// the same attempts, solved or not, by why they were given up
+    /// rejected attempts, solved or not, by reason
     pub given_up: BTreeMap<String, usize>,
-    /// times that a step turned to explicit increments because a contact slipped fast
+    /// number of switches to explicit increments because a contact slipped fast
     pub ruptures: usize,
     /// linear solves, those of failed attempts included
     pub newton_iterations: usize,
@@ -313,14 +314,14 @@ pub struct RunReport {
     pub factorizations: usize,
     /// energies at the end
     pub energy: Energy,
-    /// energy that went into the stabilization of floating bodies [F·L]
+    /// energy absorbed by the stabilization of bodies with unconstrained rigid-body modes [F·L]
     pub stabilization_work: f64,
     /// wall time by phase
     pub wall_s: WallSeconds,
 }
 
 impl RunReport {
-    /// Count an attempt if it was given up.
+    /// Counts an attempt if it was rejected.
     pub(super) fn note(&mut self, outcome: &Outcome) {
         let (count, kind) = match outcome {
             Outcome::Rejected(why, _) => (&mut self.rejected, why.kind()),
@@ -336,7 +337,7 @@ impl RunReport {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct WallSeconds {
-    /// everything
+    /// total
     pub total: f64,
     /// solids, loads, sums
     pub assembly: f64,

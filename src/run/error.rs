@@ -1,4 +1,4 @@
-//! Why a run stopped.
+//! Errors that stop a run.
 
 use thiserror::Error;
 
@@ -10,7 +10,7 @@ pub use crate::linear::LinearFailure;
 pub use crate::solve::failure::IncrementFailure;
 pub use crate::solve::newton::NewtonFailure;
 
-/// Why a run stopped.
+/// Error that stops a run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -25,9 +25,9 @@ pub enum Error {
         dt: f64,
         /// smallest allowed increment
         min: f64,
-        /// why it failed
+        /// cause of the failure
         cause: Box<IncrementFailure>,
-        /// what may be to blame, behind a semicolon; empty if nothing is suspected
+        /// suspected reason, preceded by a semicolon; empty if there is none
         suspicion: String,
     },
     /// No smaller increment can help.
@@ -37,10 +37,10 @@ pub enum Error {
         step: String,
         /// time reached
         time: f64,
-        /// why
+        /// cause of the failure
         cause: IncrementFailure,
     },
-    /// The reaction that ends a step did not reach its value.
+    /// The reaction that ends a step did not reach its target value.
     #[error(
         "step `{step}` ended at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; make the step \
          longer, or move farther (until)",
@@ -51,13 +51,13 @@ pub enum Error {
         step: String,
         /// time reached
         time: f64,
-        /// which part of the reaction
+        /// component of the reaction
         part: &'static str,
-        /// its group
+        /// group of the reaction
         on: String,
-        /// what it was to reach [F]
+        /// target value [F]
         value: f64,
-        /// what it is [F]
+        /// value at the end of the step [F]
         reached: f64,
     },
     /// A friction law failed in a law test.
@@ -65,10 +65,10 @@ pub enum Error {
     Law {
         /// time reached
         time: f64,
-        /// what the law said
+        /// failure reported by the law
         cause: LawFailure,
     },
-    /// A run whose step was changed by its caller does not follow from its model alone, and cannot be saved in a file.
+    /// A run whose step was changed by its caller does not follow from its model alone and cannot be saved in a file.
     #[error("step `{step}` was changed by its caller: such a run can be saved in this process, but not in a file")]
     StepChanged {
         /// step
@@ -77,7 +77,7 @@ pub enum Error {
     /// A run could not be saved.
     #[error("the run could not be saved: {0}")]
     NotSaved(String),
-    /// The user, or the system, asked for the end.
+    /// The user or the system requested the end of the run.
     #[error("interrupted")]
     Interrupted,
     /// An observer ended the run.
@@ -88,13 +88,13 @@ pub enum Error {
     Output {
         /// the file
         path: std::path::PathBuf,
-        /// what the system said
+        /// message of the system
         cause: String,
     },
 }
 
 impl Error {
-    /// Why the last increment failed, if the run stopped for that.
+    /// Cause of the failure of the last increment, if it stopped the run.
     pub fn cause(&self) -> Option<&IncrementFailure> {
         match self {
             Self::IncrementTooSmall { cause, .. } => Some(cause),

@@ -1,13 +1,12 @@
-//! A friction law alone, driven along a path of slip, pressure and time.
+//! Law test: a friction law driven without a mesh along a path of slip, pressure and time.
 //!
 //! # Path
 //!
-//! The path along which a friction law is driven: slip and pressure as functions of time, and the times at which they
-//! turn.
+//! The path prescribes slip and pressure as functions of time; steps end at their turning points.
 //!
 //! # Report
 //!
-//! What a friction law driven alone answered, and what its answers amount to.
+//! The report collects the responses of the law, its peaks and holds.
 //!
 //! ```
 //! use fecontact::laws::friction::{SuperSubloading, SuperSubloadingParameters};
@@ -52,18 +51,18 @@ pub struct LawTest {
 }
 
 impl LawTest {
-    /// A law led along a path from rest, under the pressure at its start.
+    /// Creates a test that drives the law along a path from its stationary state under the initial pressure.
     pub fn new(law: impl FrictionLaw + 'static, path: Vec<Phase>) -> Self {
         let pressure = path.first().map_or(0.0, |phase| phase.pressure(phase.start()));
         Self { start: law.initial_state(pressure, 0.0), law: Box::new(law), path }
     }
 
-    /// Lead the law along its path, telling every step. The report comes back from a stopped test as well.
+    /// Drives the law along its path and passes every step to `tell`. The report is returned for a stopped test as well.
     ///
-    /// The first row is the start: what the law answers to no slip in no time.
+    /// The first row is the start: the response to zero slip in zero time.
     ///
     /// # Errors
-    /// [`Error`] when the law cannot answer, or a row cannot be written.
+    /// Returns [`Error`] if the law fails or a row cannot be written.
     pub fn run(&self, mut record: impl FnMut(&LawRow) -> Result<(), Error>) -> (LawReport, Result<(), Error>) {
         let mut report = LawReport::default();
         let result = self.follow(|row| {
@@ -93,7 +92,7 @@ impl LawTest {
         LawRow { time, slip, response, mu: observables::value(&*self.law, "mu", &response.state) }
     }
 
-    /// Warn once of a pressure beyond which the law may have several answers.
+    /// Warns once of a pressure above which the response may not be unique.
     fn warn(&self, report: &mut LawReport, row: &LawRow) {
         let (time, pressure) = (row.time, row.response.state.pressure);
         if let Some(limit) =
@@ -107,7 +106,7 @@ impl LawTest {
     }
 }
 
-/// One stretch of the path.
+/// One phase of the path.
 #[derive(Clone, Debug)]
 pub struct Phase {
     span: Span,
@@ -115,24 +114,24 @@ pub struct Phase {
     pressure: PathDrive,
     /// longest step [T]
     dt: f64,
-    /// times closer than this are the same [T]
+    /// time difference below which two times are equal [T]
     resolution: f64,
-    /// ascending, the end of the phase last
+    /// times at which steps must end, ascending; the end of the phase is the last
     stops: Vec<f64>,
 }
 
-/// Slip or pressure over one phase.
+/// Slip or pressure during one phase.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct PathDrive {
-    /// how it varies
+    /// variation in time
     pub drive: Drive,
-    /// value at the start of the phase, from which a constant and a rate count
+    /// value at the start of the phase, to which a constant and a rate refer
     pub start: f64,
 }
 
 impl PathDrive {
-    /// Varying from a value at the start of the phase on.
+    /// Creates a variation from a value at the start of the phase.
     pub fn new(drive: Drive, start: f64) -> Self {
         Self { drive, start }
     }
@@ -149,20 +148,20 @@ pub struct Undefined {
     pub time: f64,
 }
 
-/// A phase is searched for turning points with at least this many samples, ...
+/// Lower bound of the number of samples among which the turning points of a phase are searched.
 const FEWEST_SAMPLES: usize = 1 << 12;
 
-/// ... a sample for every step, and at most this many.
+/// Upper bound of the number of samples; in between, there is one per step.
 const MOST_SAMPLES: usize = 1 << 20;
 
-/// Times closer than this share of a step are the same.
+/// Fraction of a step below which two times are equal.
 const SAME: f64 = 1e-6;
 
 impl Phase {
-    /// Slip and pressure over a span; the turning points are found here.
+    /// Creates a phase over a span and finds its turning points.
     ///
     /// # Errors
-    /// [`Undefined`] where an expression has no finite value.
+    /// Returns [`Undefined`] if an expression has no finite value.
     pub fn new(span: Span, slip: PathDrive, pressure: PathDrive, dt: f64) -> Result<Self, Undefined> {
         let mut phase = Self { span, slip, pressure, dt, resolution: 0.0, stops: Vec::new() };
         let mut knots: Vec<f64> = [&phase.slip, &phase.pressure].iter().flat_map(|course| course.knots(span)).collect();
@@ -179,7 +178,7 @@ impl Phase {
         self.slip.value(time, self.span)
     }
 
-    /// p; the surfaces are apart where it is not positive [F/L²].
+    /// p; the surfaces are separated where it is not positive [F/L²].
     pub fn pressure(&self, time: f64) -> f64 {
         self.pressure.value(time, self.span)
     }
@@ -208,7 +207,7 @@ impl Phase {
         })
     }
 
-    /// Times to step onto, never over: knots of tables, turning points, touch and parting, the end.
+    /// Times at which steps must end: table knots, turning points, closure, separation and the end of the phase.
     fn find_stops(&self, knots: Vec<f64>) -> Result<Vec<f64>, Undefined> {
         let samples = self.samples(&knots);
         let mut found = knots;
@@ -235,7 +234,7 @@ impl Phase {
         Ok(stops)
     }
 
-    /// The regular end of a step next to a time, if it is the same.
+    /// Regular end of a step that coincides with a time, if there is one.
     fn regular(&self, time: f64) -> f64 {
         let near = self.span.start + ((time - self.span.start) / self.dt).round() * self.dt;
         if (near - time).abs() <= self.resolution { near } else { time }
@@ -268,7 +267,8 @@ impl PathDrive {
     }
 }
 
-/// (t, f(t)) at the samples, and in the middle between two where f is the same; the time at which f is not finite.
+/// Pairs (t, f(t)) at the samples, and midway between two samples with equal f; an error holds the time at which f is not
+/// finite.
 fn sampled(times: &[f64], f: impl Fn(f64) -> f64) -> Result<Vec<[f64; 2]>, f64> {
     let mut samples: Vec<[f64; 2]> = Vec::with_capacity(times.len());
     for &time in times {
@@ -292,7 +292,7 @@ fn direction(a: f64, b: f64) -> f64 {
     if (b - a).abs() <= 4.0 * f64::EPSILON * a.abs().max(b.abs()) { 0.0 } else { (b - a).signum() }
 }
 
-/// Times at which the slope of f changes its sign, becomes zero or ceases to be.
+/// Times at which the slope of f changes sign, becomes zero or ceases to be zero.
 fn turning_points(samples: &[[f64; 2]], f: impl Fn(f64) -> f64) -> Vec<f64> {
     let turn = |window: &[[f64; 2]]| {
         let [[t0, f0], [t1, f1], [t2, f2]] = [window[0], window[1], window[2]];
@@ -310,7 +310,7 @@ fn turning_points(samples: &[[f64; 2]], f: impl Fn(f64) -> f64) -> Vec<f64> {
     samples.windows(3).filter_map(turn).collect()
 }
 
-/// Times at which the pressure becomes positive, or ceases to be.
+/// Times at which the pressure becomes positive or ceases to be positive.
 fn touches(samples: &[[f64; 2]], pressure: impl Fn(f64) -> f64) -> Vec<f64> {
     let pressed = |p: f64| p > 0.0;
     let change = |window: &[[f64; 2]]| {
@@ -320,7 +320,7 @@ fn touches(samples: &[[f64; 2]], pressure: impl Fn(f64) -> f64) -> Vec<f64> {
     samples.windows(2).filter_map(change).collect()
 }
 
-/// The last time in [low, high] at which something holds that holds at `low` and no longer at `high`.
+/// Last time in [low, high] at which a condition holds that is true at `low` and false at `high`.
 fn last_time(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (low + high);
@@ -335,8 +335,8 @@ fn last_time(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     }
 }
 
-/// Where f is highest in [low, high], by golden sections: found to the square root of the round-off where f is smooth,
-/// which is all that can be seen in f.
+/// Location of the maximum of f in [low, high] by golden-section search; for smooth f its accuracy is limited to the square
+/// root of the round-off.
 fn highest(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     const SECTION: f64 = 0.618_033_988_749_894_8;
     const SECTIONS: usize = 70;
@@ -364,13 +364,13 @@ pub struct LawRow {
     pub time: f64,
     /// total slip since the start [L]
     pub slip: f64,
-    /// what the law answered
+    /// response of the law
     pub response: FrictionResponse,
-    /// μ: what the interface could carry over p [-]
+    /// μ: frictional strength divided by p [-]
     pub mu: f64,
 }
 
-/// A point of the path, as far as peaks and holds are concerned.
+/// Point of the path for the evaluation of peaks and holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct PathPoint {
@@ -380,45 +380,45 @@ pub struct PathPoint {
     pub slip: f64,
     /// |q|/p: apparent friction coefficient [-]
     pub coefficient: f64,
-    /// μ: what the interface could carry over p [-]
+    /// μ: frictional strength divided by pressure [-]
     pub mu: f64,
 }
 
 impl PathPoint {
-    /// A point of the path from the numbers of a row; the coefficient is 0 without pressure.
+    /// Creates a point from the numbers of a row; the coefficient is 0 without pressure.
     pub fn new(time: f64, slip: f64, pressure: f64, traction: f64, mu: f64) -> Self {
         let coefficient = if pressure > 0.0 { traction.abs() / pressure } else { 0.0 };
         Self { time, slip, coefficient, mu }
     }
 }
 
-/// A time without slip, and the peak of friction in the slip that follows.
+/// A hold, and the peak friction in the slip that follows it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Hold {
-    /// its length [T]
+    /// duration [T]
     pub duration: f64,
-    /// the highest |q|/p until the next hold
+    /// highest |q|/p until the next hold
     pub peak: PathPoint,
 }
 
-/// Peaks of |q|/p: over all steps, and after every hold.
+/// Peaks of |q|/p over all steps and after every hold.
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct Peaks {
-    /// the highest |q|/p at the end of a step, the first where several are equal
+    /// highest |q|/p at the end of a step; the first of equal ones
     pub peak: Option<PathPoint>,
-    /// holds that slip has followed
+    /// holds that were followed by slip
     pub holds: Vec<Hold>,
     #[serde(skip)]
     last: Option<PathPoint>,
-    /// start of the hold that is going on
+    /// start of the current hold
     #[serde(skip)]
     rest_since: Option<f64>,
 }
 
 impl Peaks {
-    /// Record the next row.
+    /// Records the next row.
     #[doc(hidden)]
     pub fn note(&mut self, now: PathPoint) {
         let higher = |than: &PathPoint| now.coefficient > than.coefficient;
@@ -440,7 +440,7 @@ impl Peaks {
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct LawReport {
-    /// steps answered
+    /// number of steps
     pub steps: usize,
     /// most evaluations of the law's scalar equation in one step
     pub most_evaluations: usize,
@@ -454,7 +454,7 @@ pub struct LawReport {
 }
 
 impl LawReport {
-    /// Record the next row.
+    /// Records the next row.
     #[doc(hidden)]
     pub fn note(&mut self, row: &LawRow) {
         let FrictionResponse { state, evaluations, .. } = row.response;

@@ -1,4 +1,4 @@
-//! The run: step after step, increment after increment, with cut-back, and observers that see every attempt.
+//! Runs: steps, increments, cut-back, and observers of every attempt.
 
 mod attempt;
 pub mod error;
@@ -33,42 +33,42 @@ pub use crate::equations::ContactCounts;
 pub use crate::solve::IterationRecord;
 pub use crate::solve::newton::Iteration;
 
-/// Run all steps of a model. The report comes back from a stopped run as well.
+/// Runs all steps of a model. The report is returned for a stopped run as well.
 ///
 /// # Errors
-/// [`Error`] when an increment cannot be made small enough, or an observer cannot write.
+/// Returns [`Error`] if no increment is short enough to be solved or an observer cannot write.
 pub fn run(model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> (RunReport, Result<State, Error>) {
     let mut simulation = Simulation::new(model.clone());
     let result = watch(&mut simulation, observers);
     (simulation.report(), result.map(|()| simulation.state().clone()))
 }
 
-/// Go on with a run to its end, and tell observers of every attempt.
+/// Continues a run to its end and passes every attempt to the observers.
 ///
 /// # Errors
-/// As [`run`].
+/// The same as for [`run`].
 pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
     watch_with(simulation, observers, &mut |_, _, _| Ok(()))
 }
 
-/// Moment between the attempts of a run at which a callback is called.
+/// Moment between two attempts at which a callback is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Moment {
     /// Before an attempt, or after the last one
     Between,
-    /// After an attempt that stops the run, as before it: what is saved here makes that attempt again
+    /// After an attempt that stops the run, in the state before it; a run saved here repeats that attempt
     Stops,
 }
 
-/// Callback before every attempt, after the last one, and where one stops the run: it can save the run and its
-/// observers, or end the run by an error.
+/// Callback before every attempt, after the last one, and at an attempt that stops the run. It can save the run and its
+/// observers, or end the run by returning an error.
 pub type Between<'a> = dyn FnMut(&Simulation, &mut [&mut dyn Observer], Moment) -> Result<(), Error> + 'a;
 
-/// As [`watch`], with a callback between the attempts.
+/// Continues a run as [`watch`], with a callback between the attempts.
 ///
 /// # Errors
-/// As [`run`], and those of what is done.
+/// The same as for [`run`], and the errors of the callback.
 pub fn watch_with(
     simulation: &mut Simulation,
     observers: &mut [&mut dyn Observer],
@@ -115,10 +115,10 @@ fn attempts(
     }
 }
 
-/// Memory of each observer, by its name.
+/// Saved memory of each observer, by its name.
 type Memories = Vec<(String, Vec<u8>)>;
 
-/// A run and its observers as they were.
+/// Saved run with its observers.
 #[derive(Clone)]
 #[must_use]
 pub struct SavedRun {
@@ -126,7 +126,7 @@ pub struct SavedRun {
     observers: Memories,
 }
 
-/// A saved run for a file, before its model is at hand.
+/// Saved run read from a file, before it is combined with its model.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RunBytes {
     simulation: Vec<u8>,
@@ -134,46 +134,46 @@ pub struct RunBytes {
 }
 
 impl SavedRun {
-    /// A run and its observers as they are.
+    /// Saves a run and its observers.
     ///
     /// # Errors
-    /// [`Error::Output`] when an observer cannot tell what it has written.
+    /// Returns [`Error::Output`] if an observer cannot save its memory.
     pub fn new(simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<Self, Error> {
         let memory = |observer: &mut &mut dyn Observer| observer.save().map(|memory| (observer.name().into(), memory));
         let observers = observers.iter_mut().map(memory).collect::<Result<_, _>>()?;
         Ok(Self { simulation: simulation.save(), observers })
     }
 
-    /// The saved run in bytes, for a file.
+    /// Returns the saved run in bytes, for a file.
     ///
     /// # Errors
-    /// As [`Saved::bytes`].
+    /// The same as for [`Saved::bytes`].
     pub fn bytes(self) -> Result<RunBytes, Error> {
         Ok(RunBytes { simulation: self.simulation.bytes()?, observers: self.observers })
     }
 
-    /// A saved run from the bytes of a file.
+    /// Restores a saved run from the bytes of a file.
     ///
     /// # Errors
-    /// [`NotResumable`].
+    /// Returns [`NotResumable`] if the bytes are unreadable or belong to another model.
     pub fn from_bytes(bytes: RunBytes, model: &Arc<Model>) -> Result<Self, NotResumable> {
         Ok(Self { simulation: Saved::from_bytes(&bytes.simulation, model)?, observers: bytes.observers })
     }
 
-    /// The run without its observers.
+    /// The saved run without its observers.
     pub fn simulation(&self) -> &Saved {
         &self.simulation
     }
 
-    /// The place it has come to, for another run with its own observers to begin from: [`Saved::begin`].
+    /// Returns its state as the start of another run with its own observers; see [`Saved::begin`].
     pub fn begin(self) -> Self {
         Self { simulation: self.simulation.begin(), observers: Vec::new() }
     }
 
-    /// Whether observers, found by their names, can go on from what was saved: [`Observer::check`].
+    /// Checks whether the observers, matched by name, can resume from the saved run; see [`Observer::check`].
     ///
     /// # Errors
-    /// [`Error::Output`] with the first thing that is not as it was.
+    /// Returns [`Error::Output`] with the first mismatch.
     pub fn check(&self, observers: &[&mut dyn Observer]) -> Result<(), Error> {
         observers
             .iter()
@@ -184,16 +184,16 @@ impl SavedRun {
         self.observers.iter().find(|(name, _)| name == observer).map(|(_, memory)| &**memory)
     }
 
-    /// Whether an observer of this name has something to go on from.
+    /// Whether memory is saved for an observer of this name.
     pub fn remembers(&self, observer: &str) -> bool {
         self.memory(observer).is_some()
     }
 
-    /// The run as it was; the observers, found by their names, take back what they have written since. One that was not there
-    /// begins here.
+    /// Resumes the run. The observers, matched by name, remove their later output; an observer that was not saved starts
+    /// here.
     ///
     /// # Errors
-    /// [`Error::Output`] when an observer cannot.
+    /// Returns [`Error::Output`] if an observer cannot resume.
     pub fn resume(self, model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> Result<Simulation, Error> {
         for observer in observers.iter_mut() {
             if let Some(memory) = self.memory(observer.name()) {

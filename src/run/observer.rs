@@ -1,11 +1,11 @@
-//! Those who watch a run, and what they are told.
+//! Observers of a run and the attempts passed to them.
 //!
-//! Which accepted increments are rows of the results: all of them or, with an interval, those that are at least so far apart in
-//! time. Events are never thinned away: where a point of a contact closes, opens, begins to slip or stops, the increments before
-//! and after are rows. So are the last ones of steps, those at the times asked for, and the outputs of explicit increments. It
-//! is decided once, by the run; all that is written over time goes by it.
+//! Accepted increments are rows of the results: all of them or, with an interval, those at least that far apart in time.
+//! Events are never thinned out: the increments before and after a point of a contact closes, opens, starts or stops slipping
+//! are rows. So are the last increments of steps, those at requested times, and the outputs of explicit increments. The run
+//! decides this once for all time series.
 //!
-//! Why an attempt was given up: in a sentence, and in so few words that they can be counted.
+//! The reason of a rejected attempt is available as a sentence and as a short name for counting.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -55,23 +55,23 @@ use crate::solve::newton::NewtonFailure;
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Attempt<'a> {
-    /// the step
+    /// current step
     pub step: &'a Step,
     /// 1 for the first attempt at this increment
     pub number: usize,
-    /// the state it started from
+    /// state at its start
     pub old: &'a State,
     /// its length [T]
     pub dt: f64,
     /// its linear solves
     pub iterations: &'a [IterationRecord],
-    /// the new state, if it was accepted
+    /// new state, if it was accepted
     pub accepted: Option<&'a State>,
-    /// which row of the results it is, if it was accepted
+    /// row of the results, if it was accepted
     pub row: Row,
     /// its outcome
     pub verdict: Verdict,
-    /// why no equilibrium was found, if none was
+    /// cause of the failure, if no equilibrium was found
     pub cause: Option<&'a IncrementFailure>,
     /// estimated local error of a displacement, in steps under error control [L]
     pub local_error: Option<f64>,
@@ -81,14 +81,14 @@ pub struct Attempt<'a> {
 }
 
 impl Attempt<'_> {
-    /// Whether the step ends with the new state: at its time, or with the reaction that ends it.
+    /// Whether the step ends with the new state, at its end time or at the reaction that ends it.
     pub fn ends_step(&self, state: &State) -> bool {
         let Step { span, until, .. } = self.step;
         let met = |until: &Until| until.course(*span, [self.old, state]) == UntilStatus::Met;
         state.time >= span.end || until.as_ref().is_some_and(met)
     }
 
-    /// Row of the results that it is, given the time of the last row [T].
+    /// Role of the increment in the results, given the time of the last row [T].
     pub(super) fn row_after(&self, model: &Model, last: f64) -> Row {
         let Some(new) = self.accepted else { return Row::Held };
         let Some(interval) = model.requests.interval else { return Row::Written };
@@ -111,18 +111,18 @@ fn regimes(model: &Model, state: &State) -> Vec<Regime> {
     pairs.flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(p, state)| pair.regime(p, state))).collect()
 }
 
-/// Fraction of the interval that may be lost to round-off.
+/// Fraction of the interval allowed for round-off.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Role of an increment in the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Row {
-    /// It is a row
+    /// A row of the results.
     Written,
-    /// It is a row, and so is the one that was held, if there is one
+    /// A row, preceded by the increment held back before it, if there is one.
     AfterTheHeld,
-    /// It is one if an event follows; what was not accepted is none
+    /// Held back: a row only if an event follows. Rejected attempts are never rows.
     Held,
 }
 
@@ -130,7 +130,7 @@ pub enum Row {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// It was accepted, or paused before its end.
+    /// Accepted, or paused before its end.
     Accepted,
     /// No equilibrium was found.
     Unsolved,
@@ -145,7 +145,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// One word, for tables.
+    /// One-word name for tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",
@@ -163,34 +163,34 @@ pub trait Observer {
     /// Called after every attempt.
     ///
     /// # Errors
-    /// [`Error::Output`] when a file cannot be written; it ends the run.
+    /// Returns [`Error::Output`] if a file cannot be written, which ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
-    /// The name under which its memory is saved.
+    /// Name under which its memory is saved.
     fn name(&self) -> &'static str {
         ""
     }
 
-    /// Its memory and the extent of its output, for [`restore`](Self::restore); empty by default.
+    /// Returns its memory and the extent of its output, for [`restore`](Self::restore); empty by default.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// The same as for [`record`](Self::record).
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         Ok(Vec::new())
     }
 
-    /// Check, without changes, whether it can resume from the saved memory: its output up to then still exists.
+    /// Checks, without changes, whether it can resume from the saved memory: whether its output up to then still exists.
     ///
     /// # Errors
-    /// As [`record`](Self::record), with what is wrong.
+    /// The same as for [`record`](Self::record), with a description of the mismatch.
     fn check(&self, _memory: &[u8]) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Resume from the saved memory; output written since is removed.
+    /// Resumes from the saved memory and removes later output.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// The same as for [`record`](Self::record).
     fn restore(&mut self, _memory: &[u8]) -> Result<(), Error> {
         Ok(())
     }
@@ -198,19 +198,19 @@ pub trait Observer {
     /// Called once after the last attempt, to complete pending output.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// The same as for [`record`](Self::record).
     fn finish(&mut self) -> Result<(), Error> {
         Ok(())
     }
 }
 
-/// An error or uncertainty with the digits that are printed.
+/// Formats an error or uncertainty with the printed number of digits.
 fn rounded(value: f64) -> String {
     format!("{value:.2e}")
 }
 
 impl Attempt<'_> {
-    /// Reason of the rejection; `None` if the attempt was accepted, or paused.
+    /// Reason of the rejection; `None` if the attempt was accepted or paused.
     pub fn reason(&self) -> Option<String> {
         let Self { step, verdict, cause, .. } = self;
         Some(match verdict {
@@ -232,7 +232,7 @@ impl Attempt<'_> {
         })
     }
 
-    /// Reason why no equilibrium was found, with the contact status when the iterations ended.
+    /// Reason why no equilibrium was found, with the contact status at the end of the iterations.
     fn unsolved(&self, cause: &IncrementFailure) -> String {
         let ended = matches!(
             cause,
@@ -251,7 +251,7 @@ impl Attempt<'_> {
         }
     }
 
-    /// Reason of a rejection for its time error.
+    /// Reason of a rejection because of the time error.
     fn inexact(&self) -> String {
         let allowed = self.step.increments.error.unwrap_or_default();
         match self.local_error {
@@ -266,7 +266,7 @@ impl Attempt<'_> {
 }
 
 impl Verdict {
-    /// Kind of a rejection, in a few words that can be counted.
+    /// Short name of the rejection, for counting.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",

@@ -1,4 +1,4 @@
-//! A run as an iterator: it owns its model, and accepts one increment after the other.
+//! A run as an iterator: it owns its model and accepts one increment after the other.
 //!
 //! ```text
 //! Begin → Implicit → Complete                     a static or implicit step
@@ -7,13 +7,13 @@
 //!         Implicit ⇄ Rupture                      where a contact slips too fast for implicit increments
 //! ```
 //!
-//! [`Simulation::try_increment`] finds a [`Candidate`] and changes nothing; [`Simulation::apply`] goes on as it says: to its new
-//! state if it was accepted, else to another attempt. A candidate that is dropped has never been: the next attempt finds it
-//! again, to the same bits.
+//! [`Simulation::try_increment`] finds a [`Candidate`] without changing the run; [`Simulation::apply`] continues with its new
+//! state if it was accepted, otherwise with another attempt. A dropped candidate has no effect: the next attempt reproduces it
+//! bitwise.
 //!
 //! # Saved runs
 //!
-//! A run as it was: in this process, or as bytes for a file.
+//! A saved run continues in the same process, or from bytes in a file.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -29,14 +29,14 @@ use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::{Explicit, ExplicitMemory};
 use crate::time::quasi_dynamic::QuasiDynamic;
 
-/// Whether explicit increments are to pause.
+/// Condition under which explicit increments pause.
 pub type Pause = Arc<dyn Fn() -> bool + Send + Sync>;
 
-/// A run under way; see the example at the head of the library. To have an increment that is rejected made shorter, drop its
-/// candidate and set `increments.max` of the step by [`Simulation::change`]: dropped alone it is found again, to the same bits.
+/// A run; see the example at the head of the library. To shorten an increment that the caller rejects, drop its candidate and
+/// set `increments.max` of the step by [`Simulation::change`]; a candidate that is only dropped is reproduced bitwise.
 pub struct Simulation {
     pub(super) model: Arc<Model>,
-    /// The step under way, as its caller may have changed it
+    /// Current step, with the changes of its caller
     pub(super) step: Arc<Step>,
     /// Whether the caller has changed the step
     pub(super) step_changed: bool,
@@ -55,12 +55,12 @@ pub struct Simulation {
     pub(super) work: Workspace,
     pub(super) report: RunReport,
     started: Instant,
-    /// Wall time of what was resumed [s]
+    /// Wall time before the run was resumed [s]
     earlier: WallSeconds,
 }
 
 impl Simulation {
-    /// A run of a model from its initial state.
+    /// Creates a run of a model from its initial state.
     pub fn new(model: impl Into<Arc<Model>>) -> Self {
         let model = model.into();
         let work = Workspace::new(&model, Box::<Multifrontal>::default());
@@ -85,7 +85,7 @@ impl Simulation {
         }
     }
 
-    /// The run as it is.
+    /// Saves the run.
     pub fn save(&self) -> Saved {
         Saved {
             step: self.step.clone(),
@@ -98,7 +98,7 @@ impl Simulation {
         }
     }
 
-    /// A run as it was, of the same model; of another one that it may go on with, what [`Saved::on`] gives.
+    /// Resumes a saved run of the same model; for a model with other future steps, pass the result of [`Saved::on`].
     pub fn resume(model: impl Into<Arc<Model>>, saved: Saved) -> Self {
         let Saved { step, state, control, explicit, midway, report, step_changed } = saved;
         let earlier = report.wall_s;
@@ -110,8 +110,8 @@ impl Simulation {
         &self.model
     }
 
-    /// The step of the next increment: after the last increment of a step already the one that follows. That of an accepted
-    /// increment is [`Increment::step`].
+    /// Step of the next increment; after the last increment of a step this is already the following step. The step of an
+    /// accepted increment is [`Increment::step`].
     pub fn step(&self) -> &Step {
         &self.step
     }
@@ -134,13 +134,13 @@ impl Simulation {
         report
     }
 
-    /// Add to the time that observers took [s].
+    /// Adds to the wall time of the observers [s].
     #[doc(hidden)]
     pub fn observed(&mut self, seconds: f64) {
         self.report.wall_s.output += seconds;
     }
 
-    /// The attempt that observers receive for a candidate.
+    /// Returns the attempt that observers receive for a candidate.
     pub fn attempt_of<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
         let mut attempt = Attempt {
             step: self.step_now(),
@@ -159,15 +159,15 @@ impl Simulation {
         attempt
     }
 
-    /// Try the next increment; `None` after the last one. Nothing changes but that a step begins.
+    /// Tries the next increment; returns `None` after the last one. The run is unchanged, except that a step may begin.
     ///
     /// # Errors
-    /// [`Error::Unsolvable`] when a step cannot begin.
+    /// Returns [`Error::Unsolvable`] if a step cannot begin.
     pub fn try_increment(&mut self) -> Result<Option<Candidate>, Error> {
         if self.stopped {
             return Ok(None);
         }
-        // An attempt that was dropped may have coupled other nodes.
+        // A dropped attempt may have coupled other nodes.
         self.work.assembler.couple(&self.control.coupling);
         self.begin()?;
         Ok(match self.control.phase.clone() {
@@ -179,10 +179,10 @@ impl Simulation {
         })
     }
 
-    /// Go on as a candidate says.
+    /// Applies a candidate: continues from its new state or with another attempt.
     ///
     /// # Errors
-    /// [`Error`] when no other attempt can help.
+    /// Returns [`Error`] if no other attempt can succeed.
     pub fn apply(&mut self, candidate: Candidate) -> Result<(), Error> {
         let is_row = self.attempt_of(&candidate).row != Row::Held;
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
@@ -213,16 +213,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// Have explicit increments pause on their way to an output whenever this says so: the candidate is then neither accepted nor
-    /// rejected, and what follows it has the same bits as if it had not paused.
+    /// Lets explicit increments pause before an output whenever `pause` returns true. The candidate is then neither accepted
+    /// nor rejected, and the continuation is bitwise the same as without the pause.
     pub fn pause_when(&mut self, pause: Pause) {
         self.pause = pause;
     }
 
-    /// Attempts until one is accepted; `None` after the last increment.
+    /// Makes attempts until one is accepted; returns `None` after the last increment.
     ///
     /// # Errors
-    /// [`Error`] when no increment is short enough.
+    /// Returns [`Error`] if no increment is short enough to be solved.
     pub fn next_increment(&mut self) -> Result<Option<Increment>, Error> {
         while let Some(candidate) = self.try_increment()? {
             let (step, old) = (self.step.clone(), self.state.clone());
@@ -240,13 +240,13 @@ impl Simulation {
         self.stopped || matches!(self.control.phase, Phase::Complete)
     }
 
-    /// Stop here: no increment follows. What is saved goes on as if it had not been stopped.
+    /// Stops the run: no increment follows. A saved run continues as if it had not been stopped.
     pub fn stop(&mut self) {
         self.stopped = true;
     }
 
-    /// Change loads, supports and bounds of increments of the step under way: what changes is so from the next increment to the
-    /// end of the step; the next one has its own.
+    /// Changes loads, supports and increment bounds of the current step, from the next increment to the end of the step; later
+    /// steps are unaffected.
     pub fn change(&mut self, change: impl Fn(&mut Step)) {
         self.step_changed = true;
         let step = Arc::make_mut(&mut self.step);
@@ -254,7 +254,7 @@ impl Simulation {
         if let Some(rupture) = &mut step.rupture {
             change(&mut rupture.explicit);
         }
-        // Explicit increments and quasi-dynamic ones keep what follows from the step.
+        // Explicit and quasi-dynamic increments hold data derived from the step.
         (self.explicit, self.midway) = (None, None);
         self.quasi_dynamic = None;
     }
@@ -263,13 +263,13 @@ impl Simulation {
         Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause }
     }
 
-    /// The present step: explicit while a contact slips fast.
+    /// Step of the current phase: explicit while a contact slips fast.
     pub(super) fn step_now(&self) -> &Step {
         self.control.phase.of(&self.step)
     }
 }
 
-/// Accepted increments, one after the other; after an error, or [`Simulation::stop`], none.
+/// Iterates over the accepted increments; ends after an error or [`Simulation::stop`].
 impl Iterator for Simulation {
     type Item = Result<Increment, Error>;
 
@@ -282,8 +282,8 @@ impl Iterator for Simulation {
     }
 }
 
-/// A run as it was: state, control and counts, for the same model. What is computed after [`super::Simulation::resume`] has the same
-/// bits as if the run had never stopped.
+/// Saved run: state, control and counts, for the same model. A run continued by [`super::Simulation::resume`] is bitwise
+/// identical to one that never stopped.
 #[derive(Clone)]
 #[must_use]
 pub struct Saved {
@@ -293,18 +293,18 @@ pub struct Saved {
     pub(super) explicit: Option<Explicit>,
     pub(super) midway: Option<Midway>,
     pub(super) report: RunReport,
-    /// Whether its caller has changed the step under way
+    /// Whether its caller has changed the current step
     pub(super) step_changed: bool,
 }
 
-/// Why a saved run cannot be resumed.
+/// Reason why a saved run cannot be resumed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotResumable {
-    /// The bytes are those of no run.
+    /// The bytes are not those of a run.
     #[error("{0}")]
     Unreadable(String),
-    /// The run is one of another model.
+    /// The run belongs to another model.
     #[error("it is not of this model")]
     OtherModel,
 }
@@ -320,20 +320,20 @@ impl Saved {
 
     /// Number of steps of the model that have begun, on which the run depends so far.
     pub fn begun(&self) -> usize {
-        // What its caller has changed of a step holds in place of what the model says.
+        // The caller's changes of a step replace the step of the model.
         self.control.step
             + usize::from(self.step_changed || !matches!(self.control.phase, Phase::Begin | Phase::Complete))
     }
 
-    /// Whether its last step is over.
+    /// Whether the last step is over.
     pub fn is_complete(&self) -> bool {
         matches!(self.control.phase, Phase::Complete)
     }
 
-    /// The bytes of a run for a file.
+    /// Returns the bytes of the run for a file.
     ///
     /// # Errors
-    /// [`Error::StepChanged`] where its caller has changed the step under way, which no file holds.
+    /// Returns [`Error::StepChanged`] if the caller has changed the current step, which a file cannot hold.
     pub fn bytes(&self) -> Result<Vec<u8>, Error> {
         let Self { step, state, control, explicit, midway, report, step_changed } = self;
         if *step_changed {
@@ -344,20 +344,20 @@ impl Saved {
         postcard::to_allocvec(&run).map_err(|cause| Error::NotSaved(cause.to_string()))
     }
 
-    /// The run that the bytes tell of. Steps that had not begun may have changed since, or have come after the last one.
+    /// Restores a run from its bytes. Steps that had not begun may have changed or been appended since.
     ///
     /// # Errors
-    /// [`NotResumable`].
+    /// Returns [`NotResumable`] if the bytes are unreadable or belong to another model.
     pub fn from_bytes(bytes: &[u8], model: &Arc<Model>) -> Result<Self, NotResumable> {
         let written: Written =
             postcard::from_bytes(bytes).map_err(|cause| NotResumable::Unreadable(cause.to_string()))?;
         Self::fitted(written, None, model)
     }
 
-    /// The run on another model, whose steps that have not begun may be other ones, or come after the last one.
+    /// Transfers the run to another model, whose steps that have not begun may differ or be appended.
     ///
     /// # Errors
-    /// [`NotResumable::OtherModel`].
+    /// Returns [`NotResumable::OtherModel`] if anything else differs.
     pub fn on(self, model: &Arc<Model>) -> Result<Self, NotResumable> {
         let Self { step, state, control, explicit, midway, report, step_changed } = self;
         let memory = explicit.as_ref().map(Explicit::memory);
@@ -368,7 +368,7 @@ impl Saved {
         )
     }
 
-    /// A run of a model, with the step under way if its caller has changed it.
+    /// Combines a run with a model, and with the current step if its caller has changed it.
     fn fitted(run: Written, step_changed: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, NotResumable> {
         let (state, mut control, memory, midway, report) = run;
         let fits = |memory: &ExplicitMemory| memory.fits(model);
@@ -386,7 +386,7 @@ impl Saved {
         Ok(Self { step, state: Arc::new(state), control, explicit, midway, report, step_changed: is_changed })
     }
 
-    /// The state as the beginning of another run, with increments and energies counted from here.
+    /// Returns the state as the start of another run, with increments and energies counted from here.
     pub fn begin(mut self) -> Self {
         let mut state = State::clone(&self.state);
         let Energy { kinetic, strain, contact_elastic, .. } = state.energy;

@@ -1,16 +1,16 @@
-//! Increments of linear bodies: Newton's method on the nodes at contacts alone.
+//! Condensed Newton's method: increments of linear bodies, iterated on the nodes at contacts only.
 //!
-//! The bodies are condensed on these nodes ([`crate::equations::condensed`]), once for every length of increments, and follow
-//! when a solution is found there. Whether it is one is for the residual of all equations to say, as everywhere: what is
-//! accepted does not depend on how it was found. If it says no, another round starts from there, and after a few the increment
-//! is left to Newton's method on all equations. Switch `condense`; `aid_condense` is 1 in iterations on the contacts.
+//! The bodies are condensed on these nodes ([`crate::equations::condensed`]), once per increment length, and evaluated
+//! when a solution is found there. The residual of all equations decides on its acceptance, as always, so accepted results do
+//! not depend on how they were found. If it is too large, another round starts from there, and after a few rounds the increment
+//! is solved by Newton's method on all equations. Switch `condense`; `aid_condense` is 1 in iterations on the contacts.
 //!
-//! That way is taken where it costs less: where a dense LU of the nodes at contacts takes no more than
-//! three times the operations of a factorization of the bodies: they are that much faster; and where most nodes are not
-//! at contacts. Where only half of the equations on the contacts vary, it may be that LU which takes so little, and an increment
-//! in which more of them vary is left to all equations if LU of the whole takes too much.
-//! All this follows from the model, the step and the iterates, never from what is kept. Condensed matrices are kept
-//! for all lengths as long as they take no more than [`MOST_MEMORY`] and half of what is free; those that were used last stay.
+//! The method is used where it costs less: where a dense LU of the nodes at contacts takes no more than three times the
+//! operations of a factorization of the bodies (dense operations being that much faster), and where most nodes are not at
+//! contacts. If this holds only for the half of the equations on the contacts that varies while nothing opens, an increment in
+//! which more of them vary is solved on all equations. The choice follows from the model, the step and the iterates, never from
+//! stored data. Condensed matrices are stored for all lengths as long as they take no more than [`MOST_MEMORY`] and half of the
+//! free memory; the most recently used are kept.
 
 use std::sync::Arc;
 
@@ -25,17 +25,17 @@ use crate::model::scheme::Scheme;
 use crate::model::support::Direction;
 use crate::model::{Damping, Model, Step};
 
-/// Most bytes that condensed matrices of all lengths of increments take.
+/// Upper bound of the memory of condensed matrices of all increment lengths [bytes].
 pub const MOST_MEMORY: usize = 2 << 30;
 
 /// Speed of the operations of a dense LU relative to those of a multifrontal elimination.
 const DENSE: f64 = 3.0;
 
-/// The bodies of a model condensed on the nodes at its contacts.
+/// Bodies of a model condensed on the nodes at its contacts.
 pub struct CondensedNewton {
-    /// the nodes
+    /// contact nodes
     pub nodes: ContactNodes,
-    /// Whether LU of all their equations is worth it, not only of the half that varies while nothing opens
+    /// Whether LU of all their equations pays, not only of the half that varies while nothing opens
     pub whole: bool,
     /// The equations without contact
     bodies: Assembler,
@@ -43,25 +43,25 @@ pub struct CondensedNewton {
     /// The pattern with all contact nodes coupled
     pattern: Arc<Pattern>,
     condensation: Condensation,
-    /// What the condensed matrices follow from but for the length of increments
+    /// Constant part of the equations, apart from the increment length, from which the condensed matrices follow
     constants: Option<Constants>,
-    /// Condensed matrices by the bits of Δt, the last used last; none where a pivot vanished
+    /// Condensed matrices by the bits of Δt, most recently used last; `None` where a pivot vanished
     rungs: Vec<(u64, Option<Arc<Rung>>)>,
-    /// solves the condensed equations
+    /// solver of the condensed equations
     pub solver: HalvedLu,
-    /// these equations
+    /// condensed equations
     pub condensed: System,
 }
 
 /// The bodies condensed for one length of increments.
 pub struct Rung {
-    /// on the nodes at contacts
+    /// condensed on the contact nodes
     pub bodies: Condensed,
-    /// on what varies there
+    /// condensed further on the equations that vary
     pub eliminated: Option<Eliminated>,
 }
 
-/// Everything that a step says of the constant part of its equations.
+/// All data of a step that affect the constant part of its equations.
 #[derive(PartialEq)]
 struct Constants {
     scheme: Scheme,
@@ -87,7 +87,7 @@ impl Constants {
 }
 
 impl CondensedNewton {
-    /// The interface of a model whose increments are worth condensing.
+    /// Creates the condensation of a model if it pays.
     pub fn new(model: &Arc<Model>) -> Option<Self> {
         if model.contacts.is_empty() || !model.steps.iter().any(|step| is_linear(model, step)) {
             return None;
@@ -109,11 +109,11 @@ impl CondensedNewton {
         Some(Self { nodes, whole, bodies, system, pattern, condensation, constants, rungs, solver, condensed })
     }
 
-    /// The bodies condensed for an increment; none if the step is not linear but for contact, or a pivot vanished: nothing but
-    /// contact may hold a body by its eliminated nodes.
+    /// Returns the bodies condensed for an increment; `None` if the step has nonlinearities other than contact, or a pivot
+    /// vanished because a body is constrained by contact only, at eliminated nodes.
     ///
     /// # Errors
-    /// [`TrialFailure`] when a load has no value.
+    /// Returns [`TrialFailure`] if a load has no finite value.
     pub fn bodies(&mut self, model: &Model, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
         if !is_linear(model, trial.step) {
             return Ok(None);
@@ -134,12 +134,12 @@ impl CondensedNewton {
         Ok(rung)
     }
 
-    /// Condense the bodies, in place of those lengths of increments that were used longest ago if memory asks for it.
+    /// Condenses the bodies, replacing the least recently used lengths if memory requires it.
     fn condense(&mut self, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
         let one = self.condensation.memory() + Eliminated::memory(self.nodes.nodes.len());
         let free = available_memory().map_or(MOST_MEMORY, |free| (free / 2).min(MOST_MEMORY));
         let held = self.rungs.len() * one;
-        // What is held counts as used already.
+        // Memory already used counts as available.
         let most = (held + free).min(MOST_MEMORY) / one.max(1);
         self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
         let Self { nodes, bodies, system, pattern, condensation, .. } = self;
@@ -153,14 +153,14 @@ impl CondensedNewton {
     }
 }
 
-/// Δt to eight digits: the difference of two times, it has the last digits of these, and no two increments are quite alike. The
-/// matrices may: their solution is judged by the equations of the increment itself.
+/// Δt rounded to eight digits: as a difference of two times it has their round-off, and no two increments are equal.
+/// Matrices may be shared, since their solution is checked by the equations of the increment itself.
 fn without_jitter(dt: f64) -> f64 {
     const UNIT: u64 = 1 << 25;
     f64::from_bits((dt.to_bits() + UNIT / 2) & !(UNIT - 1))
 }
 
-/// The condensed equations of an increment from the displacement `u` on, and what leads from their solution back to the bodies.
+/// Condensed equations of an increment, starting from the displacement `u`, and the data to recover all displacements.
 pub struct Round<'a> {
     /// ρ
     pub equations: CondensedEquations<'a>,
@@ -169,10 +169,10 @@ pub struct Round<'a> {
 }
 
 impl<'a> Round<'a> {
-    /// Begin at `u`.
+    /// Starts a round at `u`.
     ///
     /// # Errors
-    /// [`TrialFailure`] when a load has no value.
+    /// Returns [`TrialFailure`] if a load has no finite value.
     pub fn begin(
         nodes: &'a ContactNodes,
         bodies: &'a Condensed,
@@ -188,7 +188,7 @@ impl<'a> Round<'a> {
         Ok(Self { equations, bodies, forwarded })
     }
 
-    /// All displacements that go with those of the nodes at contacts: A (u − u₀) = −r but for these.
+    /// Displacements of all nodes for given ones of the contact nodes: A (u − u₀) = −r at all other nodes.
     pub fn follow(&self, nodes: &ContactNodes, u: &mut [f64], x: &[f64]) {
         let way: Vec<f64> = nodes.gather(u).iter().zip(x).map(|(start, x)| start - x).collect();
         let all = nodes.resolved(self.bodies.backward(&self.forwarded, &way));

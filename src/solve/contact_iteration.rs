@@ -1,100 +1,100 @@
-//! The contact iteration: what one linear solve of an increment hands down to the next, so that they converge.
+//! Contact iteration: data passed from one linear solve of an increment to the next to improve convergence.
 //!
-//! A contact opens, closes, sticks and slips from one iterate to the next, and the tangent of each of these states knows
-//! nothing of the others. Every aid here presumes something about a point when a *tangent* is taken; the residual that may
-//! be accepted knows none of them, so no answer depends on them.
+//! A contact opens, closes, sticks and slips from one iterate to the next, and the tangent of each status contains no
+//! information about the others. A convergence aid makes a presumption about a point when a *tangent* is evaluated; the
+//! residual that decides on acceptance contains none, so no result depends on an aid.
 //!
-//! | aid | presumes |
+//! | aid | presumption |
 //! |---|---|
-//! | `promise` | the tractions that the last linear solve promised turn and stretch with the surface |
-//! | `keep` | points to which it promised a pressure are closed |
-//! | `carried` | friction of a point that has just closed answers to what the bodies leave of its pressure |
-//! | `touch` | a point whose gap is zero at the start of an increment is closed and sticks, in the first iterate |
-//! | `stick` | a point that slips to and fro sticks |
-//! | `valley` | a foot that goes to and fro between two segments is the node between them |
+//! | `promise` | the geometric tangent uses the tractions predicted by the last linear solve |
+//! | `keep` | points with a positive predicted pressure are closed |
+//! | `carried` | friction of a point that has just closed uses the pressure that remains after the bodies deform |
+//! | `touch` | a point with zero gap at the start of an increment is closed and sticks, in the first iterate |
+//! | `stick` | a point that slips in alternating directions sticks |
+//! | `valley` | a projection that alternates between two segments is the node between them |
 //!
-//! Aids that know no contact are elsewhere: [`super::equilibrium`], [`super::newton`]. Each has a switch in
-//! [`crate::model::aids::Aids`] and a column `aid_…` in `newton.csv`; what each saves is a table in `docs/aids.md`.
+//! Aids unrelated to contact are in [`super::equilibrium`] and [`super::newton`]. Each has a switch in
+//! [`crate::model::aids::Aids`] and a column `aid_…` in `newton.csv`; `docs/aids.md` tabulates what each saves.
 //!
 //! # Promise, limit
 //!
-//! A stiff penalty turns every error of a displacement into a pressure far too high, and that into a
-//! geometric stiffness p δn ℓ that leads the next iterate astray. What the last linear solve promised, p + δp, is off by the
-//! square of its correction only ([`Closed::promise`]), and takes the place of p and q in the geometric part of the tangent.
-//! Switch `promise`; `aid_promise` counts the closed points whose own tractions are others.
+//! A stiff penalty turns every error of a displacement into a pressure far too high, and this into a geometric stiffness p δn ℓ
+//! that misleads the next iterate. The linearized prediction of the last linear solve, p + δp, has an error of second order in
+//! its correction only ([`Closed::promise`]), and replaces p and q in the geometric part of the tangent. Switch `promise`;
+//! `aid_promise` counts the closed points where the prediction differs from their own tractions.
 //!
-//! The first linear solve of an increment has none before it and goes by the start value. Extrapolated past the edge of
-//! a contact, points penetrate far too deep, so that no pressure is taken for promised which is more than twice the
-//! committed one (switch `limit`; `aid_limit` counts the points to which this happens).
+//! The first linear solve of an increment uses the start value instead. Points extrapolated past the edge of a contact
+//! penetrate far too deep, so the predicted pressure is limited to twice the committed one (switch `limit`; `aid_limit` counts
+//! the points limited).
 //!
-//! Source: what p + δp leaves out is the second term of the expansion of the traction in the correction; that it is of
-//! second order is tested (`tests/contact/contact.rs`). The limit is a rule of thumb.
+//! Source: the neglected term of p + δp is the second one of the expansion of the traction in the correction; its
+//! second order is tested (`tests/contact/contact.rs`). The limit is heuristic.
 //!
 //! # Keep, pull
 //!
-//! Where a correction lifts a point off its stiff penalty by a hair, the point would open, carry nothing in the
-//! next linear solve, and fall back in. It is closed in that solve as long as the last one promised it a pressure; its
-//! spring then pulls it back. Switch `keep`; `aid_keep` counts the points that are closed for it.
+//! Where a correction lifts a point slightly off its stiff penalty, the point would open, carry no pressure in the
+//! next linear solve, and close again. It is kept closed in that solve as long as the predicted pressure is positive; its
+//! spring then pulls it back. Switch `keep`; `aid_keep` counts the points closed for this reason.
 //!
-//! The first linear solve of an increment goes by the committed state: a point that was closed still is, unless the start
-//! value takes it farther away than the bodies would follow if its pressure went, and the penalty would reach,
+//! The first linear solve of an increment uses the committed state: a closed point stays closed unless the start value
+//! separates it by more than the bodies would rebound without its pressure plus the range of the penalty,
 //!
 //! ```text
 //! g ≤ max(p₀ (c + 10/α_n), h/100)                     c: compliance of the bodies, h: shortest edge of the slave
 //! ```
 //!
-//! The start value goes on in a straight line, so that slender bodies which turn where they touch are a little apart by it,
-//! under pressures next to nothing: without h/100 all their points would open at once, and the bodies spring through each other.
+//! The start value extrapolates linearly, so slender bodies that rotate while in contact are separated slightly by it, at
+//! very low pressures: without h/100 all their points would open at once, and the bodies would pass through each other.
 //!
-//! Switch `pull`, for those points that are open by the start value, and needs `keep`; `aid_pull` counts them.
+//! Switch `pull`, which requires `keep`, for points that are open in the start value; `aid_pull` counts them.
 //!
-//! Source: as the choice of the active set from p + δp rather than from the gap in primal–dual active set methods (Hintermüller,
-//! Ito & Kunisch 2002, doi:10.1137/S1052623401383558), where it is Newton's method for the kink of ⟨p⟩. The reach is the
-//! displacement over which p₀ goes to zero; its factor 10 and the hundredth are rules of thumb.
+//! Source: the choice of the active set from p + δp rather than from the gap as in primal–dual active set methods
+//! (Hintermüller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558), where it is Newton's method for the kink of ⟨p⟩. The
+//! range is the displacement over which p₀ falls to zero; its factor 10 and the hundredth are heuristic.
 //!
 //! # Carried
 //!
-//! A point that goes too deep in one iterate would be pressed far too hard by a stiff penalty, and stick
-//! where it is to slip. Friction answers to what is left of the pressure once the bodies have taken their share of the
-//! penetration, p/(1 + α_n c), and goes on in a straight line from there. Switch `carried`; `aid_carried` counts the points.
+//! A stiff penalty gives a far too high pressure to a point that penetrates too deep in one iterate, which would then stick
+//! where it is to slip. Friction uses the pressure that remains after the bodies have taken their part of the
+//! penetration, p/(1 + α_n c), and is extrapolated linearly from there. Switch `carried`; `aid_carried` counts the points.
 //!
-//! Source: body and penalty are springs in series, 1/c and α_n, and the penetration of an iterate is what both will
-//! share. (The compliance d/p by which slip counts from touch, [`crate::contact::force`], is no aid but a law: it is the same
-//! in every iterate, and answers depend on it.)
+//! Source: body and penalty are springs in series, 1/c and α_n, which share the penetration of an iterate. (The compliance d/p
+//! by which slip counts after closure, [`crate::contact::force`], is no aid but part of the law: it is the same in every
+//! iterate, and results depend on it.)
 //!
 //! # Touch
 //!
-//! At p = 0 a point may as well be open as closed, and a tangent of one or the other leads to the other, for ever; and
-//! a frictional one would slip at once, for the law of friction has no stiffness there. A point whose gap is zero at the
-//! start of an increment is closed and sticks, q = q₀ + α_t Δu_t, in the first linear solve. Switch `touch`; `aid_touch` counts the points.
+//! At p = 0 a point is both open and closed, and the tangent of each status leads to the other indefinitely; a
+//! frictional one would slip at once, since friction has no stiffness there. A point with zero gap at the start of an
+//! increment is closed and sticks, q = q₀ + α_t Δu_t, in the first linear solve. Switch `touch`; `aid_touch` counts the points.
 //!
-//! Source: sticking is what the law answers to a pressure that comes up with the slip as long as |q| < μ p, and the only one of
-//! its branches whose tangent is not singular at p = 0.
+//! Source: sticking is the response of the law to a pressure that grows with the slip as long as |q| < μ p, and the only
+//! branch with a regular tangent at p = 0.
 //!
 //! # Stick, stick again
 //!
-//! A point that slips one way and then the other has passed the narrow and stiff range of sticking that lies
-//! between. The tangents on both sides are soft, and Newton's method would jump to and fro for ever; presumed to stick, it
+//! A point that slips in one direction and then in the other has passed the narrow and stiff range of sticking in
+//! between. The tangents on both sides are soft, and Newton's method would alternate indefinitely; presumed to stick, the point
 //! finds the range. Switch `stick`; `aid_stick` counts the points.
 //!
-//! A point that was presumed to stick and slips all the same may have missed the range for the error of its neighbours only.
-//! It sticks once more if the tractions that its linear solve promised would have held it. Switch `stick_again`, and needs
-//! `stick`; `aid_stick_again` counts them.
+//! A point that was presumed to stick but slips may have missed the range because of errors of its neighbours only. It is
+//! presumed to stick once more if the tractions predicted by that linear solve would have held it. Switch `stick_again`, which
+//! requires `stick`; `aid_stick_again` counts the points.
 //!
-//! Source: sticking is linear, so that one solve of it tells whether the range is where the point ends: the predictor of
-//! return mapping (Simo & Hughes 1998, Computational Inelasticity, ch. 3), taken between iterates instead of within one.
+//! Source: sticking is linear, so one solve shows whether the point ends in that range: the predictor of return
+//! mapping (Simo & Hughes 1998, Computational Inelasticity, ch. 3), applied between iterates instead of within one.
 //!
 //! # Valley
 //!
-//! Between two segments that form one, a foot may go to and fro for ever, each of the two tangents leading to the
+//! Between two segments at a concave corner, a projection may alternate indefinitely, each tangent leading to the
 //! other segment. It is presumed to be the node between them. Switch `valley`; `aid_valley` counts the points.
 //!
-//! Source: in a concave corner the gap is the lesser of two, with a kink where they are the same. From the node the normal goes
-//! to the point, which lies between the normals of both sides, and Newton's method ends at the kink instead of crossing it.
+//! Source: in a concave corner the gap is the smaller of two, with a kink where they are equal. From the node the normal points
+//! to the slave point, between the normals of both sides, and Newton's method ends at the kink instead of crossing it.
 //!
 //! # The record
 //!
-//! What the aids did in one iteration ([`Acted`]), and contact states that come back every other iterate ([`Flips`]).
+//! The actions of the aids in one iteration ([`Acted`]), and contact states that return every other iterate ([`Flips`]).
 
 use crate::contact::force::{Closed, ContactState, Presume, Tractions, touches};
 use crate::contact::pair::{ContactPair, Presumption};
@@ -107,7 +107,7 @@ use crate::model::Model;
 use crate::model::aids::Aids;
 use crate::model::state::State;
 
-/// Data of one contact point from the linear solves of an increment so far.
+/// Data of one contact point from the linear solves of the increment so far.
 #[derive(Clone, Debug, Default)]
 struct Point {
     slipping: Slipping,
@@ -116,9 +116,9 @@ struct Point {
     promised: Tractions,
     /// Whether it was limited at the start of the increment
     limited: bool,
-    /// Whether it is that of the committed state
+    /// Whether the committed state keeps it closed
     pulled: bool,
-    /// Pressure that friction answers to at a point that has just closed
+    /// Pressure used by friction at a point that has just closed
     carried: Option<f64>,
 }
 
@@ -133,7 +133,7 @@ impl Point {
         }
     }
 
-    /// Count the aids that act on the point in a linear solve.
+    /// Counts the aids that act on the point in a linear solve.
     fn count(
         &self,
         aids: Aids,
@@ -156,10 +156,10 @@ impl Point {
     }
 }
 
-/// The iterates of an increment, point by point.
+/// Iterates of an increment, point by point.
 #[derive(Clone, Debug, Default)]
 pub struct ContactIteration {
-    /// One list a contact pair, empty before the first linear solve of an increment
+    /// One list per contact pair, empty before the first linear solve of an increment
     points: Vec<Vec<Point>>,
     /// Contact points as linearized in the last solve
     linearized: Vec<PairResponse>,
@@ -172,15 +172,16 @@ pub struct ContactIteration {
 }
 
 impl ContactIteration {
-    /// Forget the iterates of the increment before.
+    /// Clears the iterates of the previous increment.
     pub fn start_increment(&mut self) {
         self.points.clear();
     }
 
-    /// Residual of all equations at the displacement `u`, on request with their tangent: see [`ContactIteration::evaluate`].
+    /// Evaluates the residual of all equations at the displacement `u`, on request with their tangent; see
+    /// [`ContactIteration::evaluate`].
     ///
     /// # Errors
-    /// As there.
+    /// The same as there.
     pub fn evaluate_all(
         &mut self,
         assembler: &mut Assembler,
@@ -194,11 +195,11 @@ impl ContactIteration {
         })
     }
 
-    /// Have the equations assembled at the displacement `u` from the responses of the contact points: for a residual nothing is
-    /// presumed; for a tangent all is, and a residual that goes with it.
+    /// Assembles the equations at the displacement `u` from the responses of the contact points: a residual without
+    /// presumptions; a tangent with all of them, and the residual consistent with it.
     ///
     /// # Errors
-    /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
+    /// Returns [`TrialFailure`] if an element inverts, a friction law fails, or a load has no finite value.
     pub fn evaluate(
         &mut self,
         assembler: &mut Assembler,
@@ -221,7 +222,7 @@ impl ContactIteration {
         Ok(())
     }
 
-    /// The points as linearized in the next solve.
+    /// Evaluates the points as linearized in the next solve.
     fn respond(
         &mut self,
         assembler: &mut Assembler,
@@ -234,8 +235,8 @@ impl ContactIteration {
         assembler.interfaces(trial, u, presumed, request, &mut self.next)
     }
 
-    /// Assumptions of the next linear solve about each point, from its last two iterates, except for sticking. `states`
-    /// are those of the residual at `u`.
+    /// Sets the presumptions of the next linear solve about each point, from its last two iterates, except for sticking.
+    /// `states` are those of the residual at `u`.
     fn presume(&mut self, model: &Model, states: &[Vec<ContactState>], trial: Trial, u: &[f64]) {
         let (first, aids) = (self.points.is_empty(), model.aids);
         self.points.resize_with(model.contacts.len(), Vec::new);
@@ -263,7 +264,7 @@ impl ContactIteration {
         }
     }
 
-    /// Presume sticking where points slip to and fro between the linear solves; whether there are any.
+    /// Presumes sticking where points slip in alternating directions between the linear solves; returns whether there are any.
     fn presume_sticking(&mut self, model: &Model) -> bool {
         let mut any = false;
         for (points, (pair, response)) in self.points.iter_mut().zip(model.contacts.iter().zip(&self.next)) {
@@ -279,7 +280,7 @@ impl ContactIteration {
         any
     }
 
-    /// Keep the points as linearized in the next solve, and count those on which an aid acts.
+    /// Stores the points as linearized in the next solve, and counts those on which an aid acts.
     fn take_over(&mut self, model: &Model, u: &[f64], old: &State, aids: Aids) {
         std::mem::swap(&mut self.linearized, &mut self.next);
         self.linearized_at.clear();
@@ -296,27 +297,27 @@ impl ContactIteration {
     }
 }
 
-/// Most growth of a pressure from the committed state to the start value that is believed.
+/// Largest accepted ratio of the pressure of the start value to the committed one.
 const MOST_GROWTH: f64 = 2.0;
 
-/// Predicted traction of a point that the start value closes.
+/// Predicted traction of a point that is closed in the start value.
 fn promised_at_start(state: &ContactState, old: &ContactState, limit: bool) -> Tractions {
     let tractions = Tractions::of(&state.friction);
     if limit { tractions.limited(MOST_GROWTH * old.friction.pressure) } else { tractions }
 }
 
-/// Whether the tangent of a point is made with other tractions than its own.
+/// Whether the tangent of a point uses tractions other than its own.
 fn promise_acts(presumption: &Presumption, closed: &Closed) -> bool {
     presumption.promised.is_some_and(|promised| promised != closed.tractions)
 }
 
-/// The penalty may have drawn a point that was closed back by this many p/α_n.
+/// Range within which the penalty may draw back a point that was closed, in multiples of p/α_n.
 const MOST_PULL: f64 = 10.0;
 
-/// The start value may have lifted it by this many gaps of touch, each 1e-9 of the slave's shortest edge.
+/// Separation by the start value within which it may do so, in multiples of the touch gap, 1e-9 of the slave's shortest edge.
 const MOST_LIFT: f64 = 1e7;
 
-/// Predicted traction, from the committed state, of a point that is open by the start value.
+/// Predicted traction, from the committed state, of a point that is open in the start value.
 fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
     let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
     let closed = old.friction.pressure > 0.0;
@@ -327,26 +328,26 @@ fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -
     }
 }
 
-/// Whether a point is closed for a promise alone.
+/// Whether a point is closed only because of a predicted pressure.
 fn keep_acts(presumption: &Presumption, closed: &Closed) -> bool {
     presumption.kept > 0.0 && closed.tractions.pressure <= 0.0
 }
 
-/// The pressure that friction answers to at a point that has just closed; `None` at any other.
+/// Pressure used by friction at a point that has just closed; `None` at any other.
 fn carried(pair: &ContactPair, was_closed: bool, state: &ContactState, stiffening: f64) -> Option<f64> {
     let closes = !was_closed && state.friction.pressure > 0.0;
     closes.then(|| pair.shared(state.friction.pressure, stiffening))
 }
 
-/// Whether a closed point sticks because it touches.
+/// Whether a closed point sticks because of the aid `touch`.
 fn touch_acts(pair: &ContactPair, presumption: &Presumption, state: &ContactState, old: &ContactState) -> bool {
     touches(pair, state.clearance(), old, presumption.presume)
 }
 
-/// Slip that is below this share of what it was at the last solve comes to rest.
+/// Ratio to the slip at the last solve below which the slip of a point counts as abating.
 const ABATES: f64 = 0.5;
 
-/// Tractions below this share of the friction that a point slips with would hold it.
+/// Fraction of the frictional strength of a slipping point below which tractions would hold it.
 const FAR_LOWER: f64 = 0.9;
 
 /// Slip history of a point over the linear solves of the increment.
@@ -354,20 +355,20 @@ const FAR_LOWER: f64 = 0.9;
 struct Slipping {
     /// Plastic slip of the increment at the last solve [L]
     slip: f64,
-    /// Whether the last solve presumed it to stick
+    /// Whether it was presumed to stick in the last solve
     stuck: bool,
 }
 
 impl Slipping {
-    /// Watch the slip that the next linear solve starts from. A point sticks where it slips the other way than at the last
-    /// solve, or was presumed to stick and slips, but would not with the tractions that this promised: it missed the narrow
-    /// range of sticking only for its own error.
+    /// Records the slip from which the next linear solve starts; returns whether the point is presumed to stick. It is if it
+    /// slips in the opposite direction to the last solve, or was presumed to stick and slips, but would not with the tractions
+    /// predicted by that solve: it missed the narrow range of sticking only because of its own error.
     fn sticks(&mut self, friction: &FrictionState, promised: Tractions) -> bool {
         let slip = friction.plastic_increment;
         let slips = friction.regime == Regime::Slip;
-        // A point that only a promise keeps closed has a negative pressure.
+        // A point closed only by a prediction has a negative pressure.
         let strength = (friction.traction / friction.pressure).abs() * promised.pressure;
-        // A point that slips below its strength does so with these tractions as well, unless they are far lower or the slip
+        // A point that slips below its strength would also slip with these tractions, unless they are far lower or the slip
         // abates.
         let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };
         let sticks = match self.stuck {
@@ -379,7 +380,7 @@ impl Slipping {
     }
 }
 
-/// Segments of a point's feet at the linear solves of the increment.
+/// Segments of a point's projections in the linear solves of the increment.
 #[derive(Clone, Copy, Debug, Default)]
 struct Feet {
     /// Projected segments at the last two solves
@@ -389,7 +390,7 @@ struct Feet {
 }
 
 impl Feet {
-    /// Record the segment on which the next linear solve starts.
+    /// Records the segment from which the next linear solve starts.
     fn note(&mut self, state: &ContactState) {
         let segment = state.foot.map(|foot| foot.segment);
         let [last, before] = self.last;
@@ -399,17 +400,17 @@ impl Feet {
     }
 }
 
-/// Whether the foot of a point is presumed to be the node between two segments, and is.
+/// Whether the projection of a point is presumed to be the node between two segments, and is.
 fn valley_acts(presumption: &Presumption, state: &ContactState) -> bool {
     presumption.astride.is_some() && state.foot.is_some_and(|foot| foot.xi == 1.0)
 }
 
-/// Regime of every point at the last two iterates.
+/// Contact status of every point at the last two iterates.
 #[derive(Clone, Debug, Default)]
 pub struct Flips([Vec<Regime>; 2]);
 
 impl Flips {
-    /// Number of points that are as they were before the last iterate, and were not in it.
+    /// Returns the number of points with the same status as before the last iterate and a different one in it.
     pub fn count(&mut self, contacts: &[Vec<ContactState>]) -> usize {
         let now: Vec<Regime> = contacts.iter().flatten().map(ContactState::regime).collect();
         let [last, before] = std::mem::take(&mut self.0);
@@ -420,37 +421,37 @@ impl Flips {
     }
 }
 
-/// Number of contact points on which each aid acted in the tangent of an iteration; 0 or 1 for those that know no points. All
+/// Number of contact points on which each aid acted in the tangent of an iteration; 0 or 1 for aids unrelated to points. All
 /// are 0 where there was no new tangent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Acted {
-    /// the increment starts as the last one went on
+    /// the start value extrapolates the last increment
     pub start: usize,
-    /// the geometric part of the tangent has promised tractions
+    /// the geometric part of the tangent uses predicted tractions
     pub promise: usize,
     /// these were limited at the start of the increment
     pub limit: usize,
-    /// closed for the promise alone
+    /// closed by the prediction alone
     pub keep: usize,
-    /// closed because the committed state is
+    /// closed because of the committed state
     pub pull: usize,
-    /// friction answers to a carried pressure
+    /// friction uses a carried pressure
     pub carried: usize,
-    /// closed, and sticks, because it touches
+    /// closed and sticking because of zero gap
     pub touch: usize,
-    /// sticks because it slipped to and fro
+    /// sticks after slip in alternating directions
     pub stick: usize,
     /// sticks once more
     pub stick_again: usize,
-    /// its foot is the node between two segments
+    /// its projection is the node between two segments
     pub valley: usize,
-    /// it is one on the nodes at contacts alone
+    /// the iteration is on the contact nodes only
     pub condense: usize,
     /// the correction was shortened by a line search
     pub downhill: usize,
     /// the augmented Lagrangian is stiffened
     pub stiffening: usize,
-    /// penalties are softer than given, on the way to a start value
+    /// penalties are softened for an initial guess
     pub softening: usize,
 }
 
@@ -473,7 +474,7 @@ impl Acted {
         "aid_softening",
     ];
 
-    /// The counts, in the order of the columns.
+    /// Returns the counts in the order of the columns.
     pub fn counts(self) -> [usize; Self::COLUMNS.len()] {
         let Self { start, promise, limit, keep, pull, carried, touch, .. } = self;
         let Self { stick, stick_again, valley, condense, downhill, stiffening, softening, .. } = self;

@@ -1,40 +1,42 @@
-//! Equilibrium at the time of a trial, from the start value on.
+//! Equilibrium at the time of a trial, starting from a start value.
 //!
 //! # Start value
 //!
-//! Where the iterations of an increment start.
+//! The iterations of an increment start at
 //!
 //! ```text
 //! u = u₀ + Δt/Δt₀ Δu₀                                 the last increment of the step goes on at its pace
 //! u = u₀ + Δt v₀ + ½ Δt² a₀                           in dynamics under error control
 //! ```
 //!
-//! Without it every increment starts at u₀, and the points that have to slip, open or close find that out once more. Where the
-//! last increment ended in touch the next one is not like it. In dynamics no accepted increment under error control
-//! leaves the second start by much more than the allowed error; where increments do not resolve the motion it would be far off.
-//! Nodes whose mass was moved away have accelerations that mean nothing: they go on at their pace. Switch `start`;
-//! `aid_start` is 1 in an iteration that begins there.
+//! Otherwise every increment would start at u₀, and the points that have to slip, open or close would be found again each time.
+//! If the last increment ended at a contact closure, the next one differs from it. In dynamics the second start value differs
+//! from any accepted increment under error control by little more than the allowed error; where increments do not resolve the
+//! motion it would be far off. Nodes whose mass was moved away have meaningless accelerations: they keep their velocity. Switch
+//! `start`; `aid_start` is 1 in an iteration that starts there.
 //!
 //! Source: the predictor of Newmark (1959) in dynamics; in statics the secant predictor of path following.
 //!
 //! # Softer penalties first
 //!
-//! Which points of slender bodies are closed is hard to find with a stiff penalty: bending is so much softer than the contact
-//! that every linear solve closes and opens others, from touch on, however short the increment. With a soft one few iterations
-//! do, and what they find is nearly right for a stiffer one. A static increment without equilibrium starts anew where friction does not weaken,
+//! With a stiff penalty the closed points of slender bodies are hard to find: bending is so much softer than the contact
+//! that every linear solve closes and opens other points after closure, however short the increment. With a soft penalty few
+//! iterations suffice, and their result is a good initial guess for a stiffer one. A static increment without equilibrium is
+//! restarted, provided that friction does not weaken, with
 //!
 //! ```text
 //! α_n × 1e-8, 1e-6, 1e-4, 1e-2, 1                     each equilibrium is the start value of the next
 //! ```
 //!
-//! those of the softer ones to a hundredth of the forces only. Switch `softening`; `aid_softening` is 1 in their iterations.
+//! where the solutions with softer penalties are found to a hundredth of the forces only. Switch `softening`; `aid_softening`
+//! is 1 in their iterations.
 //!
 //! Source: path following in the penalty, Hintermüller & Kunisch (2006), Path-following methods for a class of constrained
 //! minimization problems in function space, SIAM J. Optim. 17, 159.
 //!
 //! # Augmented Lagrangian
 //!
-//! The augmented Lagrangian: multipliers that leave no more penetration than allowed.
+//! Multipliers are augmented until the penetration is within its limit.
 
 use super::condensed_newton::{CondensedNewton, Round, Rung};
 use super::contact_iteration::{Acted, Flips};
@@ -52,8 +54,8 @@ use crate::model::Model;
 use crate::model::scheme::Scheme;
 use crate::model::state::{LastIncrement, State};
 
-/// Equilibrium at the time of a trial, wherever the scheme asks for it; from the start value of a new increment unless
-/// another is given.
+/// Finds the equilibrium at the time required by the scheme, from the start value of a new increment unless another is
+/// given.
 pub fn equilibrium(
     model: &Model,
     trial: Trial,
@@ -73,7 +75,7 @@ pub fn equilibrium(
     (watch.records, result)
 }
 
-/// Solution by Newton's method on all equations.
+/// Solves by Newton's method on all equations.
 fn on_all(
     model: &Model,
     trial: Trial,
@@ -104,10 +106,10 @@ fn on_all(
     result
 }
 
-/// Rounds on the nodes at contacts before an increment is left to all equations.
+/// Maximum number of rounds on the contact nodes before an increment is solved on all equations.
 const MOST_ROUNDS: usize = 3;
 
-/// Solution by Newton's method condensed on the contact nodes, if that pays and the bodies allow it.
+/// Solves by Newton's method condensed on the contact nodes, if that pays and the bodies allow it.
 fn on_contacts(
     model: &Model,
     trial: Trial,
@@ -140,7 +142,7 @@ fn on_contacts(
     None
 }
 
-/// Solve the condensed equations from the displacement `u` on, and have the bodies follow; nothing if they cannot be set up.
+/// Solves the condensed equations from the displacement `u`, and updates the bodies; `None` if they cannot be set up.
 fn round(
     model: &Model,
     trial: Trial,
@@ -175,7 +177,7 @@ fn round(
         Ok(x) => round.follow(nodes, u, &x),
         Err(NewtonFailure::Linear(LinearFailure::Varies)) => return None,
         Err(failure) => {
-            // What floats is told from the tangent of everything.
+            // Unconstrained rigid-body modes are detected from the full tangent.
             assemble_all(trial, &all, work)?;
             return Some(Err(failure));
         }
@@ -183,7 +185,7 @@ fn round(
     Some(Ok(()))
 }
 
-/// The tangent of all equations, at the first linear solve of an increment.
+/// Assembles the tangent of all equations at the first linear solve of an increment.
 fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
     let Workspace { assembler, iteration, system, .. } = work;
     iteration.start_increment();
@@ -193,15 +195,15 @@ fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
 
 /// Monitor of the solution of an increment.
 struct Watch {
-    /// Whether it is a new increment, and whether its start value goes on with the last one
+    /// Whether it is a new increment, and whether its start value extrapolates the last one
     begins: bool,
     extrapolated: bool,
     tangents: usize,
-    /// What was seen after each correction of the present solution: all but the correction itself
+    /// Record after each correction of the present solution, without the correction itself
     seen: Vec<IterationRecord>,
     flips: Flips,
     floating: Option<String>,
-    /// What acted in the tangent since the last correction
+    /// Aids that acted in the tangent since the last correction
     acted: Acted,
     records: Vec<IterationRecord>,
 }
@@ -212,7 +214,7 @@ impl Watch {
         Self { begins, extrapolated, tangents: 0, seen: Vec::new(), flips, floating: None, acted, records: Vec::new() }
     }
 
-    /// Note what the equations say after they have been evaluated.
+    /// Records the state of the equations after their evaluation.
     fn note(
         &mut self,
         request: Request,
@@ -221,7 +223,7 @@ impl Watch {
         acted: Acted,
         foreseen: &mut Vec<Vec<ContactState>>,
     ) {
-        // The start value goes on with the last increment; where there is none, the first linear solve tells.
+        // The start value extrapolates the last increment; without it, the first linear solve predicts the motion.
         let foresight = if self.extrapolated { 0 } else { 1 };
         if self.begins && self.records.is_empty() && request == Request::Residual && self.tangents == foresight {
             foreseen.clone_from(&assembler.evaluation.contacts);
@@ -242,7 +244,7 @@ impl Watch {
         }
     }
 
-    /// Keep the iterations of a solution with what was seen after each.
+    /// Stores the iterations of a solution with the record after each.
     fn record(&mut self, iterations: Vec<newton::Iteration>) {
         let mut seen = std::mem::take(&mut self.seen);
         self.tangents = 0;
@@ -256,7 +258,7 @@ impl Watch {
     }
 }
 
-/// The solution, or why there is none: bodies that move freely say more than the equations.
+/// Returns the solution, or the reason why there is none: unconstrained bodies explain more than the equations.
 fn explained(
     model: &Model,
     old: &State,
@@ -267,7 +269,7 @@ fn explained(
     match (floating, result) {
         (Some(floating), _) if old.last_increment.is_none() => Err(IncrementFailure::Floating(floating)),
         (Some(floating), _) => Err(IncrementFailure::ContactLost(floating)),
-        // A trial state may have lost the contact that held a body: worth saying, and worth a smaller increment.
+        // A trial state may have lost the contact that constrained a body; this is reported, and a smaller increment tried.
         (None, Err(failure)) => {
             let loose = null_motion(model, &old.displacement, tangent);
             Err(loose.map_or(failure.into(), IncrementFailure::ContactLost))
@@ -276,7 +278,7 @@ fn explained(
     }
 }
 
-/// ‖r‖/‖f‖ of every part of a solution; a start value need not be as good [-]
+/// Required ‖r‖/‖f‖ of every part of a solution, or of an initial guess [-]
 fn tolerance(model: &Model, trial: Trial) -> f64 {
     if trial.stiffening < 1.0 { model.newton.tolerance.max(ROUGHLY) } else { model.newton.tolerance }
 }
@@ -290,19 +292,19 @@ fn settings(model: &Model, trial: Trial) -> newton::Settings {
     }
 }
 
-/// Whether a step begins, or its stabilization has just gone.
+/// Whether a step begins, or its stabilization has just ended.
 fn is_unaided(trial: Trial) -> bool {
     let Trial { old, step, .. } = trial;
     old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0)
 }
 
-/// What acted on contact points, with what the penalties of the trial say.
+/// Aids that acted on contact points, with the modified penalties of the trial.
 fn in_trial(trial: Trial, acted: Acted) -> Acted {
     let stiffening = usize::from(trial.stiffening > 1.0);
     Acted { stiffening, softening: usize::from(trial.stiffening < 1.0), ..acted }
 }
 
-/// The start value of an increment, and whether it is another one than the committed displacement.
+/// Start value of an increment, and whether it differs from the committed displacement.
 pub fn start_value(model: &Model, trial: Trial) -> (Vec<f64>, bool) {
     let Trial { old, step, dt, .. } = trial;
     let State { displacement, velocity, acceleration, .. } = old;
@@ -324,25 +326,25 @@ pub fn start_value(model: &Model, trial: Trial) -> (Vec<f64>, bool) {
     ((0..displacement.len()).map(|dof| displacement[dof] + way(dof)).collect(), true)
 }
 
-/// The last increment of the step, if the next one is expected to be like it.
+/// Last increment of the step, if the next one is expected to be similar.
 fn goes_on(old: &State) -> Option<&LastIncrement> {
     old.last_increment.as_ref().filter(|last| !last.ends_in_touch)
 }
 
-/// α_n of the start values, as a share of the one given.
+/// Factors on α_n for successive initial guesses.
 const SOFTER: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
 
-/// ‖r‖/‖f‖ to which a start value is found [-]
+/// ‖r‖/‖f‖ required of an initial guess [-]
 const ROUGHLY: f64 = 1e-2;
 
-/// Whether contacts find the same equilibrium from wherever they come, as far as their laws go: weakening may have several, and the
-/// nearest is sought.
+/// Whether equilibrium does not depend on the initial guess, as far as the friction laws are concerned: with weakening there
+/// may be several, of which the nearest is sought.
 fn has_one_answer(model: &Model) -> bool {
     let mut laws = model.contacts.iter().flat_map(|pair| &pair.laws).peekable();
     laws.peek().is_some() && laws.all(|law| law.description.weakening == 0.0)
 }
 
-/// Equilibrium of a new increment; of a static one that has none from its own start value, from softer penalties on.
+/// Equilibrium of a new increment; a static one that has none from its own start value is restarted with softer penalties.
 fn from_start_values(
     model: &Model,
     trial: Trial,
@@ -371,22 +373,22 @@ fn from_start_values(
     (iterations, result)
 }
 
-/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
+/// Maximum number of augmentations before an increment of the augmented Lagrangian method is rejected.
 const MOST_PASSES: usize = 100;
 
-/// A pass that leaves more than this share of the penetration is slow: the next one is stiffer.
+/// Remaining fraction of the penetration above which an augmentation is slow and the penalty is raised.
 const SLOW: f64 = 0.25;
 
 /// Factor by which the penalty is raised.
 const STIFFER: f64 = 10.0;
 
-/// α_n is not raised to more than this many times the given one.
+/// Upper bound of the factor on the given α_n.
 const STIFFEST: f64 = 1e4;
 
-/// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
-/// more penetration than allowed: Uzawa's method, with a penalty that is raised for the increment while passes gain little: without that a soft
-/// penalty takes passes by the dozen, each of which leaves nearly all of the penetration (switch `stiffening`;
-/// `aid_stiffening` is 1 in iterations of a raised one).
+/// Equilibrium at the time of a trial; in the augmented Lagrangian method, with multipliers that limit the penetration (Uzawa's
+/// method). The penalty is raised within the increment while augmentations reduce the penetration slowly: with a soft penalty
+/// dozens of augmentations would each leave nearly all of it (switch `stiffening`; `aid_stiffening` is 1 in iterations with a
+/// raised penalty).
 ///
 /// Source of the rule and its factors: Bertsekas (1982), Constrained Optimization and Lagrange Multiplier Methods, 2.2.
 pub fn augment(

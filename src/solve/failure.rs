@@ -1,9 +1,9 @@
-//! Why an increment failed, and whether a smaller one may succeed.
+//! Failures of an increment, and whether a smaller one may succeed.
 //!
 //! # Suspects
 //!
-//! Who is to blame where no equilibrium was found: where forces are farthest from balance, and which stiffnesses are out of
-//! proportion there.
+//! Likely causes of a failure to find equilibrium: the location of the largest residual, and disproportionate stiffnesses
+//! there.
 
 use thiserror::Error;
 
@@ -16,7 +16,7 @@ use crate::linear::LinearFailure;
 use crate::model::text::number;
 use crate::model::{Body, Model, Step};
 
-/// Why one increment failed; a smaller one may succeed.
+/// Reason why an increment failed; a smaller one may succeed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum IncrementFailure {
@@ -37,10 +37,10 @@ pub enum IncrementFailure {
         /// number of augmentations
         passes: usize,
     },
-    /// The velocities of an explicit run are not finite any more.
+    /// The velocities of an explicit run are no longer finite.
     #[error("the motion grows without bound: lower the safety of the explicit scheme, or check loads and supports")]
     Unbounded,
-    /// An element collapsed in explicit increments of any length.
+    /// An element collapsed in explicit increments of any allowed length.
     #[error(
         "{0}, with shorter increments as well: the mesh collapses there; strike or drive it more slowly, make it finer \
          or stiffer there, give the body viscosity (damping.stiffness), or a law that resists collapse (neo_hookean, \
@@ -55,11 +55,11 @@ pub enum IncrementFailure {
     Slip {
         /// contact pair
         contact: String,
-        /// place of the point
+        /// x coordinate of the point
         x: f64,
-        /// place of the point
+        /// y coordinate of the point
         y: f64,
-        /// what is wrong there
+        /// description of the defect
         why: String,
     },
     /// A body is not constrained.
@@ -78,14 +78,14 @@ fn density_hint(cause: &LinearFailure) -> &'static str {
 }
 
 impl IncrementFailure {
-    /// Whether shorter explicit increments have a chance: an element collapsed, or the motion grew without bounds.
+    /// Whether shorter explicit increments may succeed: an element collapsed, or the motion diverged.
     #[doc(hidden)]
     pub fn is_collapse(&self) -> bool {
         use TrialFailure::{Crushed, Inverted, Material};
         matches!(self, Self::Unbounded | Self::Start(Inverted { .. } | Crushed { .. } | Material { .. }))
     }
 
-    /// The failure after shorter increments have not helped.
+    /// Returns the failure after shorter increments have not helped.
     #[doc(hidden)]
     pub fn after_all(self) -> Self {
         match self {
@@ -94,7 +94,7 @@ impl IncrementFailure {
         }
     }
 
-    /// Kind of the failure, in a few words that can be counted.
+    /// Short name of the failure, for counting.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Newton(NewtonFailure::Evaluation(failure)) | Self::Start(failure) | Self::Collapsed(failure) => {
@@ -112,7 +112,7 @@ impl IncrementFailure {
         }
     }
 
-    /// Whether a smaller increment has a chance.
+    /// Whether a smaller increment may succeed.
     #[doc(hidden)]
     pub fn is_retryable(&self) -> bool {
         match self {
@@ -133,13 +133,13 @@ fn kind_of_trial(failure: &TrialFailure) -> &'static str {
     }
 }
 
-/// A penalty is this many times (λ + 2G)/h where it is suspected; 10 is the default.
+/// Ratio of a penalty to (λ + 2G)/h above which it is suspected; the default is 10.
 const STIFF: f64 = 1e4;
 
-/// Poisson's ratio from which elements that are integrated in full lock.
+/// Poisson's ratio above which fully integrated elements lock.
 const LOCKS: f64 = 0.49;
 
-/// Likely causes of a failure besides its message: empty where the message says it all.
+/// Likely causes of a failure in addition to its message; empty if the message is sufficient.
 pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &IncrementFailure) -> String {
     let unbalanced = match cause {
         IncrementFailure::Newton(NewtonFailure::Evaluation(_)) | IncrementFailure::ContactLost(_) => None,
@@ -168,7 +168,7 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
     causes.map(|cause| format!("; {cause}")).collect()
 }
 
-/// The free node with the largest force out of balance.
+/// The free node with the largest residual force.
 fn worst_node(model: &Model, step: &Step, residual: &[f64]) -> Option<usize> {
     let free = free(model, step, residual);
     let size = |node: &usize| free[2 * node].hypot(free[2 * node + 1]);
@@ -176,7 +176,7 @@ fn worst_node(model: &Model, step: &Step, residual: &[f64]) -> Option<usize> {
     (size(&worst) > 0.0).then_some(worst)
 }
 
-/// A penalty far above the stiffness of the bodies: their own forces are round-off beside those of contact.
+/// A penalty far above the stiffness of the bodies, whose forces then are below the round-off of contact forces.
 fn penalty(pair: &ContactPair) -> Option<String> {
     let alpha_t = pair.laws.iter().map(|law| law.description.stiffness).fold(0.0, f64::max);
     let (name, value) = if alpha_t > pair.alpha_n { ("alpha_t", alpha_t) } else { ("alpha_n", pair.alpha_n) };

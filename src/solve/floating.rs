@@ -1,8 +1,8 @@
-//! Bodies that nothing holds: motions without resistance, named.
+//! Detection of unconstrained rigid-body modes, which are reported by name.
 //!
-//! The rigid motions Φ of all bodies (x, y, rotation) are tried on the tangent: A = Φᵀ K Φ, scaled by ΦᵀD Φ with D the
-//! diagonal of |K|. A vanishing singular value of A is a motion that meets no force. Groups of bodies that K does not
-//! couple are tried one by one. A node outside all bodies has its own two motions, which are tried on its block of K.
+//! The rigid motions Φ of all bodies (x, y, rotation) are tested on the tangent: A = Φᵀ K Φ, scaled by ΦᵀD Φ with D the
+//! diagonal of |K|. A vanishing singular value of A is a motion without resistance. Groups of bodies not coupled by K
+//! are tested separately. A node outside all bodies has two motions of its own, tested on its block of K.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,35 +17,36 @@ use crate::model::Model;
 /// Relative stiffness below which a motion counts as free: far above round-off, far below any contact penalty.
 const FREE: f64 = 1e-12;
 
-/// Share of the stiffest entry below which an equation is fulfilled: far above round-off, far below the equation of a plate.
+/// Residual below which an equation counts as fulfilled, relative to the stiffest entry: far above round-off, far below the
+/// equation of a platen.
 const FULFILLED: f64 = 1e-9;
 
-/// Parts of a group whose singular values cost nothing.
+/// Number of parts up to which singular values are computed directly.
 const FEW_PARTS: usize = 8;
 
-/// Inverse iterations; each brings out the null motion by another 1/√ε.
+/// Number of inverse iterations; each amplifies the null motion by another 1/√ε.
 const ITERATIONS: usize = 4;
 
-/// (√5 − 1)/2: its multiples are spread evenly over the fractions.
+/// (√5 − 1)/2, whose multiples are evenly distributed modulo 1.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Motions that are named.
+/// Maximum number of motions reported by name.
 const MOST_NAMED: usize = 6;
 
 const MOTIONS: [&str; 3] = ["along x", "along y", "in rotation"];
 
-/// The first motion that the tangent at `u` does not resist, in words.
+/// Describes the first motion that the tangent at `u` does not resist.
 pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
     null_motion_of_bodies(model, u, tangent).or_else(|| null_motion_of_a_node(model, tangent))
 }
 
-/// A null motion of the first group of parts that has one.
+/// Null motion of the first group of parts that has one.
 fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
     let parts = Parts::of(model);
     let resistance = Resistance::new(model, &parts, u, tangent)?;
     resistance.groups().iter().find_map(|group| {
         let motion = resistance.null_motion(group)?;
-        // Followers of plates have equations that are no forces: Φᵀ K Φ may vanish where K Φ does not.
+        // Followers of platens have equations other than forces: Φᵀ K Φ may vanish where K Φ does not.
         if !model.linkage.is_empty() && resistance.moves_equations(model, &parts, u, tangent, group, &motion) {
             return None;
         }
@@ -53,7 +54,7 @@ fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Op
     })
 }
 
-/// Bodies that share nodes move as one part.
+/// Parts of the model: bodies that share nodes move as one part.
 struct Parts {
     /// Bodies of each part
     bodies: Vec<Vec<usize>>,
@@ -115,15 +116,15 @@ impl Resistance {
         Some(Self { blocks, scales, parts: parts.bodies.len() })
     }
 
-    /// Parts that are coupled, directly or through others.
+    /// Groups of parts that are coupled, directly or through others.
     fn groups(&self) -> Vec<Vec<usize>> {
         let mut joined = Joined::new(self.parts);
         self.blocks.keys().for_each(|&(row, column)| joined.join(row, column));
         joined.groups()
     }
 
-    /// Motion of the parts of a group, three numbers each, that meets no resistance: by singular values in a small group, by
-    /// inverse iteration with sparse factors in a large one, in which a vanishing pivot is replaced by √ε.
+    /// Motion of the parts of a group, three numbers each, without resistance: by singular values in a small group, by
+    /// inverse iteration with sparse factors in a large one, where a vanishing pivot is replaced by √ε.
     fn null_motion(&self, group: &[usize]) -> Option<DVector<f64>> {
         if group.len() <= FEW_PARTS {
             let size = 3 * group.len();
@@ -137,7 +138,7 @@ impl Resistance {
         let matrix = self.sparse(group);
         let mut solver = Multifrontal::default();
         solver.factorize(&matrix).ok()?;
-        // No motion of a few parts is at right angles to this one.
+        // No motion of a few parts is orthogonal to this one.
         let mut motion: Vec<f64> = (0..matrix.size()).map(|dof| 1.0 + (dof as f64 * GOLDEN).fract()).collect();
         for _ in 0..ITERATIONS {
             solver.solve(&mut motion);
@@ -150,7 +151,7 @@ impl Resistance {
         None
     }
 
-    /// Whether a motion of a group leaves equations of K that it does not fulfil.
+    /// Whether a motion of a group violates equations of K.
     fn moves_equations(
         &self,
         model: &Model,
@@ -173,7 +174,7 @@ impl Resistance {
         norm(&tangent.multiply(&way)) > FULFILLED * stiffest * norm(&way)
     }
 
-    /// A of a group, two nodes of two dofs for the three motions of a part; the fourth dof is held.
+    /// A of a group, two nodes of two dofs for the three motions of a part; the fourth dof is fixed.
     fn sparse(&self, group: &[usize]) -> SparseMatrix {
         let place: BTreeMap<usize, usize> = group.iter().enumerate().map(|(k, &part)| (part, k)).collect();
         let within =
@@ -212,7 +213,7 @@ fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String
     })
 }
 
-/// A direction without stiffness: an axis, or the null vector of the block scaled to a unit diagonal.
+/// A direction without stiffness: an axis, or the null vector of the block scaled to unit diagonal.
 fn free_direction(stiffness: &Matrix2<f64>) -> Option<Vector2<f64>> {
     let scale = stiffness.diagonal().map(|k| k.abs().sqrt());
     if let Some(axis) = (0..2).find(|&axis| scale[axis] == 0.0) {
@@ -227,7 +228,7 @@ fn free_direction(stiffness: &Matrix2<f64>) -> Option<Vector2<f64>> {
     (value < FREE).then_some(direction)
 }
 
-/// Motion of every node with its part along x, along y, and about the part's centre; none outside all bodies.
+/// Motion of every node with its part along x, along y, and about the part's centre; zero outside all bodies.
 fn rigid_motions(parts: &Parts, x: &Configuration) -> Vec<Matrix2x3<f64>> {
     let mut centres = vec![(Vector2::zeros(), 0.0); parts.bodies.len()];
     let owned = || parts.of_node.iter().enumerate().filter_map(|(node, part)| Some((node, (*part)?)));

@@ -1,5 +1,5 @@
-//! Solving the equations of one increment: Newton's method, the contact iteration, the augmented Lagrangian, and what
-//! holds bodies that float.
+//! Solution of the equations of one increment: Newton's method, contact iteration, augmented Lagrangian method, and detection
+//! of unconstrained rigid-body modes.
 
 pub mod condensed_newton;
 pub mod contact_iteration;
@@ -20,25 +20,25 @@ use condensed_newton::CondensedNewton;
 use contact_iteration::{Acted, ContactIteration};
 use newton::Iteration;
 
-/// Data kept from one increment to the next to save work; they do not change any result.
+/// Data reused from one increment to the next to save work, without effect on any result.
 pub struct Workspace {
-    /// assembles the equations
+    /// assembler of the equations
     pub assembler: Assembler,
-    /// what its linear solves hand down to each other
+    /// contact iteration
     iteration: ContactIteration,
-    /// solves them
+    /// linear solver
     pub solver: Box<dyn LinearSolver>,
     pub(crate) system: System,
-    /// Linear bodies condensed on the nodes at contacts, where that is worth it
+    /// Linear bodies condensed on the contact nodes, if that pays
     interface: Option<CondensedNewton>,
-    /// Contact states to which the motion before the last attempt would have led, had it gone on
+    /// Contact states predicted by continuing the motion before the last attempt
     pub foreseen: Vec<Vec<ContactState>>,
     /// Seconds spent in linear solves
     pub linear_seconds: f64,
 }
 
 impl Workspace {
-    /// A workspace for a model.
+    /// Creates the workspace of a model.
     pub fn new(model: &Arc<Model>, solver: Box<dyn LinearSolver>) -> Self {
         let assembler = Assembler::new(model);
         let system = assembler.system();
@@ -53,7 +53,7 @@ impl Workspace {
         }
     }
 
-    /// Whether linear bodies are condensed on the nodes at contacts in a step.
+    /// Whether linear bodies are condensed on the contact nodes in a step.
     pub fn condenses(&self, step: &Step) -> bool {
         self.interface.is_some() && is_linear(self.assembler.model(), step)
     }
@@ -67,13 +67,13 @@ pub struct IterationRecord {
     pub newton: Iteration,
     /// contact states after the correction
     pub contacts: ContactCounts,
-    /// points that the correction brought back to the status which the one before it had changed
+    /// points whose status returned to that before the previous correction
     pub flips: usize,
-    /// number of the pass of the augmented Lagrangian; 1 for the plain penalty
+    /// number of the augmentation; 1 for the plain penalty method
     pub pass: usize,
-    /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
+    /// ‖stabilizing forces‖/‖all forces‖ after the correction [-]
     pub stabilization: f64,
-    /// what the aids did in its tangent
+    /// actions of the aids in its tangent
     #[doc(hidden)]
     pub acted: Acted,
 }

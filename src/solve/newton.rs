@@ -1,34 +1,33 @@
-//! Newton's method for r(u) = 0; knows no finite elements.
+//! Newton's method for r(u) = 0, independent of finite elements.
 //!
 //! ```text
 //! K(u_k) Δu = −r(u_k),   u_{k+1} = u_k + Δu        until every part has ‖r‖ ≤ tolerance × ‖f‖
 //! ```
 //!
-//! The tangent is consistent, so the residual falls quadratically near the solution. What the parts are, and which residuals
-//! round-off leaves, is for those to say who know the equations ([`System::imbalance`]). No start value is accepted without a
-//! linear solve: what it still lacks within the tolerance would add up from increment to increment.
+//! The tangent is consistent, so the residual falls quadratically near the solution. The parts of the equations, and residuals
+//! caused by round-off, are defined by the caller ([`System::imbalance`]). No start value is accepted without a linear solve:
+//! its error within the tolerance would accumulate from increment to increment.
 //!
-//! Where the equations have kinks, as friction has between sticking and slipping either way, the corrections of consistent
-//! tangents may go round in a cycle. If the residual does not fall any more, the next ones go only as far as they lead
-//! downhill:
+//! Where the equations have kinks, as friction has between sticking and slip in either direction, the corrections by consistent
+//! tangents may form a cycle. If the residual stalls, the following corrections are limited to their descending part:
 //!
 //! ```text
 //! u_{k+1} = u_k + α Δu,   s(α) = Δu·r(u_k + α Δu),   |s(α)| ≤ 0.1 |s(0)|
 //! ```
 //!
-//! s is the work of the forces that are out of balance, as those say who know which equations are forces. With a potential,
-//! r = ∂Π/∂u, it is the slope of Π along Δu, and Π falls by every correction. Switch `downhill`; `aid_downhill`
-//! is 1 where a correction was searched.
+//! s is the work of the residual forces, as defined by the caller, who knows which equations are forces. With a potential,
+//! r = ∂Π/∂u, it is the slope of Π along Δu, and Π decreases by every correction. Switch `downhill`; `aid_downhill`
+//! is 1 where a line search was made.
 //! Source: Matthies & Strang (1979), The solution of nonlinear finite element equations, doi:10.1002/nme.1620141104.
 //!
-//! Near the solution the tangent of the iterate before is nearly as good as a new one, and its factors are there. A correction
-//! with them is made where the last gains promise the solution in three of them; it counts as a linear solve (`factorized` is
-//! 0 in `newton.csv`) and saves a tangent and its factors. Switch `old_tangents`. Source: the modified Newton's method, chosen
-//! by the gain foreseen as in Hairer & Wanner (1996), Solving Ordinary Differential Equations II, IV.8.
+//! Near the solution the tangent of the previous iterate is nearly as good as a new one, and its factors are available. A
+//! correction with them is made if the last reductions predict the solution within three of them; it counts as a linear solve
+//! (`factorized` is 0 in `newton.csv`) and saves a tangent and its factors. Switch `old_tangents`. Source: the modified Newton
+//! method, chosen by the predicted reduction as in Hairer & Wanner (1996), Solving Ordinary Differential Equations II, IV.8.
 //!
 //! # Line search
 //!
-//! How far to go along a correction of Newton's method.
+//! The line search finds the step length along a correction of Newton's method.
 
 use thiserror::Error;
 
@@ -39,17 +38,17 @@ use crate::model::text::count;
 /// Stopping criteria and options of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// ‖r‖/‖f‖ of every part of a solution [-]
+    /// Required ‖r‖/‖f‖ of every part of a solution [-]
     pub tolerance: f64,
-    /// Linear solves before giving up
+    /// Maximum number of linear solves
     pub max_iterations: usize,
-    /// Whether corrections with the factors of an earlier tangent are made
+    /// Whether factors of an earlier tangent may be used
     pub old_tangents: bool,
-    /// Whether corrections go only downhill where the residual stalls
+    /// Whether a line search is made where the residual stalls
     pub downhill: bool,
 }
 
-/// One linear solve, and where it led.
+/// Record of one linear solve and its result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Iteration {
@@ -59,17 +58,17 @@ pub struct Iteration {
     pub correction: f64,
     /// ‖K Δu + r‖/‖r‖ of the linear solve [-]
     pub linear_residual: f64,
-    /// Whether K is new; if not, it is that of an earlier iterate
+    /// Whether K was factorized anew; otherwise the factors are those of an earlier iterate
     pub factorized: bool,
-    /// Pivots of K that vanished and were replaced
+    /// Number of vanishing pivots of K that were replaced
     pub perturbed_pivots: usize,
-    /// Whether the fronts of K were not exact enough, and another solver took over
+    /// Whether the factors of K were too inaccurate, and another solver was used
     pub fallback: bool,
     /// Whether a line search was made along the correction
     pub searched: bool,
 }
 
-/// Why no solution was found; `E` is why the equations could not be evaluated.
+/// Reason why no solution was found; `E` is the failure of an evaluation.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum NewtonFailure<E> {
@@ -79,7 +78,7 @@ pub enum NewtonFailure<E> {
     /// The linear system has no solution.
     #[error("{0}")]
     Linear(#[from] LinearFailure),
-    /// Numbers beyond double precision, against which any residual would look small.
+    /// Numbers beyond double precision, relative to which any residual would look small.
     #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
     Overflow,
     /// The residual diverges.
@@ -90,7 +89,7 @@ pub enum NewtonFailure<E> {
         /// linear solves so far
         iterations: usize,
     },
-    /// The iterations are used up.
+    /// The maximum number of iterations was reached.
     #[error("no equilibrium within {} (relative residual {residual:.1e})", count(*iterations, "iteration"))]
     TooManyIterations {
         /// last relative residual
@@ -100,25 +99,25 @@ pub enum NewtonFailure<E> {
     },
 }
 
-/// The iterations made, and the solution or why there is none.
+/// Iterations made, and the solution or the reason why there is none.
 pub type Iterated<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
 
-/// Growth of the residual over its largest start value that counts as divergence.
+/// Ratio of the residual to the largest of the first ones that counts as divergence.
 const DIVERGENCE: f64 = 1e4;
 
-/// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
+/// Largest ratio of the remaining residual of an old tangent to the previous one, and smallest reduction for its reuse.
 const OLD_TANGENT: f64 = 10.0;
 
-/// Most corrections with an old tangent that are worth saving the factors of a new one. The same for every model and
-/// machine: what a run computes must not depend on what its factors cost.
+/// Number of corrections with an old tangent up to which they cost less than the factors of a new one. It is the same for every
+/// model and machine: results must not depend on the cost of factors.
 const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
 
-/// Corrections in a row that leave the residual above its least until then, before it is searched along them. One alone
-/// is often the price of a contact that finds its place.
+/// Number of consecutive corrections without a new minimum of the residual before line searches start. A single one often
+/// occurs while the contact status adjusts.
 const STALLED: usize = 2;
 
-/// Solve r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement, `work` is that of a residual at `u`
-/// along a correction.
+/// Solves r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement, `work` returns the work of a
+/// residual at `u` along a correction.
 pub fn solve<E>(
     mut u: Vec<f64>,
     settings: Settings,
@@ -151,7 +150,7 @@ pub fn solve<E>(
                 Ok(()) => {}
                 Err(failure) if plan.factorized => return Err(NewtonFailure::Evaluation(failure)),
                 Err(_) => {
-                    // An old tangent led astray: the next correction starts from where this one did.
+                    // The old tangent failed: the next correction starts from the same iterate.
                     course.old_tangent_serves = false;
                     u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= x);
                     evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
@@ -168,12 +167,12 @@ pub fn solve<E>(
 struct Plan {
     /// Whether a new tangent is factorized, instead of using earlier factors
     factorized: bool,
-    /// With a line search
+    /// Whether a line search is made
     searched: bool,
 }
 
 impl Plan {
-    /// The record of the correction that was made; its residual is not known yet.
+    /// Record of the correction; its residual is not known yet.
     fn iteration(self, solution: &Solution) -> Iteration {
         Iteration {
             residual: f64::NAN,
@@ -190,13 +189,13 @@ impl Plan {
 /// History of the iterations so far.
 struct Convergence {
     settings: Settings,
-    /// ‖r‖ of the first iterates, the largest
+    /// Largest ‖r‖ of the first iterates
     largest_start: f64,
     /// ‖r‖ and ‖r‖/‖f‖ before the last correction
     before: [f64; 2],
-    /// Near a kink of the equations an old tangent promises more than it keeps, every time.
+    /// False near a kink of the equations, where an old tangent repeatedly converges more slowly than predicted
     old_tangent_serves: bool,
-    /// The least ‖r‖ so far, and the corrections in a row that stayed above it
+    /// Smallest ‖r‖ so far, and number of consecutive corrections above it
     least: f64,
     stalled: usize,
     searches: bool,
@@ -215,7 +214,7 @@ impl Convergence {
         }
     }
 
-    /// Judge the iterate whose system is given: how to go on, nothing if it is the solution, or why to give up.
+    /// Judges the iterate of the given system: returns the next plan, `None` if it is the solution, or a failure.
     fn judge<E>(&mut self, iterations: &mut [Iteration], system: &System) -> Result<Option<Plan>, NewtonFailure<E>> {
         let (size, residual) = (norm(&system.residual), system.imbalance);
         let done = iterations.len();
@@ -242,7 +241,7 @@ impl Convergence {
         Ok(Some(self.plan(iterations.last(), size, residual)))
     }
 
-    /// Plan of the next correction, from the reduction by the corrections so far.
+    /// Plans the next correction, from the reduction by the corrections so far.
     fn plan(&mut self, last: Option<&Iteration>, size: f64, residual: f64) -> Plan {
         let Settings { tolerance, old_tangents, downhill, .. } = self.settings;
         self.stalled = if size < self.least { 0 } else { self.stalled + 1 };
@@ -267,7 +266,7 @@ fn correction(factorized: bool, solver: &mut dyn LinearSolver, system: &System) 
     }
 }
 
-/// Share of the residual that a correction has left: of the whole, or of what the worst part lacks if that is more.
+/// Fraction of the residual left by a correction: of the whole, or of the worst part's excess if that is larger.
 fn gain(size: f64, residual: f64, before: [f64; 2]) -> f64 {
     (size / before[0]).max(residual / before[1])
 }
@@ -277,19 +276,19 @@ fn corrections_left(size: f64, left: f64, allowed: f64) -> f64 {
     if left < 1.0 { (allowed / size).ln() / left.ln() } else { f64::INFINITY }
 }
 
-/// |s(α)|/|s(0)| at which a search along a correction ends.
+/// |s(α)|/|s(0)| at which a line search ends.
 const LEVEL: f64 = 0.1;
 
-/// Most evaluations of a search along a correction.
+/// Maximum number of evaluations in a line search.
 const LONGEST_SEARCH: usize = 12;
 
-/// Line search: step length along a correction, as a fraction of it: to where `slope` is near 0, or all of it if that
-/// is not beyond. It is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where
-/// that fails: forces that stick in a narrow range make the slope steep there.
+/// Line search: step length as a fraction of the correction, up to where `slope` is near 0, or 1 if that is not exceeded.
+/// `slope` is NaN where the equations cannot be evaluated. Regula falsi (Illinois), with bisection where that fails: forces
+/// that stick in a narrow range make the slope steep there.
 fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
     let level = |s: f64| s.abs() <= LEVEL * start.abs();
     let end = slope(1.0);
-    // A correction that does not start downhill was not made for this.
+    // Only corrections that start downhill are searched.
     if start >= 0.0 || end <= 0.0 || level(end) {
         return 1.0;
     }
@@ -302,7 +301,7 @@ fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
         if level(s) {
             break;
         }
-        // The end that stays a second time counts half.
+        // An end that is retained a second time counts half (Illinois rule).
         let stays = if s.signum() == side { 0.5 } else { 1.0 };
         side = s.signum();
         if s < 0.0 {

@@ -1,14 +1,14 @@
-//! Accepting an increment, whatever the scheme: what was evaluated at its end becomes the state, and the audit of energies
-//! is kept.
+//! Acceptance of an increment, for every scheme: the quantities evaluated at its end become the new state, and the energy
+//! audit is updated.
 
 use crate::equations::evaluation::Flows;
 use crate::equations::{Evaluation, contacts};
 use crate::model::state::State;
 use crate::model::{Model, Step};
 
-/// Make `state` that at `time` and the displacement `u`, with forces, reactions, damping, contacts and memory as `found` there. The
-/// state's velocities and accelerations are the caller's, who knows the scheme; what they store, see [`take_stock`]. The
-/// buffers are exchanged: `u` and `found` are left with the values of before.
+/// Sets `state` to `time` and the displacement `u`, with forces, reactions, damping, contacts and internal variables as `found`
+/// there. The caller, who knows the scheme, sets velocities and accelerations; see [`take_stock`] for the stored energies. The
+/// buffers are exchanged: `u` and `found` are left with the previous values.
 pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &mut Evaluation, state: &mut State) {
     for (support, reaction) in step.supports.iter().zip(&found.reactions) {
         support.at.add(*reaction, &mut found.loads);
@@ -31,8 +31,8 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     state.increment += 1;
 }
 
-/// Temperature jump at the start of a dynamic step, evaluated in `found`: new internal variables and stored energy of
-/// the bodies, and the work of the jump.
+/// Applies a temperature jump at the start of a dynamic step, evaluated in `found`: new internal variables and stored energy
+/// of the bodies, and the work of the jump.
 pub fn heat(step: &Step, found: &Evaluation, state: &mut State) {
     if !step.temperatures.is_empty() {
         state.memory.clone_from(&found.memory);
@@ -41,7 +41,7 @@ pub fn heat(step: &Step, found: &Evaluation, state: &mut State) {
     }
 }
 
-/// Kinetic and contact energy at the end of an increment; at the start of a run the energy balance begins with it.
+/// Updates kinetic and contact energy at the end of an increment; at the start of a run the energy balance begins with them.
 pub fn take_stock(model: &Model, kinetic: f64, state: &mut State) {
     state.energy.kinetic = kinetic;
     state.energy.contact_elastic = contacts::stored(model, &state.contacts);

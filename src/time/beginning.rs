@@ -1,11 +1,11 @@
-//! How a step begins: velocities that are given, and accelerations where what acts jumps.
+//! Start of a step: prescribed initial velocities, and new accelerations where loads jump.
 //!
 //! ```text
 //! M a₀ = −F₀ at the free dofs; a₀ of the supports at the prescribed ones, whose reaction is F₀ + M a₀               (1)
 //! ```
-//! Within a step no acceleration is found anew: HHT, generalized-α and Wilson-θ carry one that belongs to another moment, and lose
-//! their order without it. So where loads, dampers or temperatures jump as a step begins, (1) holds for the nodes that the mass
-//! couples with those where they do, and the others keep the acceleration they have.
+//! Within a step no acceleration is recomputed: HHT, generalized-α and Wilson-θ carry an acceleration of another time, and lose
+//! their order without it. Where loads, dampers or temperatures jump at the start of a step, (1) is solved for the affected
+//! nodes and those coupled with them by the mass; all other nodes keep their acceleration.
 
 use super::accept::{heat, take_stock};
 use super::increment::kinetic;
@@ -20,17 +20,17 @@ use crate::model::{Model, Step};
 use crate::solve::Workspace;
 use crate::solve::failure::IncrementFailure;
 
-/// Begin a step: remember displacements and reactions, and find the forces and accelerations that the run or dynamics
-/// starts with.
+/// Starts a step: stores displacements and reactions, and computes the initial forces and accelerations of a run or of a
+/// dynamic step.
 ///
 /// # Errors
-/// [`IncrementFailure`] when the initial state cannot be evaluated or a body has no mass.
+/// Returns [`IncrementFailure`] if the initial state cannot be evaluated or a body has no mass.
 pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, IncrementFailure> {
     let mut state = old.clone();
     state.begin_step();
-    // Explicit increments leave the forces of copies with them.
+    // Explicit increments leave the forces on tied copies of nodes.
     model.ties.gather(2, &mut state.force);
-    // The reaction of a freed support has become a load.
+    // The reaction of a released support has become a load.
     step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
     launch(model, step, &mut state);
     if step.scheme.is_dynamic() {
@@ -54,18 +54,18 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     Ok(state)
 }
 
-/// Changes of the kinetic energy by prescribed velocities, or by the end of mass lumping, count as external work.
+/// Books changes of the kinetic energy by prescribed velocities, or by the end of mass lumping, as external work.
 fn moves_anew(step: &Step, state: &mut State, work: &mut Workspace) {
     let kinetic = kinetic(step, state, work);
     state.energy.external_work += kinetic - state.energy.kinetic;
     state.energy.kinetic = kinetic;
 }
 
-/// New accelerations within a step if the caller has changed its loads or dampers, or freed a support; none if they go
-/// on.
+/// Recomputes accelerations within a step if the caller has changed its loads or dampers or released a support, and only
+/// then.
 ///
 /// # Errors
-/// As [`begin`].
+/// The same as for [`begin`].
 pub fn after_change(
     model: &Model,
     step: &Step,
@@ -84,7 +84,7 @@ pub fn after_change(
     Ok(Some(state))
 }
 
-/// Give what supports hold when a run begins, and was given a velocity with its body, that of the support.
+/// Gives supported dofs the velocity of their support if the run starts with initial velocities of bodies.
 pub fn keep_to_supports(model: &Model, step: &Step, dt: f64, state: &mut State) {
     if state.increment > 0 {
         return;
@@ -102,7 +102,7 @@ pub fn keep_to_supports(model: &Model, step: &Step, dt: f64, state: &mut State) 
     }
 }
 
-/// Give nodes the velocities that they take when a step begins, where no support says how they move.
+/// Sets the prescribed initial velocities of nodes at the start of a step, except where a support prescribes the motion.
 pub fn launch(model: &Model, step: &Step, state: &mut State) {
     let inclined = step.supports.iter().map(|support| support.at).filter(|at| at.inclined.is_some());
     let held: Vec<(Direction, f64)> = inclined.map(|at| (at, at.of(&state.velocity))).collect();
@@ -123,15 +123,15 @@ fn rests(state: &State) -> bool {
     state.acceleration.iter().all(|a| *a == 0.0)
 }
 
-/// Share of a value that round-off may leave of it: of a reaction across its direction, of a load that does not jump.
+/// Relative round-off in a value: in a reaction across its direction, or in a load that does not jump.
 const ROUNDED: f64 = 1e-12;
 
-/// Share of the largest force that round-off may leave of any.
+/// Round-off in any force, relative to the largest force.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
-/// At which nodes loads, dampers or temperatures are others in the state that begins than those with which the last increment ended
-/// there, whatever their kind, or a reaction is gone: without new accelerations the old ones would go on for half an increment.
-/// Where a step is cut in two nothing jumps.
+/// Nodes at which loads, dampers, temperatures or reactions at the start of the step differ from those at the end of the last
+/// increment, of whatever kind. Without new accelerations the old ones would persist for half an increment. Splitting a step
+/// in two creates no jump.
 fn jumps(step: &Step, old: &State, state: &State, work: &mut Workspace) -> Result<Vec<bool>, IncrementFailure> {
     let mut now = state.clone();
     evaluate_forces(step, &mut now, work)?;
@@ -163,7 +163,7 @@ fn jumps(step: &Step, old: &State, state: &State, work: &mut Workspace) -> Resul
     Ok(anew)
 }
 
-/// Whether a value jumps, by more than round-off of it, of another `beside` it and of the largest of its kind.
+/// Whether a value jumps by more than its round-off, that of the value `beside` it and that of the largest of its kind.
 fn differ([before, after]: [f64; 2], beside: f64, largest: f64) -> bool {
     let size = before.abs().max(after.abs()).max(beside.abs());
     (after - before).abs() > ROUNDED * size + ROUND_OFF * largest
@@ -173,7 +173,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
 }
 
-/// Nodes with a reaction that is free from now on: without it, accelerations jump.
+/// Nodes whose reaction is released; without it, accelerations jump.
 fn freed(step: &Step, old: &State) -> impl Iterator<Item = usize> {
     let reaction = |at: Direction| at.of(&old.reaction).abs();
     let held = move |dof: usize| {
@@ -185,10 +185,10 @@ fn freed(step: &Step, old: &State) -> impl Iterator<Item = usize> {
     (0..old.reaction.len()).filter(free).map(|dof| dof / 2)
 }
 
-/// Take up a step again after explicit increments within it.
+/// Resumes a step after explicit increments within it.
 ///
 /// # Errors
-/// [`IncrementFailure`] when the state cannot be evaluated or a body has no mass.
+/// Returns [`IncrementFailure`] if the state cannot be evaluated or a body has no mass.
 pub fn go_on(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, IncrementFailure> {
     let mut state = State { last_increment: None, ..old.clone() };
     if step.scheme.is_dynamic() {
@@ -201,8 +201,8 @@ pub fn go_on(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     Ok(state)
 }
 
-/// Accelerations by (1), and the forces that go with them, of the nodes `anew` and of all that the mass couples with them: loads may
-/// set in with a jump.
+/// Computes accelerations by (1), and the corresponding forces, for the nodes `anew` and all nodes coupled with them by the
+/// mass; loads may start with a jump.
 fn start_dynamics(
     model: &Model,
     step: &Step,
@@ -247,7 +247,7 @@ fn start_dynamics(
     Ok(())
 }
 
-/// Take over the values of `now` at the nodes that begin anew; the others stay bitwise the same.
+/// Copies the values of `now` at the affected nodes; all others stay bitwise the same.
 fn take_over(model: &Model, anew: &[bool], now: State, state: &mut State) {
     for dof in (0..model.dofs()).filter(|dof| anew[dof / 2]) {
         state.force[dof] = now.force[dof];
@@ -257,17 +257,17 @@ fn take_over(model: &Model, anew: &[bool], now: State, state: &mut State) {
     }
 }
 
-/// The forces at the start of a static run whose bodies are stressed or contacts closed already: loads and reactions balance
-/// them.
+/// Computes the forces at the start of a static run with initial stress or closed contacts, balanced by loads and
+/// reactions.
 fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
-    // Statics bring temperatures in with the first increment.
+    // Static steps apply temperatures with the first increment.
     evaluate_forces(&Step { temperatures: Vec::new(), ..step.clone() }, state, work)?;
     let force = links::relieved(work.assembler.model(), &state.displacement, &state.force);
     step.supports.iter().for_each(|support| support.at.add(support.at.of(&force), &mut state.external));
     Ok(())
 }
 
-/// Forces of the state as it is, under the loads that the step puts on it at this time.
+/// Evaluates the forces of the unchanged state under the loads of the step at this time.
 fn evaluate_forces(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
     let quasi_static = Step { scheme: Scheme::Static, ..step.clone() };
     let trial = Trial::new(state, &quasi_static, state.time, 0.0);

@@ -10,9 +10,9 @@ use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
 use crate::solve::{IterationRecord, Workspace};
 
-/// Solve one increment of length `dt` from the state `old`; pure but for the workspace's buffers.
+/// Solves one increment of length `dt` from the state `old`; pure except for the buffers of the workspace.
 ///
-/// The record of the iterations comes back from a failed attempt as well.
+/// The iteration record is returned for a failed attempt as well.
 pub fn advance(
     model: &Model,
     step: &Step,
@@ -20,7 +20,7 @@ pub fn advance(
     dt: f64,
     work: &mut Workspace,
 ) -> (Vec<IterationRecord>, Result<State, IncrementFailure>) {
-    // The last increment of a step ends on its end, not within round-off of it.
+    // The last increment of a step ends exactly at its end, without round-off.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let increment = Trial::new(old, step, time, time - old.time);
     let (iterations, equilibrium) = augment(model, increment.ahead(), work);
@@ -29,8 +29,8 @@ pub fn advance(
     (iterations, new)
 }
 
-/// Displacement at the end of an increment from the equilibrium `u` that was just found ahead of it, and everything
-/// else evaluated there; `u` itself unless the scheme looks beyond the end.
+/// Displacement at the end of an increment, and everything else evaluated there, from the equilibrium `u` found at the time
+/// of the scheme; `u` itself unless the scheme looks beyond the end.
 fn reach_end(model: &Model, end: Trial, beyond: Vec<f64>, work: &mut Workspace) -> Result<Vec<f64>, IncrementFailure> {
     let Trial { old, step, dt, .. } = end;
     let theta = step.scheme.theta();

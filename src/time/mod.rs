@@ -1,4 +1,4 @@
-//! From one accepted state to the next: implicit and explicit increments, and how long they are.
+//! Time integration: one accepted state to the next by implicit or explicit increments, and their length.
 
 mod accept;
 pub mod beginning;

@@ -1,43 +1,43 @@
-//! How long an increment is: whether a solved one is accepted, and the length of the next attempt.
+//! Step-size control: acceptance of a solved increment, and the length of the next attempt.
 //!
-//! Without error control every solved increment is accepted, and the next one is longer if few tangents did it (corrections with
-//! an old tangent do not count: whether they are made is a question of cost); but static increments must know friction after
-//! touch ([`super::touching`]).
+//! Without error control every solved increment is accepted, and the next one is longer if few tangents were needed
+//! (corrections with an old tangent do not count: whether they are made is a question of cost). Static increments must also
+//! resolve friction after closure ([`super::touching`]).
 //!
-//! With error control of a static step, the slip of every closed point is in error by no more than ε in an increment, by the
-//! estimate ½ Δt |v₁ − v₀| with the mean rates v of plastic slip in this increment and the last: laws that know time are
-//! integrated to first order. As it falls with Δt², the next attempt takes Δt (ε/e)^½, with a margin.
+//! With error control of a static step, the slip of every closed point is in error by at most ε in an increment, by the
+//! estimate ½ Δt |v₁ − v₀| with the mean rates v of plastic slip in this increment and the last: time-dependent laws are
+//! integrated to first order. As it falls with Δt², the next attempt takes Δt (ε/e)^½, with a safety factor.
 //!
-//! With error control of a dynamic step, ε being the error allowed:
+//! With error control of a dynamic step, ε being the allowed error:
 //!
-//! - The estimated local error e of [`crate::model::scheme`] must not exceed ε in any free displacement. As e falls with Δt³, the
-//!   next attempt takes Δt (ε/e)^⅓, with a margin. Accepted increments keep their length where the gain is small.
-//! - An increment in which a contact as a whole begins to slip, stops or turns round is repeated with half its length
-//!   until no point that takes part slips by more than 10 ε in it: the event is then known to 10 ε of displacement.
-//!   A point's direction is ±1, that of its plastic slip, if its slip rate at the end of the increment still goes that
-//!   way, else 0; a contact has that of its points if the mean over the closed length exceeds ½ in size. What a point
-//!   slips is its plastic slip in the increment and, if it comes from slip, what it would have slipped at its last rate.
-//!   So a contact that swings to and fro in stick has no events.
-//! - An increment after a repeated one does not grow. Halves that are accepted thus walk up to the event and never jump
-//!   over it, and every attempt either moves on or halves the increment.
+//! - The estimated local error e of [`crate::model::scheme`] must not exceed ε in any free displacement. As e falls with Δt³,
+//!   the next attempt takes Δt (ε/e)^⅓, with a safety factor. Accepted increments keep their length where the gain is small.
+//! - An increment in which a contact as a whole starts to slip, stops or reverses is repeated with half its length until no
+//!   participating point slips by more than 10 ε in it: the event is then located to 10 ε of displacement. A point's direction
+//!   is ±1, that of its plastic slip, if its slip rate at the end of the increment still has that sign, otherwise 0; a contact
+//!   has the mean direction of its points if the mean over the closed length exceeds ½ in magnitude. A point's slip is its
+//!   plastic slip in the increment and, if it slipped before, its slip at the last rate. A contact that oscillates while
+//!   sticking therefore has no events.
+//! - An increment after a repeated one does not grow. Accepted halves thus approach the event without passing it, and
+//!   every attempt either advances or halves the increment.
 //! - Where linear bodies are condensed on contacts, lengths are those of a ladder (below).
-//! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
+//! - The shortest increment is accepted whatever its error; a warning reports an error above ε.
 //!
-//! Nothing much larger than ε can be stepped over unseen: e is a fixed share, a quarter or more unless β is near 1/6, of
-//! what the new displacement differs from the one extrapolated with the old velocity and acceleration ((6) of
-//! [`crate::model::scheme`]), and a slip, an arrest or an impact changes the displacement by all it moves. Only what comes and
-//! goes within one increment, such as a short pulse of a load, needs a `max` that meets it.
+//! Nothing much larger than ε can pass undetected: e is a fixed fraction, a quarter or more unless β is near 1/6, of the
+//! difference between the new displacement and the one extrapolated with the old velocity and acceleration ((6) of
+//! [`crate::model::scheme`]), and a slip, an arrest or an impact contributes its full displacement. Only what begins and ends
+//! within one increment, such as a short load pulse, needs a suitable `max`.
 //!
 //! # Ladder
 //!
-//! Lengths of increments that are used again and again: where linear bodies are condensed on contacts, what was eliminated
-//! for one length serves for all increments of it.
+//! The ladder is a set of increment lengths that recur: where linear bodies are condensed on contacts, the elimination for one
+//! length serves all increments of that length.
 //!
 //! ```text
 //! Δt = Δt₀ 2^(k/4),  k whole;   Δt₀: the initial increment of the step
 //! ```
 //!
-//! Rounded down by a fifth at most, a tenth in the mean.
+//! Lengths are rounded down by a fifth at most, a tenth on average.
 
 use crate::contact::force::ContactState;
 use crate::laws::friction::Regime;
@@ -45,26 +45,26 @@ use crate::model::state::State;
 use crate::model::{Increments, Model, Step};
 use crate::solve::Workspace;
 
-/// An increment solved with this many tangents or fewer, in every pass, was easy: the next one may be longer.
+/// Number of tangents, in every augmentation, up to which an increment counts as easy and the next one may be longer.
 const EASY: usize = 4;
 /// Growth of the increment after an easy one.
 const GROWTH: f64 = 1.5;
-/// An event is located to this many times the allowed error.
+/// Accuracy of an event, in multiples of the allowed error.
 pub const EVENT_LOCATION: f64 = 10.0;
-/// Part of the length that the error allows which is taken: the estimate is one of several terms.
+/// Safety factor on the length that the error allows; the estimate is one of several error terms.
 const SAFETY: f64 = 0.8;
-/// Most that one estimate shortens the next attempt: far from the solution the estimate is not of third order.
+/// Strongest reduction of the next attempt by one estimate: far from the solution the estimate is not of third order.
 pub(super) const LEAST_SHARE: f64 = 0.1;
-/// A change that is not worth having: increments of one length keep the orders of the scheme.
+/// Smallest useful change of length: increments of constant length keep the order of the scheme.
 const WORTHWHILE: f64 = 1.25;
 
-/// Most that one estimate lengthens the next attempt at the rest of an increment that is made in parts.
+/// Strongest growth by one estimate of the next attempt at the rest of a subdivided increment.
 pub(super) const MOST_SHARE: f64 = 4.0;
-/// Excess of what is left of a step over an increment that is not worth another one.
+/// Relative remainder of a step that is not worth another increment.
 const ROUND_OFF: f64 = 1e-6;
 
-/// An increment is as short as may be when it is this many times the shortest: sharing what is left of a step stretches it
-/// by less, and the times at its ends are rounded.
+/// An increment counts as the shortest up to this multiple of it: distributing the rest of a step stretches it by less, and
+/// the times at its ends are rounded.
 const SHORTEST: f64 = 1.0 + 10.0 * ROUND_OFF;
 
 /// Decision about a solved increment.
@@ -79,17 +79,17 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// Step control after an increment that was shortened only to end at an output time: the next one is not shortened
-    /// for it.
+    /// Adjusts the decision after an increment that was shortened only to end at an output time: the next one is not shortened
+    /// for that reason.
     pub fn after_output(self, attempt: usize, dt: f64, wanted: f64) -> Self {
         let shortened = attempt == 1 && self.accepted && dt < wanted && self.next >= dt;
         Self { next: if shortened { self.next.max(wanted) } else { self.next }, ..self }
     }
 }
 
-/// Δt of the next attempt within the bounds of the step. The last increment ends on the end of the step; under error
-/// control the last two share what is left, so that none is much shorter than the one before. The same where an increment
-/// must end on the way there, at a time of `output`.
+/// Δt of the next attempt within the bounds of the step. The last increment ends at the end of the step; under error
+/// control the last two divide the remainder evenly, so that none is much shorter than the one before. The same applies to
+/// an increment that must end earlier, at a time of `output`.
 pub fn bounded(step: &Step, time: f64, dt: f64, output: Option<f64>) -> f64 {
     let output = output.filter(|output| *output < step.span.end);
     let remaining = output.unwrap_or(step.span.end) - time;
@@ -104,8 +104,8 @@ pub(super) fn can_shorten(step: &Step, old: &State, new: &State) -> bool {
     new.time > old.time + SHORTEST * step.increments.min
 }
 
-/// Judge a solved increment from `old` to `new`, which took so many `tangents` in its hardest pass; `repeated` says that an
-/// attempt at it was given up before.
+/// Judges a solved increment from `old` to `new` with the number of `tangents` of its hardest augmentation; `repeated` says
+/// that an attempt at it was rejected before.
 pub fn judge(model: &Model, step: &Step, states: [&State; 2], tangents: usize, repeated: bool) -> Judgement {
     let (dt, easy) = (states[1].dt, tangents <= EASY);
     match step.increments.error {
@@ -115,7 +115,7 @@ pub fn judge(model: &Model, step: &Step, states: [&State; 2], tangents: usize, r
     }
 }
 
-/// Judge a static increment by the error of slip.
+/// Judges a static increment by the error of slip.
 fn judge_slip(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f64, repeated: bool) -> Judgement {
     let error = slip_error(model, old, new);
     let share = (SAFETY * (allowed / error).sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
@@ -125,7 +125,7 @@ fn judge_slip(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f64,
     Judgement { accepted, next, error: Some(error) }
 }
 
-/// Judge a dynamic increment by the error of displacements, and by its events.
+/// Judges a dynamic increment by the error of displacements and by its events.
 fn judge_motion(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f64, may_grow: bool) -> Judgement {
     let (dt, shortest) = (new.dt, step.increments.min);
     let error = local_error(model, step, old, new);
@@ -147,7 +147,7 @@ pub fn fastest_slip(model: &Model, old: &State, new: &State) -> f64 {
     let mut fastest = 0.0f64;
     for (pair, (old, new)) in model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts)) {
         for (slave, (old, new)) in pair.points.iter().zip(old.iter().zip(new)) {
-            // What slides freely has nothing to break.
+            // Frictionless contacts have no rupture.
             if !pair.law(slave).description.is_frictionless {
                 fastest = fastest.max((new.friction.plastic_slip - old.friction.plastic_slip).abs());
             }
@@ -156,7 +156,7 @@ pub fn fastest_slip(model: &Model, old: &State, new: &State) -> f64 {
     fastest / (new.time - old.time)
 }
 
-/// C Δt² |a₁ − a₀|, the largest of all free dofs; those without mass follow without error of their own [L].
+/// C Δt² |a₁ − a₀|, the largest of all free dofs; dofs without mass follow without an error of their own [L].
 fn local_error(model: &Model, step: &Step, old: &State, new: &State) -> f64 {
     let constant = step.scheme.error_constant().unwrap_or(0.0);
     let rates = new.acceleration.iter().zip(&old.acceleration).enumerate();
@@ -184,14 +184,14 @@ fn slip_error(model: &Model, old: &State, new: &State) -> f64 {
     largest
 }
 
-/// Largest slip, in the increment, of a point that takes part in an event of its contact; 0 if there is none, and in the
+/// Largest slip in the increment of a point that participates in an event of its contact; 0 if there is none, and in the
 /// first increment of a run, which may start sliding [L].
 fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
     let mut largest = 0.0f64;
     if old.dt == 0.0 {
         return largest;
     }
-    // Slip without friction has no onset.
+    // Frictionless slip has no onset.
     for k in
         (0..model.contacts.len()).filter(|&k| model.contacts[k].laws.iter().any(|law| !law.description.is_frictionless))
     {
@@ -212,7 +212,7 @@ fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
     largest
 }
 
-/// Plastic slip of the last increment where a point slips, else 0 [L].
+/// Plastic slip of the last increment where a point slips, otherwise 0 [L].
 fn slip(state: &ContactState) -> f64 {
     if state.regime() == Regime::Slip { state.friction.plastic_increment } else { 0.0 }
 }
@@ -247,17 +247,17 @@ impl Directions {
 /// 2^(k/4), k = 0 … 3.
 const RUNGS: [f64; 4] = [1.0, 1.189_207_115_002_721, std::f64::consts::SQRT_2, 1.681_792_830_507_429];
 
-/// Share of a rung by which rounding may have missed it.
+/// Relative round-off allowed in comparing with a rung.
 const LADDER_ROUND_OFF: f64 = 1e-12;
 
-/// Δt of the next attempt in a dynamic step, from what its error or its iterations ask for.
+/// Δt of the next attempt in a dynamic step, from the length that its error or its iterations require.
 pub fn on_ladder(step: &Step, dt: f64, work: &Workspace) -> f64 {
     let Increments { initial, min, .. } = step.increments;
     let climbs = step.scheme.is_dynamic() && work.condenses(step);
     if climbs { rung(initial, dt).max(min) } else { dt }
 }
 
-/// The longest length of the ladder from `first` on that is no longer than `dt`.
+/// Longest length of the ladder starting at `first` that does not exceed `dt`.
 fn rung(first: f64, dt: f64) -> f64 {
     let reached = dt * (1.0 + LADDER_ROUND_OFF);
     if !(first.is_normal() && dt.is_normal() && first > 0.0 && dt > 0.0) {

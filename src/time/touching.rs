@@ -1,15 +1,15 @@
-//! How far a static increment goes in which points touch: friction after touch must be known.
+//! Contact closure within a static increment: limits its length so that friction after closure is known.
 //!
-//! - A point that was apart at the start of an increment has slipped in part before it touched. That part lies between
-//!   nothing and what it would have been had the motion before the increment gone on until touch; what friction may have to do
-//!   with it, summed over the points of a contact, must not exceed 2 % of its force. Where points slide at the limit of
-//!   friction anyway, nothing is in doubt. Where surfaces dilate, what the slip after touch would have lifted is in doubt, too: they
-//!   do not ride up on each other in the increment in which they meet (`contact/force.rs`).
-//! - Else the increment is made in parts: up to the touch that was foreseen if nothing of the contact was closed before, else
-//!   as far as few enough points touch; then on to where it should have ended. The contact's force is the largest of
-//!   all attempts at the increment.
-//! - The shortest increment is accepted whatever its doubt, which is told as a warning.
-//! - A point that touches and parts again within one increment is not seen.
+//! - A point that was open at the start of an increment has slipped in part before closure. That part lies between zero and its
+//!   value had the previous motion continued until closure; the uncertainty of friction caused by it, summed over the points of
+//!   a contact, must not exceed 2 % of the contact force. Where surfaces slide at the friction limit anyway, nothing is
+//!   uncertain. Where surfaces dilate, the opening by slip after closure is uncertain, too: they do not dilate in the increment
+//!   in which they close (`contact/force.rs`).
+//! - Otherwise the increment is subdivided: up to the predicted closure if nothing of the contact was closed before, else
+//!   as far as few enough points close; then on to its intended end. The contact force is the largest of all attempts at the
+//!   increment.
+//! - The shortest increment is accepted whatever its uncertainty; a warning reports it.
+//! - A point that closes and opens again within one increment is not detected.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,29 +19,29 @@ use crate::contact::pair::Arrival;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 
-/// Share of a contact's force that may be in doubt after a static increment in which points touched.
+/// Largest uncertain fraction of a contact's force in a static increment in which points closed.
 pub const DOUBT: f64 = 0.02;
-/// Part of that which the next attempt aims at.
+/// Fraction of that limit at which the next attempt aims.
 const AIM: f64 = 0.5;
-/// Halvings of an increment that find where to end it: as many as it takes for round-off.
+/// Number of bisections that locate the end of an increment; sufficient for round-off.
 const HALVINGS: usize = 50;
 
-/// Knowledge about contact closure from the attempts at an increment of a static step.
+/// Information on contact closure from the attempts at a static increment.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Touching {
-    /// End and length of the increment that is made in parts [T]
+    /// End and length of the subdivided increment [T]
     whole: Option<(f64, f64)>,
-    /// Largest force of each contact in an attempt [F]
+    /// Largest force of each contact in all attempts [F]
     forces: Vec<f64>,
-    /// Attempts given up
+    /// Number of rejected attempts
     refused: usize,
-    /// Whether the attempt is to end where a contact touches
+    /// Whether the attempt ends at the closure of a contact
     ends_in_touch: bool,
 }
 
 impl Touching {
-    /// Judge a solved increment that is accepted otherwise; `foreseen` are the contact states had its motion gone on as before.
-    /// The share of a contact's force that is in doubt comes with the judgement.
+    /// Judges a solved increment that is otherwise accepted; `foreseen` are the contact states for continued previous motion.
+    /// The judgement contains the uncertain fraction of a contact's force.
     pub fn judge(
         &mut self,
         model: &Model,
@@ -54,7 +54,7 @@ impl Touching {
         let (doubt, share, meets) = self.doubt(model, [old, new], foreseen);
         if doubt > DOUBT && can_shorten(step, old, new) {
             self.whole.get_or_insert((new.time, new.dt));
-            // What was foreseen has been wrong before.
+            // A rejected attempt shows that the prediction was inaccurate.
             let most = if self.refused == 0 { 1.0 } else { 0.5 };
             self.refused += 1;
             self.ends_in_touch = meets;
@@ -73,7 +73,7 @@ impl Touching {
         };
         let left = end - new.time;
         if left > step.increments.min {
-            // Where points touch one after the other, their doubt grows with Δt².
+            // Where points close one after the other, the uncertainty grows with Δt².
             let share = (AIM * DOUBT / doubt).sqrt().clamp(LEAST_SHARE, MOST_SHARE);
             let next = if touches { left } else { left.min(share * new.dt) };
             return (Judgement { next, ..judged }, doubt);
@@ -82,8 +82,8 @@ impl Touching {
         (Judgement { next: dt, ..judged }, doubt)
     }
 
-    /// The largest share of a contact's force that is in doubt; how far the increment may go for little enough of it, as a share
-    /// of it, and whether it ends there in the first touch of a contact.
+    /// Largest uncertain fraction of a contact's force; the fraction of the increment for which it is small enough, and whether
+    /// the increment ends there at the first closure of a contact.
     fn doubt(&mut self, model: &Model, [old, new]: [&State; 2], foreseen: &[Vec<ContactState>]) -> (f64, f64, bool) {
         self.forces.resize(model.contacts.len(), 0.0);
         let mut doubt = 0.0f64;
@@ -109,19 +109,19 @@ impl Touching {
         (doubt, share, meets)
     }
 
-    /// The attempt could not be solved, and is made shorter.
+    /// Records that the attempt could not be solved and is shortened.
     pub fn cut(&mut self) {
         self.ends_in_touch = false;
     }
 
-    /// Forget the increment: it is repeated for other reasons.
+    /// Resets after the increment is repeated for other reasons.
     pub fn give_up(&mut self) {
         *self = Self::default();
     }
 }
 
-/// Share of an increment in which the force in doubt comes to no more than `allowed`, if that of each point grows steadily
-/// once it has touched.
+/// Fraction of an increment in which the uncertain force is at most `allowed`, if the force of each point grows linearly
+/// after its closure.
 fn longest(arrivals: &[Arrival], allowed: f64) -> f64 {
     let doubt =
         |share: f64| -> f64 { arrivals.iter().map(|a| a.doubt * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum() };

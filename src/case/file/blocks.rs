@@ -1,4 +1,4 @@
-//! A mesh of blocks: as it is written, and its parameters and expressions as numbers.
+//! Mesh of blocks in a case file, and the evaluation of its parameters and expressions.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,13 +25,13 @@ pub struct BlocksInput {
     /// Names of sides that are not joined to others, such as the two sides of a crack in one body
     #[serde(default)]
     pub apart: Vec<String>,
-    /// Lists of bodies that are joined with each other, as one body is, where their blocks share a whole side, such as two materials
-    /// that are bonded
+    /// Lists of bodies that are joined with each other, like blocks of one body, where their blocks share a whole side, for
+    /// example two materials that are bonded
     #[serde(default)]
     pub joined: Vec<Vec<String>>,
 }
 
-/// A quadrilateral divided into elements. Side k goes from corner k to the next one, in the order in which the corners are given
+/// A quadrilateral divided into elements. Side k runs from corner k to the next one, in the given order of the corners
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlockInput {
@@ -39,7 +39,8 @@ pub struct BlockInput {
     pub body: String,
     /// The four corners [x, y] in order around the block, clockwise or counterclockwise [L]
     pub corners: [[Amount; 2]; 4],
-    /// For each side null where it is straight, or the centre [x, y] of the circle through its two corners: it is the shorter arc
+    /// For each side null if it is straight, or the centre [x, y] of the circle through its two corners, of which the shorter
+    /// arc is used
     #[serde(default)]
     pub arcs: [Option<[Amount; 2]>; 4],
     /// Number of elements along side 0, from corner 0 to corner 1, and along side 1, from corner 1 to corner 2
@@ -50,11 +51,12 @@ pub struct BlockInput {
     /// Kind of the elements
     #[serde(default)]
     pub kind: BlockKind,
-    /// For each side its name, or null: edges of a name are a group for contacts, supports and loads
+    /// For each side its name, or null: edges with the same name form a group for contacts, supports and loads
     #[serde(default)]
     pub sides: [Option<String>; 4],
-    /// Points [x, y] by a name of your choice: the node of this block that is nearest to it is in the group of nodes of that name, which
-    /// points of other blocks may share. It must be the only one, and no farther away than the elements there are long [L]
+    /// Points [x, y] by a name of your choice: the node of this block nearest to each belongs to the node group of that name,
+    /// which points of other blocks may share. The nearest node must be unique, and no farther away than the length of the
+    /// elements there [L]
     #[serde(default)]
     pub points: BTreeMap<String, [Amount; 2]>,
 }
@@ -73,11 +75,11 @@ pub enum Amount {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum GradingInput {
-    /// Size of the last element over that of the first
+    /// Size of the last element divided by that of the first
     Ratio(f64),
-    /// Size of the last element over that of the first, as an expression in the parameters
+    /// Size of the last element divided by that of the first, as an expression in the parameters
     Expression(String),
-    /// Finer or coarser in the middle
+    /// Different size in the middle
     Middle(MiddleInput),
 }
 
@@ -95,15 +97,15 @@ written!(
     object: MiddleInput => Self::Middle
 );
 
-/// Equal sizes at both ends, with another in the middle.
+/// Equal sizes at both ends, with a different one in the middle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MiddleInput {
-    /// Size in the middle over that at both ends
+    /// Size in the middle divided by that at both ends
     pub middle: Amount,
 }
 
-/// A mesh that stands in the case, node by node or as blocks: all keys of both forms.
+/// Keys of a mesh in the case, node by node or as blocks.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MeshKeys {
@@ -150,7 +152,7 @@ impl TryFrom<MeshKeys> for MeshSource {
     }
 }
 
-/// The mesh of blocks that stands at a place.
+/// Returns the mesh of blocks at a place.
 pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
     let at = |rest: &str| if place.is_empty() { rest.to_string() } else { format!("{place}.{rest}") };
     let parameters = parameters(&input.parameters, &at("parameters"))?;
@@ -164,15 +166,15 @@ pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
     Blocks { blocks, apart: input.apart.clone(), joined: input.joined.clone() }.mesh().map_err(complain)
 }
 
-/// Numbers by their names.
+/// Values of parameters by name.
 #[derive(Default)]
 struct Parameters<'p> {
     numbers: BTreeMap<&'p str, f64>,
-    /// words of the expressions that were read
+    /// words used in the expressions so far
     words: RefCell<BTreeSet<String>>,
 }
 
-/// Words of an expression: names, among others.
+/// Words of an expression, including names.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
 }
@@ -209,8 +211,8 @@ fn parameters<'p>(input: &'p BTreeMap<String, Amount>, place: &str) -> Checked<P
             ready.extend((*left == 0).then_some(other));
         }
     }
-    // What is left depends on what was refused, or on itself. It is reported once everything that can be evaluated has
-    // been.
+    // The remaining parameters depend on a refused one or on themselves. They are reported after everything that can be
+    // evaluated.
     let left = || input.keys().map(String::as_str).find(|name| !known.numbers.contains_key(name));
     match refused.pop_first().or_else(left) {
         Some(name) => known.value(&input[name], &format!("{place}.{name}")).map(|_| known),
@@ -242,7 +244,7 @@ impl Parameters<'_> {
         Ok([self.value(x, &format!("{place}[0]"))?, self.value(y, &format!("{place}[1]"))?])
     }
 
-    /// A whole number, but for the round-off of its expression.
+    /// An integer, within the round-off of its expression.
     fn count(&self, amount: &Amount, place: &str) -> Checked<usize> {
         let value = self.value(amount, place)?;
         if !(value > 0.5 && value < 1e15 && (value - value.round()).abs() <= 1e-9 * value) {

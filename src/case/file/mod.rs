@@ -1,4 +1,4 @@
-//! The case file: what a model is built from, under its keys, and what only a file has.
+//! Case file: the input of a model, and what only a file contains.
 
 mod blocks;
 mod output;
@@ -32,8 +32,8 @@ pub struct Case {
     /// Labels of the units used, for readers; any consistent set will do
     #[serde(default)]
     pub units: BTreeMap<String, String>,
-    /// Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given in place: as blocks
-    /// that are divided into elements, or node by node
+    /// Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given in place:
+    /// blocks divided into elements, or node by node
     pub mesh: MeshSource,
     /// Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     #[serde(default)]
@@ -55,8 +55,8 @@ pub struct Case {
     /// rigid body that can rotate
     #[serde(default)]
     pub plates: Vec<LoadingPlateInput>,
-    /// Rigid bodies that move, by a name of your choice: rigid masters of contacts are parts of them. Supports on the name
-    /// give the path, `ux`, `uy` and `angle`, 0 where it rests; what they leave free moves under contact and loads on the name
+    /// Moving rigid bodies, by a name of your choice: rigid masters of contacts refer to them. Supports on the name prescribe
+    /// the path, `ux`, `uy` and `angle`, 0 where it is fixed; free components move under contact and loads on the name
     #[serde(default)]
     pub rigid_bodies: BTreeMap<String, RigidBodyInput>,
     /// Contacts by a name of your choice

@@ -1,4 +1,4 @@
-//! What is written by a run, as a case asks for it.
+//! Output requested by a case.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::output::fields::{Frames, Selection};
 use crate::output::fronts::FrontsInput;
 
-/// Frames of a run, about, where the case asks for no others.
+/// Approximate number of frames of a run if the case does not specify them.
 const FRAMES: usize = 30;
 
 /// Output of a run.
@@ -22,19 +22,19 @@ pub struct OutputInput {
     /// Whether fields are written as 64-bit numbers, as they are computed; default: as 32-bit numbers (relative error at
     /// most 6e-8), in half the space. Undeformed coordinates are always 64-bit numbers
     pub exact: bool,
-    /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
-    /// step [T]; a hundredth of the step unless given. Implicit steps write every increment or, if this is given, rows that
-    /// are at least so far apart in time; where a contact point opens, closes, begins to slip or stops, the increments
-    /// before and after are always written, and so are the ends of steps
+    /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the step
+    /// [T]; default: a hundredth of the step. Implicit steps write every increment or, if this is given, rows at least that far
+    /// apart in time; the increments before and after a contact point opens, closes, begins to slip or stops are always
+    /// written, and so are the ends of steps
     pub interval: Option<f64>,
-    /// Times at which fields are written, ascending; increments end on them [T]
+    /// Times at which fields are written, ascending; increments end at them [T]
     pub times: Vec<f64>,
     /// Whether stresses at the integration points are written with the fields (points.pvd)
     pub points: bool,
     /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` continues with bitwise
     /// identical results, however the run ended; the last one is written at the end. Default 5; null or 0 for none
     pub checkpoint: Option<f64>,
-    /// The fronts that run along contacts with friction (fronts.csv), and the events of slip that they make (events.csv)
+    /// Slip fronts along contacts with friction (fronts.csv), and their slip events (events.csv)
     pub fronts: Option<FrontsInput>,
     /// Whether a run ends with report.html, one page to look at its results in a browser; `fecontact report` writes it at any
     /// time
@@ -42,7 +42,7 @@ pub struct OutputInput {
 }
 
 impl OutputInput {
-    /// The frames of a run of so many steps.
+    /// Frames of a run with this number of steps.
     pub fn frames(&self, steps: usize) -> Frames {
         let some = match self.times.is_empty() {
             true => Selection::Parts((FRAMES / steps.max(1)).max(1)),

@@ -1,4 +1,4 @@
-//! A panic is a defect of the program: it is reported as one, with what to send, and the results are kept.
+//! Defects of the program: a panic is reported with the information to send, and the results are kept.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
@@ -7,20 +7,20 @@ use std::sync::Mutex;
 /// Message and place of the last panic.
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
-/// Note panics instead of printing them.
+/// Records panics instead of printing them.
 pub fn watch() {
     panic::set_hook(Box::new(|panic| {
         if let Ok(mut last) = LAST.lock() {
-            // What follows from the first one says less.
+            // Later panics are consequences of the first.
             last.get_or_insert_with(|| described(panic));
         }
     }));
 }
 
-/// Do something that may turn out to be defective.
+/// Runs `work` and catches a panic.
 ///
 /// # Errors
-/// What panicked, and where, if [`watch`] was called.
+/// Returns message and place of the panic, if [`watch`] was called.
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
         let noted = LAST.lock().ok().and_then(|mut last| last.take());
@@ -40,7 +40,7 @@ fn payload_text(payload: &(dyn std::any::Any + Send)) -> &str {
     text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("it does not say why")
 }
 
-/// Text for the user.
+/// Returns the text for the user.
 pub fn message(what: &str) -> String {
     format!(
         "defect: {what}\nThis is a defect of fecontact {}, not of your input. Please report it with this text, the command, the \

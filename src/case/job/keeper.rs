@@ -1,4 +1,4 @@
-//! What happens between two increments: checkpoints, the end that a signal asks for, and whether the folder is still there.
+//! Tasks between two increments: checkpoints, ends requested by signals, and a check that the folder still exists.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -46,7 +46,7 @@ pub(super) struct Keeper {
     case: String,
     taken_over: usize,
     mesh: MeshPrint,
-    /// why the last checkpoint could not be written, and when the first such was due
+    /// reason why the last checkpoint could not be written, and the time of the first such failure
     pub concern: Option<String>,
 }
 
@@ -67,13 +67,13 @@ impl Keeper {
         }
     }
 
-    /// When explicit increments are to pause: a checkpoint is due, or the end was asked for.
+    /// Returns the condition under which explicit increments pause: a checkpoint is due, or the end was requested.
     pub fn pause(&self) -> Pause {
         let (ends, due) = (self.ends.clone(), self.due.clone());
         Arc::new(move || ends().is_some() || due.is_now())
     }
 
-    /// Before every attempt, after the last one, and where one stops the run.
+    /// Called before every attempt, after the last one, and at one that stops the run.
     pub fn look(
         &mut self,
         simulation: &Simulation,
@@ -99,7 +99,7 @@ impl Keeper {
         }
     }
 
-    /// Write a checkpoint. If that fails, the run continues with a warning.
+    /// Writes a checkpoint. If that fails, the run continues with a warning.
     fn keep(&mut self, simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
         let saved = SavedRun::new(simulation, observers)?;
         let (begun, complete) = (saved.simulation().begun(), saved.simulation().is_complete());

@@ -1,9 +1,7 @@
 //! A case run into a folder of results: from its beginning, from the end of another, or from its last checkpoint.
 //!
-//! [`Job::open`] and [`Job::resume`] read, check and lock the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
-//! it hears warnings, shows progress and may end it ([`Callbacks`]).
-//!
-//! Who watches a run.
+//! [`Job::open`] and [`Job::resume`] read, check and lock the folder; [`Job::run`] solves, and writes results however the run
+//! ends. The caller receives warnings and progress, and may end the run ([`Callbacks`]).
 
 pub mod defect;
 mod keeper;
@@ -35,19 +33,19 @@ use crate::run::{SavedRun, Simulation, watch_with};
 use keeper::Keeper;
 use outputs::{Outputs, files};
 
-/// Why a job cannot begin; nothing was written.
+/// Reason why a job cannot start; nothing was written.
 #[derive(Debug, Error)]
 pub enum Refused {
-    /// The case is bad.
+    /// The case is invalid.
     #[error(transparent)]
     Case(#[from] CaseError),
-    /// Results cannot go there.
+    /// Results cannot be written to the folder.
     #[error("{}: --out: {}", .0.display(), .1)]
     Folder(PathBuf, String),
     /// There is nothing to resume from.
     #[error("{}: --resume: {}", .0.display(), .1)]
     Checkpoint(PathBuf, checkpoint::Unusable),
-    /// There is no checkpoint, and what is in the folder is not this case's own unfinished run.
+    /// There is no checkpoint, and the folder does not contain this case's own unfinished run.
     #[error(
         "{}: --resume: there is no checkpoint, and {}: choose another --out, or leave --resume out to begin anew", .0.display(), .1
     )]
@@ -57,36 +55,36 @@ pub enum Refused {
     Run(#[from] Error),
 }
 
-/// Why a job did not come to its end; what it has found is kept.
+/// Reason why a job did not finish; its results are kept.
 #[derive(Debug)]
 pub enum Failed {
     /// The run stopped with an error.
     Stopped(Error),
-    /// The program itself is wrong.
+    /// The program has a defect.
     Defect(String),
 }
 
-/// A case, checked, with the folder of its results locked.
+/// A checked case, with its results folder locked.
 pub struct Job {
     /// the case
     pub opened: Opened,
     /// its model
     pub model: Arc<Model>,
-    /// where results go
+    /// results folder
     pub folder: Folder,
-    /// from where it begins, unless at the beginning
+    /// saved run with which it starts, if any
     pub saved: Option<SavedRun>,
-    /// what was wrong with a newer checkpoint
+    /// defect of a newer checkpoint
     pub damage: Option<String>,
-    /// whether it was to resume a run that has left no checkpoint yet, and begins anew
+    /// whether the run to be resumed has left no checkpoint yet, and is started anew
     pub begins_anew: bool,
 }
 
 /// Outcome of a job.
 pub struct Outcome {
-    /// as in `summary.json`
+    /// content of `summary.json`
     pub summary: Summary,
-    /// the most energy that there was [F·L]
+    /// largest initial energy + external work [F·L]
     pub supplied: f64,
     /// how it ended
     pub ended: Result<(), Failed>,
@@ -95,7 +93,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether the results can be read again.
+    /// Whether the results are readable.
     pub fn is_readable(&self) -> bool {
         let full = matches!(&self.ended, Err(Failed::Stopped(Error::Output { .. }) | Failed::Defect(_)));
         !full && self.written.is_ok()
@@ -103,21 +101,21 @@ impl Outcome {
 }
 
 impl Job {
-    /// Build the model of a case, and lock the folder of its results.
+    /// Builds the model of a case, and locks its results folder.
     ///
     /// # Errors
-    /// [`Refused`].
+    /// Returns [`Refused`] if the case is invalid or the folder cannot be used.
     pub fn open(mut opened: Opened, place: &Path) -> Result<Self, Refused> {
         let (model, saved) = opened.build()?;
         Self::claim(opened, model, saved, place)
     }
 
-    /// Go on with the run in a folder: from its last checkpoint, or anew where the folder is absent or empty, or holds this
-    /// case's own unfinished run without a checkpoint yet, so that a job that is queued again always says the same. The case is
-    /// opened at the checkpoint, or at its beginning; `warn` is told where another version has written the checkpoint.
+    /// Continues the run in a folder: from its last checkpoint, or anew if the folder is absent or empty, or contains this
+    /// case's own unfinished run without a checkpoint yet, so that a requeued job can always use the same command. `open` reads
+    /// the case for the checkpoint or for a new start; `warn` reports a checkpoint written by another version.
     ///
     /// # Errors
-    /// [`Refused`].
+    /// Returns [`Refused`] if the case is invalid or the run cannot be resumed.
     pub fn resume(
         place: &Path,
         open: impl FnOnce(Option<Checkpoint>) -> Result<Opened, CaseError>,
@@ -159,10 +157,10 @@ impl Job {
         Ok(Self { opened, model, folder, saved, damage: None, begins_anew: false })
     }
 
-    /// Run the job to its end, or until it stops.
+    /// Runs the job to its end, or until it stops.
     ///
     /// # Errors
-    /// [`Refused::Run`] where it cannot go on from its checkpoint; nothing has changed then.
+    /// Returns [`Refused::Run`] if it cannot resume from its checkpoint; nothing has changed then.
     pub fn run(&mut self, callbacks: Callbacks) -> Result<Outcome, Refused> {
         let about = about(&self.opened, &self.model);
         let Self { opened, model, folder, saved, damage, .. } = self;
@@ -215,7 +213,7 @@ fn about(Opened { case, path, document, .. }: &Opened, model: &Model) -> About {
     }
 }
 
-/// A case as it is written, but for a mesh given node by node.
+/// Returns a case as written, except for a mesh given node by node.
 fn given(document: &Value) -> Value {
     let mut given = document.clone();
     let is_of_nodes = document.get("mesh").is_some_and(|mesh| mesh.get("nodes").is_some());
@@ -228,20 +226,20 @@ fn given(document: &Value) -> Value {
 /// Results of a run that are kept however it ends.
 #[derive(Default)]
 struct Work {
-    /// `None` until it has begun
+    /// `None` before the start
     simulation: Option<Simulation>,
     warnings: Vec<String>,
-    /// restarts of slip, if the case asks for fronts
+    /// repeated onsets of slip, if the case requests fronts
     chatter: Option<BTreeMap<String, f64>>,
     courses: BTreeMap<String, FrictionHistory>,
-    /// how much of the elastic energy was in penalties of contacts [-]
+    /// fraction of the elastic energy stored in contact penalties [-]
     energy_in_penalties: Option<f64>,
-    /// the most energy that there was [F·L]
+    /// largest initial energy + external work [F·L]
     supplied: f64,
 }
 
 impl Work {
-    /// Begin or resume, and run to the end.
+    /// Starts or resumes the run and continues it to its end.
     fn go(
         &mut self,
         opened: &Opened,
@@ -253,7 +251,7 @@ impl Work {
     ) -> Result<(), Error> {
         let resumes = opened.resumes();
         let mut keeper = Keeper::new(opened, model, &folder.path, warn.clone(), ends);
-        // The summary identifies the files, so it comes first; that of a resumed run stays valid until the run
+        // The summary identifies the files, so it is written first; that of a resumed run stays valid until the run
         // continues.
         if !resumes {
             summary::write(first, &folder.path)?;
@@ -288,15 +286,15 @@ impl Work {
     }
 }
 
-/// Why a run is to end before its time, if it is.
+/// Returns the reason to end a run early, if there is one.
 pub type Ends = Arc<dyn Fn() -> Option<Error> + Send + Sync>;
 
 /// Callbacks and observers of a run.
 pub struct Callbacks<'a> {
     /// receives warnings when they arise, except those of the model
     pub warn: Warn,
-    /// is asked between two increments, and within explicit ones
+    /// called between two increments, and within explicit ones
     pub ends: Ends,
-    /// shows how far it is
+    /// observer of the progress
     pub progress: Option<Box<dyn Observer + 'a>>,
 }

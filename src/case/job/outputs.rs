@@ -1,6 +1,6 @@
-//! The observers of a run, and the files they write.
+//! Observers of a run, and the files they write.
 //!
-//! Warnings, reported once each when they arise.
+//! Each warning is reported once, when it arises.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,7 +22,7 @@ use crate::run::SavedRun;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 
-/// Files that a run writes besides `summary.json`; folders of frames end in `/`.
+/// Files written by a run in addition to `summary.json`; folders of frames end in `/`.
 pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     let mut files = vec!["history.csv", "newton.csv"];
     if case.output.fields {
@@ -52,7 +52,7 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     files
 }
 
-/// The observers of a run; all that the case asks for once it is open.
+/// Observers of a run, according to the case.
 pub(super) struct Outputs {
     history: Option<History>,
     newton_log: Option<NewtonLog>,
@@ -64,7 +64,7 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Begin all files, or open those that the saved run has written.
+    /// Creates all files, or opens those written by the saved run.
     pub fn open(
         folder: &Path,
         model: &Arc<Model>,
@@ -87,7 +87,7 @@ impl Outputs {
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
             fronts: case.output.fronts.map(|criterion| Fronts::new(folder, model, &start, criterion)),
         };
-        // What goes on is as it was, or nothing changes.
+        // A run is resumed only if all its files are unchanged.
         saved.map_or(Ok(()), |saved| saved.check(&outputs.observers()))?;
         if outputs.history.is_none() {
             outputs.history = Some(History::create(folder, model)?);
@@ -115,7 +115,7 @@ impl Outputs {
         borne.map(|(pair, course)| (pair.name.clone(), course.clone())).collect()
     }
 
-    /// All observers of the outputs.
+    /// Returns all observers.
     pub fn observers<'a, 'b: 'a>(&'b mut self) -> Vec<&'a mut (dyn Observer + 'a)> {
         fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
             observer.as_mut().map(|observer| observer as &mut dyn Observer)

@@ -1,6 +1,6 @@
-//! Contacts, as `check` understood them.
+//! Contacts in the report of `check`.
 //!
-//! Laws with their parameters, as `check` understood them.
+//! Laws are listed with their parameters.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use crate::model::text::{count, number};
 use crate::model::warnings::{farthest, gaps};
 use crate::output::warnings::several_answers;
 
-/// Every contact, with how its surfaces lie at the start.
+/// Lists every contact, with the position of its surfaces at the start.
 pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
     let (mut lines, farthest) = (Vec::new(), farthest(&model.mesh));
     for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
@@ -51,7 +51,7 @@ fn initial_tractions(initial: &InitialTractions, pair: &ContactPair) -> String {
     format!("starts closed: pressure {p}, traction {q}{balanced}; mu {mu}, structure {structure}")
 }
 
-/// An initial pressure under which the answer may snap; a run meets it in its first increment.
+/// Warns of an initial pressure above the uniqueness bound, which a run meets in its first increment.
 pub fn pressed_too_hard(pair: &ContactPair) -> Option<String> {
     let pressed = pair.points.iter().zip(pair.initial.iter().flatten());
     let limits = pressed
@@ -121,7 +121,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     lines
 }
 
-/// Peak, residual and healing of a law in the numbers of a test: ranges where its parameters vary along the interface.
+/// Peak, residual and healing of a law as in a law test; ranges where its parameters vary along the interface.
 fn onset(pair: &ContactPair) -> Option<String> {
     let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.law.onset()).collect();
     if laws.is_empty() {
@@ -148,7 +148,7 @@ fn onset(pair: &ContactPair) -> Option<String> {
     Some(format!("rapid slip after a long hold: {rises}{fresh}, {falls}; {heals}"))
 }
 
-/// Dilatancy, wear, and what fluid is between the surfaces.
+/// Dilatancy, wear, and fluid pressure.
 fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(Dilatancy { rate, limit }) = input.dilatancy {
@@ -180,12 +180,12 @@ fn master(input: &Contact) -> String {
     }
 }
 
-/// What a rigid master moves with.
+/// Motion of a rigid master.
 fn moves(input: &Contact) -> String {
     input.rigid_body.as_ref().map_or(String::new(), |body| format!(", part of the rigid body {body}"))
 }
 
-/// Method and contact points, with the reason if the program chose the method.
+/// Method and contact points, with the reason for the method if it was selected automatically.
 fn evaluated(input: &Contact, chosen: Option<&Chosen>) -> String {
     let Some(Chosen { method, points, because, .. }) = chosen else {
         return format!("area of each point: {}", number(input.area.unwrap_or_default()));
@@ -199,13 +199,13 @@ fn evaluated(input: &Contact, chosen: Option<&Chosen>) -> String {
     format!("{}, {how}{because}", method.name())
 }
 
-/// Whether the case gives `alpha_t`; `None` for a law that has none.
+/// Whether the case specifies `alpha_t`; `None` for a law without it.
 fn gives_alpha_t(input: &Contact) -> Option<bool> {
     let law = serde_json::to_value(&input.friction).ok()?;
     law.get("alpha_t").map(|given| !given.is_null())
 }
 
-/// The law named by `tag`, and its parameters but those in `skip`.
+/// The law named by `tag`, and its parameters except those in `skip`.
 pub fn parameters(law: &impl Serialize, tag: &str, skip: &[&str]) -> String {
     let Ok(Value::Object(fields)) = serde_json::to_value(law) else { return String::new() };
     let name = fields.get(tag).and_then(Value::as_str).unwrap_or_default();

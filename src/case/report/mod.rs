@@ -1,4 +1,4 @@
-//! What `check` prints: how the case was understood.
+//! Report of `check`: the case as interpreted.
 
 mod contact;
 mod steps;
@@ -18,7 +18,7 @@ use crate::model::{Damping, Model, PointMass};
 use crate::output::fields::Selection;
 use crate::output::fronts::ArrivalInput;
 
-/// A readable account of a checked case.
+/// Returns a readable report of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
     let mut warnings = model.warnings();
     warnings.extend(model.contacts.iter().filter_map(pressed_too_hard));
@@ -31,7 +31,7 @@ pub fn report(case: &Case, model: &Model) -> String {
     text
 }
 
-/// The report as headings with their lines, without the warnings.
+/// Returns the report as headings with their lines, without the warnings.
 pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
     let sections = [
         ("units", case.units.iter().map(|(of, unit)| format!("{of} in {unit}")).collect()),
@@ -51,7 +51,7 @@ pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
     sections.into_iter().filter(|(_, lines)| !lines.is_empty()).map(|(name, lines)| (name.into(), lines)).collect()
 }
 
-/// Lines behind a heading in the margin; nothing if there are none.
+/// Appends lines behind a heading in the margin; nothing if there are none.
 fn section(text: &mut String, heading: &str, lines: Vec<String>) {
     for (k, line) in lines.iter().enumerate() {
         let heading = if k == 0 { heading } else { "" };
@@ -96,7 +96,7 @@ fn mesh(case: &Case, model: &Model) -> Vec<String> {
     ]
 }
 
-/// Every group with where it lies: a side that was given in the place of another is seen here.
+/// Lists every group with its extent, which reveals a side given in place of another.
 fn groups(model: &Model) -> Vec<String> {
     let row = |(name, group): (&String, &Group)| {
         let (size, nodes): (_, Vec<usize>) = match group {
@@ -114,7 +114,7 @@ fn groups(model: &Model) -> Vec<String> {
     aligned(&model.mesh.groups.iter().map(row).collect::<Vec<_>>())
 }
 
-/// "x from 0 to 2, y = 1" of some nodes.
+/// Extent of some nodes, such as "x from 0 to 2, y = 1".
 fn extent(model: &Model, nodes: &[usize]) -> String {
     let along = |name: &str, component: usize| {
         let values = nodes.iter().map(|&node| model.mesh.nodes[node][component]);

@@ -1,4 +1,4 @@
-//! Steps, as `check` understood them: what is in force in each, and what it ends.
+//! Steps in the report of `check`: supports and loads in force in each, and those that it ends.
 
 use std::collections::BTreeMap;
 
@@ -96,7 +96,7 @@ struct Written {
     kept: bool,
 }
 
-/// Loads without a value that could fade.
+/// Loads without a value that could be ramped to zero.
 const ENDS_AT_ONCE: [&str; 3] = ["spring", "dashpot", "absorbing side"];
 
 /// Place, kind and value of one entry of a step.
@@ -107,7 +107,7 @@ impl InForce {
         Self(BTreeMap::new())
     }
 
-    /// Take over what is written; returns what is ended.
+    /// Adds the written entries; returns those that are ended.
     fn step(&mut self, entries: impl IntoIterator<Item = Entry>) -> impl Iterator<Item = (String, &'static str)> {
         self.0.values_mut().for_each(|written| written.kept = true);
         let mut ended = Vec::new();
@@ -133,12 +133,12 @@ impl InForce {
     }
 }
 
-/// A place in words, one of a single node by its tag.
+/// Describes a place; a single node is described by its tag.
 fn on(place: &Place, model: &Model) -> String {
     place.settled(&model.mesh).map_or_else(|_| place.to_string(), |settled| settled.to_string())
 }
 
-/// What is watched, by its name in results; with the tag of the node that is nearest to a point.
+/// Describes a watched place by its name in results, with the tag of the node nearest to a point.
 pub fn watched(place: &Place, model: &Model) -> String {
     match place {
         Place::Near(_) => format!("{} ({})", place.column(), on(place, model)),

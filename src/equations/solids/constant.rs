@@ -1,25 +1,27 @@
-//! Elements whose stiffness never changes: it is found once, and elements that have the same one in every bit share it.
+//! Elements with constant stiffness, which is computed once and shared by elements for which it is bitwise equal.
 //!
 //! ```text
 //! f_e = f_0 + K_e (u_e − u_1),   W_e = ½ (u_e − u_1)·(f_e + f_0),   f_v = τ K_e (v_e − v_1)
 //! ```
 //! f_0 are the forces of the initial stress.
 //!
-//! Motions are taken against the element's first node: a displacement of all nodes costs no digits, and K_e's columns of that
-//! node are not needed (in rings only motions along the axis are, and all columns are kept). An element keeps them if none before it has the same ones: 384 bytes for Q4, 256 for T3, 960 for T6,
-//! 1792 for Q8, 2560 for Q9. Equal elements of a regular mesh differ in the last bits of their nodes' places unless these are round.
+//! Motions are taken relative to the element's first node: a rigid translation causes no round-off, and the columns of K_e of
+//! that node are not needed (in axisymmetry this holds for axial motions only, and all columns are kept). An element stores
+//! them unless an earlier one has the same: 384 bytes for Q4, 256 for T3, 960 for T6, 1792 for Q8, 2560 for Q9. Equal elements
+//! of a regular mesh differ in the last bits of their node positions unless these are exactly representable.
 //!
 //! # Blocks
 //!
-//! Constant elements in blocks: neighbours of one kind and body, so few that all that their nodes need stays at hand.
+//! Constant elements are evaluated in blocks: neighbours of one kind and body, few enough that all data of their nodes fit into
+//! the cache.
 //!
-//! A block gathers its nodes' motions once and adds up its elements' forces by itself; a node finds its sum in one block, or
-//! in a few where blocks meet. Which elements form a block depends on the mesh alone: elements follow each other along
-//! Morton's curve through their centres, whatever their numbers are.
+//! A block gathers the motions of its nodes once and sums the forces of its elements; a node finds its sum in one block, or
+//! in a few where blocks meet. The division into blocks depends on the mesh only: elements are ordered along the
+//! Morton curve through their centres, independent of their numbers.
 //!
 //! # Kernel
 //!
-//! The loop over the elements of a block.
+//! The kernel is the loop over the elements of a block.
 
 use std::collections::HashMap;
 use std::collections::hash_map::{DefaultHasher, Entry};
@@ -39,17 +41,17 @@ use crate::mesh::shape::ElementKind;
 use crate::model::element::Memory;
 use crate::model::{Body, Model};
 
-/// Blocks that are done sooner than another thread wakes up.
+/// Number of blocks below which evaluation takes less time than starting another thread.
 const FEW_BLOCKS: usize = 2;
 
-/// Whether the tangent of an element is the same at every displacement: a linear law at small strains that remembers nothing, or nothing
-/// that changes; with F-bar the tangent changes nevertheless.
+/// Whether the tangent of an element is the same at every displacement: for a linear law at small strains with no or constant
+/// internal variables; with F-bar the tangent varies nevertheless.
 pub fn is_constant(model: &Model, element: usize) -> bool {
     let material = &model.bodies[model.body_of_element[element]].material;
     material.is_linear() && material.is_symmetric() && !material.evolves() && !model.solids[element].is_f_bar()
 }
 
-/// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F. A linear law need not have such a one.
+/// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F; not every linear law has one.
 pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool {
     if !material.is_linear() {
         return false;
@@ -61,24 +63,24 @@ pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool 
     (material.viscous_stress([&deformation, &rate]) - elastic).norm() <= 1e-12 * elastic.norm()
 }
 
-/// The constant elements of a model.
+/// Constant elements of a model.
 pub(super) struct Constant {
     /// Whether each element is one
     pub is: Vec<bool>,
-    /// Columns of the distinct K_e of each kind from those of the second node on (in rings of the first), one matrix after the
+    /// Columns of the distinct K_e of each kind starting at the second node (in axisymmetry at the first), one matrix after the
     /// other [F/L]
     stiffness: [Vec<f64>; 5],
-    /// Whether they are rings
+    /// Whether the section is axisymmetric
     ring: bool,
     blocks: Vec<Block>,
-    /// Places of each node's block forces
+    /// Positions of each node's block forces
     pub places: Places,
-    /// Forces of the blocks on their nodes, `stride` places a block [F]
+    /// Forces of the blocks on their nodes, `stride` entries per block [F]
     pub forces: Vec<Vector2<f64>>,
     /// Viscous forces of the blocks, or the magnitudes of their elements' forces [F]
     pub others: Vec<Vector2<f64>>,
     stride: usize,
-    /// What each block stores [F·L]
+    /// Energy stored in each block [F·L]
     energies: Vec<f64>,
     /// Sum of all K_e on the pattern
     total: Option<SparseMatrix>,
@@ -95,7 +97,7 @@ impl Constant {
         let is: Vec<bool> =
             (0..model.solids.len()).map(|e| is_constant(model, e) && fit[model.body_of_element[e]]).collect();
         let (mut stiffness, matrices) = distinct(model, &is);
-        // A law that stresses the undeformed body is not proportional to the displacements.
+        // A law with stress in the undeformed body is not proportional to the displacements.
         let is: Vec<bool> = matrices.iter().map(Option::is_some).collect();
         stiffness.iter_mut().for_each(Vec::shrink_to_fit);
         let blocks = blocks(model, &matrices);
@@ -127,8 +129,8 @@ impl Constant {
         KINDS.into_iter().zip(&self.stiffness).map(of).sum()
     }
 
-    /// Write what all elements put on the nodes over the blocks' `forces`, and what a pass is asked for besides over `others`;
-    /// what they store is kept.
+    /// Computes the nodal forces of all elements in the blocks' `forces`, and the second result of a pass in `others`; the
+    /// stored energies are kept.
     pub fn evaluate(&mut self, retardation: &[f64], pass: Pass) {
         let Self { stiffness, ring, blocks, forces, others, energies, .. } = self;
         let stride = self.stride.max(1);
@@ -140,7 +142,7 @@ impl Constant {
         });
     }
 
-    /// Stored energy of all elements, or the first one whose strain is not finite.
+    /// Stored energy of all elements; an error for the first one with a non-finite strain.
     pub fn stored(&self, model: &Model, u: &[f64]) -> Result<f64, TrialFailure> {
         let energy: f64 = self.energies.iter().sum();
         if !energy.is_finite() {
@@ -154,23 +156,23 @@ impl Constant {
         Ok(energy)
     }
 
-    /// Σ K_e on the current pattern; nothing if there are none.
+    /// Σ K_e on the current pattern; `None` if there are no constant elements.
     pub fn total(&mut self, model: &Model, layout: &Layout) -> Option<&SparseMatrix> {
         kept(&mut self.total, model, layout, &self.is, |_| 1.0)
     }
 
-    /// Σ τ K_e on the current pattern; nothing if there are none.
+    /// Σ τ K_e on the current pattern; `None` if there is none.
     pub fn viscous(&mut self, model: &Model, retardation: &[f64], layout: &Layout) -> Option<&SparseMatrix> {
         kept(&mut self.viscous, model, layout, &self.is, |body| retardation[body])
     }
 
-    /// Have that sum found again: τ has changed.
+    /// Discards that sum because τ has changed.
     pub fn forget_viscous(&mut self) {
         self.viscous = None;
     }
 }
 
-/// The sum of the constant elements' matrices, each times what is said of its body: as it was found on this pattern, or anew.
+/// Sum of the constant elements' matrices, each multiplied by a factor of its body; stored for this pattern or recomputed.
 fn kept<'a>(
     sum: &'a mut Option<SparseMatrix>,
     model: &Model,
@@ -199,12 +201,12 @@ fn kept<'a>(
 
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];
 
-/// Numbers that are kept of the K_e of an element of n nodes.
+/// Number of stored entries of K_e of an element of n nodes.
 fn length(n: usize, ring: bool) -> usize {
     2 * (n - first(ring)) * rows(n)
 }
 
-/// The columns that are kept.
+/// The stored columns.
 fn columns(matrix: &[f64], n: usize, ring: bool) -> Vec<f64> {
     let mut kept = vec![0.0; length(n, ring)];
     let columns = matrix.chunks_exact(2 * n).skip(2 * first(ring));
@@ -212,7 +214,7 @@ fn columns(matrix: &[f64], n: usize, ring: bool) -> Vec<f64> {
     kept
 }
 
-/// K_e, column by column; nothing if the undeformed element has forces.
+/// K_e, column by column; `None` if the undeformed element has forces.
 fn at_rest(model: &Model, e: usize) -> Option<Vec<f64>> {
     let n = model.mesh.elements[e].nodes.len();
     let (mut force, mut matrix) = ([0.0; 18], vec![0.0; 4 * n * n]);
@@ -221,7 +223,7 @@ fn at_rest(model: &Model, e: usize) -> Option<Vec<f64>> {
     force.iter().all(|force| *force == 0.0).then_some(matrix)
 }
 
-/// The distinct K_e of each kind, and which of them each element has.
+/// The distinct K_e of each kind, and the index of each element's matrix.
 fn distinct(model: &Model, is: &[bool]) -> ([Vec<f64>; 5], Vec<Option<u32>>) {
     let mut stiffness: [Vec<f64>; 5] = Default::default();
     let mut numbers = vec![None; is.len()];
@@ -261,32 +263,32 @@ fn same(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
-/// Most nodes of a block.
+/// Maximum number of nodes of a block.
 const NODES: usize = 512;
 
-/// Cells along each side of the mesh that Morton's curve tells apart.
+/// Number of cells of the Morton curve along each side of the mesh.
 const CELLS: f64 = 65535.0;
 
-/// Rows of the matrix of an element of n nodes as it is kept, filled up with zeros to whole registers.
+/// Number of rows of the stored matrix of an element of n nodes, padded with zeros to whole registers.
 const fn rows(n: usize) -> usize {
     (2 * n).next_multiple_of(4)
 }
 
-/// Elements that are evaluated together.
+/// Elements evaluated together.
 struct Block {
     pub body: usize,
     pub kind: ElementKind,
     /// Nodes, ascending
     pub nodes: Vec<u32>,
-    /// Place in `nodes` of each element's nodes
+    /// Index in `nodes` of each element's nodes
     pub places: Vec<u16>,
     /// Number of each element's matrix
     pub matrices: Vec<u32>,
-    /// f_0 of each element, filled up with zeros as its matrix is, if the body has an initial stress [F]
+    /// f_0 of each element, padded with zeros like its matrix, if the body has an initial stress [F]
     pub initial: Vec<f64>,
 }
 
-/// Blocks of the elements that have a matrix, and which it is.
+/// Divides the elements with a matrix into blocks, with the index of their matrices.
 fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
     let mut order = Vec::with_capacity(matrices.len());
     let curve = curve(model);
@@ -296,7 +298,7 @@ fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
         order.push(((model.body_of_element[e], kind as usize, curve(e), e), matrix));
     }
     order.sort_unstable();
-    // Block in which each node was seen last
+    // Block in which each node was last found
     let mut seen = vec![usize::MAX; model.mesh.nodes.len()];
     let mut blocks: Vec<Block> = Vec::new();
     for &((body, _, _, e), matrix) in &order {
@@ -327,7 +329,7 @@ fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
     blocks
 }
 
-/// Sort the nodes of every block, and find the places of its elements' nodes.
+/// Sorts the nodes of every block, and finds the indices of its elements' nodes.
 fn find_places(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
     let mut place = vec![0u16; model.mesh.nodes.len()];
     for (block, own) in blocks.iter_mut().zip(elements) {
@@ -337,7 +339,7 @@ fn find_places(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
     }
 }
 
-/// Find what the initial stress of bodies puts on the nodes of their elements.
+/// Computes the nodal forces of the initial stress of bodies.
 fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
     let stressed = |block: &Block| model.bodies[block.body].initial_stress.is_some();
     if !blocks.iter().any(stressed) {
@@ -350,7 +352,7 @@ fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
         for (&e, force) in elements.iter().zip(block.initial.chunks_exact_mut(rows(n))) {
             let old = model.memories.of(e, &all);
             let (memory, still) = (Memory { dt: 0.0, old, new: &mut old.to_vec() }, [Vector2::zeros(); 9]);
-            // An element that has a matrix has an answer where nothing has moved.
+            // An element with a matrix has a response at zero displacement.
             let _ = model.solids[e].evolve(material, memory, &still[..n], &mut force[..2 * n], None);
         }
     });
@@ -372,31 +374,31 @@ fn curve(model: &Model) -> impl Fn(usize) -> u64 {
     }
 }
 
-/// Evaluation of the blocks.
+/// Request for an evaluation of the blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Pass<'a> {
-    /// Forces at displacements, and the sums of their magnitudes if wanted
+    /// Forces at displacements, and on request the sums of their magnitudes
     Elastic { u: &'a [f64], scaled: bool },
-    /// Viscous forces at velocities, and the sums of their magnitudes if wanted
+    /// Viscous forces at velocities, and on request the sums of their magnitudes
     Viscous { v: &'a [f64], scaled: bool },
     /// Forces at displacements, and viscous ones at velocities
     Both { u: &'a [f64], v: &'a [f64] },
 }
 
-/// The first node whose columns are kept. Motions count against the first node, whose own columns then are not needed, but
-/// along x in rings: there a motion of all nodes stretches the hoops.
+/// First node whose columns are stored. Motions are relative to the first node, whose own columns then are not needed, except
+/// for x in axisymmetry, where a common motion stretches the hoops.
 const fn first(ring: bool) -> usize {
     if ring { 0 } else { 1 }
 }
 
-/// A list of dofs as motions of nodes.
+/// Dofs as nodal vectors.
 fn all(motion: &[f64]) -> &[[f64; 2]] {
     motion.as_chunks().0
 }
 
 impl Block {
-    /// Write what the elements put on the nodes, and what the pass asks for besides, over `sums`; returns what the first of
-    /// its motions stores.
+    /// Computes the nodal forces, and the second result of the pass, in `sums`; returns the energy stored by the first of its
+    /// motions.
     pub fn evaluate(&self, stiffness: &[f64], ring: bool, tau: f64, pass: Pass, sums: [&mut [Vector2<f64>]; 2]) -> f64 {
         match ring {
             false => self.of_section::<false>(stiffness, tau, pass, sums),
@@ -468,15 +470,15 @@ impl Block {
     }
 }
 
-/// Elements of N nodes with R rows of numbers, at M motions of their nodes.
+/// Elements of N nodes with R rows of stored entries, at M motions of their nodes.
 struct Elements<'a, const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool> {
     block: &'a Block,
     stiffness: &'a [f64],
-    /// Forces of each element on its nodes that the first motion adds to, if there are any
+    /// Nodal forces of each element to be added to those of the first motion, if there are any
     initial: &'a [f64],
-    /// The motions of the block's nodes
+    /// Motions of the block's nodes
     moved: &'a [[[f64; 2]; M]; NODES],
-    /// The factors of their forces
+    /// Factors of their forces
     factors: [f64; M],
     /// The forces of the first motion, and those of the second or the magnitudes
     total: &'a mut [[[f64; 2]; 2]; NODES],
@@ -494,7 +496,7 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool, const R
         let length = 2 * (N - first(RING)) * R;
         let mut twice = simd.splat_f64s(0.0);
         for (places, &matrix) in block.places.as_chunks::<N>().0.iter().zip(&block.matrices) {
-            // The remainder only tells the compiler that the place is one of the block's.
+            // The remainder only proves to the compiler that the index is within the block.
             let places = places.map(|place| place as usize % NODES);
             let matrix = &stiffness[length * matrix as usize..][..length];
             let mut motions = [[0.0; R]; M];

@@ -1,8 +1,8 @@
-//! Stress of the bodies: every element's forces on its nodes, and the sums of them at each node.
+//! Stress of the bodies: nodal forces of every element, and their sums at each node.
 //!
-//! Elements whose stiffness never changes use the stored one, block by block (`constant.rs`). The others of one kind and law
-//! follow each other in a run and are evaluated each time (`runs.rs`). Then every node sums up what its elements and blocks put there,
-//! in their order: the same bits on any number of threads, and nothing is written twice.
+//! Elements with constant stiffness use the stored one, block by block (`constant.rs`). Consecutive other elements of one kind
+//! and law form a run and are evaluated each time (`runs.rs`). Each node then sums the forces of its elements and blocks in a
+//! fixed order: results are bitwise identical for any number of threads, and no two threads write to the same place.
 
 mod constant;
 mod runs;
@@ -19,18 +19,18 @@ pub use constant::is_constant;
 use constant::{Constant, Pass};
 use runs::{Runs, gather, gather_magnitudes};
 
-/// It is the same matrix throughout if all elements are constant.
+/// The matrix is constant if all elements are.
 pub(super) fn dependence(model: &Model) -> Dependence {
     let all = (0..model.solids.len()).all(|e| is_constant(model, e));
     if all { Dependence::Nothing } else { Dependence::Displacement }
 }
 
-/// The elements of a model, and what each puts on its nodes.
+/// Elements of a model and their nodal forces.
 pub(super) struct Solids {
     model: Arc<Model>,
     constant: Constant,
     others: Runs,
-    /// τ of every body in the step under way [T]
+    /// τ of every body in the current step [T]
     retardation: Vec<f64>,
 }
 
@@ -42,7 +42,7 @@ impl Solids {
         Self { model: model.clone(), constant, others, retardation }
     }
 
-    /// Take the viscous stress that the bodies have in a step.
+    /// Sets the viscous stress of the bodies in a step.
     pub fn retard(&mut self, step: &Step) {
         let model = &self.model;
         let times = || (0..model.bodies.len()).map(|body| model.damping(step, body).retardation);
@@ -57,18 +57,18 @@ impl Solids {
         &self.constant.is
     }
 
-    /// Number of the distinct matrices that constant elements share.
+    /// Number of distinct matrices of the constant elements.
     pub fn matrices(&self) -> usize {
         self.constant.matrices()
     }
 
-    /// Σ K_e of the constant elements on the current pattern; nothing if there are none.
+    /// Σ K_e of the constant elements on the current pattern; `None` if there are none.
     pub fn constant_stiffness(&mut self, layout: &Layout) -> Option<&SparseMatrix> {
         self.constant.total(&self.model, layout)
     }
 
-    /// Write the forces over those of `sums`, and add the tangents of all elements that are not constant; returns the stored
-    /// energy. With velocities `v` the viscous forces of the constant elements are found on the way, for
+    /// Computes the forces in `sums`, and adds the tangents of all elements that are not constant; returns the stored energy.
+    /// With velocities `v` the viscous forces of the constant elements are computed in the same pass, for
     /// [`Solids::other_viscous`].
     pub fn add(&mut self, u: &[f64], v: Option<&[f64]>, sums: &mut Sums) -> Result<f64, TrialFailure> {
         let Self { model, constant, others, retardation } = self;
@@ -83,7 +83,7 @@ impl Solids {
         Ok(energy)
     }
 
-    /// Write the viscous forces of the bodies at displacements `u` and velocities `v` over `force`; they resist.
+    /// Computes the viscous forces of the bodies at displacements `u` and velocities `v` in `force`; they resist motion.
     pub fn viscous(&mut self, [u, v]: [&[f64]; 2], force: &mut [f64], magnitudes: Option<&mut [f64]>) {
         let Self { model, constant, others, retardation } = self;
         constant.evaluate(retardation, Pass::Viscous { v, scaled: magnitudes.is_some() });
@@ -91,14 +91,14 @@ impl Solids {
         self.write(force, magnitudes);
     }
 
-    /// Viscous forces, after [`Solids::add`] has evaluated those of the constant elements.
+    /// Computes viscous forces after [`Solids::add`] has evaluated those of the constant elements.
     pub fn other_viscous(&mut self, motion: [&[f64]; 2], force: &mut [f64]) {
         let Self { model, constant, others, retardation } = self;
         others.evaluate_viscous(model, retardation, motion);
         gather([(&others.places, &others.forces), (&constant.places, &constant.others)], force);
     }
 
-    /// Write the sums of the forces at the nodes, and add those of their magnitudes.
+    /// Writes the sums of the forces at the nodes, and adds those of their magnitudes.
     fn write(&self, force: &mut [f64], magnitudes: Option<&mut [f64]>) {
         let Self { constant, others, .. } = self;
         let elements = (&others.places, &others.forces[..]);
@@ -108,7 +108,7 @@ impl Solids {
         }
     }
 
-    /// Add the tangents of the viscous forces, where the velocity of each dof varies `dvelocity` times as much as its
+    /// Adds the tangents of the viscous forces, where the velocity of each dof varies by the factor `dvelocity` with its
     /// displacement.
     pub fn viscous_tangents(
         &mut self,

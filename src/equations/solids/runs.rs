@@ -1,8 +1,8 @@
-//! Elements that are evaluated anew each time: those of one kind and body that follow each other, in parallel.
+//! Runs of elements evaluated each time: consecutive elements of one kind and body, in parallel.
 //!
 //! # Sums at the nodes
 //!
-//! The sums at the nodes, of forces that are found element by element and block by block.
+//! Nodes sum the forces computed element by element and block by block.
 
 use std::ops::Range;
 
@@ -17,36 +17,36 @@ use crate::linear::SparseMatrix;
 use crate::mesh::configuration::vector;
 use crate::model::Model;
 
-/// Elements that are done sooner than another thread wakes up.
+/// Number of elements below which evaluation takes less time than starting another thread.
 const FEW: usize = 64;
 
 /// Elements of a model in runs.
 pub(super) struct Runs {
     runs: Vec<Run>,
-    /// Places of each node's element forces
+    /// Positions of each node's element forces
     pub places: Places,
     /// Forces of the elements on their nodes [F]
     pub forces: Vec<Vector2<f64>>,
-    /// What each element of the model stores, if it is in a run [F·L]
+    /// Energy stored in each element of the model that is in a run [F·L]
     energies: Vec<Result<f64, MaterialFailure>>,
     /// Tangents of a batch, column by column
     tangents: Vec<f64>,
 }
 
-/// Elements of one kind and body that follow each other.
+/// Consecutive elements of one kind and body.
 #[derive(Clone, Debug)]
 struct Run {
     elements: Range<usize>,
     body: usize,
-    /// Nodes of an element
+    /// Nodes per element
     nodes: usize,
-    /// Place of the first node of the first element
+    /// Position of the first node of the first element
     first: usize,
-    /// Whether [`Evolving`] adds them
+    /// Whether they are added by [`Evolving`]
     evolves: bool,
 }
 
-/// An element, and where its forces and its tangent go.
+/// An element, with the memory for its forces and its tangent.
 type Slot<'a> = ((usize, &'a mut [Vector2<f64>]), &'a mut [f64]);
 
 impl Run {
@@ -56,7 +56,7 @@ impl Run {
 }
 
 impl Runs {
-    /// Runs of equal elements among those that are `wanted`.
+    /// Finds the runs of equal elements among those that are `wanted`.
     pub fn new(model: &Model, wanted: impl Fn(usize) -> bool + Clone) -> Self {
         let elements = &model.mesh.elements;
         let mut runs: Vec<Run> = Vec::new();
@@ -87,7 +87,7 @@ impl Runs {
         }
     }
 
-    /// Forces of all elements.
+    /// Computes the forces of all elements.
     pub fn evaluate(&mut self, model: &Model, u: &[f64]) {
         for run in &self.runs {
             if run.evolves {
@@ -104,7 +104,7 @@ impl Runs {
         }
     }
 
-    /// Forces and tangents of the same, the tangents batch by batch.
+    /// Computes the forces and tangents, the tangents batch by batch.
     pub fn evaluate_with_tangents(&mut self, model: &Model, u: &[f64], layout: &Layout, total: &mut SparseMatrix) {
         for run in &self.runs {
             if run.evolves {
@@ -137,7 +137,7 @@ impl Runs {
         }
     }
 
-    /// Stored energy of all elements, or the first one that is inverted.
+    /// Stored energy of all elements; an error for the first one that is inverted.
     pub fn stored(&self, model: &Model) -> Result<f64, TrialFailure> {
         let mut energy = 0.0;
         for e in self.runs.iter().filter(|run| !run.evolves).flat_map(|run| run.elements.clone()) {
@@ -146,7 +146,7 @@ impl Runs {
         Ok(energy)
     }
 
-    /// Viscous forces of all elements.
+    /// Computes the viscous forces of all elements.
     pub fn evaluate_viscous(&mut self, model: &Model, retardation: &[f64], [u, v]: [&[f64]; 2]) {
         for run in &self.runs {
             let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
@@ -168,7 +168,7 @@ impl Runs {
         }
     }
 
-    /// Add the tangents of the viscous forces, where the velocity of each dof varies `dvelocity` times as much as its
+    /// Adds the tangents of the viscous forces, where the velocity of each dof varies by the factor `dvelocity` with its
     /// displacement.
     pub fn viscous_tangents(
         &mut self,
@@ -201,7 +201,7 @@ impl Runs {
     }
 }
 
-/// Values of an element's nodes, from those of all dofs.
+/// Values at an element's nodes, from those of all dofs.
 pub(super) fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
     let mut local = [Vector2::zeros(); 9];
     for (local, &node) in local.iter_mut().zip(&model.mesh.elements[e].nodes) {
@@ -210,21 +210,21 @@ pub(super) fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
     local
 }
 
-/// Elements whose tangents are held at once before they are added.
+/// Number of elements whose tangents are held at once before they are added.
 pub const BATCH: usize = 1024;
 
-/// Nodes whose sums are done sooner than another thread wakes up.
+/// Number of nodes below which summation takes less time than starting another thread.
 const FEW_NODES: usize = 1024;
 
-/// For each node, the places of the values that are summed up there.
+/// For each node, the positions of the values to be summed.
 pub(super) struct Places {
-    /// Start of the places of each node, and end of the last; empty without places
+    /// Start of the positions of each node, and end of the last; empty without positions
     starts: Vec<u32>,
     places: Vec<u32>,
 }
 
 impl Places {
-    /// Places for `count` nodes, from pairs of node and place.
+    /// Creates the positions for `count` nodes, from pairs of node and position.
     pub fn new(count: usize, nodes: impl Iterator<Item = (u32, usize)> + Clone) -> Self {
         let mut starts = vec![0; count + 1];
         nodes.clone().for_each(|(_, node)| starts[node + 1] += 1);
@@ -240,7 +240,7 @@ impl Places {
         Self { starts, places }
     }
 
-    /// Forces at the places of a node.
+    /// Forces at the positions of a node.
     fn at<'a>(&'a self, node: usize, forces: &'a [Vector2<f64>]) -> impl Iterator<Item = Vector2<f64>> + 'a {
         let own =
             if self.starts.is_empty() { 0..0 } else { self.starts[node] as usize..self.starts[node + 1] as usize };
@@ -248,10 +248,10 @@ impl Places {
     }
 }
 
-/// Forces at their places, and where each node finds its own.
+/// Forces, and their positions for each node.
 type Source<'a> = (&'a Places, &'a [Vector2<f64>]);
 
-/// Write the sums at the nodes over `force`, those of the elements before those of the blocks.
+/// Writes the sums at the nodes to `force`, elements before blocks.
 pub(super) fn gather([elements, blocks]: [Source; 2], force: &mut [f64]) {
     let nodes = force.par_chunks_exact_mut(2).enumerate().with_min_len(FEW_NODES);
     let write = |force: &mut [f64], total: Vector2<f64>| force.copy_from_slice(total.as_slice());
@@ -264,7 +264,7 @@ pub(super) fn gather([elements, blocks]: [Source; 2], force: &mut [f64]) {
     }
 }
 
-/// Add the sums of the magnitudes at the nodes.
+/// Adds the sums of the magnitudes at the nodes.
 pub(super) fn gather_magnitudes([elements, blocks]: [Source; 2], magnitudes: &mut [f64]) {
     magnitudes.par_chunks_exact_mut(2).enumerate().with_min_len(FEW_NODES).for_each(|(node, magnitude)| {
         for force in elements.0.at(node, elements.1).chain(blocks.0.at(node, blocks.1)) {

@@ -1,5 +1,5 @@
-//! Friction at the points of a contact: a law, and beside it how plastic slip moves the surfaces along the normal by dilatancy
-//! and wear.
+//! Friction at the points of a contact: a friction law, and the motion of the surfaces along the normal by dilatancy and wear
+//! due to plastic slip.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,18 +17,18 @@ pub struct Dilatancy {
     /// tan ψ: initial opening per plastic slip, in either direction of slip; below the lowest friction coefficient of
     /// the law (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
     pub rate: f64,
-    /// d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit by default. The opening δ is
+    /// d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; unlimited by default. The opening δ is
     /// `dilation` in tables and frames [L]
     pub limit: Option<f64>,
 }
 
 impl Dilatancy {
-    /// Without a limit.
+    /// Creates dilatancy without a limit.
     pub const fn new(rate: f64) -> Self {
         Self { rate, limit: None }
     }
 
-    /// Up to an opening [L].
+    /// Sets the largest opening [L].
     pub const fn limit(self, limit: f64) -> Self {
         Self { limit: Some(limit), ..self }
     }
@@ -52,16 +52,17 @@ impl Dilatancy {
 /// dW = q dλ − p dd                                   dissipation: dilation lifts the load out of the work of friction   (3)
 /// δλ = sgn Δu^p (δΔu_t − δq/α_t)                     tangent; without α_t all slip is plastic
 /// ```
-/// (1) makes no difference between slip one way and back: asperities are overridden for good, and the surfaces do not come down
-/// again when slip reverses. (Interlocked ones would.) The opening stays while the surfaces are apart. (2) is Archard's law with k = K/H, the
-/// wear coefficient over the hardness; p goes evenly over the increment, as it does in (3).
+/// (1) does not distinguish forward and backward slip: asperities are overridden permanently, and the surfaces do not close
+/// again when slip reverses. (Interlocked ones would.) The opening persists while the surfaces are separated. (2) is Archard's
+/// law with k = K/H, the wear coefficient divided by the hardness; p varies linearly over the increment, as in (3).
 ///
-/// (3) is what friction and pressure do on flat surfaces. The contact puts q on both sides across the gap g without a couple, so that
-/// where the surfaces turn by dθ under the slip the work q g dθ is missing, the share g/R of friction's on a radius R: the opening
-/// must be small against that. Without an opening g is as small as the penetration.
+/// (3) is the work of friction and pressure on flat surfaces. The contact applies q to both sides across the gap g without a
+/// couple, so that where the surfaces rotate by dθ under the slip the work q g dθ is missing, the fraction g/R of the
+/// frictional work on a radius R: the opening must be small compared with R. Without an opening, g is as small as the
+/// penetration.
 ///
 /// Sources: J. F. Archard, J. Appl. Phys. 24 (1953) 981; (1) P. Segall, J. R. Rice, J. Geophys. Res. 100 (1995) 22155, whose
-/// porosity goes to that of its state over a distance of slip in the same way.
+/// porosity approaches its state-dependent value over a slip distance in the same way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[doc(hidden)]
 pub struct Offsets {
@@ -75,7 +76,7 @@ impl Offsets {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when one is out of its range, named `dilatancy.rate`, `dilatancy.limit` or `wear`.
+    /// Returns [`InvalidParameter`] named `dilatancy.rate`, `dilatancy.limit` or `wear` if one is out of range.
     fn check(&self) -> Result<(), InvalidParameter> {
         if let Some(Dilatancy { rate, limit }) = self.dilatancy {
             require_positive("dilatancy.rate", rate)?;
@@ -84,15 +85,15 @@ impl Offsets {
         self.wear.map_or(Ok(()), |wear| require_positive("wear", wear))
     }
 
-    /// tan ψ and the least coefficient of friction that a law can come to, where the first is not below the second: sliding
-    /// would lift the load with more work than it takes.
+    /// tan ψ and the lowest friction coefficient of a law, if the first is not below the second: sliding would lift the load
+    /// with more work than it dissipates.
     pub fn beyond(&self, law: &Description) -> Option<[f64; 2]> {
         let rate = self.dilatancy?.rate;
         let least = law.least_coefficient.unwrap_or_else(|| law.starting_limit(1.0));
         (rate >= least).then_some([rate, least])
     }
 
-    /// Names of the parts of the opening that change.
+    /// Names of the parts of the opening that vary.
     fn names(&self) -> &'static [&'static str] {
         match (self.dilatancy, self.wear) {
             (Some(_), Some(_)) => &["dilation", "wear"],
@@ -102,7 +103,7 @@ impl Offsets {
         }
     }
 
-    /// The answer of a law of stiffness α_t with what it means for the opening.
+    /// Response of a law with stiffness α_t, completed by the change of the opening.
     fn moved(&self, old: &FrictionState, pressure: f64, mut response: FrictionResponse, stiffness: f64) -> Answer {
         let (slip, sign) = (response.state.plastic_increment.abs(), response.state.plastic_increment.signum());
         if pressure <= 0.0 || slip == 0.0 {
@@ -125,13 +126,13 @@ impl Offsets {
     }
 }
 
-/// Friction of contact points: first the law is asked, then what its slip does to the opening.
+/// Friction of contact points: response of the law, followed by the change of the opening by its slip.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct ContactLaw {
     /// The law
     pub law: Box<dyn FrictionLaw>,
-    /// What the law says of itself, with the parts of the opening that the offsets change
+    /// Description of the law, with the parts of the opening varied by the offsets
     pub description: Description,
     offsets: Offsets,
 }
@@ -149,12 +150,12 @@ impl From<Box<dyn FrictionLaw>> for ContactLaw {
 }
 
 impl ContactLaw {
-    /// A law with the offsets of its surfaces, whose parameters are checked.
+    /// Combines a law with the offsets of its surfaces, and checks their parameters.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range, named `dilatancy.rate`, `dilatancy.limit` or `wear`; also a
-    /// dilatancy that would give more work than friction takes: tan ψ must be below the least coefficient that the law can come
-    /// to, if it has one ([`Description::least_coefficient`]).
+    /// Returns [`InvalidParameter`] named `dilatancy.rate`, `dilatancy.limit` or `wear` if one is out of range, or if dilatancy
+    /// would supply more work than friction dissipates: tan ψ must be below the lowest coefficient of the law, if it has one
+    /// ([`Description::least_coefficient`]).
     pub fn with_offsets(law: Box<dyn FrictionLaw>, offsets: Offsets) -> Result<Self, InvalidParameter> {
         offsets.check()?;
         let law = Self::from(law);
@@ -171,15 +172,15 @@ impl ContactLaw {
         Ok(Self { description: Description { opening: offsets.names(), ..law.description }, offsets, ..law })
     }
 
-    /// The answer to an increment, see [`FrictionLaw::respond`].
+    /// Response to an increment, see [`FrictionLaw::respond`].
     ///
     /// # Errors
-    /// As of the law.
+    /// Returns the failure of the law.
     pub fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         self.moved(old, sliding, self.law.respond(old, sliding))
     }
 
-    /// The answers of many points, each the same as alone.
+    /// Responses at several points, identical to those of single points.
     pub fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
         self.law.respond_many(old, sliding, answers);
         if self.offsets != Offsets::default() {
@@ -195,7 +196,7 @@ impl ContactLaw {
         self.offsets.moved(old, sliding.pressure, answer?, self.description.stiffness)
     }
 
-    /// The value of an observable in a state, or its default where the law does not define it: NaN for a further one.
+    /// Value of an observable in a state, or its default if the law does not define it: NaN for an additional one.
     pub fn observe(&self, name: &str, state: &FrictionState) -> f64 {
         match name {
             "dilation" if self.description.opening.contains(&name) => state.opening + state.wear,

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::laws::parameter::{InvalidParameter, numbers, require_positive};
 
-/// Parameters of [`Coulomb`] as the case file writes them.
+/// Parameters of [`Coulomb`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -23,12 +23,12 @@ pub struct CoulombParameters {
 numbers!(CoulombParameters: "mu" mu; "alpha_t" alpha_t);
 
 impl CoulombParameters {
-    /// With the tangential stiffness left to the contact.
+    /// Creates the parameters with the default tangential stiffness of the contact.
     pub const fn new(mu: f64) -> Self {
         Self { mu, alpha_t: None }
     }
 
-    /// With this tangential stiffness [F/L³].
+    /// Sets the tangential stiffness α_t [F/L³].
     pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
@@ -40,15 +40,15 @@ impl CoulombParameters {
 /// q̇ = α_t (v − λ sgn q)                      slip = elastic + plastic
 /// |q| ≤ μ p,   λ ≥ 0,   λ (|q| − μ p) = 0     sticking or sliding
 /// ```
-/// An increment is elastic if the trial q₀ + α_t Δu is not above μ p, else q = μ p along the trial. With slip and pressure
-/// going evenly over the increment this is exact: the traction is elastic up to q_y, where it meets μ p, and slides at
+/// An increment is elastic if the trial q₀ + α_t Δu is not above μ p, otherwise q = μ p along the trial. For slip and pressure
+/// linear in the increment this is exact: the traction is elastic up to q_y, where it reaches μ p, and slides at
 /// μ p from there to the end, which dissipates
 /// ```text
 /// ΔW = ½ (q_y + |q|) Δλ,   Δλ = (|q_tr| − |q|)/α_t
 /// ```
 ///
 /// # Errors
-/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
+/// Returns [`LawFailure`](super::LawFailure) if the increment or the response is not finite, or Δt is negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coulomb {
     mu: f64,
@@ -56,10 +56,10 @@ pub struct Coulomb {
 }
 
 impl Coulomb {
-    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    /// Creates the law from checked parameters; `default_alpha_t` is used if they do not specify `alpha_t`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range.
+    /// Returns [`InvalidParameter`] if a parameter is out of range.
     pub fn new(parameters: &CoulombParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
         let law = Self { mu: parameters.mu, alpha_t: parameters.alpha_t.unwrap_or(default_alpha_t) };
         require_positive("mu", law.mu)?;

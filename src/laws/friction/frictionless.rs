@@ -1,6 +1,6 @@
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Regime, Sliding};
 
-/// No friction: q = 0 whatever the slip.
+/// Frictionless contact: q = 0 for any slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frictionless;
 

@@ -1,4 +1,4 @@
-//! The friction-law contract: what an interface point remembers, and how a law answers one increment.
+//! Interface of friction laws: state of an interface point, and response of a law to one increment.
 //!
 //! A law is a pure function of (committed state, increment). Its arguments are scalars in the frame that rotates with
 //! the interface, never nodes or meshes, so the same law serves a finite-element interface, a point mass or a test.
@@ -6,11 +6,11 @@
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
 //!
 //! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`], [`PrescribedSlip`].
-//! [`FrictionParameters`] reads any of them from a case, and laws from elsewhere that are [registered](register);
-//! [`ContactLaw`] is any of them at the points of a contact, with dilatancy and wear beside it.
+//! [`FrictionParameters`] reads any of them from a case, and [registered](register) laws from other programs;
+//! [`ContactLaw`] combines any of them with dilatancy and wear at the points of a contact.
 //!
-//! What a law is asked is [`Sliding`], the increment of one point; why it could not answer is a [`LawFailure`]. Laws whose slip
-//! rate follows from traction and state are [`RateLaw`]s as well.
+//! The input of a law is [`Sliding`], the increment of one point; its failure is a [`LawFailure`]. Laws whose slip rate follows
+//! from traction and state also implement [`RateLaw`].
 
 mod contact_law;
 mod coulomb;
@@ -40,15 +40,15 @@ pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
 pub use state::{FrictionState, MOST_VARIABLES, Regime};
 pub use super_subloading::{Approach, Integration, Onset, Rise, SuperSubloading, SuperSubloadingParameters};
 
-/// No law answers a tangent |∂q/∂Δu_t| above this many times α_t, or |∂q/∂p| above it. Where two roots of a law's equation
-/// of plastic slip merge the traction snaps, and just before it the derivative grows without bound, like the inverse of the
-/// root of the distance to the snap. It is exact up to here; beyond, the distance is lost in round-off.
+/// Bound of the tangent: |∂q/∂Δu_t| is limited to this many times α_t, |∂q/∂p| to this value. Where two roots of a law's
+/// equation of plastic slip merge, the traction jumps, and just before it the derivative grows without bound, like the inverse
+/// square root of the distance to the jump. It is exact up to this bound; beyond, the distance is dominated by round-off.
 pub const STEEPEST: f64 = 1e8;
 
-/// Least −∂G/∂Δλ over α_t of an equation of plastic slip that a tangent is computed with.
+/// Smallest −∂G/∂Δλ of an equation of plastic slip, relative to α_t, used for a tangent.
 const LEAST_SLOPE: f64 = 1.0 / STEEPEST;
 
-/// The answer of a law to one increment. Its tangent is that of exactly what was computed.
+/// Response of a law to one increment, with the consistent tangent of the computed values.
 ///
 /// ```text
 /// δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd = ∂d/∂Δu_t δΔu_t + ∂d/∂p δp        d: opening, 0 for most laws
@@ -65,26 +65,26 @@ pub struct FrictionResponse {
     pub dtraction_dpressure: f64,
     /// ∂d/∂Δu_t [-]
     pub dopening_dslip: f64,
-    /// ∂d/∂p, below 1/α_n: an opening that grew faster with the pressure than the contact compliance would be unbounded
+    /// ∂d/∂p, below 1/α_n: an opening that increased faster with the pressure than the contact compliance would be unbounded
     /// [L³/F]
     pub dopening_dpressure: f64,
-    /// Evaluations of the scalar equation of plastic slip that this answer took; 0 where it has a closed form
+    /// Number of evaluations of the scalar equation of plastic slip; 0 for a closed form
     pub evaluations: usize,
 }
 
 impl FrictionResponse {
-    /// The answer of a law whose surfaces stay as far apart as they are, with ∂q/∂Δu_t and ∂q/∂p.
+    /// Creates the response of a law with constant opening, with ∂q/∂Δu_t and ∂q/∂p.
     pub fn new(state: FrictionState, dtraction_dslip: f64, dtraction_dpressure: f64) -> Self {
         Self { state, dtraction_dslip, dtraction_dpressure, ..Self::default() }
     }
 
-    /// The answer that `state` follows without plastic slip, where q has the tangent `stiffness` by slip.
+    /// Creates a response without plastic slip, where q has the tangent `stiffness` with respect to slip.
     pub fn elastic(state: FrictionState, stiffness: f64) -> Self {
         Self::new(state, stiffness, 0.0)
     }
 
-    /// The answer of surfaces that do not ride up on each other in this increment, from the state `old` on: neither lift nor its
-    /// work. Where wear outweighs dilation it stays as it is.
+    /// Removes dilation, and its work, from the response in this increment, which started in the state `old`. Where wear
+    /// exceeds dilation the response is unchanged.
     pub fn without_lift(mut self, old: &FrictionState) -> Self {
         let lift = self.state.opening - old.opening;
         if lift > 0.0 {
@@ -95,11 +95,11 @@ impl FrictionResponse {
         self
     }
 
-    /// Bounds the tangent to what [`FrictionLaw::respond`] promises for the stiffness α_t, and refuses numbers that have
-    /// overflowed, and those of a committed state that was not finite.
+    /// Limits the tangent as [`FrictionLaw::respond`] requires for the stiffness α_t, and refuses numbers that have overflowed
+    /// or a non-finite committed state.
     ///
     /// # Errors
-    /// [`LawFailure::Overflow`].
+    /// Returns [`LawFailure::Overflow`] for such numbers.
     pub fn checked(mut self, stiffness: f64) -> Result<Self, LawFailure> {
         self.dtraction_dslip = self.dtraction_dslip.clamp(-STEEPEST * stiffness, STEEPEST * stiffness);
         self.dtraction_dpressure = self.dtraction_dpressure.clamp(-STEEPEST, STEEPEST);
@@ -115,22 +115,23 @@ impl FrictionResponse {
 /// Response of a law at one point.
 pub type Answer = Result<FrictionResponse, LawFailure>;
 
-/// A friction law, integrated over one increment. Pure: the same `old` and `sliding` give the same answer.
+/// A friction law, integrated over one increment. Pure: the same `old` and `sliding` give the same response.
 ///
 /// ```text
 /// (q, variables, d)₁ = law((q, p, variables, d)₀; Δu_t, p₁, Δt)       q resists +Δu_t, p > 0 in compression
-/// p = p̄ − α_n (g − d)                                                d: how far the law holds the surfaces apart (dilatancy)
+/// p = p̄ − α_n (g − d)                                                d: opening of the surfaces by the law (dilatancy)
 /// W₁ − W₀ = ∫ q dλ − ∫ p dd ≥ 0                                     dissipation [F/L]; q²/(2 α_t) is stored
 /// ```
-/// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law is called with the pressure that it responds to, so that it never receives
-/// penalty or multiplier; the contact finds the pressure that goes with the opening.
+/// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law receives the effective pressure, never a penalty or multiplier;
+/// the contact finds the pressure that is consistent with the opening.
 ///
-/// Where Δt = 0 the law answers to slip and pressure that come up at once, and q stays as it was if neither does: a step begins with
-/// the traction that the one before has ended with. With p ≤ 0 the surfaces have parted.
+/// For Δt = 0 the law responds to instantaneous slip and pressure, and q is unchanged if both are zero: a step starts with the
+/// traction at the end of the previous one. For p ≤ 0 the surfaces are separated.
 ///
-/// A law of one parameter, a film of oil, is written like this. A law that can be cloned is friction of a contact as it is,
-/// `Contact::new("base", "block_bottom", "ground_top", Oil { viscosity: 2.0 })`; nothing has to be registered. What it remembers
-/// besides, at most [`MOST_VARIABLES`] numbers, it names in [`Description::variables`] (the k-th name is that of
+/// The following example is a law with one parameter, an oil film. A law that implements `Clone` can be used as the friction of
+/// a contact directly, `Contact::new("base", "block_bottom", "ground_top", Oil { viscosity: 2.0 })`; no registration is needed.
+/// It names its internal variables, at most [`MOST_VARIABLES`] numbers, in [`Description::variables`] (the k-th name is that of
+/// `state.variables[k]`); they appear by name in tables, frames and `Simulation::contact_field`:
 /// `state.variables[k]`), and they appear by name in tables, frames and `Simulation::contact_field`:
 ///
 /// ```
@@ -141,7 +142,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// /// Viscous friction, q = η v.
 /// #[derive(Clone, Debug)]
 /// struct Oil {
-///     /// η: viscosity over thickness of the film, η > 0 [F·T/L³]
+///     /// η: viscosity divided by the film thickness, η > 0 [F·T/L³]
 ///     viscosity: f64,
 /// }
 ///
@@ -176,35 +177,35 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// Description of the law, independent of the state of a point.
     fn description(&self) -> Description;
 
-    /// State of a point that has not slipped, closed from the start under these tractions, or open where they are 0.
+    /// State of a point without previous slip, closed from the start under these tractions, or open if they are 0.
     fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
         FrictionState::default().loaded(pressure, traction)
     }
 
-    /// q, the law's variables, its regime and the opening at the end of the increment, with the consistent tangent,
-    /// ∂q/∂Δu_t and ∂q/∂p being limited to ± [`STEEPEST`] times α_t, or 1.
+    /// q, the internal variables, contact status and opening at the end of the increment, with the consistent tangent;
+    /// ∂q/∂Δu_t and ∂q/∂p are limited to ± [`STEEPEST`] times α_t, or 1.
     ///
     /// # Errors
-    /// [`LawFailure`] when the increment or the answer is not finite, time goes backwards, or the law's equations are not
-    /// solved to their tolerance.
+    /// Returns [`LawFailure`] if the increment or the response is not finite, Δt is negative, or the equations of the law are
+    /// not solved to their tolerance.
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer;
 
-    /// The answers of many points, each the same as alone. A law that has a quicker way than one after the other takes it
-    /// here.
+    /// Responses at several points, identical to those of single points. A law with a faster evaluation of several points
+    /// overrides this.
     fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
         for ((old, sliding), answer) in old.iter().zip(sliding).zip(answers) {
             *answer = self.respond(old, *sliding);
         }
     }
 
-    /// The value of an observable in a state: of a variable, unless the law says otherwise; none if the law does not know it.
+    /// Value of an observable in a state, by default that of a variable; `None` if the law does not define it.
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
         let variables = self.description().variables.iter().zip(state.variables);
         variables.into_iter().find_map(|(own, value)| (*own == name).then_some(value))
     }
 
-    /// The law as it answers along a path that is given, such as a record of a test: with sub-steps where the error of an
-    /// increment asks for them. None of a law whose increments are right whatever their length, or as they are.
+    /// Returns the law for a prescribed path, such as a test record, with error-controlled sub-steps of each increment; `None`
+    /// if its increments are exact for any length or no such integration exists.
     fn controlled(&self) -> Option<Box<dyn FrictionLaw>> {
         None
     }
@@ -225,50 +226,51 @@ pub trait FrictionLaw: Debug + Send + Sync {
     }
 }
 
-/// Description of a friction law, independent of the state of a point. Fields that do not apply stay as in
+/// Description of a friction law, independent of the state of a point. Fields that do not apply keep the values of
 /// [`default`](Self::default): no stiffness, no variables, no bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Description {
-    /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
+    /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 if it stores no energy [F/L³]
     pub stiffness: f64,
-    /// Whether α_t is a penalty: the law knows no elastic slip, and q/α_t is an error as a penetration is
+    /// Whether α_t is a penalty: the law has no elastic slip, and q/α_t is an error like a penetration
     pub stiffness_is_penalty: bool,
-    /// Names of the [`FrictionState::variables`] that the law uses: its own, and not those of what outputs show anyway
+    /// Names of the [`FrictionState::variables`] of the law; names used by other outputs are not allowed
     /// ([`observables::check_names`])
     pub variables: &'static [&'static str],
-    /// Names of what outputs show of a state beside what all laws have, see [`FrictionLaw::observe`]; the variables unless given
+    /// Names of observables in addition to those of all laws, see [`FrictionLaw::observe`]; default: the variables
     pub observables: Option<&'static [&'static str]>,
-    /// Names of the parts of the opening that outputs show, `dilation` and `wear`, as far as the law has them. A law whose opening
-    /// changes names one: then a point is closed by what slip makes of its opening, not by that of the old state
+    /// Names of the parts of the opening in the output, `dilation` and `wear`, as far as the law has them. A law with variable
+    /// opening names one: a point is then closed according to the opening after slip, not according to that of the old state
     pub opening: &'static [&'static str],
-    /// True of a law whose q is 0 whatever the slip: there is no slip to resolve, and nothing to break
+    /// True if q is 0 for any slip: no slip needs to be resolved, and no rupture can occur
     pub is_frictionless: bool,
-    /// Whether parameters that vary in time enter by their mean over an increment, as rates do, and not by their value at its
-    /// end, as strengths do
+    /// Whether time-dependent parameters are averaged over an increment, like rates, instead of taking their value at its
+    /// end, like strengths
     pub takes_means: bool,
-    /// Largest |q|/p that a point which has not slipped yet may start with; none for a law that lets an excess slip off [-]
+    /// Largest initial |q|/p of a point without previous slip; `None` for a law that releases an excess by slip [-]
     pub starting_coefficient: Option<f64>,
-    /// Lowest |q|/p of a point in continued sliding, at any rate and state; none where there is no such bound, or the
-    /// law does not say [-]
+    /// Lower bound of |q|/p in continued sliding, at any rate and state; `None` if there is no such bound, or the
+    /// law does not define it [-]
     pub least_coefficient: Option<f64>,
-    /// −d(q/p)/dδ at its largest: how much friction fast slip takes over its way δ, 0 where it takes none [1/L]
+    /// Maximum of −d(q/p)/dδ: weakening of friction in fast slip δ, 0 without weakening [1/L]
     pub weakening: f64,
 }
 
 impl Description {
-    /// Names of what outputs show of a state beside what all laws have.
+    /// Names of observables in addition to those of all laws.
     pub fn observables(&self) -> &'static [&'static str] {
         self.observables.unwrap_or(self.variables)
     }
 
-    /// Largest |q| that a point which has not slipped yet may start with under the pressure p; infinite for a law that
-    /// lets an excess slip off [F/L²]
+    /// Largest initial |q| of a point without previous slip under the pressure p; infinite for a law that releases an excess by
+    /// slip [F/L²]
     pub fn starting_limit(&self, pressure: f64) -> f64 {
         self.starting_coefficient.map_or(f64::INFINITY, |coefficient| coefficient * pressure)
     }
 
-    /// Pressure from which the rate problem may have several answers, α_t over the weakening, if there is one [F/L²]
+    /// Uniqueness bound: pressure above which the rate problem may have several solutions, α_t/weakening, if there is one
+    /// [F/L²]
     pub fn uniqueness_limit(&self) -> Option<f64> {
         let pressure = self.stiffness / self.weakening;
         pressure.is_finite().then_some(pressure)
@@ -288,15 +290,15 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// The increment Δu_t under the pressure p at its end, in the time Δt.
+    /// Creates the increment Δu_t under the pressure p at its end, in the time Δt.
     pub const fn new(slip: f64, pressure: f64, dt: f64) -> Self {
         Self { slip, pressure, dt }
     }
 
-    /// Refuses what no law can answer.
+    /// Refuses invalid increments.
     ///
     /// # Errors
-    /// [`LawFailure`] when a number is not finite, or time goes backwards.
+    /// Returns [`LawFailure`] if a number is not finite or Δt is negative.
     pub fn checked(self) -> Result<Self, LawFailure> {
         let Self { slip, pressure, dt } = self;
         if !(slip.is_finite() && pressure.is_finite() && dt.is_finite()) {
@@ -309,7 +311,7 @@ impl Sliding {
     }
 }
 
-/// Why a law could not answer; the increment is tried again with a smaller step.
+/// Failure of a law; the increment is repeated with a smaller length.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LawFailure {
@@ -326,13 +328,13 @@ pub enum LawFailure {
         /// increment length [T]
         dt: f64,
     },
-    /// The increment goes back in time.
+    /// The length of the increment is negative.
     #[error("the friction law was evaluated for a negative time increment {dt}")]
     NegativeTime {
         /// increment length [T]
         dt: f64,
     },
-    /// The equation of plastic slip was not solved, or the sub-steps of the increment did not come to agree.
+    /// The equation of plastic slip was not solved, or the sub-steps of the increment did not converge.
     #[error(
         "the friction law did not converge within {evaluations} evaluations: residual {rest:.3e} of the trial traction \
          {trial:.3e}"
@@ -340,7 +342,7 @@ pub enum LawFailure {
     NotConverged {
         /// evaluations of the equation of plastic slip
         evaluations: usize,
-        /// what is left out of balance, or the difference between sub-steps [F/L²]
+        /// residual, or difference between sub-steps [F/L²]
         rest: f64,
         /// |q_tr|: traction without plastic slip [F/L²]
         trial: f64,
@@ -356,13 +358,13 @@ pub enum LawFailure {
         /// p [F/L²]
         pressure: f64,
     },
-    /// Parameters that vary in time have no good value at a time.
+    /// Time-dependent parameters are invalid at a time.
     #[error("the parameters of the friction law are not finite, or out of their range, at t = {time}: check `along`")]
     Undefined {
         /// t [T]
         time: f64,
     },
-    /// Parameters that vary in time let the surfaces dilate more than they rub.
+    /// Time-dependent parameters give a dilatancy above the friction coefficient.
     #[error(
         "the opening per slip {rate} (dilatancy.rate) is not below the lowest friction coefficient {least} of the law \
          at t = {time}, and sliding would produce energy: lower dilatancy.rate, or keep `along` above it"
@@ -372,16 +374,16 @@ pub enum LawFailure {
         time: f64,
         /// tan ψ [-]
         rate: f64,
-        /// least coefficient of the law then [-]
+        /// lowest friction coefficient of the law at that time [-]
         least: f64,
     },
-    /// The state was not finite, or the increment is so large that it no longer is.
+    /// The state was not finite, or is no longer because of a too large increment.
     #[error("the friction state is not finite: the traction is {traction}")]
     Overflow {
         /// q: traction [F/L²]
         traction: f64,
     },
-    /// A registered law has failed, for a reason of its own.
+    /// A registered law failed for a reason of its own.
     #[error("a registered friction law returned no result")]
     Registered,
 }
@@ -389,7 +391,7 @@ pub enum LawFailure {
 /// Tractions at a point of an interface with radiation damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLoad {
-    /// τ = q + η V: what friction and radiation damping carry together [F/L²]
+    /// τ = q + η V: friction and radiation damping together [F/L²]
     pub traction: f64,
     /// p [F/L²]
     pub pressure: f64,
@@ -397,14 +399,14 @@ pub struct PointLoad {
     pub damping: f64,
 }
 
-/// A law whose slip rate follows from traction and state, so that an interface can be integrated by itself.
+/// A law whose slip rate follows from traction and state, so that an interface can be integrated separately.
 ///
 /// ```text
 /// τ = q(V, x, p) + η V          solved for V, which has the sign of τ; x: the state, a number without dimension
 /// ẋ = ẋ(V, x)
 /// ```
 pub trait RateLaw: Debug + Send + Sync {
-    /// V; not a number where the law has no answer [L/T].
+    /// V; NaN if the law has no solution [L/T].
     fn slip_rate(&self, x: f64, loading: PointLoad) -> f64;
 
     /// ẋ at a slip rate [1/T].
@@ -412,7 +414,7 @@ pub trait RateLaw: Debug + Send + Sync {
         0.0
     }
 
-    /// x of what a point remembers.
+    /// x in a state.
     fn evolving(&self, _state: &FrictionState) -> f64 {
         0.0
     }
@@ -422,7 +424,7 @@ pub trait RateLaw: Debug + Send + Sync {
         state
     }
 
-    /// |∂(q/p)/∂x|: what an error of x does to the coefficient of friction [-].
+    /// |∂(q/p)/∂x|: effect of an error of x on the friction coefficient [-].
     fn weight(&self) -> f64 {
         0.0
     }
@@ -431,10 +433,10 @@ pub trait RateLaw: Debug + Send + Sync {
     fn regime(&self, x: f64, slip_rate: f64) -> Regime;
 }
 
-/// |q| where plastic slip sets in, in an increment along which the elastic traction and the strength both go evenly from
-/// their first value to their second, and the traction ends above. One that is above from the start slips from there.
+/// |q| at the onset of plastic slip, in an increment in which the elastic traction and the strength both vary linearly from
+/// their first value to their second, and the traction is above at the end. If it is above from the start, slip starts there.
 ///
-/// Both lines are counted along the sign of the trial, so a traction of the other sign unloads elastically, passes zero,
+/// Both are measured along the sign of the trial, so a traction of the opposite sign unloads elastically, passes zero,
 /// and loads elastically up to the strength.
 fn traction_at_yield(elastic: [f64; 2], strength: [f64; 2]) -> f64 {
     let (below, above) = (strength[0] - elastic[0], elastic[1] - strength[1]);

@@ -1,16 +1,16 @@
-//! What outputs show of friction beside what all laws have in common: the names come from the laws.
+//! Observables of friction in the output, in addition to those of all laws; their names come from the laws.
 
 use super::state::MOST_VARIABLES;
 use super::{Description, FrictionLaw, FrictionState};
 
-/// Observables that every table has a column for, and their value where the law does not know them: without friction
+/// Observables with a column in every table, and their value for laws that do not define them: without friction
 /// there is no strength to approach, and without structure its degree is 1.
 pub const ALWAYS: [(&str, f64); 3] = [("R", 0.0), ("mu", 0.0), ("structure", 1.0)];
 
-/// Parts of an opening that outputs show.
+/// Parts of an opening in the output.
 const OF_OPENING: [&str; 2] = ["dilation", "wear"];
 
-/// Names of other outputs at contact points, which laws may not use.
+/// Names of other outputs at contact points, not available to laws.
 const TAKEN: [&str; 28] = [
     "time",
     "contact",
@@ -42,14 +42,14 @@ const TAKEN: [&str; 28] = [
     OF_OPENING[1],
 ];
 
-/// Longest name: with that of its contact it is one of a file.
+/// Maximum length of a name; combined with that of its contact it is a file name.
 const LONGEST: usize = 64;
 
-/// Whether the names that a law gives can be those of columns, arrays and files, and are its own. They are told apart by more than
-/// capitals, as not all systems tell files apart by them.
+/// Checks that the names of a law are valid for columns, arrays and files, and differ from other names. They must differ in
+/// more than capitalization, since some systems ignore it in file names.
 ///
 /// # Errors
-/// What is wrong with which name, and what to do.
+/// Returns a message with the invalid name and a remedy.
 #[doc(hidden)]
 pub fn check_names(description: &Description) -> Result<(), String> {
     let Description { variables, opening, .. } = description;
@@ -85,7 +85,7 @@ fn check_each(names: &[&str]) -> Result<(), String> {
     Ok(())
 }
 
-/// Names of the further observables of some laws, each once, in order of appearance.
+/// Names of the additional observables of some laws, each once, in order of appearance.
 #[doc(hidden)]
 pub fn further<'a>(laws: impl IntoIterator<Item = &'a Description>) -> Vec<&'static str> {
     let mut names = Vec::new();
@@ -97,7 +97,7 @@ pub fn further<'a>(laws: impl IntoIterator<Item = &'a Description>) -> Vec<&'sta
     names
 }
 
-/// The value of an observable, or its default where the law does not define it: NaN for a further one.
+/// Value of an observable, or its default if the law does not define it: NaN for an additional one.
 pub fn value(law: &dyn FrictionLaw, name: &str, state: &FrictionState) -> f64 {
     let absent = || ALWAYS.iter().find(|(always, _)| *always == name).map_or(f64::NAN, |(_, absent)| *absent);
     law.observe(name, state).unwrap_or_else(absent)

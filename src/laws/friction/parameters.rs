@@ -1,6 +1,6 @@
-//! The friction law as the case file writes it.
+//! Friction laws in the case file.
 //!
-//! Laws that a program which calls the library registers by a name, so that cases can use them.
+//! A program that uses the library can register laws by name for cases.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -20,27 +20,27 @@ use crate::laws::parameter::{InvalidParameter, Numbers, UnknownParameter, requir
 #[non_exhaustive]
 pub enum FrictionParameters {
     /// No friction
-    // Not a unit variant: serde would let any other key pass.
+    // Not a unit variant, for which serde would accept any other key.
     Frictionless {},
     /// Elastic until |q| = μ p, then sliding at constant μ
     Coulomb(CoulombParameters),
     /// Time-dependent super/subloading-surface friction: slip weakens the interface, stationary contact heals it
     SuperSubloading(SuperSubloadingParameters),
-    /// Friction that falls linearly with slip from static to dynamic, and does not heal
+    /// Friction that decreases linearly with slip from static to dynamic, and does not heal
     SlipWeakening(SlipWeakeningParameters),
     /// Regularized rate-and-state friction: depends on the slip rate and on a state that ages or slips
     RateAndState(RateAndStateParameters),
-    /// Slip at a given rate, whatever traction that takes
+    /// Slip at a prescribed rate, whatever the traction
     Prescribed(PrescribedSlipParameters),
-    /// A law that the program has not itself: one that calls the library has registered it, such as a law written in Python
+    /// A law that is not part of the program, registered by a program that uses the library, such as a law written in Python
     Registered(RegisteredParameters),
 }
 
 impl FrictionParameters {
-    /// The law with its parameters checked; `default_alpha_t` serves where the case gives no `alpha_t`.
+    /// Creates the law from checked parameters; `default_alpha_t` is used if the case does not specify `alpha_t`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range.
+    /// Returns [`InvalidParameter`] if a parameter is out of range.
     pub fn build(&self, default_alpha_t: f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> {
         Ok(match self {
             Self::Frictionless {} => Box::new(Frictionless),
@@ -53,11 +53,10 @@ impl FrictionParameters {
         })
     }
 
-    /// With one of the numbers among its parameters set, by the name that cases give it; of a registered law one of those that
-    /// it is given.
+    /// Sets one of the numerical parameters, by its name in cases; of a registered law one of those that it was given.
     ///
     /// # Errors
-    /// [`UnknownParameter`] of any other name.
+    /// Returns [`UnknownParameter`] for any other name.
     pub fn with(mut self, name: &str, value: f64) -> Result<Self, UnknownParameter> {
         let numbers: &mut dyn Numbers = match &mut self {
             Self::Frictionless {} => return Err(UnknownParameter { name: name.into(), known: Vec::new() }),
@@ -75,7 +74,7 @@ impl FrictionParameters {
         Ok(self)
     }
 
-    /// What is wrong where it is a law that nobody has registered.
+    /// Error message if it is a law that is not registered.
     pub fn unknown(&self) -> Option<String> {
         match self {
             Self::Registered(parameters) => parameters.unknown(),
@@ -83,12 +82,12 @@ impl FrictionParameters {
         }
     }
 
-    /// Whether the law has a structure that may be given for the start.
+    /// Whether the law has a structure variable with an initial value.
     pub fn has_structure(&self) -> bool {
         matches!(self, Self::SuperSubloading(_))
     }
 
-    /// Names and values of the coefficients that bound |q|/p, as far as there are any.
+    /// Names and values of the coefficients that bound |q|/p, if there are any.
     pub fn bounds(&self) -> Vec<(&'static str, f64)> {
         match self {
             Self::Coulomb(law) => vec![("μ", law.mu)],
@@ -134,12 +133,12 @@ impl Numbers for RegisteredParameters {
     }
 }
 
-/// Makes a law from its parameters and α_t.
+/// Function that makes a law from its parameters and α_t.
 pub type Maker = dyn Fn(&BTreeMap<String, f64>, f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> + Send + Sync;
 
 static REGISTER: RwLock<BTreeMap<String, Arc<Maker>>> = RwLock::new(BTreeMap::new());
 
-/// Let cases that are built in this process from now on use a law by a name; one of this name is replaced.
+/// Registers a law by name for cases built in this process from now on; replaces a law of the same name.
 ///
 /// ```
 /// use fecontact::laws::friction::{Coulomb, CoulombParameters, FrictionParameters, register};
@@ -159,15 +158,15 @@ pub fn register(
     REGISTER.write().unwrap_or_else(PoisonError::into_inner).insert(name.into(), Arc::new(maker));
 }
 
-/// A registered law as the case file writes it.
+/// A registered law in the case file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct RegisteredParameters {
-    /// The name by which the program that calls the library has registered it
+    /// Name under which the calling program has registered it
     pub name: String,
-    /// Its parameters by their names
+    /// Parameters by name
     #[serde(default)]
     pub parameters: BTreeMap<String, f64>,
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
@@ -176,26 +175,26 @@ pub struct RegisteredParameters {
 }
 
 impl RegisteredParameters {
-    /// A law by the name under which it is registered, without parameters.
+    /// Creates a registered law by its name, without parameters.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), parameters: BTreeMap::new(), alpha_t: None }
     }
 
-    /// With a parameter.
+    /// Adds a parameter.
     pub fn parameter(mut self, name: impl Into<String>, value: f64) -> Self {
         self.parameters.insert(name.into(), value);
         self
     }
 
-    /// With this tangential stiffness [F/L³].
+    /// Sets the tangential stiffness α_t [F/L³].
     pub fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
 
-    /// The law; `default_alpha_t` serves where the case gives no `alpha_t`.
+    /// Creates the law; `default_alpha_t` is used if the case does not specify `alpha_t`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range, or nobody has registered the law.
+    /// Returns [`InvalidParameter`] if a parameter is out of range or the law is not registered.
     pub fn build(&self, default_alpha_t: f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> {
         let alpha_t = self.alpha_t.unwrap_or(default_alpha_t);
         require_positive("alpha_t", alpha_t)?;
@@ -209,7 +208,7 @@ impl RegisteredParameters {
         maker(&self.parameters, alpha_t)
     }
 
-    /// What is wrong where nobody has registered the law.
+    /// Error message if the law is not registered.
     pub fn unknown(&self) -> Option<String> {
         let register = REGISTER.read().unwrap_or_else(PoisonError::into_inner);
         let known: Vec<&str> = register.keys().map(String::as_str).collect();

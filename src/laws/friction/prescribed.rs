@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, PointLoad, RateLaw, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
 
-/// Parameters of [`PrescribedSlip`] as the case file writes them.
+/// Parameters of [`PrescribedSlip`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -18,12 +18,12 @@ pub struct PrescribedSlipParameters {
 }
 
 impl PrescribedSlipParameters {
-    /// With the tangential stiffness left to the contact.
+    /// Creates the parameters with the default tangential stiffness of the contact.
     pub const fn new(slip_rate: f64) -> Self {
         Self { slip_rate, alpha_t: None }
     }
 
-    /// With this tangential stiffness [F/L³].
+    /// Sets the tangential stiffness α_t [F/L³].
     pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
@@ -31,16 +31,16 @@ impl PrescribedSlipParameters {
 
 numbers!(PrescribedSlipParameters: "slip_rate" slip_rate; "alpha_t" alpha_t);
 
-/// Slip at a given rate, whatever traction that takes: the creeping parts of a fault.
+/// Slip at a prescribed rate, whatever the traction: for the creeping parts of a fault.
 ///
 /// ```text
 /// q̇ = α_t (v − V)                            slip = elastic + plastic; V: given
 /// ΔW = ½ (q₀ + q) V Δt                       negative where the interface is driven against its traction
 /// ```
-/// A rate that varies in time enters by its mean over an increment.
+/// A time-dependent rate is averaged over the increment.
 ///
 /// # Errors
-/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
+/// Returns [`LawFailure`](super::LawFailure) if the increment or the response is not finite, or Δt is negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrescribedSlip {
     slip_rate: f64,
@@ -48,10 +48,10 @@ pub struct PrescribedSlip {
 }
 
 impl PrescribedSlip {
-    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    /// Creates the law from checked parameters; `default_alpha_t` is used if they do not specify `alpha_t`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range.
+    /// Returns [`InvalidParameter`] if a parameter is out of range.
     pub fn new(parameters: &PrescribedSlipParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
         let PrescribedSlipParameters { slip_rate, alpha_t } = *parameters;
         let alpha_t = alpha_t.unwrap_or(default_alpha_t);
@@ -61,7 +61,7 @@ impl PrescribedSlip {
     }
 }
 
-/// Slip or stick by a rate.
+/// Slip, or stick if the rate is zero.
 fn regime(slip_rate: f64) -> Regime {
     if slip_rate == 0.0 { Regime::Stick } else { Regime::Slip }
 }

@@ -1,23 +1,23 @@
-//! A root finder that cannot leave its bracket, and the bracket of the first of several roots.
+//! Bracketed root finder, and a bracket of the first of several roots.
 
-/// Evaluations after which the bracket is only halved, which resolves any bracket in about fifty more: the search ends.
+/// Number of proposals after which the bracket is only bisected; about fifty bisections resolve any bracket.
 const MOST_PROPOSALS: usize = 100;
 
 /// Value of f at a trial argument of [`bracketed_root`].
 pub(super) struct Argument {
     /// f at the argument
     pub value: f64,
-    /// Change of the argument that Newton's method, or a better one, proposes
+    /// Change of the argument proposed by Newton's method or a better one
     pub step: f64,
-    /// Whether the argument will do.
+    /// Whether the argument is accepted.
     pub done: bool,
 }
 
 /// Finds a root of f in [low, high], where f(low) > 0 ≥ f(high).
 ///
-/// A proposed step is taken when it stays inside the bracket and at least halves the step before it, otherwise the
-/// bracket is halved. The search ends where f says so or the argument is resolved. The last call of f is always at the
-/// answer, so a caller may keep what f computed there.
+/// A proposed step is taken if it stays inside the bracket and at most half as long as the previous step; otherwise the bracket
+/// is bisected. The search ends when f accepts the argument or it is resolved to round-off. The last call of f is always at the
+/// result, so a caller may use quantities computed there.
 #[inline]
 pub(super) fn bracketed_root([mut low, mut high]: [f64; 2], guess: f64, mut f: impl FnMut(f64) -> Argument) {
     let resolution = 8.0 * f64::EPSILON * low.abs().max(high.abs());
@@ -38,7 +38,7 @@ pub(super) fn bracketed_root([mut low, mut high]: [f64; 2], guess: f64, mut f: i
             evaluation < MOST_PROPOSALS && low < proposed && proposed < high && trial.step.abs() <= 0.5 * step.abs();
         let next = if safe { proposed } else { low + 0.5 * (high - low) };
         step = next - x;
-        // A bracket that is no interval of numbers resolves nothing either.
+        // A bracket of infinite or undefined width cannot be resolved either.
         if step.is_nan() || step.abs() <= resolution || high - low == f64::INFINITY {
             return;
         }
@@ -58,14 +58,14 @@ pub(super) struct Piece {
     pub way: f64,
 }
 
-/// Most pieces that are examined; many only where two roots are about to merge.
+/// Maximum number of pieces examined; many only where two roots are about to merge.
 const MOST_PIECES: usize = 1000;
 
-/// A bracket, up to the argument `end`, that holds the smallest root of f and no other unless they cannot be told apart: pieces
-/// narrower than `resolved` hold such; the last point that it came to if it is not to be found. f is positive at `left`, and
-/// not positive at `end` but for round-off.
+/// A bracket, up to the argument `end`, that contains the smallest root of f, and no other unless they cannot be distinguished,
+/// being in a piece narrower than `resolved`; the last point reached if it is not found. f is positive at `left`, and not positive
+/// at `end` except for round-off.
 ///
-/// Pieces are examined from the left: one holds one root or none if D₋ > 0, none if f stays positive between the lines of
+/// Pieces are examined from the left: a piece contains at most one root if D₋ > 0, none if f stays positive between the lines of
 /// slope −D₊ from its left end and −D₋ from its right, and is halved otherwise.
 pub(super) fn first_root_bracket<P>(
     mut left: P,

@@ -1,11 +1,11 @@
-//! How answers vary with parameters of a law and with what it remembers: what fits to measurements are made with.
+//! Sensitivities of a law's response to its parameters and internal variables, for fits to measurements.
 
 use std::fmt::Debug;
 
 use super::state::MOST_VARIABLES;
 use super::{FrictionState, LawFailure, Sliding};
 
-/// Derivatives of a state, per unit of what it is differentiated by.
+/// Derivatives of a state with respect to a quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Variation {
@@ -15,7 +15,7 @@ pub struct Variation {
     pub variables: [f64; MOST_VARIABLES],
 }
 
-/// What an answer is differentiated by: how that which it follows from varies, the pressure and the time being given.
+/// Variation of the inputs of a response, at constant pressure and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Direction {
@@ -23,28 +23,28 @@ pub struct Direction {
     pub state: Variation,
     /// of Δu_t [L]
     pub slip: f64,
-    /// The one parameter that varies, by 1: one of [`SensitiveLaw::parameters`]
+    /// Parameter that varies, by 1: one of [`SensitiveLaw::parameters`]
     pub parameter: Option<&'static str>,
 }
 
-/// A law that differentiates its answers by its parameters. The derivatives are those of exactly what it computes, its sub-steps
-/// staying as they are.
+/// A law with derivatives of its responses with respect to its parameters. They are exact derivatives of the computed values at
+/// fixed sub-steps.
 ///
 /// ```text
 /// (q, variables)₁ = law((q, p, variables)₀; Δu_t, p₁, Δt; parameters)
 /// d(q, variables)₁ = ∂law/∂(q, variables)₀ d(q, variables)₀ + ∂law/∂Δu_t dΔu_t + ∂law/∂parameter
 /// ```
 pub trait SensitiveLaw: Debug + Send + Sync {
-    /// The parameters it differentiates by, as cases name them.
+    /// Parameters of the derivatives, as named in cases.
     fn parameters(&self) -> &'static [&'static str];
 
-    /// Derivative of the state of a point that has not slipped with respect to a parameter.
+    /// Derivative of the initial state of a point with respect to a parameter.
     fn start(&self, parameter: &str) -> Variation;
 
     /// Derivatives of the state at the end of an increment along two directions.
     ///
     /// # Errors
-    /// As of the answer itself.
+    /// The same as for the response.
     fn vary(
         &self,
         old: &FrictionState,

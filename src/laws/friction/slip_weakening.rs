@@ -8,7 +8,7 @@ use super::{
 };
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
 
-/// Parameters of [`SlipWeakening`] as the case file writes them.
+/// Parameters of [`SlipWeakening`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -21,7 +21,7 @@ pub struct SlipWeakeningParameters {
     /// D_c: slip over which friction falls from μ_s to μ_d, D_c > 0 [L]
     #[serde(rename = "D_c")]
     pub critical_slip: f64,
-    /// c: cohesion, the strength without pressure of surfaces that touch, c ≥ 0 [F/L²]
+    /// c: cohesion, the strength at zero pressure of surfaces in contact, c ≥ 0 [F/L²]
     #[serde(default)]
     pub cohesion: f64,
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
@@ -32,44 +32,44 @@ pub struct SlipWeakeningParameters {
 numbers!(SlipWeakeningParameters: "mu_s" mu_s, "mu_d" mu_d, "D_c" critical_slip, "cohesion" cohesion; "alpha_t" alpha_t);
 
 impl SlipWeakeningParameters {
-    /// Without cohesion, the tangential stiffness left to the contact.
+    /// Creates parameters without cohesion, with the default tangential stiffness of the contact.
     pub const fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
         Self { mu_s, mu_d, critical_slip, cohesion: 0.0, alpha_t: None }
     }
 
-    /// With a strength without pressure [F/L²].
+    /// Sets the cohesion [F/L²].
     pub const fn cohesion(self, cohesion: f64) -> Self {
         Self { cohesion, ..self }
     }
 
-    /// With this tangential stiffness [F/L³].
+    /// Sets the tangential stiffness α_t [F/L³].
     pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
 }
 
-/// Linear slip weakening on an elastic contact: the friction of most computed earthquakes.
+/// Linear slip weakening on an elastic contact, widely used in earthquake simulations.
 ///
 /// ```text
 /// q̇ = α_t (v − λ sgn q)                          slip = elastic + plastic
 /// |q| ≤ c + μ p,   λ ≥ 0                           sticking, or slipping at the strength
-/// μ = max(μ_s − W D, μ_d),   W = (μ_s − μ_d)/D_c      D = ∫ λ dt, back and forth alike; it does not heal
+/// μ = max(μ_s − W D, μ_d),   W = (μ_s − μ_d)/D_c      D = ∫ λ dt, in either direction; it does not heal
 /// ```
-/// An increment slips by the smallest Δλ that brings the trial |q_tr| = |q₀ + α_t Δu| down to the strength,
+/// An increment slips by the smallest Δλ that reduces the trial |q_tr| = |q₀ + α_t Δu| to the strength,
 /// ```text
 /// Δλ = (|q_tr| − c − μ₀ p)/(α_t − W p)      if μ stays above μ_d,
 /// Δλ = (|q_tr| − c − μ_d p)/α_t              else, and where W p ≥ α_t: friction falls faster than the contact unloads
 /// ```
-/// Nothing is left of the error in time. The work dissipated is ∫ |q| dλ along even paths of slip and pressure: elastic up
-/// to the strength, then at the strength; where friction falls
-/// faster than the contact unloads, |q| falls with α_t λ from one strength to the other. D is what is remembered, so that parameters may
-/// vary in time. A traction above the strength, as a run may start with, slips off in the first increment.
+/// There is no time discretization error. The work dissipated is ∫ |q| dλ along linear paths of slip and pressure: elastic up
+/// to the strength, then at the strength; where friction decreases faster than the contact unloads, |q| decreases with α_t λ
+/// from one strength to the other. The internal variable is D, so that parameters may vary in time. An initial traction above
+/// the strength is released by slip in the first increment.
 ///
 /// # Errors
-/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
+/// Returns [`LawFailure`](super::LawFailure) if the increment or the response is not finite, or Δt is negative.
 ///
-/// Source: Ida (1972), J. Geophys. Res. 77, 3796; Harris et al. (2009), Seismol. Res. Lett. 80, 119 (its use in the
-/// community's test problems).
+/// Source: Ida (1972), J. Geophys. Res. 77, 3796; Harris et al. (2009), Seismol. Res. Lett. 80, 119 (community benchmark
+/// problems).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlipWeakening {
     mu_s: f64,
@@ -83,10 +83,10 @@ pub struct SlipWeakening {
 }
 
 impl SlipWeakening {
-    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    /// Creates the law from checked parameters; `default_alpha_t` is used if they do not specify `alpha_t`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range.
+    /// Returns [`InvalidParameter`] if a parameter is out of range.
     pub fn new(parameters: &SlipWeakeningParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
         let SlipWeakeningParameters { mu_s, mu_d, critical_slip, cohesion, .. } = *parameters;
         let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
@@ -104,25 +104,25 @@ impl SlipWeakening {
     }
 }
 
-/// Slip down to the strength.
+/// Slip that reduces the traction to the strength.
 struct Slid {
-    /// D then [L]
+    /// D at the end [L]
     total: f64,
-    /// μ then [-]
+    /// μ at the end [-]
     mu: f64,
     /// |q| = c + μ p [F/L²]
     strength: f64,
-    /// Factor α_t/(α_t − w p), w the weakening per slip, by which weakening amplifies slip; 1 at μ_d [-]
+    /// Factor α_t/(α_t − w p), w being the weakening per slip, by which weakening amplifies slip; 1 at μ_d [-]
     softness: f64,
 }
 
 impl SlipWeakening {
-    /// μ after so much slip.
+    /// μ after a slip.
     fn mu_after(&self, slip: f64) -> f64 {
         (self.mu_s - self.weakening * slip).max(self.mu_d)
     }
 
-    /// Slip that brings an elastic traction down to the strength, from D on; none if it is not above.
+    /// Slip that reduces an elastic traction to the strength, starting from D; `None` if it is not above.
     fn slide(&self, before: f64, elastic: f64, pressure: f64) -> Option<Slid> {
         let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
         let old_mu = self.mu_after(before);
@@ -140,7 +140,7 @@ impl SlipWeakening {
         Some(Slid { total: before + (elastic - strength) / alpha_t, mu, strength, softness })
     }
 
-    /// Mean of |q| over the plastic slip of an increment that ends so. What is above the strength from the start slips off first.
+    /// Mean of |q| over the plastic slip of an increment with this end. An initial excess over the strength is released first.
     fn mean_traction(&self, old: &FrictionState, trial: f64, pressure: f64, end: &Slid) -> f64 {
         let [start, last] = [trial.signum() * old.traction, trial.abs()];
         let (before, way) = (slip_of(old), [old.pressure, pressure]);
@@ -156,16 +156,17 @@ impl SlipWeakening {
         (off * at_once + (slip - off) * rest) / slip
     }
 
-    /// The same from a first μ on, along which the elastic traction and the pressure go evenly and the former is not above the
-    /// strength at the start.
+    /// Mean starting from an initial μ, where the elastic traction and the pressure vary linearly and the former is initially
+    /// not above the strength.
     fn mean_on_the_way(&self, old_mu: f64, elastic: [f64; 2], [old_pressure, pressure]: [f64; 2], end: &Slid) -> f64 {
         let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
         let strength = |mu: f64, pressure: f64| cohesion + mu * pressure;
         let at_yield = traction_at_yield(elastic, [strength(old_mu, old_pressure), strength(old_mu, pressure)]);
         let at_end = end.strength;
         let slip = (elastic[1] - at_end) / alpha_t;
-        // Over the increment the elastic traction gains on the strength, at the first μ and at the second, and the share of
-        // the increment that has passed is a quotient of linear functions of λ, whose denominator goes from one to the other.
+        // Over the increment the elastic traction increases relative to the strength, at the first μ and at the second; the
+        // elapsed fraction of the increment is a quotient of linear functions of λ, whose denominator varies from one to the
+        // other.
         let gain = |mu: f64| elastic[1] - elastic[0] - mu * (pressure - old_pressure);
         if old_mu <= mu_d || gain(old_mu) <= 0.0 {
             return 0.5 * (at_yield + at_end);
@@ -178,7 +179,7 @@ impl SlipWeakening {
             return falling(at_end, slip, end.mu);
         }
         let pressure_at_yield = (at_yield - cohesion) / old_mu;
-        // Slip until μ_d is reached, the traction then, and the mean of |q| so far
+        // Slip until μ_d is reached, the traction there, and the mean of |q| up to it
         let (fallen, level, mean) = if weakening * pressure_at_yield < alpha_t {
             let fallen = (old_mu - mu_d) / weakening;
             let share = (strength(mu_d, old_pressure) + alpha_t * fallen - elastic[0]) / gain(mu_d);
@@ -192,9 +193,9 @@ impl SlipWeakening {
     }
 }
 
-/// How much of the mean of (A + B λ)/(C + D λ) over a stretch of λ is its value at the end, the rest being its value at
-/// the beginning, if the denominator gains the share `z` of itself along the stretch; a half if it gains nothing, or if
-/// slip would have to cease within it.
+/// Weight of the value at the end in the mean of (A + B λ)/(C + D λ) over an interval of λ, the rest being that of the value at
+/// the beginning, if the denominator increases by the fraction `z` along the interval; a half if it does not, or if slip would
+/// have to stop within it.
 ///
 /// ```text
 /// (1 + z)/z (1 − ln(1 + z)/z)
@@ -209,13 +210,13 @@ fn end_share(z: f64) -> f64 {
     }
 }
 
-/// D, the one variable of the law [L]
+/// D, the internal variable of the law [L]
 fn slip_of(state: &FrictionState) -> f64 {
     state.variables[0]
 }
 
 impl FrictionLaw for SlipWeakening {
-    /// The least coefficient is μ_d; cohesion is beside it.
+    /// The lowest coefficient is μ_d; cohesion adds to it.
     fn description(&self) -> Description {
         Description {
             stiffness: self.alpha_t,
@@ -291,7 +292,7 @@ impl SensitiveLaw for SlipWeakening {
                 return Variation::new(if pressure > 0.0 { dtrial } else { 0.0 }, dbefore);
             };
             let delastic = trial.signum() * dtrial;
-            // Of the slip at the end, with μ held at first: α_t ΔD = |q_tr| − c − μ p
+            // Derivative of the slip at the end, with μ held constant: α_t ΔD = |q_tr| − c − μ p
             let dslip = dbefore + (delastic - by.of("cohesion") - by.of("alpha_t") * (total - before)) / alpha_t;
             let dmu = match mu > mu_d {
                 true => {

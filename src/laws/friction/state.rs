@@ -1,8 +1,8 @@
-//! What friction remembers at one contact point.
+//! State of friction at a contact point.
 
 use serde::{Deserialize, Serialize};
 
-/// Most variables that a law may have of its own.
+/// Maximum number of internal variables of a law.
 pub const MOST_VARIABLES: usize = 4;
 
 /// Internal state of friction at one contact point between increments.
@@ -20,67 +20,67 @@ pub struct FrictionState {
     pub plastic_increment: f64,
     /// Work dissipated by friction so far per contact area [F/L]
     pub dissipation: f64,
-    /// d: how far the law holds the surfaces apart, negative where they have worn; 0 for laws without dilatancy and wear [L]
+    /// d: opening of the surfaces by the law, negative after wear; 0 for laws without dilatancy and wear [L]
     pub opening: f64,
-    /// w: what of the surfaces has worn away, which `opening` counts [L]
+    /// w: wear depth, included in `opening` [L]
     pub wear: f64,
-    /// Open, stick or slip by the law's last increment
+    /// Open, stick or slip in the law's last increment
     pub regime: Regime,
-    /// What else the law remembers, by the names of its [`variables`](super::Description::variables); the rest is 0
+    /// Further internal variables, named by [`variables`](super::Description::variables); the rest is 0
     pub variables: [f64; MOST_VARIABLES],
 }
 
-/// Whether a point is open, sticks or slips.
+/// Contact status of a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Regime {
     /// No pressure
     #[default]
     Open,
-    /// Pressed, and held by friction
+    /// Closed and sticking
     Stick,
-    /// Pressed, and sliding
+    /// Closed and sliding
     Slip,
 }
 
 impl FrictionState {
-    /// The state with these variables of the law.
+    /// Returns the state with these internal variables.
     pub fn with_variables<const N: usize>(mut self, values: [f64; N]) -> Self {
         const { assert!(N <= MOST_VARIABLES) };
         self.variables[..N].copy_from_slice(&values);
         self
     }
 
-    /// The state under tractions that are there from the start: nothing has slipped.
+    /// Returns the state under initial tractions, without slip.
     pub fn loaded(self, pressure: f64, traction: f64) -> Self {
         let regime = if pressure > 0.0 { Regime::Stick } else { Regime::Open };
         Self { pressure, traction, regime, ..self }
     }
 
-    /// |q|/(μ p): how far the traction is from a strength μ p; 0 where there is none [-]
+    /// |q|/(μ p): traction relative to the strength μ p; 0 if that is zero [-]
     pub fn ratio(&self, mu: f64) -> f64 {
         let strength = mu * self.pressure;
         if strength > 0.0 { self.traction.abs() / strength } else { 0.0 }
     }
 
-    /// The state after the surfaces have parted: the elastic energy q²/(2 α_t) of the contact spring is lost.
+    /// Returns the state after separation of the surfaces: the elastic energy q²/(2 α_t) of the contact spring is lost.
     pub fn parted(self, stiffness: f64) -> Self {
         let lost = self.traction * self.traction / (2.0 * stiffness);
         let dissipation = self.dissipation + lost;
         Self { traction: 0.0, pressure: 0.0, plastic_increment: 0.0, dissipation, regime: Regime::Open, ..self }
     }
 
-    /// The state after an increment whose slip was all elastic.
+    /// Returns the state after an increment with purely elastic slip.
     pub fn stuck(self, traction: f64, pressure: f64) -> Self {
         Self { plastic_increment: 0.0, ..self.loaded(pressure, traction) }
     }
 
-    /// The state after plastic slip along sgn q has brought the traction down from the elastic `trial` to `traction`.
+    /// Returns the state after plastic slip along sgn q has reduced the traction from the elastic `trial` to `traction`.
     ///
     /// ```text
     /// Δλ = (|q_tr| − |q|)/α_t       plastic slip
     /// ΔW = ∫ |q| dλ = q̄ Δλ ≥ 0      work dissipated; q̄, the mean of |q| over the plastic slip, is the law's to know
     /// ```
-    /// The work ∫ q du of the increment, along the path that the law takes inside it, is Δ(q²/2α_t) + ΔW.
+    /// The work ∫ q du of the increment, along the path followed by the law, is Δ(q²/2α_t) + ΔW.
     pub fn slid(self, trial: f64, traction: f64, mean: f64, pressure: f64, stiffness: f64) -> Self {
         let sign = traction.signum();
         let slip = ((trial - traction) * sign / stiffness).max(0.0);
@@ -95,7 +95,7 @@ impl FrictionState {
         }
     }
 
-    /// Whether all of it are numbers.
+    /// Whether all its numbers are finite.
     pub(super) fn is_finite(&self) -> bool {
         let Self { traction, pressure, plastic_slip, plastic_increment, dissipation, opening, wear, variables, .. } =
             self;

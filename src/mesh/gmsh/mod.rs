@@ -1,15 +1,15 @@
-//! Reads gmsh meshes, format MSH 4.1, ASCII or binary, and MSH 2.2, ASCII (`msh2.rs`).
+//! Reader of gmsh meshes in the formats MSH 4.1, ASCII or binary, and MSH 2.2, ASCII (`msh2.rs`).
 //!
-//! The `mshio` crate parses the sections of 4.1. Around it this file checks what `mshio` takes on trust (the format line, the
+//! The `mshio` crate parses the sections of 4.1. This file checks what `mshio` does not (the format line, the
 //! presence of the sections, the counts in their headers) and reads the names of the physical groups, which it skips.
 //!
 //! # Bytes
 //!
-//! A gmsh file as bytes: what is checked before it is parsed.
+//! The bytes of a file are checked before they are parsed.
 //!
 //! # Groups
 //!
-//! The parsed gmsh file: from entities to named groups.
+//! The entities of the parsed file become named groups.
 
 mod msh2;
 
@@ -25,19 +25,19 @@ use nalgebra::Vector2;
 use crate::mesh::check::{RawCell, RawMesh};
 use crate::mesh::{Mesh, MeshError, check};
 
-/// The mesh in a gmsh file: bodies are its physical surfaces, edge groups its physical curves, node groups its physical
+/// Reads the mesh of a gmsh file: bodies are its physical surfaces, edge groups its physical curves, node groups its physical
 /// points. A physical group without a name is called `physical_<tag>`.
 ///
 /// # Errors
-/// [`MeshError::InFile`] says what is wrong with which file and how to mend it.
+/// Returns [`MeshError::InFile`] with the file, the defect and its remedy if the file is not a valid mesh.
 pub fn read(path: &Path) -> Result<Mesh, MeshError> {
     load(path).and_then(from_bytes).map_err(|cause| MeshError::InFile { file: path.into(), cause: Box::new(cause) })
 }
 
-/// The mesh in the content of a gmsh file, as [`read`] gives it.
+/// Reads the mesh from the content of a gmsh file, as [`read`].
 ///
 /// # Errors
-/// [`MeshError`] says what is wrong.
+/// Returns [`MeshError`] if the content is not a valid mesh.
 pub fn from_bytes(bytes: Vec<u8>) -> Result<Mesh, MeshError> {
     parse(bytes).and_then(check::finish)
 }
@@ -77,7 +77,7 @@ fn parse(mut bytes: Vec<u8>) -> Result<RawMesh, MeshError> {
     assemble(file, &names, node_count, element_count)
 }
 
-/// The formats that are read.
+/// Supported formats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Format {
     /// 2.2, ASCII
@@ -94,8 +94,8 @@ enum Encoding {
     BigEndian,
 }
 
-/// Format by the first two lines, `$MeshFormat` and `2.2 0 8` or `4.1 (0 ASCII | 1 binary) 8`; in a binary file an integer 1
-/// follows.
+/// Determines the format from the first two lines, `$MeshFormat` and `2.2 0 8` or `4.1 (0 ASCII | 1 binary) 8`; in a binary
+/// file an integer 1 follows.
 fn format(bytes: &[u8]) -> Result<Format, MeshError> {
     let mut lines = bytes.splitn(3, |&b| b == b'\n');
     if lines.next().map(<[u8]>::trim_ascii) != Some(b"$MeshFormat") {
@@ -116,7 +116,7 @@ fn format(bytes: &[u8]) -> Result<Format, MeshError> {
     }
 }
 
-/// Range of the content of a section, if the file has it.
+/// Byte range of the content of a section, if the file has it.
 fn section(bytes: &[u8], name: &'static str) -> Result<Option<Range<usize>>, MeshError> {
     let after_line = |from: usize, wanted: &str| {
         let mut end = from;
@@ -130,7 +130,8 @@ fn section(bytes: &[u8], name: &'static str) -> Result<Option<Range<usize>>, Mes
     Ok(Some(begin.end..end.start))
 }
 
-/// A section that the file must have, and once: what is checked in one would be read from another.
+/// Returns a section that must occur exactly once; otherwise the section that is checked could differ from the one that is
+/// read.
 fn required_section(bytes: &[u8], name: &'static str) -> Result<Range<usize>, MeshError> {
     let range = section(bytes, name)?.ok_or(MeshError::NoSection(name))?;
     let title = format!("${name}");
@@ -141,10 +142,10 @@ fn required_section(bytes: &[u8], name: &'static str) -> Result<Range<usize>, Me
     Ok(range)
 }
 
-/// The number of nodes or elements that a section's header claims (of curves, for the entities).
+/// Number of nodes or elements in the header of a section (of curves, for the entities).
 ///
-/// Refuses counts that the file is too small for. Only the counts are looked at: tags follow them in the header of the
-/// nodes and elements, and they may be anything.
+/// Refuses counts that the file is too small for. Only the counts are checked: the tags that follow them in the header of the
+/// nodes and elements may have any value.
 fn checked_count(bytes: &[u8], encoding: Encoding, name: &'static str) -> Result<u64, MeshError> {
     let content = &bytes[required_section(bytes, name)?];
     let counts = leading_numbers(content, encoding, if name == "Entities" { 4 } else { 2 });
@@ -158,7 +159,7 @@ fn checked_count(bytes: &[u8], encoding: Encoding, name: &'static str) -> Result
     })
 }
 
-/// Up to `count` unsigned numbers at the beginning; fewer if something else stands there.
+/// Returns up to `count` unsigned numbers at the start of a section; fewer if other content follows.
 fn leading_numbers(content: &[u8], encoding: Encoding, count: usize) -> Vec<u64> {
     let binary = |convert: fn([u8; 8]) -> u64| content.as_chunks().0.iter().take(count).map(|&b| convert(b)).collect();
     match encoding {
@@ -173,10 +174,10 @@ fn leading_numbers(content: &[u8], encoding: Encoding, count: usize) -> Vec<u64>
     }
 }
 
-/// Makes `mshio` keep every node's tag.
+/// Makes `mshio` keep every node tag.
 ///
-/// It drops the tags when the header says that they leave no gaps, as if they then came in ascending order, which the
-/// format does not promise. So the header is made to announce one single node; the true number is checked afterwards.
+/// It drops the tags when the header declares them contiguous, assuming that they are then in ascending order, which the
+/// format does not guarantee. The header is therefore changed to announce one node; the true number is checked afterwards.
 fn keep_node_tags(bytes: &mut [u8], encoding: Encoding) -> Result<(), MeshError> {
     let range = required_section(bytes, "Nodes")?;
     let content = &mut bytes[range];
@@ -203,7 +204,7 @@ fn overwrite_second(content: &mut [u8], number: [u8; 8]) {
 /// Names of the physical groups by (dimension, tag).
 type Names = HashMap<(i32, u32), String>;
 
-/// The section of names, which is text even in binary files.
+/// Reads the section of names, which is text even in binary files.
 fn physical_names(bytes: &[u8]) -> Result<Names, MeshError> {
     let Some(range) = section(bytes, "PhysicalNames")? else { return Ok(Names::new()) };
     let text = String::from_utf8_lossy(&bytes[range]);
@@ -226,7 +227,7 @@ fn bad_name(line: &str) -> MeshError {
     }
 }
 
-/// Text at the place where the parser failed without a message.
+/// Text at the position where the parser failed without a message.
 fn unexpected(bytes: &[u8], offset: usize, encoding: Encoding) -> String {
     if encoding != Encoding::Ascii {
         return "the numbers there do not match the format".into();
@@ -240,7 +241,7 @@ fn unexpected(bytes: &[u8], offset: usize, encoding: Encoding) -> String {
     }
 }
 
-/// The parser's trace of errors (innermost first) in one line, with the place in the file.
+/// Formats the parser's trace of errors (innermost first) in one line, with the position in the file.
 fn explain(bytes: &[u8], encoding: Encoding, error: &mshio::MshParserError<&[u8]>) -> MeshError {
     let trace: Vec<String> = error.filter_msh_errors().map(|(_, kind)| kind.to_string()).collect();
     if trace.iter().any(|message| message.contains("parametric nodes")) {
@@ -299,7 +300,7 @@ fn check_element_type(block: &ElementBlock) -> Result<(), MeshError> {
     }
 }
 
-/// Dimension of the element types that are read.
+/// Dimension of the supported element types.
 fn dimension(kind: ElementType) -> Option<i32> {
     match kind {
         ElementType::Pnt => Some(0),
@@ -309,11 +310,11 @@ fn dimension(kind: ElementType) -> Option<i32> {
     }
 }
 
-/// The names of the physical groups that an entity (dimension, tag) belongs to.
+/// Names of the physical groups that an entity (dimension, tag) belongs to.
 type EntityGroups = HashMap<(i32, i32), Vec<String>>;
 
 fn groups_of_entities(entities: &Entities<i32, f64>, names: &Names) -> EntityGroups {
-    // A negative physical tag only says that the group takes the entity reversed.
+    // A negative physical tag only means that the group contains the entity reversed.
     let name =
         |dimension: i32, tag: u32| names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("physical_{tag}"));
     let points = entities.points.iter().map(|point| (0, point.tag, &point.physical_tags));
@@ -330,7 +331,7 @@ fn groups_of<'a>(block: &ElementBlock, groups: &'a EntityGroups) -> &'a [String]
     groups.get(&(block.entity_dim, block.entity_tag)).map_or(&[], Vec::as_slice)
 }
 
-/// Every solid element belongs to exactly one body.
+/// Checks that every solid element belongs to exactly one body.
 fn check_bodies(blocks: &[ElementBlock], groups: &EntityGroups) -> Result<(), MeshError> {
     let (mut count, mut first_without) = (0, None);
     for block in blocks.iter().filter(|block| block.entity_dim == 2) {
@@ -349,7 +350,7 @@ fn check_bodies(blocks: &[ElementBlock], groups: &EntityGroups) -> Result<(), Me
     first_without.map_or(Ok(()), |first| Err(MeshError::NoBody { count, first }))
 }
 
-/// A mesh with the groups that have a name, all still empty, so that one without elements is noticed.
+/// Creates a mesh with all named groups, still empty, so that groups without elements are detected.
 fn named_groups(names: &Names) -> Result<RawMesh, MeshError> {
     let mut raw = RawMesh::default();
     for ((dimension, _), name) in names {
@@ -370,7 +371,7 @@ fn groups_of_dimension(raw: &mut RawMesh, dimension: i32) -> Option<&mut BTreeMa
     }
 }
 
-/// Adds the elements of one block to the groups of its entity; curves and points outside all groups are of no use.
+/// Adds the elements of one block to the groups of its entity; curves and points outside all groups are skipped.
 fn add_block(raw: &mut RawMesh, block: &ElementBlock, groups: &EntityGroups) {
     let Some(named) = groups_of_dimension(raw, block.entity_dim) else { return };
     for name in groups_of(block, groups) {
@@ -380,7 +381,7 @@ fn add_block(raw: &mut RawMesh, block: &ElementBlock, groups: &EntityGroups) {
     }
 }
 
-/// The nodes with their tags, if they all have the same z.
+/// Returns the nodes with their tags, if they all have the same z.
 fn plane_nodes(nodes: Nodes<u64, i32, f64>) -> Result<Vec<(u64, Vector2<f64>)>, MeshError> {
     let mut tagged = Vec::new();
     for block in &nodes.node_blocks {
@@ -391,7 +392,7 @@ fn plane_nodes(nodes: Nodes<u64, i32, f64>) -> Result<Vec<(u64, Vector2<f64>)>, 
     Ok(tagged.into_iter().map(|(tag, [x, y, _])| (tag, Vector2::new(x, y))).collect())
 }
 
-/// The tags of a block's nodes in their order; `mshio` gives none if all of the mesh is one node.
+/// Tags of the nodes of a block, in order; `mshio` returns none if the mesh has a single node.
 fn node_tags(block: &NodeBlock<u64, i32, f64>, only_tag: u64) -> Result<Vec<u64>, MeshError> {
     let count = block.nodes.len();
     let mut tags: Vec<(usize, u64)> = match &block.node_tags {

@@ -1,4 +1,4 @@
-//! The sections of a file in format MSH 2.2, ASCII: nodes and elements a line each, an element with the tag of its physical group.
+//! Sections of a file in format MSH 2.2, ASCII: nodes and elements, one per line; an element has the tag of its physical group.
 //!
 //! ```text
 //! $Nodes                                  $Elements
@@ -10,11 +10,11 @@ use super::{Names, check_plane, groups_of_dimension, named_groups, physical_name
 use crate::mesh::MeshError;
 use crate::mesh::check::{RawCell, RawMesh};
 
-/// Element types that are read, by gmsh's number: dimension, and number of nodes.
+/// Supported element types by gmsh number: dimension, and number of nodes.
 const TYPES: [(u32, i32, usize); 8] =
     [(15, 0, 1), (1, 1, 2), (8, 1, 3), (2, 2, 3), (9, 2, 6), (3, 2, 4), (16, 2, 8), (10, 2, 9)];
 
-/// What the file says, unchecked but for its counts.
+/// Parses the file; only its counts are checked.
 pub fn parse(bytes: &[u8]) -> Result<RawMesh, MeshError> {
     if section(bytes, "ParametricNodes")?.is_some() {
         return Err(MeshError::Parametric);
@@ -33,14 +33,14 @@ pub fn parse(bytes: &[u8]) -> Result<RawMesh, MeshError> {
     Ok(raw)
 }
 
-/// An element as its line has it; the physical group 0 is none.
+/// An element line; physical group 0 means no group.
 struct Element {
     dimension: i32,
     physical: u32,
     cell: RawCell,
 }
 
-/// The entries of a section, as many as it claims.
+/// Returns the entries of a section, as many as its count.
 fn entries<T>(bytes: &[u8], name: &'static str, read: impl Fn(&[&str]) -> Result<T, Bad>) -> Result<Vec<T>, MeshError> {
     let range = required_section(bytes, name)?;
     let before = bytes[..range.start].iter().filter(|&&b| b == b'\n').count();
@@ -66,10 +66,10 @@ fn entries<T>(bytes: &[u8], name: &'static str, read: impl Fn(&[&str]) -> Result
     }
 }
 
-/// What is wrong with a line.
+/// Defect of a line.
 enum Bad {
     Line(&'static str),
-    /// A type of element that is not read
+    /// Unsupported element type
     Element {
         element: u64,
         number: i32,
@@ -98,7 +98,7 @@ fn element(words: &[&str]) -> Result<Element, Bad> {
     if nodes.len() != expected {
         return Err(Bad::Line("an element has another number of nodes than its type"));
     }
-    // A negative tag only says that the group takes the element reversed.
+    // A negative tag only means that the group contains the element reversed.
     let physical = tags
         .first()
         .map_or(Ok(0), |tag| u32::try_from(tag.unsigned_abs()))
@@ -108,7 +108,7 @@ fn element(words: &[&str]) -> Result<Element, Bad> {
     Ok(Element { dimension, physical, cell: RawCell { tag, nodes } })
 }
 
-/// Every solid element belongs to a body; one of two bodies would stand there twice, which the check of the mesh finds.
+/// Checks that every solid element belongs to a body; an element of two bodies occurs twice and is found by the mesh check.
 fn check_bodies(elements: &[Element]) -> Result<(), MeshError> {
     let without = || elements.iter().filter(|element| element.dimension == 2 && element.physical == 0);
     match without().next() {

@@ -1,19 +1,19 @@
-//! The nodes of one block.
+//! Nodes of one block.
 //!
-//! Sizes of elements along a side.
+//! Grading determines the sizes of elements along a side.
 
 use nalgebra::{Rotation2, Vector2};
 
 use super::{Block, BlockKind};
 use crate::mesh::nearest::{NotOne, nearest};
 
-/// Radii at the ends of an arc that differ by less, relative, are the same; and an arc is less than a half circle by more.
+/// Relative tolerance for equal radii at the ends of an arc, and for arcs shorter than a half circle.
 const ROUND: f64 = 1e-6;
 
-/// Places of a side in the outline of its block.
+/// Number of points per side in the outline of a block.
 const OUTLINE: usize = 32;
 
-/// The nodes of a block, row by row, with slots counted over all blocks.
+/// Nodes of a block, row by row, with slots counted over all blocks.
 pub struct Grid {
     /// slot of its first node
     pub first: usize,
@@ -24,13 +24,13 @@ pub struct Grid {
     kind: BlockKind,
     /// whether its corners run counter-clockwise
     pub upright: bool,
-    /// nine places inside
+    /// nine interior points
     pub inside: Vec<Vector2<f64>>,
     sides: Sides,
 }
 
 impl Grid {
-    /// The nodes of a block; a complaint about it.
+    /// Creates the nodes of a block; an error describes its defect.
     pub fn new(block: &Block, first: usize) -> Result<Self, String> {
         let coordinates = block.corners.iter().chain(block.arcs.iter().flatten()).flatten();
         if let Some(bad) = coordinates.into_iter().find(|x| !x.is_finite()) {
@@ -61,7 +61,7 @@ impl Grid {
         let [n, _] = self.count;
         let local = match self.kind {
             BlockKind::Q4 => j * (n + 1) + i,
-            // Rows through corners are full, those between have every other node.
+            // Rows through corners are full, those in between have every other node.
             BlockKind::Q8 if j % 2 == 0 => j / 2 * (n + 1 + n / 2 + 1) + i,
             BlockKind::Q8 => j / 2 * (n + 1 + n / 2 + 1) + n + 1 + i / 2,
         };
@@ -78,7 +78,7 @@ impl Grid {
         self.sides.corners[corner]
     }
 
-    /// Distance of a place from a side.
+    /// Distance of a point from a side.
     pub fn distance(&self, side: usize, at: Vector2<f64>) -> f64 {
         self.sides.distance(side, at)
     }
@@ -104,7 +104,7 @@ impl Grid {
         (0..nodes.len() - 1).step_by(order).map(edge).collect()
     }
 
-    /// Elements, row by row: corners in turn, then the middles of their sides.
+    /// Elements, row by row: corners in order, then the middle nodes of their sides.
     pub fn elements(&self) -> Vec<Vec<usize>> {
         let (order, [n, m]) = (self.kind.order(), self.count);
         let element = |i: usize, j: usize| {
@@ -140,7 +140,7 @@ impl Grid {
         Ok(self.first + node)
     }
 
-    /// Places all around, from corner 0 on.
+    /// Points of the outline, starting at corner 0.
     pub fn outline(&self) -> Vec<Vector2<f64>> {
         let place = |k: usize| {
             let (side, step) = (k / OUTLINE, k % OUTLINE);
@@ -150,7 +150,7 @@ impl Grid {
         (0..4 * OUTLINE).map(place).collect()
     }
 
-    /// Every corner of every element must be one less than a half turn.
+    /// Checks that every interior angle of every element is below 180°.
     fn refuse_folds(&self) -> Result<(), String> {
         let turn = if self.upright { 1.0 } else { -1.0 };
         for element in self.elements() {
@@ -170,7 +170,7 @@ impl Grid {
     }
 }
 
-/// Corners of a polygon that turn the other way, or not at all.
+/// Number of corners of a polygon with the wrong or no turn.
 fn wrong_turns(corners: &[Vector2<f64>], turn: f64) -> usize {
     let n = corners.len();
     let at = |k: usize| (corners[(k + 1) % n] - corners[k]).perp(&(corners[(k + 2) % n] - corners[(k + 1) % n]));
@@ -183,13 +183,13 @@ fn area(polygon: &[Vector2<f64>]) -> f64 {
     arms.windows(2).map(|pair| 0.5 * pair[0].perp(&pair[1])).sum()
 }
 
-/// Corners that a side goes between in the map: with growing s or t.
+/// Corners of each side, in the direction of growing s or t of the map.
 const ENDS: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
 /// The four sides of a block.
 struct Sides {
     corners: [Vector2<f64>; 4],
-    /// centre of the circle of each, and the angle from its one end to the other
+    /// for each arc, the centre of its circle and its signed angle
     arcs: [Option<(Vector2<f64>, f64)>; 4],
 }
 
@@ -228,7 +228,7 @@ impl Sides {
         Vector2::new(s.between(a.x, b.x), s.between(a.y, b.y))
     }
 
-    /// A place on a side.
+    /// Point on a side.
     fn on(&self, side: usize, s: Share) -> Vector2<f64> {
         let ([a, b], share) = (self.ends(side), s.between(0.0, 1.0));
         match self.arcs[side] {
@@ -278,13 +278,13 @@ impl Sides {
     }
 }
 
-/// Grading of the element sizes along a side, as a geometric series.
+/// Geometric grading of the element sizes along a side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Grading {
-    /// size of the last over that of the first
+    /// size of the last element divided by that of the first
     Ratio(f64),
-    /// size in the middle over that at both ends
+    /// size in the middle divided by that at both ends
     Middle(f64),
 }
 
@@ -294,7 +294,7 @@ impl Default for Grading {
     }
 }
 
-/// A place between two ends, as a part of a whole: even parts of a length that a number holds exactly are exact.
+/// Fraction of a whole, stored so that even parts of an exactly representable length are exact.
 #[derive(Clone, Copy, Debug)]
 pub struct Share {
     part: f64,
@@ -302,18 +302,18 @@ pub struct Share {
 }
 
 impl Share {
-    /// A share of 1.
+    /// Creates the fraction part/whole.
     pub fn new(part: f64, whole: f64) -> Self {
         Self { part, whole }
     }
 
-    /// The place between a and b.
+    /// Returns the point between a and b.
     pub fn between(self, a: f64, b: f64) -> f64 {
         if self.part == self.whole { b } else { a + (b - a) * self.part / self.whole }
     }
 }
 
-/// Places of the nodes of `count` elements, `order` spacings each.
+/// Fractions at the nodes of `count` elements of the given `order`.
 pub fn shares(count: usize, grading: Grading, order: usize) -> Result<Vec<Share>, String> {
     let (ratio, what) = match grading {
         Grading::Ratio(ratio) => (ratio, "the last element over the first"),

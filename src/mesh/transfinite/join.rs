@@ -1,4 +1,4 @@
-//! Blocks that share a side get the same nodes there; blocks that touch otherwise are refused.
+//! Joins blocks that share a side, which then have the same nodes there; refuses blocks that touch otherwise.
 
 use std::collections::BTreeSet;
 
@@ -9,16 +9,16 @@ use super::{BlockError, Blocks};
 use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::joined::Joined;
 
-/// Places nearer to each other than this share of the shortest side are the same.
+/// Tolerance for coinciding points, as a fraction of the shortest side.
 const SAME: f64 = 1e-6;
 
-/// Share of the size of a block by which arcs may leave the places that are taken of its outline, and more.
+/// Margin for the deviation of arcs from the sampled outline, as a fraction of the size of a block.
 const MARGIN: f64 = 0.01;
 
 /// A side of a block.
 type Side = (usize, usize);
 
-/// The number of the node in each slot.
+/// Returns the number of the node in each slot.
 pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError> {
     let slots = grids.iter().map(|grid| grid.nodes.len()).sum();
     let apart: BTreeSet<&String> = blocks.apart.iter().collect();
@@ -46,7 +46,7 @@ pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError>
     Ok(join.numbers())
 }
 
-/// Pairs of blocks of one body, or of bodies that are joined, that may touch, in the order of the second ones.
+/// Pairs of blocks of one body, or of joined bodies, that may touch, ordered by the second block.
 fn neighbours(blocks: &Blocks, grids: &[Grid]) -> Vec<[usize; 2]> {
     let boxes: Vec<Box2> = grids.iter().filter_map(reach).collect();
     let tree = Tree::new(boxes.iter().copied());
@@ -59,7 +59,7 @@ fn neighbours(blocks: &Blocks, grids: &[Grid]) -> Vec<[usize; 2]> {
     boxes.iter().enumerate().flat_map(before).filter(may_join).collect()
 }
 
-/// A box that what touches a block cannot miss.
+/// Bounding box of a block, extended by a margin for arcs.
 fn reach(grid: &Grid) -> Option<Box2> {
     let places = grid.outline().into_iter().chain(grid.inside.iter().copied());
     let own = Box2::around(places)?;
@@ -70,16 +70,16 @@ fn reach(grid: &Grid) -> Option<Box2> {
 struct Join<'b> {
     blocks: &'b Blocks,
     grids: &'b [Grid],
-    /// sides that are not to be joined
+    /// sides excluded from joining
     apart: Vec<[bool; 4]>,
     /// slots of the same node
     same: Joined,
-    /// what each side is joined to
+    /// partner of each side
     partner: Vec<[Option<Side>; 4]>,
 }
 
 impl Join<'_> {
-    /// Join two sides if they lie on each other.
+    /// Joins two sides if they coincide.
     fn sides(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
         if self.apart[one.0][one.1] || self.apart[other.0][other.1] {
             return Ok(());
@@ -111,7 +111,7 @@ impl Join<'_> {
                            from the same end, and the same arc";
             return Err(self.complain(one, other, message));
         }
-        // Round two blocks on either side of an edge this runs in opposite directions.
+        // Along a shared side, blocks of equal orientation run in opposite directions.
         if opposite != (self.grids[one.0].upright == self.grids[other.0].upright) {
             return Err(self.complain(one, other, "on the same side of it: the two overlap; remove one"));
         }
@@ -120,7 +120,7 @@ impl Join<'_> {
         Ok(())
     }
 
-    /// Two sides are joined to each other, and to no third one; none has a name.
+    /// Checks that two sides are joined to each other, to no third one, and have no names.
     fn partners(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
         for (side, partner) in [(one, other), (other, one)] {
             if let Some(third) = self.partner[side.0][side.1].replace(partner) {
@@ -154,7 +154,7 @@ impl Join<'_> {
         (SAME * sides.fold(f64::INFINITY, f64::min)).max(8.0 * f64::EPSILON * farthest)
     }
 
-    /// A corner of `a` that lies on a side of `b`, and is none of its nodes; sides that are apart may meet there.
+    /// Refuses a corner of `a` on a side of `b` that is none of its nodes; sides in `apart` may meet there.
     fn refuse_touching(&self, a: usize, b: usize) -> Result<(), BlockError> {
         let near = self.near(a, b);
         for corner in 0..4 {
@@ -176,7 +176,7 @@ impl Join<'_> {
         Ok(())
     }
 
-    /// Places inside `a` that are inside `b`.
+    /// Refuses points of `a` inside `b`.
     fn refuse_overlap(&self, a: usize, b: usize) -> Result<(), BlockError> {
         let outline = self.grids[b].outline();
         match self.grids[a].inside.iter().find(|at| is_inside(**at, &outline)) {
@@ -191,7 +191,7 @@ impl Join<'_> {
         }
     }
 
-    /// A body that is listed as joined and shares no side with another one of its list.
+    /// Refuses a body that is listed as joined but shares no side with another one of its list.
     fn refuse_strangers(&self) -> Result<(), BlockError> {
         let body = |block: usize| &self.blocks.blocks[block].body;
         let partners = |block: usize| self.partner[block].iter().flatten().map(|(other, _)| body(*other));
@@ -210,7 +210,7 @@ impl Join<'_> {
         Ok(())
     }
 
-    /// Numbers in the order in which nodes come first.
+    /// Node numbers in the order of first occurrence.
     fn numbers(self) -> Vec<usize> {
         let nodes = self.same.groups().into_iter().enumerate();
         let mut slots: Vec<(usize, usize)> =
@@ -220,7 +220,7 @@ impl Join<'_> {
     }
 }
 
-/// Whether a polygon goes round a place: the edges right of it cross its height an odd number of times.
+/// Whether a point is inside a polygon: a ray to the right crosses an odd number of edges.
 fn is_inside(at: Vector2<f64>, polygon: &[Vector2<f64>]) -> bool {
     let next = polygon.iter().cycle().skip(1);
     let crosses = |(a, b): &(&Vector2<f64>, &Vector2<f64>)| {

@@ -1,5 +1,5 @@
-//! Meshes of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements, and joined where
-//! they share a side.
+//! Block meshes: quadrilaterals with straight sides or arcs, divided into rows and columns of elements, and joined where they
+//! share a side.
 //!
 //! ```text
 //!            side 2
@@ -8,7 +8,7 @@
 //!   corner 0 ──────── corner 1
 //!            side 0
 //! ```
-//! Corners may run either way round. Inside, nodes lie on the transfinite map of the four sides x₀ … x₃:
+//! The corners may be given in either orientation. Inner nodes lie on the transfinite map of the four sides x₀ … x₃:
 //!
 //! ```text
 //! x(s, t) = (1 − t) x₀(s) + t x₂(s) + (1 − s) x₃(t) + s x₁(t) − bilinear map of the corners
@@ -28,22 +28,22 @@ use super::InlineMesh;
 pub use grid::Grading;
 use grid::Grid;
 
-/// Most elements of all blocks together: more than a computer solves for, and few enough to be counted.
+/// Upper bound of the total number of elements of all blocks.
 const MOST: f64 = 4e6;
 
-/// Elements of a block.
+/// Element kind of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub enum BlockKind {
     /// Bilinear, 4 nodes
     #[default]
     Q4,
-    /// Serendipity, 8 nodes: those in the middle of sides lie on the arcs
+    /// Serendipity, 8 nodes: the mid-side nodes lie on the arcs
     Q8,
 }
 
 impl BlockKind {
-    /// Spacings of nodes along an edge.
+    /// Number of node spacings along an edge.
     fn order(self) -> usize {
         match self {
             Self::Q4 => 1,
@@ -59,24 +59,24 @@ impl BlockKind {
 pub struct Block {
     /// body that its elements belong to
     pub body: String,
-    /// corners in turn [L]
+    /// corners in order [L]
     pub corners: [[f64; 2]; 4],
-    /// for each side the centre of the circle that it lies on, along its shorter arc; straight where there is none [L]
+    /// for each side, the centre of its circle, of which the shorter arc is taken; `None` for a straight side [L]
     pub arcs: [Option<[f64; 2]>; 4],
     /// elements along side 0 and along side 1
     pub elements: [usize; 2],
-    /// how their sizes vary, from corner 0 on
+    /// variation of their sizes, starting at corner 0
     pub grading: [Grading; 2],
     /// kind
     pub kind: BlockKind,
     /// names of the sides
     pub sides: [Option<String>; 4],
-    /// for each name a point: the node nearest to it is in the group of nodes of that name [L]
+    /// points by name: the node nearest to each forms the node group of that name [L]
     pub points: BTreeMap<String, [f64; 2]>,
 }
 
 impl Block {
-    /// A block with straight sides that have no names, of even Q4 elements.
+    /// Creates a block with straight, unnamed sides and Q4 elements of equal size.
     pub fn new(body: &str, corners: [[f64; 2]; 4], elements: [usize; 2]) -> Self {
         Self {
             body: body.into(),
@@ -90,43 +90,43 @@ impl Block {
         }
     }
 
-    /// A rectangle from its lower left to its upper right corner [L]; one named `b` is of the body `b` and has the sides
-    /// `b_bottom`, `b_right`, `b_top` and `b_left`.
+    /// Creates a rectangle from its lower left and upper right corner [L]; one named `b` belongs to the body `b` and has the
+    /// sides `b_bottom`, `b_right`, `b_top` and `b_left`.
     pub fn rectangle(name: &str, elements: [usize; 2], [x, y]: [f64; 2], [right, top]: [f64; 2]) -> Self {
         let sides = ["bottom", "right", "top", "left"].map(|side| Some(format!("{name}_{side}")));
         Self { sides, ..Self::new(name, [[x, y], [right, y], [right, top], [x, top]], elements) }
     }
 
-    /// With sizes of elements that vary along side 0 and along side 1.
+    /// Sets the grading of the element sizes along side 0 and side 1.
     pub fn grading(self, grading: [Grading; 2]) -> Self {
         Self { grading, ..self }
     }
 
-    /// Of another kind of elements.
+    /// Sets the kind of elements.
     pub fn kind(self, kind: BlockKind) -> Self {
         Self { kind, ..self }
     }
 
-    /// With a side, 0 to 3, on a circle around a centre, along its shorter arc [L].
+    /// Makes a side, 0 to 3, the shorter arc of a circle around a centre [L].
     pub fn arc(mut self, side: usize, centre: [f64; 2]) -> Self {
         self.arcs[side] = Some(centre);
         self
     }
 
-    /// With a name of a side, 0 to 3.
+    /// Sets the name of a side, 0 to 3.
     pub fn side(mut self, side: usize, name: impl Into<String>) -> Self {
         self.sides[side] = Some(name.into());
         self
     }
 
-    /// With a name of the node nearest to a point [L].
+    /// Names the node nearest to a point [L].
     pub fn point(mut self, name: impl Into<String>, near: [f64; 2]) -> Self {
         self.points.insert(name.into(), near);
         self
     }
 }
 
-/// Blocks, joined where two of one body, or of bodies that are joined, share a side.
+/// A set of blocks, joined where two of one body, or of joined bodies, share a side.
 ///
 /// ```
 /// use fecontact::mesh::{Block, Blocks, Grading};
@@ -141,22 +141,22 @@ impl Block {
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Blocks {
-    /// blocks; nodes are numbered in their order, row by row from side 0 on
+    /// blocks; nodes are numbered in their order, row by row, starting at side 0
     pub blocks: Vec<Block>,
-    /// names of sides that are not joined, such as the two sides of a crack
+    /// names of sides that are not joined, such as the two faces of a crack
     pub apart: Vec<String>,
-    /// lists of bodies that are joined with each other, such as two materials bonded along a side
+    /// lists of bodies joined with each other, such as two materials bonded along a side
     pub joined: Vec<Vec<String>>,
 }
 
-/// Error of a block, with a remedy.
+/// Error of a block, with its remedy.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{place}: {message}")]
 #[non_exhaustive]
 pub struct BlockError {
-    /// such as `blocks[1].elements`
+    /// place in the input, such as `blocks[1].elements`
     pub place: String,
-    /// what is wrong, and what to do
+    /// error and remedy
     pub message: String,
 }
 
@@ -167,21 +167,21 @@ impl BlockError {
 }
 
 impl Blocks {
-    /// Blocks that are joined where they share a side.
+    /// Creates a set of blocks, joined where they share a side.
     pub fn new(blocks: impl Into<Vec<Block>>) -> Self {
         Self { blocks: blocks.into(), ..Self::default() }
     }
 
-    /// With bodies that are joined, too, where their blocks share a side.
+    /// Joins bodies where their blocks share a side.
     pub fn joined<const N: usize>(mut self, bodies: [&str; N]) -> Self {
         self.joined.push(bodies.map(String::from).into());
         self
     }
 
-    /// The mesh: a body of each name, a group of edges for each name of sides, and one of nodes for each name of points.
+    /// Returns the mesh: one body per body name, one edge group per side name, and one node group per point name.
     ///
     /// # Errors
-    /// [`BlockError`] of a block that is none, or of blocks that touch and cannot be joined.
+    /// Returns [`BlockError`] if a block is invalid, or blocks touch and cannot be joined.
     pub fn mesh(&self) -> Result<InlineMesh, BlockError> {
         self.check_size()?;
         let mut first = 0;
@@ -252,7 +252,7 @@ impl Blocks {
     }
 }
 
-/// The name that was probably meant, as a question.
+/// Suggests a known name as a question.
 fn meant(name: &str, known: &BTreeSet<&str>) -> String {
     super::names::nearest(name, known.iter().copied())
         .map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"))

@@ -1,4 +1,4 @@
-//! Friction of a contact as a case can have it: parameters of laws, some of which vary along the slave and in time.
+//! Friction of a contact in a case: parameters of laws, some of which vary along the slave and in time.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -24,20 +24,20 @@ pub struct Along {
     /// Other laws than `friction` on parts of the slave; where several apply, the first one is used
     #[schemars(default)]
     pub law: Vec<LawChoice>,
-    /// Parameters of `friction`, by name: they replace the numbers given there. A rate enters by its mean over an increment,
-    /// any other parameter by its value at the end. Those of the start (structure, theta) and alpha_t do not vary in time
+    /// Parameters of `friction`, by name: they replace the numbers given there. A rate is averaged over an increment,
+    /// any other parameter takes its value at the end. Those of the start (structure, theta) and alpha_t do not vary in time
     #[serde(flatten)]
     pub parameters: BTreeMap<String, Profile>,
 }
 
 impl Along {
-    /// With a parameter that varies.
+    /// Adds a parameter that varies.
     pub fn parameter(mut self, name: impl Into<String>, profile: impl Into<Profile>) -> Self {
         self.parameters.insert(name.into(), profile.into());
         self
     }
 
-    /// With another law on a part of the slave.
+    /// Adds another law on a part of the slave.
     pub fn law(mut self, law: LawChoice) -> Self {
         self.law.push(law);
         self
@@ -55,23 +55,23 @@ impl Along {
 #[non_exhaustive]
 #[must_use]
 pub struct LawChoice {
-    /// The law applies where this is positive
+    /// The law applies where this expression is positive
     #[serde(rename = "where")]
     pub place: Profile,
     /// Friction law
     pub friction: FrictionParameters,
-    /// Its parameters that vary along the slave, and in time, by name
+    /// Parameters that vary along the slave and in time, by name
     #[serde(default)]
     pub along: BTreeMap<String, Profile>,
 }
 
 impl LawChoice {
-    /// A law where a profile is positive.
+    /// Creates the choice of a law where a profile is positive.
     pub fn new(place: impl Into<Profile>, friction: impl Into<FrictionParameters>) -> Self {
         Self { place: place.into(), friction: friction.into(), along: BTreeMap::new() }
     }
 
-    /// With a parameter that varies.
+    /// Adds a parameter that varies.
     pub fn parameter(mut self, name: impl Into<String>, profile: impl Into<Profile>) -> Self {
         self.along.insert(name.into(), profile.into());
         self
@@ -84,7 +84,7 @@ impl<'de> Deserialize<'de> for Along {
     }
 }
 
-/// Reads entry by entry, so that a complaint about one names its place.
+/// Reads entry by entry, so that an error is reported with its place.
 struct Entries;
 
 impl<'de> Visitor<'de> for Entries {
@@ -106,7 +106,7 @@ impl<'de> Visitor<'de> for Entries {
     }
 }
 
-/// Friction is written as the parameters of its law; a law from code has none.
+/// Friction is written as the parameters of its law; a law from code cannot be written.
 impl Serialize for Friction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let lacks = || S::Error::custom("a friction law from code cannot be written as a case: give it by parameters");
@@ -134,7 +134,7 @@ impl JsonSchema for Friction {
     }
 }
 
-/// The laws, with those of their parameters replaced that vary along the slave; an initial structure is one of them.
+/// Returns the laws with their varying parameters replaced, including an initial structure.
 pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, place: &str) -> Checked<Friction> {
     let Some(parameters) = given.parameters() else {
         return match along.is_empty() && structure.is_none() {
@@ -167,14 +167,14 @@ pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, pl
     Ok(friction)
 }
 
-/// A parameter, where it stands in a contact, and how it varies.
+/// Name of a parameter, its place in the contact, and its profile.
 type Varying = (String, String, Profile);
 
 fn profiles(along: &BTreeMap<String, Profile>, within: &str) -> Vec<Varying> {
     along.iter().map(|(name, profile)| (name.clone(), format!("{within}.{name}"), profile.clone())).collect()
 }
 
-/// A law some of whose parameters vary; it stands at `own` in the contact.
+/// Returns a law with varying parameters; its place in the contact is `own`.
 fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &str, own: &str) -> Checked<Friction> {
     if let Some(message) = parameters.unknown() {
         return Err(ModelError::new(format!("{place}.{own}.name"), message));
@@ -182,7 +182,7 @@ fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &s
     if varying.is_empty() {
         return Ok(parameters.into());
     }
-    // The numbers that are replaced must be good as well; any α_t will do for that.
+    // The replaced numbers must be valid as well; any α_t serves for the check.
     parameters.build(1.0).map_err(|error| ModelError::new(format!("{place}.{own}"), error))?;
     let names: Vec<[String; 2]> =
         varying.iter().map(|(name, within, _)| [name.clone(), format!("{place}.{within}")]).collect();
@@ -196,7 +196,7 @@ fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &s
     }))
 }
 
-/// That a law has no such parameter, and which one may be meant.
+/// Message for an unknown parameter, with the most similar known one.
 fn unknown(UnknownParameter { name, known }: &UnknownParameter) -> String {
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let meant =

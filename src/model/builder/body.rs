@@ -1,6 +1,6 @@
 //! Bodies and point masses: materials on groups of the mesh.
 //!
-//! What is imposed on bodies: their initial stress, and their temperatures.
+//! Initial stresses and temperatures are imposed on bodies.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -32,16 +32,16 @@ pub struct BodyInput {
     /// Element formulation
     #[serde(default)]
     pub element: Formulation,
-    /// Damping of the body in dynamic steps; none unless given
+    /// Damping of the body in dynamic steps; default: none
     #[serde(default)]
     pub damping: Damping,
-    /// Stress of the undeformed body at the start; none unless given
+    /// Stress of the undeformed body at the start; default: none
     pub initial_stress: Option<InitialStress>,
-    /// Thermal expansion; none unless given
+    /// Thermal expansion; default: none
     pub thermal: Option<Thermal>,
 }
 
-/// The law of a body: by its parameters, as a case writes it, or from code.
+/// Bulk law of a body, given by its parameters as in a case, or as an object from code.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(untagged, from = "MaterialParameters")]
 pub enum BulkLaw {
@@ -58,28 +58,28 @@ impl From<MaterialParameters> for BulkLaw {
     }
 }
 
-/// How the elements of a body are integrated.
+/// Element formulation of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Formulation {
     /// Displacements only, full integration
     #[default]
     Displacement,
-    /// Q4 with the mean dilatation of the centre (F-bar): does not lock for ν → 1/2
+    /// Q4 with the mean dilatation of the centre (F-bar), which does not lock for ν → 1/2
     FBar,
 }
 
-/// A mass at every node of a group.
+/// A point mass at every node of a group.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMassInput {
-    /// Mass of each node, added to what a body has there [M]
+    /// Mass of each node, added to that of a body there [M]
     pub mass: f64,
     /// Initial velocity [x, y] of the nodes [L/T]
     pub velocity: Option<[f64; 2]>,
 }
 
-/// The bodies, and the number of that which each element belongs to.
+/// Builds the bodies, and the body number of each element.
 pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
     let mut bodies = Vec::new();
     let mut body_of_element = vec![usize::MAX; mesh.elements.len()];
@@ -122,7 +122,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
     }
 }
 
-/// Damping that makes sense.
+/// Checks damping parameters.
 pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> Checked<()> {
     let Damping { mass, retardation } = damping;
     check_not_negative(&format!("{place}.mass"), mass)?;
@@ -134,7 +134,7 @@ pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> 
     Ok(())
 }
 
-/// Integration geometry of every element.
+/// Builds the integration geometry of every element.
 pub fn solids(mesh: &Mesh, given: &[(String, BodyInput)], body_of_element: &[usize]) -> Checked<Vec<SolidElement>> {
     let mut solids = Vec::with_capacity(mesh.elements.len());
     for (e, (element, &body)) in mesh.elements.iter().zip(body_of_element).enumerate() {
@@ -148,7 +148,7 @@ pub fn solids(mesh: &Mesh, given: &[(String, BodyInput)], body_of_element: &[usi
     Ok(solids)
 }
 
-/// The point masses.
+/// Builds the point masses.
 pub fn point_masses(given: &[(String, PointMassInput)], mesh: &Mesh) -> Checked<Vec<PointMass>> {
     let point_mass = |(name, PointMassInput { mass, .. }): &(String, PointMassInput)| {
         let place = format!("point_masses.{name}");
@@ -160,16 +160,16 @@ pub fn point_masses(given: &[(String, PointMassInput)], mesh: &Mesh) -> Checked<
     given.iter().map(point_mass).collect()
 }
 
-/// Share of the depth by which a body may reach above the surface of the ground: positions are rounded.
+/// Tolerance by which a body may extend above the ground surface, relative to its depth: positions are rounded.
 const ROUNDED: f64 = 1e-9;
 
-/// Times of a step, evenly spaced, at which a temperature is looked at.
+/// Number of evenly spaced times in a step at which a temperature is checked.
 const TIMES: u32 = 100;
 
-/// The most nodes of a body at which it is.
+/// Maximum number of nodes of a body at which it is checked.
 const PLACES: usize = 50;
 
-/// The law of a body under what is imposed on it.
+/// Returns the law of a body with initial stress and thermal expansion.
 pub fn with_imposed(
     given: Arc<dyn Material>,
     stress: Option<&InitialStress>,
@@ -193,7 +193,7 @@ pub fn with_imposed(
     }
 }
 
-/// An initial stress must have a value all over the body, the ground lies below its surface, and a plate has no stress across it.
+/// Checks an initial stress: finite throughout the body, ground below its surface, and no out-of-plane stress in plane stress.
 pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place: &str) -> Checked<()> {
     let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}.{key}"), message));
     match stress {
@@ -240,7 +240,8 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
     }
 }
 
-/// A stress beyond the shear modulus leaves no stiffness that a law of large strains could rest on; most often it has other units.
+/// Checks that the initial stress is below the shear modulus: otherwise a large-strain law has no positive stiffness; in most
+/// cases the units differ.
 pub fn check_stiffness(
     stress: &InitialStress,
     material: &dyn Material,
@@ -265,7 +266,7 @@ pub fn check_stiffness(
     Err(ModelError::new(place, message))
 }
 
-/// Give bodies temperatures from the start of a step on.
+/// Sets prescribed temperatures of bodies from the start of a step on.
 pub fn temperatures(
     in_force: &mut BTreeMap<usize, Amplitude>,
     given: &LoadStep,
@@ -291,7 +292,7 @@ pub fn temperatures(
     Ok(())
 }
 
-/// A temperature must have a value throughout the step, at which the body does not shrink to nothing.
+/// Checks that a temperature is finite throughout the step and does not shrink the body to zero size.
 fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: &str, model: &Model) -> Checked<()> {
     let (nodes, Span { start, end }) = (&model.bodies[body].nodes, amplitude.span);
     let step = nodes.len().div_ceil(PLACES).max(1);
@@ -311,7 +312,7 @@ fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: 
     Ok(())
 }
 
-/// Temperatures of the bodies that have been given one.
+/// Prescribed temperatures of bodies.
 pub fn in_force(temperatures: &BTreeMap<usize, Amplitude>) -> Vec<Temperature> {
     temperatures.iter().map(|(&body, amplitude)| Temperature { body, amplitude: amplitude.clone() }).collect()
 }

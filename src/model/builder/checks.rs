@@ -1,6 +1,6 @@
-//! What does not go together, and settings out of range.
+//! Checks of settings, and of combinations of features.
 //!
-//! What quasi-dynamic steps ask of a model.
+//! Quasi-dynamic steps have requirements on the model.
 
 use std::collections::BTreeSet;
 
@@ -13,13 +13,13 @@ use crate::model::scheme::Scheme;
 use crate::model::support::{Inclined, Motion, Prescribed};
 use crate::model::{Model, NewtonSettings, Step};
 
-/// Largest number of Newton iterations that makes sense to allow.
+/// Maximum accepted limit of Newton iterations.
 const MOST_ITERATIONS: usize = 1000;
 
-/// A looser tolerance leaves forces out of balance that a reader of the results would see.
+/// Largest accepted tolerance; a larger one would leave residual forces visible in the results.
 const LOOSEST: f64 = 1e-2;
 
-/// When Newton's method stops.
+/// Checks the stopping criteria of Newton's method.
 pub fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
     if !(newton.tolerance > 0.0 && newton.tolerance <= LOOSEST) {
         let message = format!(
@@ -36,13 +36,13 @@ pub fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
     Ok(newton)
 }
 
-/// Time between the results of explicit steps.
+/// Checks the interval of the results of explicit steps.
 pub fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
     let otherwise = " (leave it out for a hundredth of each explicit step)";
     check_positive("output.interval", interval.unwrap_or(1.0), otherwise).map(|()| interval)
 }
 
-/// Explicit steps write a row of results an interval.
+/// Checks the number of result rows of explicit steps, one per interval.
 pub fn check_rows(model: &Model) -> Checked<()> {
     let Some(interval) = model.requests.interval else { return Ok(()) };
     let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
@@ -59,7 +59,7 @@ pub fn check_rows(model: &Model) -> Checked<()> {
     }
 }
 
-/// Times at which fields are asked for: within the steps, in order.
+/// Checks the output times of fields: within the steps, ascending.
 pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
     let (start, end) =
         steps.first().zip(steps.last()).map_or((0.0, 0.0), |(first, last)| (first.span.start, last.span.end));
@@ -75,8 +75,8 @@ pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
     Ok(times)
 }
 
-/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small, nor find where a node
-/// without mass is. Wilson's equilibrium lies beyond the increment, and so do the multipliers found there.
+/// Checks combinations of schemes and contact: explicit steps solve no equations, and can neither augment pressures nor
+/// determine the position of massless nodes. In Wilson-θ, equilibrium and its multipliers lie beyond the increment.
 pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
     let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
     let augmented = model.contacts.iter().find(|pair| pair.penetration.is_some());
@@ -105,8 +105,8 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
     }
 }
 
-/// Linear bodies, contacts in small sliding whose nodes face each other and whose slip rates follow from tractions, and nothing
-/// that changes otherwise than evenly within a step.
+/// Checks the requirements of quasi-dynamic steps: linear bodies, small sliding with matching nodes, laws that define a slip
+/// rate by traction, and time functions that are linear within a step.
 pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
     let steps = model.steps.iter().enumerate();
     for (k, step) in steps.filter(|(_, step)| matches!(step.scheme, Scheme::QuasiDynamic { .. })) {
@@ -173,7 +173,7 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     Ok(())
 }
 
-/// Every point must be a node that faces a node, or a rigid body, and no node may take part twice.
+/// Checks that every point is a node opposite a node or a rigid body, and that no node is used twice.
 fn check_nodes(model: &Model) -> Checked<()> {
     let mut seen = BTreeSet::new();
     for pair in &model.contacts {
@@ -207,7 +207,7 @@ fn check_nodes(model: &Model) -> Checked<()> {
     Ok(())
 }
 
-/// Supports move evenly, and hold no node of a contact.
+/// Checks that supports vary linearly and constrain no node of a contact.
 fn check_supports(place: &str, step: &Step, model: &Model) -> Checked<()> {
     let at_contacts: BTreeSet<usize> = model
         .contacts
@@ -243,7 +243,7 @@ fn check_supports(place: &str, step: &Step, model: &Model) -> Checked<()> {
     Ok(())
 }
 
-/// Loads grow evenly, and none depends on rates or on the deformation.
+/// Checks that loads vary linearly and do not depend on rates or the deformation.
 fn check_loads(place: &str, step: &Step) -> Checked<()> {
     let loads = &step.loads;
     let refused = |message: &str| Err(ModelError::new(format!("{place}.loads"), message.to_string()));

@@ -1,4 +1,4 @@
-//! A contact as it is given; its fluid, and its rigid master with its geometry checked.
+//! Input of a contact, with checks of its fluid and its rigid master.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -21,19 +21,19 @@ use crate::model::written::written;
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Contact {
-    /// Name in messages and results; a case has it before the contact
+    /// Name in messages and results; the key of the contact in a case
     #[serde(skip)]
     pub name: String,
-    /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the
+    /// Edge group whose points are kept out of the master, the finer or softer side; or a point group, each point with the
     /// `area`
     pub slave: String,
-    /// Tributary area of each point of a slave group of points, with the thickness or the full turn; it does not
-    /// change. Edges have lengths of their own [L, the thickness being 1, or L²]
+    /// Tributary area of each point of a point group as slave, including the thickness or the full turn; it is
+    /// constant. Edges have lengths of their own [L for thickness 1, or L²]
     pub area: Option<f64>,
     /// Edge group, or a rigid body. The slave's group again: self-contact of the surface; each point then has half its
     /// tributary length, because every contact is evaluated from both sides
     pub master: MasterSide,
-    /// Rigid body that a rigid master is a part of, and moves with: one of `rigid_bodies`. Without it the master is at rest
+    /// Moving rigid body to which a rigid master belongs: one of `rigid_bodies`; default: the master is fixed
     pub rigid_body: Option<String>,
     /// Contact method. By default mortar where an edge of either side is quadratic or a side curved (its direction
     /// turns by more than 1° between two corners of more than 45°); gauss_to_segment between straight linear edges,
@@ -64,7 +64,7 @@ pub struct Contact {
     /// Dilatancy: opening by plastic slip
     pub dilatancy: Option<Dilatancy>,
     /// k of Archard's law: the surfaces wear by dw = k p × plastic slip, in either direction of slip; k is the wear
-    /// coefficient over the hardness. The wear depth w is `wear` in tables and frames [L²/F]
+    /// coefficient divided by the hardness. The wear depth w is `wear` in tables and frames [L²/F]
     pub wear: Option<f64>,
     /// Static steps: radiation damping, a traction η × slip rate that resists slip in addition to friction and
     /// approximates the inertia that is neglected, by shear waves radiated into unbounded bodies. A number is η
@@ -92,7 +92,7 @@ pub struct Contact {
 #[non_exhaustive]
 pub struct Normal {
     /// α_n: pressure per penetration [F/L³]; default 10 (λ + 2G)/h, with λ + 2G of the softer body and the depth h of
-    /// the slave's elements. A slave group of points has no elements and needs a number
+    /// the slave's elements. Required for a point group as slave, which has no elements
     pub alpha_n: Option<f64>,
     /// Largest penetration allowed [L]: the pressure is increased until no penetration is larger (augmented Lagrangian
     /// by Uzawa's method), so that the solution does not depend on alpha_n; default: penalty only
@@ -116,8 +116,8 @@ pub enum SlidingRange {
     Small,
 }
 
-/// The master side: a group of the mesh, or a rigid master given by a formula, at rest unless `rigid_body` says what it moves
-/// with.
+/// The master side: a group of the mesh, or a rigid master given by a formula, fixed unless `rigid_body` names a moving
+/// body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case", deny_unknown_fields)]
 #[schemars(rename = "Master")]
@@ -127,7 +127,7 @@ pub enum MasterSide {
     Plane {
         /// A point of its surface [L]
         point: [f64; 2],
-        /// Direction out of the solid, of any length
+        /// Outward normal of the solid, of any length
         normal: [f64; 2],
     },
     /// A rigid disk, or the rim of a hole
@@ -142,7 +142,7 @@ pub enum MasterSide {
     },
     /// A rigid body bounded by straight lines
     Polyline {
-        /// Its corners, with the solid on the right in their order; the first corner repeated at the end closes it [L]
+        /// Corners, with the solid on the right in their order; repeating the first corner at the end closes the line [L]
         points: Vec<[f64; 2]>,
     },
     /// Edge group of the mesh; the slave's own group means self-contact
@@ -163,12 +163,12 @@ impl From<&str> for MasterSide {
     }
 }
 
-/// Radiation damping of a contact in static steps: whether, or how much.
+/// Radiation damping of a contact in static steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "must be true, false or a number")]
 #[non_exhaustive]
 pub enum Radiation {
-    /// true: from the impedances of the bodies, as dashpots in series; false: none
+    /// true: computed from the impedances of the bodies, as dashpots in series; false: none
     OfBodies(bool),
     /// η [F·T/L³]
     Given(f64),
@@ -180,7 +180,7 @@ impl Default for Radiation {
     }
 }
 
-/// The state of a contact that starts closed.
+/// Initial state of a contact that starts closed.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Initial")]
@@ -190,20 +190,20 @@ pub struct InitialTractions {
     pub pressure: Option<Profile>,
     /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
     pub traction: Option<Profile>,
-    /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
+    /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; default: that of the law [-]
     pub structure: Option<Profile>,
     /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of
     /// the run are then changes from the initial stress
     #[serde(default)]
     pub balanced: bool,
     /// Instead of pressure and traction: those of the `initial_stress` of the slave's body at the contact, p = −n·σn
-    /// (less the pressure of a fluid at the start) and q = s·σn, with the normal n and the tangent s of the master
+    /// (minus an initial fluid pressure) and q = s·σn, with the normal n and the tangent s of the master
     #[serde(default)]
     pub of_bodies: bool,
 }
 
 impl Contact {
-    /// A contact by penalty, of an edge group with another or with a rigid body.
+    /// Creates a penalty contact of an edge group with another or with a rigid body.
     pub fn new(
         name: impl Into<String>,
         slave: impl Into<String>,
@@ -233,102 +233,102 @@ impl Contact {
         }
     }
 
-    /// With this normal penalty α_n [F/L³].
+    /// Sets the normal penalty α_n [F/L³].
     pub fn alpha_n(mut self, alpha_n: f64) -> Self {
         self.normal.alpha_n = Some(alpha_n);
         self
     }
 
-    /// With a rigid master that moves with a rigid body of the model.
+    /// Makes a rigid master move with a rigid body of the model.
     pub fn rigid_body(self, name: impl Into<String>) -> Self {
         Self { rigid_body: Some(name.into()), ..self }
     }
 
-    /// Evaluated by this method.
+    /// Sets the contact method.
     pub fn method(self, method: Method) -> Self {
         Self { method: Some(method), ..self }
     }
 
-    /// At this many Gauss points an edge.
+    /// Sets the number of Gauss points per edge.
     pub fn points(self, points: usize) -> Self {
         Self { points: Some(points), ..self }
     }
 
-    /// With a master whose edges are smoothed to a curve.
+    /// Smooths the edges of the master to a curve.
     pub fn smooth(self) -> Self {
         Self { smooth: true, ..self }
     }
 
-    /// Of surfaces that overlap at the start and are pressed apart over the first step.
+    /// Makes it a shrink fit: an initial overlap is applied gradually over the first step.
     pub fn shrink_fit(self) -> Self {
         Self { shrink_fit: true, ..self }
     }
 
-    /// With the mass of the slave's nodes moved away from them, which leaves impact without ringing.
+    /// Moves the mass of the slave's nodes away from them, for impact without spurious oscillation.
     pub fn massless(self) -> Self {
         Self { massless: true, ..self }
     }
 
-    /// With friction that varies along the slave, and in time.
+    /// Sets friction parameters that vary along the slave and in time.
     pub fn along(self, along: Along) -> Self {
         Self { along, ..self }
     }
 
-    /// With the pressure raised until no closed gap is larger (augmented Lagrangian) [L].
+    /// Sets the largest penetration allowed (augmented Lagrangian method) [L].
     pub fn penetration(mut self, largest: f64) -> Self {
         self.normal.penetration = Some(largest);
         self
     }
 
-    /// In small sliding: every point keeps its foot, the weights of both sides, its normal and its length
+    /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length
     /// ([`crate::contact::small_sliding`]).
     pub fn small_sliding(self) -> Self {
         Self { sliding: SlidingRange::Small, ..self }
     }
 
-    /// With surfaces that move apart with plastic slip.
+    /// Sets dilatancy: opening by plastic slip.
     pub fn dilatancy(self, dilatancy: Dilatancy) -> Self {
         Self { dilatancy: Some(dilatancy), ..self }
     }
 
-    /// With surfaces that wear by k p per plastic slip [L²/F].
+    /// Sets wear by k p per plastic slip [L²/F].
     pub fn wear(self, k: f64) -> Self {
         Self { wear: Some(k), ..self }
     }
 
-    /// With radiation damping in static steps.
+    /// Sets the radiation damping in static steps.
     pub fn radiation(self, radiation: Radiation) -> Self {
         Self { radiation_damping: radiation, ..self }
     }
 
-    /// With a fluid of the pressure p_w, by reference position and time [F/L²].
+    /// Sets the pressure p_w of a fluid, by reference position and time [F/L²].
     pub fn fluid_pressure(self, pressure: impl Into<Profile>) -> Self {
         Self { fluid_pressure: Some(pressure.into()), ..self }
     }
 
-    /// Of a group of points, each of which stands for an area [L].
+    /// Sets the tributary area of each point of a point group [L].
     pub fn area(self, area: f64) -> Self {
         Self { area: Some(area), ..self }
     }
 
-    /// Closed from the start under a pressure and a traction.
+    /// Starts the contact closed under a pressure and a traction.
     pub fn initial(self, pressure: impl Into<Profile>, traction: impl Into<Profile>) -> Self {
         let (pressure, traction) = (Some(pressure.into()), Some(traction.into()));
         Self { initial: Some(InitialTractions { pressure, traction, ..InitialTractions::default() }), ..self }
     }
 
-    /// Closed from the start under the tractions with which the initial stress of the slave's body ends there.
+    /// Starts the contact closed under the tractions of the initial stress of the slave's body.
     pub fn initial_of_bodies(self) -> Self {
         Self { initial: Some(InitialTractions { of_bodies: true, ..InitialTractions::default() }), ..self }
     }
 
-    /// Starting with this structure 1/R*, by reference position.
+    /// Sets the initial structure 1/R*, by reference position.
     pub fn structure(mut self, structure: impl Into<Profile>) -> Self {
         self.initial.get_or_insert_default().structure = Some(structure.into());
         self
     }
 
-    /// With bodies whose initial stress is in equilibrium with the tractions it starts with.
+    /// Declares the initial stress of the bodies to be in equilibrium with the initial tractions.
     pub fn balanced(mut self) -> Self {
         if let Some(initial) = &mut self.initial {
             initial.balanced = true;
@@ -336,20 +336,20 @@ impl Contact {
         self
     }
 
-    /// Whether the slave is its own master.
+    /// Whether the slave is its own master (self-contact).
     pub(super) fn is_own(&self) -> bool {
         matches!(&self.master, MasterSide::Group(group) if *group == self.slave)
     }
 }
 
-/// The fluid of a contact, if it has one.
+/// Returns the fluid of a contact, if it has one.
 pub fn fluid(place: &str, contact: &Contact) -> Checked<Option<Fluid>> {
     let Some(pressure) = contact.fluid_pressure.clone() else { return Ok(None) };
     check_in_time(&pressure, &format!("{place}.fluid_pressure"))?;
     Ok(Some(Fluid::new(move |at, time| pressure.value_at(at, time))))
 }
 
-/// A fluid pushes, and does not pull.
+/// Checks that a fluid pressure is not negative.
 pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model, time: f64) -> Checked<()> {
     let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&model.mesh.undeformed(), time) else {
         return Ok(());
@@ -361,11 +361,12 @@ pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model, time: f64) ->
     Err(ModelError::new(format!("{place}.fluid_pressure"), message))
 }
 
-/// Most times in a step at which the pressure of a fluid is looked at before the run, and most values in all.
+/// Maximum number of times per step at which a fluid pressure is checked before the run, and of all values.
 const LOOKS: usize = 100;
 const VALUES: usize = 2_000_000;
 
-/// Fluids that would begin to pull: at evenly spaced times of the steps, as far as the run is certain to come. Between them a run sees it.
+/// Checks fluid pressures at evenly spaced times of the steps, as long as their times are certain; times in between are checked
+/// during the run.
 pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> {
     for (contact, pair) in contacts.iter().zip(&model.contacts) {
         if !contact.fluid_pressure.as_ref().is_some_and(Profile::depends_on_time) {
@@ -373,7 +374,7 @@ pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> 
         }
         let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, LOOKS);
         for step in &model.steps {
-            // Such a step may end as soon as it has begun, and the time of all that follows is not known.
+            // Such a step may end immediately, and the times of all later steps are unknown.
             if step.until.is_some() {
                 break;
             }
@@ -387,7 +388,7 @@ pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> 
     Ok(())
 }
 
-/// The shape of a rigid master.
+/// Returns the shape of a rigid master.
 pub fn shape(side: &MasterSide, place: &str) -> Checked<Shape> {
     match side {
         MasterSide::Group(group) => Err(ModelError::new(place, format!("`{group}` is a group, not a rigid body"))),

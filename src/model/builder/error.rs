@@ -1,8 +1,8 @@
-//! What is wrong with a model, and where.
+//! Errors of a model, with their place.
 //!
-//! Numbers that may be computed with.
+//! Numbers are checked for their range.
 //!
-//! Names that go into the header and the rows of a CSV file, and names that may stand once only.
+//! Names are checked for use in the header and rows of CSV files, and for uniqueness.
 
 use std::collections::BTreeSet;
 
@@ -12,38 +12,38 @@ use super::Builder;
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::names::is_unwritable;
 
-/// Something in a model that cannot be solved as it is given.
+/// An error in the input of a model.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}{message}", if place.is_empty() { String::new() } else { format!("{place}: ") })]
 #[non_exhaustive]
 pub struct ModelError {
-    /// Path of what is meant, in the words of the case file: `bodies.block.material`, `steps[0].supports[1].ux`
+    /// Place, in the terms of the case file: `bodies.block.material`, `steps[0].supports[1].ux`
     pub place: String,
-    /// What is wrong, and what to do
+    /// Error and remedy
     pub message: String,
 }
 
-/// What is given, once it is found to be good.
+/// A checked input.
 pub type Checked<T> = Result<T, ModelError>;
 
 impl ModelError {
-    /// An error at a place.
+    /// Creates an error at a place.
     pub fn new(place: impl Into<String>, message: impl ToString) -> Self {
         Self { place: place.into(), message: message.to_string() }
     }
 }
 
-/// A parameter of a law, whose place is added by what has the law.
+/// Parameter of a law; its place is completed by the owner of the law.
 impl From<InvalidParameter> for ModelError {
     fn from(error: InvalidParameter) -> Self {
         Self::new("", error)
     }
 }
 
-/// Stiffnesses outside this range cannot be squared in double precision.
+/// Range of stiffnesses that can be squared in double precision.
 const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
-/// A stiffness, mass or area must be of a size that can be squared.
+/// Checks that a stiffness, mass or area can be squared.
 pub fn check_size(place: &str, name: &str, value: f64) -> Checked<()> {
     if STIFFNESSES.contains(&value) {
         return Ok(());
@@ -53,7 +53,7 @@ pub fn check_size(place: &str, name: &str, value: f64) -> Checked<()> {
     Err(ModelError::new(place, message))
 }
 
-/// A number that must be positive, with what else is to be said of it.
+/// Checks that a number is positive; `besides` is added to the message.
 pub fn check_positive(place: &str, value: f64, besides: &str) -> Checked<()> {
     match value > 0.0 && value.is_finite() {
         true => Ok(()),
@@ -61,7 +61,7 @@ pub fn check_positive(place: &str, value: f64, besides: &str) -> Checked<()> {
     }
 }
 
-/// A number that must be zero or positive.
+/// Checks that a number is zero or positive.
 pub fn check_not_negative(place: &str, value: f64) -> Checked<()> {
     match value >= 0.0 && value.is_finite() {
         true => Ok(()),
@@ -69,7 +69,7 @@ pub fn check_not_negative(place: &str, value: f64) -> Checked<()> {
     }
 }
 
-/// Numbers that must be finite.
+/// Checks that numbers are finite.
 pub fn check_finite(place: &str, values: impl IntoIterator<Item = f64>) -> Checked<()> {
     match values.into_iter().find(|value| !value.is_finite()) {
         Some(value) => Err(ModelError::new(place, format!("is {value}: must be a finite number"))),
@@ -77,17 +77,17 @@ pub fn check_finite(place: &str, values: impl IntoIterator<Item = f64>) -> Check
     }
 }
 
-/// Longest name [bytes]: with that of a quantity behind it, it is a column of a table and the name of a file.
+/// Maximum length of a name [bytes]; combined with a quantity, it is a column of a table and the name of a file.
 const LONGEST: usize = 100;
 
-/// Letters of a longer one that are shown.
+/// Number of characters shown of a longer one.
 const SHOWN: usize = 20;
 
-/// Characters that would break a row apart, besides line breaks and other control characters.
+/// Characters that would split a row, in addition to line breaks and other control characters.
 const BREAKING: [char; 2] = [',', '"'];
 
 impl Builder {
-    /// Names must survive in results, and stand once.
+    /// Checks that names are unique and can be used in results.
     pub(super) fn check_names(&self) -> Checked<()> {
         for (k, step) in self.steps.iter().enumerate() {
             check_name(&format!("steps[{k}].name"), &step.name)?;
@@ -111,7 +111,7 @@ impl Builder {
     }
 }
 
-/// A name by which results are found must survive in a CSV file.
+/// Checks that a name can be used in a CSV file.
 pub fn check_name(place: &str, name: &str) -> Checked<()> {
     if name.trim().is_empty() {
         return Err(ModelError::new(place, format!("the name {name:?} is empty: results are found by it")));
@@ -134,7 +134,7 @@ pub fn check_name(place: &str, name: &str) -> Checked<()> {
     }
 }
 
-/// Titles and labels of units go into figures, pages and stores as they are: each must be a line of text.
+/// Checks that a title or unit label is one line of text, as used in figures, pages and stores.
 pub fn check_line(place: &str, text: &str) -> Checked<()> {
     match text.chars().find(|c| is_unwritable(*c)) {
         Some(character) => {
@@ -144,13 +144,13 @@ pub fn check_line(place: &str, text: &str) -> Checked<()> {
     }
 }
 
-/// That a body is not among those that there are.
+/// Error for an unknown body.
 pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str) -> ModelError {
     let known: Vec<&str> = known.collect();
     ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))
 }
 
-/// Nothing of one kind may be given twice.
+/// Checks that no item of one kind is given twice.
 pub fn check_once<'n>(of: &str, mut names: impl Iterator<Item = &'n String>) -> Checked<()> {
     let mut seen = BTreeSet::new();
     match names.find(|name| !seen.insert(*name)) {

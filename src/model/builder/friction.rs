@@ -1,6 +1,6 @@
-//! Friction of a contact before the contact is known: the same everywhere, or varying along the slave.
+//! Input of friction, independent of the contact: uniform, or varying along the slave.
 //!
-//! Friction whose parameters vary in time: patches that weaken and recover, creep that sets in.
+//! Parameters may vary in time: patches that weaken and recover, onset of creep.
 
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Formatter};
@@ -20,23 +20,23 @@ use crate::mesh::Mesh;
 use crate::mesh::shape::gauss;
 use crate::model::boundary::Profile;
 
-/// Friction of a contact. A law is friction, and so are parameters of one, whose α_t is α_n/2 unless they give it.
+/// Friction of a contact: a law, or parameters of one, with α_t = α_n/2 by default.
 #[derive(Clone)]
 #[must_use]
 pub struct Friction {
-    /// What a case writes; none of a law from code
+    /// Parameters as in a case; `None` for a law from code
     parameters: Option<FrictionParameters>,
-    /// Its own name within the contact, for messages
+    /// Name within the contact, for messages
     name: String,
     varying: Vec<(String, Profile)>,
     law: Arc<LawAt>,
-    /// Other friction where a profile is positive, the first that is, with what stands before the profile in messages
+    /// Other friction where a profile is positive, the first one that applies, with its name in messages
     elsewhere: Vec<(String, Profile, Self)>,
 }
 
 impl Friction {
-    /// Friction that varies along the slave by reference position, and in time: `law` gets the values of the profiles at a point,
-    /// and the α_t of a law that has none of its own. Messages name a profile by what stands before it, such as `along.mu`.
+    /// Creates friction that varies along the slave by reference position, and in time: `law` receives the values of the
+    /// profiles at a point, and the default α_t. Messages name a profile by its name, such as `along.mu`.
     ///
     /// ```
     /// use fecontact::laws::friction::{Coulomb, CoulombParameters};
@@ -57,12 +57,12 @@ impl Friction {
         Self { parameters: None, name: "friction".into(), varying, law: Arc::new(law), elsewhere: Vec::new() }
     }
 
-    /// The parameters of its law, where it is not one from code.
+    /// Parameters of its law; `None` for a law from code.
     pub fn parameters(&self) -> Option<&FrictionParameters> {
         self.parameters.as_ref()
     }
 
-    /// With other friction in the region where a profile is positive at the start; of several the first holds. Messages
+    /// Adds other friction in the region where a profile is positive at the start; the first that applies is used. Messages
     /// name profile and friction by `name`, such as `along.law[0]`.
     pub fn in_region(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
         let friction = Self { name: format!("{name}.friction"), ..friction.into() };
@@ -70,8 +70,8 @@ impl Friction {
         self
     }
 
-    /// The laws of a contact at the start, with the offsets of its surfaces, and in time if any varies; to every slave point the
-    /// number of its own, one for all that have the same values.
+    /// Returns the initial laws of a contact, with the offsets of its surfaces, and the laws in time if any varies; and for
+    /// each slave point the number of its law, shared by points with the same values.
     pub(super) fn laws(
         &self,
         place: &str,
@@ -100,7 +100,7 @@ impl Friction {
             let (number, friction) = chosen;
             let value = |(name, profile): &(String, Profile)| defined(profile, at, &format!("{place}.{name}"));
             let values = friction.varying.iter().map(value).collect::<Checked<Vec<_>>>()?;
-            // Where a parameter varies in place and time, only points at one place are alike.
+            // If a parameter varies in place and time, only points at the same place share a law.
             let place_of = [at.x, at.y].into_iter().filter(|_| friction.varies_in_place_and_time());
             let key = (number, values.iter().copied().chain(place_of).map(f64::to_bits).collect());
             if let Some(&law) = numbers.get(&key) {
@@ -131,7 +131,7 @@ impl Friction {
         self.varying.iter().any(|(_, profile)| of_both(profile))
     }
 
-    /// The law of a place in time.
+    /// Returns the time-dependent law at a place.
     fn in_time(&self, at: Vector2<f64>, alpha_t: Option<f64>, offsets: Offsets) -> InTime {
         InTime {
             profiles: self.varying.iter().map(|(_, profile)| profile.clone()).collect(),
@@ -149,7 +149,7 @@ impl Friction {
         contact: &str,
         place: Option<String>,
     ) -> Checked<Box<dyn FrictionLaw>> {
-        // NaN stands for none: a law that is good with another number lacks its own.
+        // NaN stands for no default: a law that is valid with another number lacks its own.
         let law = (self.law)(values, default_alpha_t.unwrap_or(f64::NAN));
         let lacks = law.is_err() && default_alpha_t.is_none() && (self.law)(values, 1.0).is_ok();
         let own = format!("{contact}.{}", self.name);
@@ -173,7 +173,7 @@ impl From<FrictionParameters> for Friction {
     }
 }
 
-/// What FrictionParameters are made from is friction too.
+/// Lets the types convertible to FrictionParameters be used as friction.
 macro_rules! friction_from {
     ($($parameters:ty),*) => {$(
         impl From<$parameters> for Friction {
@@ -204,7 +204,7 @@ impl Debug for Friction {
     }
 }
 
-/// Parameters that say how a point starts, and the stiffness in which it has stored energy.
+/// Parameters of the initial state of a point, and the stiffness of its stored energy.
 const OF_THE_START: [&str; 3] = ["alpha_t", "structure", "theta"];
 
 /// Reference position of a slave point.
@@ -212,7 +212,7 @@ pub fn position(point: &SlavePoint, mesh: &Mesh) -> Vector2<f64> {
     point.position.iter().map(|&(node, w)| mesh.nodes[node] * w).sum()
 }
 
-/// The value of a profile, which must be a finite number.
+/// Returns the value of a profile, which must be finite.
 pub fn defined(profile: &Profile, at: Vector2<f64>, place: &str) -> Checked<f64> {
     let value = profile.value(at);
     match value.is_finite() {
@@ -221,7 +221,7 @@ pub fn defined(profile: &Profile, at: Vector2<f64>, place: &str) -> Checked<f64>
     }
 }
 
-/// A profile must not depend on time, and the coordinates of a table must ascend.
+/// Checks that a profile does not depend on time, and that the coordinates of a table ascend.
 pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
     if profile.depends_on_time() {
         return Err(ModelError::new(place, "the time t has no meaning here: the variables are x and y"));
@@ -229,7 +229,7 @@ pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
     check_in_time(profile, place)
 }
 
-/// The coordinates of a table must ascend, and a parameter that is for the start must not depend on time.
+/// Checks that the coordinates of a table ascend, and that a parameter of the initial state does not depend on time.
 pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
     let parameter = place.rsplit('.').next().unwrap_or_default();
     if profile.depends_on_time() && OF_THE_START.contains(&parameter) {
@@ -250,25 +250,25 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
     Err(ModelError::new(format!("{place}.{name}"), message))
 }
 
-/// Points of time over which the mean of a rate is taken: exact for polynomials of the fifth order.
+/// Number of quadrature points for the mean of a rate over an increment: exact for polynomials of fifth order.
 const MEAN: usize = 3;
 
-/// The law of a point: from what varies along the slave there, and the α_t that serves where none is given.
+/// Law of a point, from its varying parameters and the default α_t.
 type LawAt = dyn Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync;
 
-/// The law of a point whose parameters vary in time.
+/// Law of a point with time-dependent parameters.
 struct InTime {
     profiles: Vec<Profile>,
     at: Vector2<f64>,
     law: Arc<LawAt>,
-    /// α_t of a law that has none of its own [F/L³]
+    /// Default α_t [F/L³]
     alpha_t: f64,
     /// Dilatancy and wear of its surfaces
     offsets: Offsets,
 }
 
 impl InTime {
-    /// The law with its parameters at a time or, between two, with their mean.
+    /// Returns the law with its parameters at a time, or with their mean over a time span.
     fn during(&self, [from, to]: [f64; 2]) -> Result<ContactLaw, LawFailure> {
         if to <= from {
             return self.of(&[(to, 1.0)], to);
@@ -277,7 +277,7 @@ impl InTime {
         self.of(&times.collect::<Vec<_>>(), to)
     }
 
-    /// The law with the parameters that are the mean of those at some times, up to the last.
+    /// Returns the law with the weighted mean of the parameters at some times, up to `time`.
     fn of(&self, times: &[(f64, f64)], time: f64) -> Result<ContactLaw, LawFailure> {
         let mean = |profile: &Profile| times.iter().map(|&(time, w)| w * profile.value_at(self.at, time)).sum();
         let values: Vec<f64> = self.profiles.iter().map(mean).collect();

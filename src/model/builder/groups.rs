@@ -21,8 +21,8 @@ use crate::model::{Model, WatchedSet};
 pub enum Place {
     /// Single node: its tag in the mesh file (its number from 0 in a mesh given in place)
     Node(u64),
-    /// Single node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther away than
-    /// the elements there are long [L]
+    /// Single node of the undeformed mesh nearest to this point [x, y]. It must be unique, and no farther away than the length
+    /// of the elements there [L]
     Near([f64; 2]),
     /// Group of the mesh
     #[serde(skip)]
@@ -33,10 +33,10 @@ pub enum Place {
 written!(Place, "the name of a group, {\"node\": tag}, or {\"near\": [x, y]}", text: Group);
 
 impl Place {
-    /// The same, with the tag of the node that is nearest to a point; with its position where several mesh files use that tag.
+    /// Replaces a point by the tag of the node nearest to it; by its position where several mesh files use that tag.
     ///
     /// # Errors
-    /// Where it is not one node, or far away.
+    /// Returns a message if the node is not unique or too far away.
     pub fn settled(&self, mesh: &Mesh) -> Result<Self, String> {
         match self {
             Self::Near(point) => nearest(mesh, *point).map(|node| match tagged(mesh, mesh.node_tags[node])[..] {
@@ -57,7 +57,7 @@ impl Place {
     }
 }
 
-/// The one node nearest to a point, which the elements there must reach.
+/// The node nearest to a point, which the adjacent elements must reach.
 fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
     let [x, y] = point.map(number);
     let elements = mesh.elements.iter().map(|element| element.nodes.as_slice());
@@ -76,7 +76,7 @@ fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
     })
 }
 
-/// The nodes of a tag: one, unless meshes are joined.
+/// Nodes with a tag: one, unless meshes are joined.
 fn tagged(mesh: &Mesh, tag: u64) -> Vec<usize> {
     (0..mesh.own_nodes()).filter(|node| mesh.node_tags[*node] == tag).collect()
 }
@@ -103,12 +103,12 @@ impl Display for Place {
     }
 }
 
-/// A group of the mesh.
+/// Returns a group of the mesh.
 pub fn group<'m>(mesh: &'m Mesh, name: &str, place: &str) -> Checked<&'m Group> {
     mesh.group(name).map_err(|error| ModelError::new(place, error))
 }
 
-/// What a group is made of.
+/// Kind of the members of a group.
 pub fn kind(group: &Group) -> &'static str {
     match group {
         Group::Elements(_) => "solid elements",
@@ -117,7 +117,7 @@ pub fn kind(group: &Group) -> &'static str {
     }
 }
 
-/// The edges of a group, which must be a group of edges.
+/// Returns the edges of an edge group.
 pub fn edges<'m>(mesh: &'m Mesh, name: &str, place: &str) -> Checked<&'m [Edge]> {
     match group(mesh, name, place)? {
         Group::Edges(edges) => Ok(edges),
@@ -125,12 +125,12 @@ pub fn edges<'m>(mesh: &'m Mesh, name: &str, place: &str) -> Checked<&'m [Edge]>
     }
 }
 
-/// The nodes of each edge.
+/// Node lists of edges.
 pub fn node_lists(edges: &[Edge]) -> Vec<Vec<usize>> {
     edges.iter().map(|edge| edge.nodes.clone()).collect()
 }
 
-/// The nodes at a place.
+/// Nodes at a place.
 pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     match on {
         Place::Group(name) => Ok(mesh.nodes_of(group(mesh, name, place)?)),
@@ -146,7 +146,7 @@ pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     }
 }
 
-/// The group of a load that acts on groups only.
+/// Returns the group of a load that acts on groups only.
 pub fn group_at<'p>(on: &'p Place, place: &str) -> Checked<&'p str> {
     match on {
         Place::Group(name) => Ok(name),
@@ -156,13 +156,13 @@ pub fn group_at<'p>(on: &'p Place, place: &str) -> Checked<&'p str> {
     }
 }
 
-/// The number of a body.
+/// Returns the number of a body.
 pub fn body(model: &Model, name: &str, place: &str) -> Checked<usize> {
     let names = || model.bodies.iter().map(|body| body.name.as_str());
     names().position(|known| known == name).ok_or_else(|| no_body(name, names(), place))
 }
 
-/// The watched groups and nodes, each named once, and all rigid bodies.
+/// Returns the watched groups and nodes, each once, and all rigid bodies.
 pub fn watched(places: &[Place], model: &Model) -> Checked<Vec<WatchedSet>> {
     let mut seen = BTreeSet::new();
     let mut sets = Vec::with_capacity(places.len());
@@ -180,7 +180,7 @@ pub fn watched(places: &[Place], model: &Model) -> Checked<Vec<WatchedSet>> {
     Ok(sets)
 }
 
-/// What is watched. The reactions of copies are with the nodes they move with; the displacement of a plate counts with every node.
+/// Returns a watched set. Reactions of copies belong to their originals; the displacement of a platen counts with every node.
 fn watched_set(model: &Model, on: &Place, place: &str) -> Checked<WatchedSet> {
     let nodes = nodes_at(&model.mesh, on, place)?;
     let edges = match on {

@@ -1,4 +1,4 @@
-//! How a run starts: velocities of bodies and point masses, and contacts that are closed from the beginning.
+//! Initial state of a run: velocities of bodies and point masses, and contacts that start closed.
 
 use std::collections::BTreeSet;
 
@@ -16,10 +16,10 @@ use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::scheme::Scheme;
 
-/// An initial traction may pass the strength μ p by this share: numbers are written with a few digits.
+/// Tolerance by which an initial traction may exceed the strength μ p: numbers are given with a few digits.
 const ROUNDED: f64 = 1e-9;
 
-/// Initial velocity of every dof, from those of bodies and of point masses [L/T].
+/// Returns the initial velocity of every dof, from those of bodies and of point masses [L/T].
 pub fn velocities(
     of_bodies: &[(String, [f64; 2])],
     masses: &[(String, PointMassInput)],
@@ -41,7 +41,7 @@ pub fn velocities(
     Ok(velocity.into_iter().flatten().collect())
 }
 
-/// Velocities that nodes take when a step begins [L/T].
+/// Returns the velocities assigned to nodes at the start of a step [L/T].
 pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Checked<Vec<(usize, [f64; 2])>> {
     let place = format!("{place}.velocity");
     if !step.velocity.is_empty() && !scheme.is_dynamic() {
@@ -65,7 +65,7 @@ pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Ch
     Ok(given.velocity.into_iter().enumerate().filter_map(|(node, velocity)| Some((node, velocity?))).collect())
 }
 
-/// Velocities given to nodes so far.
+/// Velocities assigned to nodes so far.
 struct Given<'m> {
     velocity: Vec<Option<[f64; 2]>>,
     model: &'m Model,
@@ -87,7 +87,7 @@ impl Given<'_> {
     }
 }
 
-/// Nodes that move as one must start as one.
+/// Checks that tied nodes have equal initial velocities.
 fn tied<V: PartialEq>(place: &str, velocity: &[V], model: &Model) -> Checked<()> {
     let followers = model.linkage.followers.iter().map(|follower| (follower.node, follower.leaders[0].0));
     let rigid = model.linkage.rigid.iter().map(|&[a, b]| (b, a));
@@ -100,7 +100,7 @@ fn tied<V: PartialEq>(place: &str, velocity: &[V], model: &Model) -> Checked<()>
     Err(ModelError::new(place, message))
 }
 
-/// Start a contact closed, if its tractions and its law allow it.
+/// Starts a contact closed, if its tractions and its law permit it.
 pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, model: &Model, place: &str) -> Checked<()> {
     let initial = match given.of_bodies {
         true => of_bodies(pair, given, slave, model, place)?,
@@ -150,7 +150,7 @@ fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: 
     Ok(initial)
 }
 
-/// The tractions with which the initial stress of the slave's body ends at the contact.
+/// Returns the tractions of the initial stress of the slave's body at the contact.
 fn of_bodies(
     pair: &ContactPair,
     given: &InitialTractions,
@@ -194,14 +194,14 @@ fn of_bodies(
                 at.x, at.y
             ));
         }
-        // Round-off of the surface's direction is no shear stress that friction would have to bear.
+        // A shear stress within the round-off of the surface's direction is set to zero.
         let traction = if traction.abs() > ROUNDED * largest { traction } else { 0.0 };
         initial.push(InitialTraction { pressure: pressure.max(0.0), traction });
     }
     Ok(initial)
 }
 
-/// Nodal forces with which the initial stress of the bodies meets the initial tractions of balanced contacts; empty if
+/// Nodal forces of the initial stress of the bodies that balance the initial tractions of contacts with `balanced`; empty if
 /// there are none [F].
 pub fn prestress(contacts: &[Contact], model: &Model) -> Vec<f64> {
     let balanced = |contact: &Contact| contact.initial.as_ref().is_some_and(|initial| initial.balanced);

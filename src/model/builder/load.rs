@@ -1,4 +1,4 @@
-//! Loads as they are given, and what a step changes or ends.
+//! Input of loads, and their changes by a step.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -12,15 +12,15 @@ use crate::model::boundary::Drive;
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Load {
-    /// Where
+    /// Group, or single node, on which it acts
     pub on: Place,
     /// Pressure on edges that follows the surface, positive toward the body [F/L²]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub pressure: Option<Change<Drive>>,
-    /// Pressure on edges that keeps the force and direction it has on the undeformed edges, positive toward the body [F/L²]
+    /// Pressure on edges with the force and direction that it has on the undeformed edges, positive toward the body [F/L²]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub dead_pressure: Option<Change<Drive>>,
-    /// Traction on reference edges that keeps its direction [F/L²]
+    /// Traction on reference edges with constant direction [F/L²]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub traction: Option<Change<Components>>,
     /// Acceleration of gravity on a body or on point masses [L/T²]
@@ -49,7 +49,7 @@ pub struct Load {
     pub absorbing: Option<Change<bool>>,
 }
 
-/// The one thing that a load does.
+/// The single action of a load.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub enum Action<'l> {
@@ -71,11 +71,11 @@ pub enum Action<'l> {
     Spring(Option<&'l SpringLoad>),
     /// `dashpot`
     Dashpot(Option<&'l DashpotLoad>),
-    /// `absorbing`, and whether it does
+    /// `absorbing`, true or false
     Absorbing(bool),
 }
 
-/// Components of a vector; zero unless given.
+/// Components of a vector; default: zero.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -123,12 +123,12 @@ pub struct SpringLoad {
 }
 
 impl SpringLoad {
-    /// Of the stiffness along x and along y, to the ground [F/L].
+    /// Creates a spring with the stiffness along x and along y, to the ground [F/L].
     pub fn new(kx: f64, ky: f64) -> Self {
         Self { kx, ky, driver: None }
     }
 
-    /// To a far end that moves: its displacement [L].
+    /// Sets the displacement of the far end [L].
     pub fn driver(self, driver: impl Into<Components>) -> Self {
         Self { driver: Some(driver.into()), ..self }
     }
@@ -152,12 +152,12 @@ pub struct DashpotLoad {
 }
 
 impl DashpotLoad {
-    /// Of the coefficient along x and along y, to the ground [F T/L].
+    /// Creates a dashpot with the coefficient along x and along y, to the ground [F T/L].
     pub fn new(cx: f64, cy: f64) -> Self {
         Self { cx, cy, driver: None }
     }
 
-    /// To a far end that moves: its velocity [L/T].
+    /// Sets the velocity of the far end [L/T].
     pub fn driver(self, driver: impl Into<Components>) -> Self {
         Self { driver: Some(driver.into()), ..self }
     }
@@ -175,14 +175,14 @@ impl From<DashpotLoad> for Change<DashpotLoad> {
     }
 }
 
-/// To the ground.
+/// A spring to the ground.
 impl From<[f64; 2]> for Change<SpringLoad> {
     fn from([kx, ky]: [f64; 2]) -> Self {
         Self::To(SpringLoad::new(kx, ky))
     }
 }
 
-/// To the ground.
+/// A dashpot to the ground.
 impl From<[f64; 2]> for Change<DashpotLoad> {
     fn from([cx, cy]: [f64; 2]) -> Self {
         Self::To(DashpotLoad::new(cx, cy))
@@ -190,7 +190,7 @@ impl From<[f64; 2]> for Change<DashpotLoad> {
 }
 
 impl Load {
-    /// Nothing yet at a place.
+    /// Creates an empty load at a place.
     fn on(place: impl Into<Place>) -> Self {
         Self {
             on: place.into(),
@@ -207,7 +207,7 @@ impl Load {
         }
     }
 
-    /// What it does, where exactly one thing is given; without a value where that ends.
+    /// Returns the action if exactly one is given; it has no value if it ends the load.
     #[doc(hidden)]
     pub fn action(&self) -> Option<Action<'_>> {
         let given = [
@@ -226,69 +226,69 @@ impl Load {
         given.next().filter(|_| given.next().is_none())
     }
 
-    /// Pressure on edges that follows the surface, positive toward the body [F/L²]; [`Change::End`] fades it over the step.
+    /// Creates a follower pressure on edges, positive toward the body [F/L²]; [`Change::End`] reduces it to zero over the step.
     pub fn pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
         Self { pressure: Some(pressure.into()), ..Self::on(on) }
     }
 
-    /// Pressure on reference edges that keeps its force and direction, positive toward the body [F/L²].
+    /// Creates a pressure on reference edges with constant force and direction, positive toward the body [F/L²].
     pub fn dead_pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
         Self { dead_pressure: Some(pressure.into()), ..Self::on(on) }
     }
 
-    /// Traction on reference edges that keeps its direction [F/L²].
+    /// Creates a traction on reference edges with constant direction [F/L²].
     pub fn traction(on: impl Into<Place>, traction: impl Into<Change<Components>>) -> Self {
         Self { traction: Some(traction.into()), ..Self::on(on) }
     }
 
-    /// Gravity on a body or on point masses [L/T²].
+    /// Creates gravity on a body or on point masses [L/T²].
     pub fn gravity(on: impl Into<Place>, acceleration: impl Into<Change<Components>>) -> Self {
         Self { gravity: Some(acceleration.into()), ..Self::on(on) }
     }
 
-    /// Force on every node [F].
+    /// Creates a force on every node [F].
     pub fn force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
         Self { force: Some(force.into()), ..Self::on(on) }
     }
 
-    /// Resultant force on edges, applied as a uniform traction: per unit of depth in plane strain, for the thickness in
-    /// plane stress, per full turn in axisymmetry [F].
+    /// Creates a resultant force on edges, applied as a uniform traction: per unit of depth in plane strain, for the thickness
+    /// in plane stress, per full turn in axisymmetry [F].
     pub fn total_force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
         Self { total_force: Some(force.into()), ..Self::on(on) }
     }
 
-    /// A moment on a plate that can rotate, counter-clockwise [F L].
+    /// Creates a moment on a platen that can rotate, counter-clockwise [F L].
     pub fn moment(on: impl Into<Place>, moment: impl Into<Change<Drive>>) -> Self {
         Self { moment: Some(moment.into()), ..Self::on(on) }
     }
 
-    /// Springs of the stiffnesses k_x, k_y at every node [F/L]; [`Change::End`] takes them away at once.
+    /// Creates springs with the stiffnesses k_x, k_y at every node [F/L]; [`Change::End`] removes them at once.
     pub fn spring(on: impl Into<Place>, stiffness: impl Into<Change<SpringLoad>>) -> Self {
         Self { spring: Some(stiffness.into()), ..Self::on(on) }
     }
 
-    /// Dashpots of the coefficients c_x, c_y at every node [F T/L].
+    /// Creates dashpots with the coefficients c_x, c_y at every node [F T/L].
     pub fn dashpot(on: impl Into<Place>, coefficients: impl Into<Change<DashpotLoad>>) -> Self {
         Self { dashpot: Some(coefficients.into()), ..Self::on(on) }
     }
 
-    /// A side that absorbs waves.
+    /// Creates an absorbing side.
     pub fn absorbing(on: impl Into<Place>) -> Self {
         Self { absorbing: Some(Change::To(true)), ..Self::on(on) }
     }
 }
 
-/// What a step does to a support or a load: give it anew, or end it.
+/// Change of a support or a load by a step: a new value, or its end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change<T> {
-    /// From now on it is this
+    /// New value
     To(T),
     /// It ends
     End,
 }
 
 impl<T> Change<T> {
-    /// What is given, if it does not end.
+    /// Returns the new value, if it does not end.
     pub fn given(&self) -> Option<&T> {
         match self {
             Self::To(given) => Some(given),
@@ -317,7 +317,7 @@ impl<T: JsonSchema> JsonSchema for Change<T> {
     }
 }
 
-/// Tell a key that is `null`, which ends what an earlier step gave, from one that is absent and changes nothing.
+/// Distinguishes a key that is `null`, which ends an earlier entry, from an absent one, which changes nothing.
 pub(super) fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<Change<T>>, D::Error> {

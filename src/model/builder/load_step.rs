@@ -1,4 +1,4 @@
-//! A load step as it is given: what is not given is as in the step before. Its loads are in [`super::load`].
+//! Input of a load step, which inherits from the previous step. Its loads are in [`super::load`].
 
 use std::collections::BTreeMap;
 
@@ -95,17 +95,17 @@ impl From<f64> for IncrementSettings {
 }
 
 impl IncrementSettings {
-    /// Never cut below this [T].
+    /// Sets the shortest increment [T].
     pub fn min(self, min: f64) -> Self {
         Self { min: Some(min), ..self }
     }
 
-    /// Never growing beyond this [T].
+    /// Sets the longest increment [T].
     pub fn max(self, max: f64) -> Self {
         Self { max: Some(max), ..self }
     }
 
-    /// As long as their estimated error stays below this [L].
+    /// Sets the error control: the estimated error per increment [L].
     pub fn error(self, error: f64) -> Self {
         Self { error: Some(error), ..self }
     }
@@ -137,7 +137,7 @@ impl From<f64> for RuptureSettings {
 }
 
 impl RuptureSettings {
-    /// Explicit increments as another fraction of the longest stable one [-].
+    /// Sets explicit increments as a fraction of the longest stable one [-].
     pub fn safety(self, safety: f64) -> Self {
         Self { safety, ..self }
     }
@@ -170,7 +170,7 @@ fn met() -> f64 {
 }
 
 impl UntilSettings {
-    /// Part of the reaction and its value, if exactly one is given.
+    /// Returns component and value of the reaction, if exactly one is given.
     #[doc(hidden)]
     pub fn part(&self) -> Option<(ForceComponent, f64)> {
         let parts =
@@ -186,7 +186,7 @@ impl UntilSettings {
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Support {
-    /// Where
+    /// Group, or single node, that is supported
     pub on: Place,
     /// Displacement in x [L]; null releases it, see `supports`
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
@@ -227,113 +227,114 @@ pub struct Rotation {
 }
 
 impl Support {
-    /// Supports at a place, which prescribe nothing yet.
+    /// Creates a support at a place without prescribed displacements.
     pub fn on(place: impl Into<Place>) -> Self {
         Self { on: place.into(), ux: None, uy: None, along: None, u: None, un: None, rotation: None, angle: None }
     }
 
-    /// Its displacements, with their keys.
+    /// Returns its displacements, with their keys.
     #[doc(hidden)]
     pub fn displacements(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
         let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un)];
         all.into_iter().filter_map(|(key, change)| Some((key, change.as_ref()?)))
     }
 
-    /// With a displacement in x: a value is reached at the end of the step, [`Change::End`] frees it [L].
+    /// Sets the displacement in x: a value is reached at the end of the step, [`Change::End`] releases it [L].
     pub fn ux(self, ux: impl Into<Change<Drive>>) -> Self {
         Self { ux: Some(ux.into()), ..self }
     }
 
-    /// With a displacement in y [L].
+    /// Sets the displacement in y [L].
     pub fn uy(self, uy: impl Into<Change<Drive>>) -> Self {
         Self { uy: Some(uy.into()), ..self }
     }
 
-    /// With a displacement along a direction, which need not be of unit length [L].
+    /// Sets the displacement along a direction, which need not be of unit length [L].
     pub fn along(self, direction: [f64; 2], u: impl Into<Change<Drive>>) -> Self {
         Self { along: Some(direction), u: Some(u.into()), ..self }
     }
 
-    /// With a displacement along the normal of a side, positive out of the body [L].
+    /// Sets the displacement along the normal of a side, positive out of the body [L].
     pub fn un(self, un: impl Into<Change<Drive>>) -> Self {
         Self { un: Some(un.into()), ..self }
     }
 
-    /// Of a rigid body: with a rotation about its reference point, counter-clockwise [rad].
+    /// Sets the rotation of a rigid body about its reference point, counter-clockwise [rad].
     pub fn angle(self, angle: impl Into<Change<Drive>>) -> Self {
         Self { angle: Some(angle.into()), ..self }
     }
 
-    /// With a rotation about a point, counter-clockwise [rad].
+    /// Sets a rotation about a point, counter-clockwise [rad].
     pub fn rotation(self, about: [f64; 2], angle: impl Into<Drive>) -> Self {
         Self { rotation: Some(Change::To(Rotation { about, angle: angle.into() })), ..self }
     }
 }
 
 impl LoadStep {
-    /// A step that changes nothing yet.
+    /// Creates a step without changes.
     pub fn new(name: impl Into<String>, duration: f64) -> Self {
         Self { name: name.into(), duration, ..Self::default() }
     }
 
-    /// With another time scheme.
+    /// Sets the time scheme.
     pub fn scheme(self, scheme: Scheme) -> Self {
         Self { scheme: Some(scheme), ..self }
     }
 
-    /// With other increments: a first Δt, or all settings [T].
+    /// Sets the increments: a first Δt, or all settings [T].
     pub fn dt(self, increments: impl Into<IncrementSettings>) -> Self {
         Self { dt: Some(increments.into()), ..self }
     }
 
-    /// Constrained until contact closes: by dashpots that fade over this static step, at its start as if this share of
-    /// the bodies' stiffness moved them in the time of the step; 1e-3 is a good start [-].
+    /// Constrains bodies until contact closes, by dashpots that decrease to zero over this static step. Their initial
+    /// coefficient equals this fraction of the bodies' stiffness for a motion over the duration of the step; 1e-3 is a good
+    /// start [-].
     pub fn stabilize(self, share: f64) -> Self {
         Self { stabilize: Some(share), ..self }
     }
 
-    /// Explicit integration while a contact slips faster than this: a slip rate [L/T], or all settings.
+    /// Switches to explicit integration while a contact slips faster than a slip rate [L/T]; or all settings.
     pub fn rupture(self, rupture: impl Into<RuptureSettings>) -> Self {
         Self { rupture: Some(rupture.into()), ..self }
     }
 
-    /// With another damping of a body from this step on.
+    /// Sets the damping of a body from this step on.
     pub fn damping(mut self, body: impl Into<String>, damping: Damping) -> Self {
         self.damping.insert(body.into(), damping);
         self
     }
 
-    /// Ending before its time when the reaction of a place comes to a value, met to a millionth of it [F].
+    /// Ends the step early when the reaction at a place reaches a value, within a relative tolerance of 1e-6 [F].
     pub fn until(self, on: impl Into<Place>, part: ForceComponent, value: f64) -> Self {
         let [fx, fy, force] =
             [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));
         Self { until: Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: UNTIL_TOLERANCE }), ..self }
     }
 
-    /// With a body, or point masses, that take a velocity when the step begins: a launch after settling [L/T].
+    /// Assigns a velocity to a body, or to point masses, at the start of the step: a launch after settling [L/T].
     pub fn launch(mut self, name: impl Into<String>, velocity: [f64; 2]) -> Self {
         self.velocity.insert(name.into(), velocity);
         self
     }
 
-    /// With a body whose temperature changes: a value is reached at the end of the step [Θ].
+    /// Sets the temperature of a body: a value is reached at the end of the step [Θ].
     pub fn temperature(mut self, body: impl Into<String>, temperature: impl Into<BodyTemperature>) -> Self {
         self.temperature.insert(body.into(), temperature.into());
         self
     }
 
-    /// With a support.
+    /// Adds a support.
     pub fn support(mut self, support: Support) -> Self {
         self.supports.push(support);
         self
     }
 
-    /// With a place that does not move.
+    /// Fixes a place.
     pub fn fix(self, place: impl Into<Place>) -> Self {
         self.support(Support::on(place).ux(0.0).uy(0.0))
     }
 
-    /// With a load.
+    /// Adds a load.
     pub fn load(mut self, load: Load) -> Self {
         self.loads.push(load);
         self

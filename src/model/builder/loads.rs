@@ -1,6 +1,6 @@
-//! Loads in force: those of the step before, unless they are given anew or ended.
+//! Loads in force: those of the previous step, unless they are replaced or ended.
 //!
-//! Whether expressions of supports and loads have a value throughout their step, looked at before anything is solved.
+//! Expressions of supports and loads are evaluated throughout their step before the run.
 
 use std::collections::BTreeMap;
 
@@ -20,11 +20,11 @@ use crate::model::boundary::{Amplitude, Dashpot, DeadLoad, Drive, FollowerPressu
 use crate::model::scheme::Scheme;
 use crate::model::text::number;
 
-/// The most changes of a load within its steps of which the last depends on the first, from place to place.
+/// Maximum number of successive changes of a load that varies in space within its steps, each depending on the previous one.
 const MOST_REMEMBERED: usize = 1000;
 
-/// Loads by place and kind, with the amplitudes that the next step takes over from. With it a caller changes a load between two
-/// increments of a run:
+/// Loads by place and kind, with the amplitudes from which the next step continues. A caller can change a load with it between
+/// two increments of a run:
 ///
 /// ```
 /// use fecontact::laws::bulk::{ElasticConstants, Linear};
@@ -39,7 +39,7 @@ const MOST_REMEMBERED: usize = 1000;
 /// let steel = Linear::new(&ElasticConstants::new(1000.0, 0.3))?;
 /// let mut run = Simulation::new(Model::builder(mesh).body("block", steel).step(steps[0].clone()).build()?);
 /// run.next_increment()?;
-/// // From now on up to twice the pressure, at the end of the step.
+/// // From now on the pressure increases to twice its value at the end of the step.
 /// let mut loads = LoadsInForce::of_step(run.step_number(), &steps, run.model())?;
 /// let rest = Span { start: run.state().time, end: 1.0 };
 /// loads.change_within(&Load::dead_pressure("block_top", 2.0), "load", rest, run.model())?;
@@ -51,7 +51,7 @@ const MOST_REMEMBERED: usize = 1000;
 #[derive(Clone, Default)]
 pub struct LoadsInForce(BTreeMap<(String, Kind), Loads>);
 
-/// A load replaces that of its own kind.
+/// Kind of a load, which replaces an earlier one of the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Pressure,
@@ -66,7 +66,7 @@ enum Kind {
     Moment,
 }
 
-/// The kind of an action, and whether it ends the load.
+/// Returns the kind of an action, and whether it ends the load.
 fn kind(action: Action) -> (Kind, bool) {
     match action {
         Action::Pressure(given) => (Kind::Pressure, given.is_none()),
@@ -82,7 +82,7 @@ fn kind(action: Action) -> (Kind, bool) {
     }
 }
 
-/// The one thing that a load does.
+/// Returns the single action of a load.
 fn action<'l>(load: &'l Load, place: &str) -> Checked<Action<'l>> {
     let message = "must give exactly one of pressure, dead_pressure, traction, gravity, force, total_force, moment, spring, dashpot, \
                    absorbing";
@@ -90,10 +90,10 @@ fn action<'l>(load: &'l Load, place: &str) -> Checked<Action<'l>> {
 }
 
 impl LoadsInForce {
-    /// Those of a step of a model: what it gave, and the steps before it.
+    /// Returns the loads in a step of a model, including those of earlier steps.
     ///
     /// # Errors
-    /// None of a model that was built from these steps.
+    /// Returns none for a model that was built from these steps.
     pub fn of_step(number: usize, given: &[LoadStep], model: &Model) -> Checked<Self> {
         let mut in_force = Self::default();
         for (k, (given, step)) in given.iter().zip(&model.steps).enumerate().take(number + 1) {
@@ -104,10 +104,10 @@ impl LoadsInForce {
         Ok(in_force)
     }
 
-    /// Give a load anew, or end it, from the start of a span within a step on.
+    /// Changes or ends a load from the start of a span within a step on.
     ///
     /// # Errors
-    /// As of a step.
+    /// Returns the same errors as for a step.
     pub fn change_within(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let key = (
             load.on.settled(&model.mesh).unwrap_or_else(|_| load.on.clone()).to_string(),
@@ -123,7 +123,7 @@ impl LoadsInForce {
         self.change(load, place, span, model)
     }
 
-    /// Everything that acts.
+    /// Returns all loads.
     pub fn all(&self) -> Loads {
         let mut all = Loads::default();
         for load in self.0.values() {
@@ -137,7 +137,7 @@ impl LoadsInForce {
         all
     }
 
-    /// Give a load anew, or end it.
+    /// Changes or ends a load.
     pub(super) fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let action = action(load, place)?;
         let (kind, ends) = kind(action);
@@ -148,7 +148,7 @@ impl LoadsInForce {
         }
         let before = self.0.remove(&key).unwrap_or_default();
         let made = Changing { load, place, span, model, before }.made(action)?;
-        // What fades stays until something replaces it.
+        // A load that decreases to zero stays until something replaces it.
         if !(ends && matches!(kind, Kind::Spring | Kind::Dashpot | Kind::Absorbing)) {
             self.0.insert(key, made);
         }
@@ -156,7 +156,7 @@ impl LoadsInForce {
     }
 }
 
-/// A spring or a dashpot.
+/// A spring or dashpot.
 struct Link<'l> {
     key: &'static str,
     /// coefficients along x and y with their keys
@@ -287,7 +287,7 @@ impl Changing<'_> {
         Ok(Loads { dashpots, ..Loads::default() })
     }
 
-    /// Dof, coefficient and driver of every spring or dashpot; what has the coefficient zero is none.
+    /// Dof, coefficient and driver of every spring or dashpot with a nonzero coefficient.
     fn links(
         &self,
         given: Option<Link>,
@@ -310,7 +310,7 @@ impl Changing<'_> {
     }
 }
 
-/// A force on edges as a whole has one value.
+/// Checks that a total force on edges does not vary in space.
 fn check_even(given: Option<&Components>, place: &str) -> Checked<()> {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
         if given.and_then(|given| given.along(component)).is_some_and(Drive::depends_on_position) {
@@ -321,29 +321,29 @@ fn check_even(given: Option<&Components>, place: &str) -> Checked<()> {
     Ok(())
 }
 
-/// The drive of this step on top of what was in force before; nothing if there is neither.
+/// Amplitude of this step, following the one in force before; `None` if there is neither.
 fn amplitude(given: Option<&Drive>, before: Option<Amplitude>, place: &str, span: Span) -> Checked<Option<Amplitude>> {
     let drive = match (given, &before) {
         (Some(given), _) => {
             given.check().map_err(|message| ModelError::new(place, message))?;
             given.clone()
         }
-        // Freed: ramped to zero over the step.
+        // Ended: reduced to zero over the step.
         (None, Some(_)) => Drive::Constant(0.0),
         (None, None) => return Ok(None),
     };
     Ok(Some(Amplitude { drive, span, before: before.map(Box::new) }))
 }
 
-/// Times of a step, evenly spaced, at which an expression is looked at.
+/// Number of evenly spaced times of a step at which an expression is checked.
 const TIMES: u32 = 100;
 
-/// The most places of a group.
+/// Maximum number of places of a group at which it is checked.
 const PLACES: usize = 50;
 
-/// Refuse the expressions of a step that have no value at one of many times and places, named by their keys.
+/// Checks that the expressions of a step are finite at many times and places; errors name their keys.
 pub fn check_defined(place: &str, given: &LoadStep, scheme: Scheme, span: Span, model: &Model) -> Checked<()> {
-    // A static step is not looked at where it starts.
+    // A static step is not evaluated at its start.
     let first = u32::from(!scheme.is_dynamic());
     let times = || (first..=TIMES).map(|k| span.start + f64::from(k) / f64::from(TIMES) * (span.end - span.start));
     let check = |key: &str, drive: &Drive, places: &[Vector2<f64>]| {
@@ -368,7 +368,7 @@ pub fn check_defined(place: &str, given: &LoadStep, scheme: Scheme, span: Span, 
     Ok(())
 }
 
-/// All drives of a step, with their keys and where they act.
+/// All drives of a step, with their keys and places.
 fn drives(given: &LoadStep) -> Vec<(String, &Place, &Drive)> {
     let mut drives = Vec::new();
     for (k, support) in given.supports.iter().enumerate() {
@@ -384,7 +384,7 @@ fn drives(given: &LoadStep) -> Vec<(String, &Place, &Drive)> {
     drives
 }
 
-/// The drives of a load with their keys.
+/// Drives of a load with their keys.
 fn actions(action: Action<'_>) -> Vec<(String, &Drive)> {
     let alone = |key: &str, drive| Option::into_iter(drive).map(|drive| (key.to_string(), drive)).collect();
     match action {
@@ -406,7 +406,7 @@ fn vector<'a>(key: &str, components: Option<&'a Components>) -> Vec<(String, &'a
     ["x", "y"].into_iter().enumerate().filter_map(along).collect()
 }
 
-/// Where a drive is evaluated: at nodes, or at the Gauss points of edges; at most some, from end to end.
+/// Places where a drive is evaluated: nodes, or Gauss points of edges; a limited number from end to end.
 fn positions(on_edges: bool, on: &Place, model: &Model) -> Vec<Vector2<f64>> {
     let gauss = |name: &str| Some(edge_shares(&model.mesh, edges(&model.mesh, name, "").ok()?));
     let all: Vec<Vector2<f64>> = match on {

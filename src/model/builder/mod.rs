@@ -27,8 +27,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A load step takes over what the one before gave: scheme, increments, supports and loads. What is wrong is told with its
-//! place, in the words of a case file: `steps[1].supports[0].on: the mesh has no group …`.
+//! A load step inherits scheme, increments, supports and loads from the previous one. Errors are reported with their
+//! place, in the terms of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
 mod along;
 mod body;
@@ -74,14 +74,14 @@ use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::linkage::Linkage;
 use crate::model::{Damping, Memories, Model, NewtonSettings, OutputRequests};
 
-/// What a model is made of; [`Builder::build`] checks it and makes the model.
+/// Input of a model; [`Builder::build`] checks it and creates the model.
 #[derive(Default)]
 #[must_use]
 pub struct Builder {
     pub(crate) mesh: Mesh,
     pub(crate) title: String,
     pub(crate) bodies: Vec<(String, BodyInput)>,
-    /// A body that is spoken of before it is given, if there is one
+    /// A body that is referred to before it is given, if there is one
     pub(crate) unknown: Option<String>,
     pub(crate) point_masses: Vec<(String, PointMassInput)>,
     pub(crate) periodic: Vec<[String; 2]>,
@@ -98,25 +98,25 @@ pub struct Builder {
 }
 
 impl Model {
-    /// A model from code: what is on the mesh, and what happens to it.
+    /// Creates the builder of a model on a mesh.
     pub fn builder(mesh: Mesh) -> Builder {
         Builder { mesh, ..Builder::default() }
     }
 }
 
 impl Builder {
-    /// What the model shows, in a line.
+    /// Sets the title, in one line.
     pub fn title(self, title: impl Into<String>) -> Self {
         Self { title: title.into(), ..self }
     }
 
-    /// What the plane stands for in space; that of the mesh, plane strain, unless given.
+    /// Sets the kind of plane section; default: that of the mesh, plane strain.
     pub fn section(mut self, section: Section) -> Self {
         self.mesh.section = section;
         self
     }
 
-    /// A body: the material of a group of elements.
+    /// Adds a body: the material of a group of elements.
     pub fn body(mut self, name: impl Into<String>, material: impl Into<Box<dyn Material>>) -> Self {
         let material = BulkLaw::FromCode(material.into().into());
         let body = BodyInput {
@@ -130,27 +130,27 @@ impl Builder {
         self
     }
 
-    /// Elements of a body with the mean dilatation of their centre (F-bar), which do not lock for ν → ½: Q4 only.
+    /// Selects F-bar elements (mean dilatation of the centre) for a body, which do not lock for ν → ½: Q4 only.
     pub fn f_bar(self, body: impl Into<String>) -> Self {
         self.change(body, |body| body.element = Formulation::FBar)
     }
 
-    /// Damping of a body in dynamic steps.
+    /// Sets the damping of a body in dynamic steps.
     pub fn damping(self, body: impl Into<String>, damping: Damping) -> Self {
         self.change(body, |body| body.damping = damping)
     }
 
-    /// Stress of a body before anything has moved; displacements count from there.
+    /// Sets the initial stress of a body; displacements are measured from this state.
     pub fn initial_stress(self, body: impl Into<String>, stress: InitialStress) -> Self {
         self.change(body, |body| body.initial_stress = Some(stress))
     }
 
-    /// Thermal expansion of a body, whose temperature the steps give ([`LoadStep::temperature`]).
+    /// Sets the thermal expansion of a body, whose temperature is given by the steps ([`LoadStep::temperature`]).
     pub fn thermal(self, body: impl Into<String>, thermal: Thermal) -> Self {
         self.change(body, |body| body.thermal = Some(thermal))
     }
 
-    /// Change a body that was given before.
+    /// Changes a body that was given before.
     fn change(mut self, body: impl Into<String>, change: impl FnOnce(&mut BodyInput)) -> Self {
         let name = body.into();
         match self.bodies.iter_mut().find(|(known, _)| *known == name) {
@@ -160,101 +160,101 @@ impl Builder {
         self
     }
 
-    /// A mass at every node of a group, added to what a body has there [M].
+    /// Adds a point mass at every node of a group, in addition to the mass of a body there [M].
     pub fn point_mass(mut self, group: impl Into<String>, mass: f64) -> Self {
         self.point_masses.push((group.into(), PointMassInput { mass, velocity: None }));
         self
     }
 
-    /// A mass at every node of a group that starts with a velocity [M], [L/T].
+    /// Adds a point mass with an initial velocity at every node of a group [M], [L/T].
     pub fn moving_point_mass(mut self, group: impl Into<String>, mass: f64, velocity: [f64; 2]) -> Self {
         self.point_masses.push((group.into(), PointMassInput { mass, velocity: Some(velocity) }));
         self
     }
 
-    /// Two groups whose nodes lie alike and move alike: what leaves by one side comes in by the other.
+    /// Adds periodic sides: two groups with matching nodes and equal displacements.
     pub fn periodic(mut self, side: impl Into<String>, other: impl Into<String>) -> Self {
         self.periodic.push([side.into(), other.into()]);
         self
     }
 
-    /// A loading plate: all nodes of a group move alike, as if glued to a rigid plate that does not turn. What acts on one of them
-    /// acts on the plate.
+    /// Adds a loading platen: all nodes of a group have the same displacement, as if glued to a rigid platen that does not
+    /// rotate. Loads on one of them act on the platen.
     pub fn plate(mut self, group: impl Into<String>) -> Self {
         self.plates.push(LoadingPlateInput::Group(group.into()));
         self
     }
 
-    /// A loading plate that moves in another way than as one.
+    /// Adds a loading platen with another kind of motion.
     pub fn plate_moving(mut self, group: impl Into<String>, moves: Plate) -> Self {
         self.plates.push(LoadingPlateInput::Moving(MovingPlateInput { on: group.into(), moves }));
         self
     }
 
-    /// A rigid body with its reference point, for contacts whose rigid master moves ([`Contact::rigid_body`]) and supports `on`
-    /// its name [L].
+    /// Adds a rigid body with its reference point, for contacts with a moving rigid master ([`Contact::rigid_body`]) and
+    /// supports `on` its name [L].
     pub fn rigid_body(mut self, name: impl Into<String>, reference: [f64; 2]) -> Self {
         self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: None }));
         self
     }
 
-    /// A rigid body that may turn by itself, with its centre of mass [L] and its moment of inertia about that [M L²]; its mass is a
-    /// [point mass](Self::point_mass) of its name.
+    /// Adds a rigid body that may rotate freely, with its centre of mass [L] and its moment of inertia about it [M L²]; its
+    /// mass is a [point mass](Self::point_mass) with its name.
     pub fn free_rigid_body(mut self, name: impl Into<String>, reference: [f64; 2], inertia: f64) -> Self {
         self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
         self
     }
 
-    /// A contact.
+    /// Adds a contact.
     pub fn contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
         self
     }
 
-    /// Velocity of a whole body at the start [L/T].
+    /// Sets the initial velocity of a body [L/T].
     pub fn initial_velocity(mut self, body: impl Into<String>, velocity: [f64; 2]) -> Self {
         self.velocities.push((body.into(), velocity));
         self
     }
 
-    /// The next load step.
+    /// Adds the next load step.
     pub fn step(mut self, step: LoadStep) -> Self {
         self.steps.push(step);
         self
     }
 
-    /// A group, or a single node, whose mean displacement and reaction are reported.
+    /// Watches a group or single node: its mean displacement and reaction are reported.
     pub fn watch(mut self, on: impl Into<Place>) -> Self {
         self.watch.push(on.into());
         self
     }
 
-    /// When Newton's method stops; a tolerance of 1e-8 and 25 iterations unless given.
+    /// Sets the stopping criteria of Newton's method; default: tolerance 1e-8 and 25 iterations.
     pub fn newton(self, newton: NewtonSettings) -> Self {
         Self { newton, ..self }
     }
 
-    /// A point, or points along a line, at which motion, strain and stress are asked for.
+    /// Adds a gauge: a point, or points along a line, at which motion, strain and stress are evaluated.
     pub fn probe(mut self, gauge: Gauge) -> Self {
         self.gauges.push(gauge);
         self
     }
 
-    /// Times that increments end at, because fields are asked for then [T].
+    /// Sets output times of fields, at which increments end [T].
     pub fn times(self, times: impl Into<Vec<f64>>) -> Self {
         Self { times: times.into(), ..self }
     }
 
-    /// Least time between two rows of the history of implicit steps, and the time between the results of explicit ones; all
-    /// increments, and a hundredth of each explicit step, unless given [T].
+    /// Sets the minimum time between two rows of the history of implicit steps, and the interval of the results of explicit
+    /// ones; default: all increments, and a hundredth of each explicit step [T].
     pub fn interval(self, interval: f64) -> Self {
         Self { interval: Some(interval), ..self }
     }
 
-    /// The model.
+    /// Builds the model.
     ///
     /// # Errors
-    /// [`ModelError`] names the place, the value and what to do.
+    /// Returns [`ModelError`] with place, value and remedy if the input is invalid.
     pub fn build(mut self) -> Checked<Model> {
         self.check_names()?;
         section::check(&self.mesh)?;

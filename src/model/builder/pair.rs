@@ -1,31 +1,31 @@
-//! From a contact as it is given to the pair of surfaces that is evaluated.
+//! Builds the pair of surfaces of a contact.
 //!
 //! # Radiation damping
 //!
-//! Radiation damping: what inertia would do to slip, in motions that leave it out.
+//! Radiation damping approximates the effect of inertia on slip in motions without inertia.
 //!
 //! ```text
 //! τ = τ_static − Z₁ v₁ = τ_static − Z₂ v₂,   v₁ + v₂ = v     plane shear waves leave on both sides,    Z = ρ c_s = G/c_s     (1)
-//! τ = τ_static − η v,   1/η = 1/Z₁ + 1/Z₂                     v₁ and v₂ eliminated; alike: η = G/(2 c_s)                   (2)
+//! τ = τ_static − η v,   1/η = 1/Z₁ + 1/Z₂                     v₁ and v₂ eliminated; equal bodies: η = G/(2 c_s)                   (2)
 //! ```
-//! A side that slips away with v₁ sends off a wave that changes the traction by Z₁ v₁; both sides see the same traction, so
-//! that the slip rate is shared between them as between dashpots in series. A rigid master takes no share: η = Z of the slave.
+//! A side that slips with v₁ radiates a wave that changes the traction by Z₁ v₁; both sides have the same traction, so
+//! the slip rate is divided between them as between dashpots in series. For a rigid master η = Z of the slave.
 //!
 //! Source: Rice (1993), J. Geophys. Res. 98, 9885.
 //!
 //! # Penalties
 //!
-//! Default penalties: stiff beside the elements that they hold, soft enough to be solved with.
+//! Default penalties are stiff compared with the adjacent elements, but soft enough for the iterations.
 //!
 //! ```text
 //! α_n = 10 (λ + 2G)/h,   α_t = α_n/2                                                             (1)
 //! ```
-//! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, h the depth of the element
-//! behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges.
+//! λ + 2G is that of the softer side, compared with which the penalty must be stiff, and h the depth of the element at the
+//! slave's edge; (λ + 2G)/h is averaged over the slave's edges.
 //!
-//! # What points do not tell
+//! # Data of the bodies
 //!
-//! What the points of a contact do not tell of themselves: nodes that no point stands for, and how stiff the bodies are.
+//! Some data of a contact do not follow from its points: nodes without a contact point, and the stiffness of the bodies.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -46,7 +46,7 @@ use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
 use crate::model::method::{Chosen, Method, choose};
 
-/// The pairs of contacts.
+/// Builds the pairs of contacts.
 pub fn pairs(contacts: &[Contact], model: &Model) -> Checked<Vec<ContactPair>> {
     check_penetrations(contacts, &model.mesh)?;
     let mut pairs = contacts.iter().map(|contact| pair(contact, model)).collect::<Checked<Vec<_>>>()?;
@@ -54,7 +54,7 @@ pub fn pairs(contacts: &[Contact], model: &Model) -> Checked<Vec<ContactPair>> {
     Ok(pairs)
 }
 
-/// The pair of a contact, but for what its points do not see.
+/// Builds the pair of a contact, except for the data of the bodies.
 fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     let place = format!("contacts.{}", contact.name);
     let (mut points, mortar) = slave_points(&place, contact, &model.mesh)?;
@@ -103,10 +103,10 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     Ok(pair)
 }
 
-/// Share of the shortest edge of the slave within which surfaces touch.
+/// Gap at which surfaces touch, as a fraction of the shortest edge of the slave.
 const TOUCH: f64 = 1e-9;
 
-/// The shortest edge that a slave point belongs to; of points of no edge the length of one that has their area [L].
+/// Length of the shortest edge of a slave point; for points without edges the length with their area [L].
 fn size(points: &[SlavePoint], model: &Model) -> f64 {
     let undeformed = model.mesh.undeformed();
     let of = |point: &SlavePoint| {
@@ -119,7 +119,7 @@ fn size(points: &[SlavePoint], model: &Model) -> f64 {
     points.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// The body of the slave's edge at its first point. Where two bodies meet a node is one of both: the edge tells, not the node.
+/// Body of the slave's edge at its first point; a node may belong to two bodies, an edge does not.
 fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<usize> {
     let (node, _) = *first?.position.first()?;
     match model.mesh.group(&contact.slave) {
@@ -134,7 +134,7 @@ fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<
     }
 }
 
-/// How the surfaces lie at the start: as they are, closed, or to be fitted.
+/// Sets the initial state of the surfaces: as in the mesh, closed, or with an overlap to be fitted.
 fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) -> Checked<()> {
     if let Some(initial) = &contact.initial {
         initial::close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
@@ -149,10 +149,10 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
     Ok(())
 }
 
-/// Gaps are differences of positions and displacements; of these, round-off of the size of the model is left.
+/// Round-off of gaps relative to the size of the model; gaps are differences of positions and displacements.
 const OF_SIZE: f64 = 8.0 * f64::EPSILON;
 
-/// A penetration must be one that gaps can tell.
+/// Checks that an allowed penetration exceeds the round-off of gaps.
 fn check_penetrations(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
     let least = OF_SIZE * mesh.diagonal();
     contacts.iter().try_for_each(|contact| check_penetration(contact, least))
@@ -169,7 +169,7 @@ fn check_penetration(contact: &Contact, least: f64) -> Checked<()> {
     Err(ModelError::new(place, message))
 }
 
-/// Where a contact of edges is evaluated; that of a group of points is at the points.
+/// Method of a contact of edges; `None` for a point group.
 pub fn evaluation(contact: &Contact, mesh: &Mesh) -> Option<Chosen> {
     let master = match &contact.master {
         MasterSide::Group(group) => Some(group.as_str()),
@@ -179,7 +179,7 @@ pub fn evaluation(contact: &Contact, mesh: &Mesh) -> Option<Chosen> {
     contact.area.is_none().then(chosen)
 }
 
-/// Nodes of the slaves whose mass is to be moved away.
+/// Slave nodes whose mass is moved away.
 pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
     let mut massless = vec![false; mesh.nodes.len()];
     for contact in contacts.iter().filter(|contact| contact.massless) {
@@ -194,7 +194,7 @@ pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
     Ok(massless)
 }
 
-/// The nodes of a mesh master against the edges of the slave.
+/// Nodes of a mesh master, with the slave edges as their master.
 fn reverse(contact: &Contact, mesh: &Mesh) -> Option<Reverse> {
     let MasterSide::Group(master) = &contact.master else { return None };
     let [master, slave] = [master, &contact.slave].map(|name| match mesh.group(name) {
@@ -205,7 +205,7 @@ fn reverse(contact: &Contact, mesh: &Mesh) -> Option<Reverse> {
     seen.then(|| Reverse { nodes: nodal_points(&master), slave: Master::Mesh(Surface::new(&slave)) })
 }
 
-/// Points of the edges, or the points themselves, each with the given area; and the edges if contact is averaged over them.
+/// Slave points of edges, or the points of a point group with the given area; and the edges for mortar averages.
 fn slave_points(place: &str, contact: &Contact, mesh: &Mesh) -> Checked<(Vec<SlavePoint>, Option<Mortar>)> {
     let name = &contact.slave;
     let slave = format!("{place}.slave");
@@ -274,7 +274,7 @@ fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) 
     Ok(Master::Mesh(surface.smoothed(&mesh.nodes)))
 }
 
-/// Two groups in contact must be different edges, and a slave point of no edge must not be on the master.
+/// Checks that two groups in contact have no common edges, and that a slave point without edges is not on the master.
 fn check_disjoint(
     place: &str,
     slave: &str,
@@ -301,7 +301,7 @@ fn check_disjoint(
     Err(ModelError::new(place, message))
 }
 
-/// η of a contact, 0 for none.
+/// η of a contact, 0 if not used.
 pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> {
     let at = format!("{place}.radiation_damping");
     let damping = match contact.radiation_damping {
@@ -314,7 +314,7 @@ pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> 
     Ok(damping)
 }
 
-/// η of (2); on each side the mean over its edges.
+/// η by (2), averaged over the edges of each side.
 fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked<f64> {
     if contact.area.is_some() {
         let message = "has no default for a slave group of points, behind which there is no body: give a number";
@@ -341,13 +341,13 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
     Ok(slave * master / (slave + master))
 }
 
-/// α_n over (λ + 2G)/h [-]
+/// α_n divided by (λ + 2G)/h [-]
 const NORMAL: f64 = 10.0;
 
-/// α_t over α_n [-]
+/// α_t divided by α_n [-]
 const TANGENTIAL: f64 = 0.5;
 
-/// α_t of a law that has none of its own, by (1) [F/L³].
+/// Default α_t by (1) [F/L³].
 #[doc(hidden)]
 pub fn default_alpha_t(alpha_n: f64) -> f64 {
     TANGENTIAL * alpha_n
@@ -357,13 +357,13 @@ pub fn default_alpha_t(alpha_n: f64) -> f64 {
 pub struct Penalty {
     /// α_n [F/L³]
     pub alpha_n: f64,
-    /// α_t of a law that has none of its own; none for a slave group of points [F/L³]
+    /// Default α_t; `None` for a point group as slave [F/L³]
     pub alpha_t: Option<f64>,
-    /// h/(λ + 2G): how far a pressure pushes the bodies in; 0 where no elements are behind the slave [L³/F]
+    /// h/(λ + 2G): compliance of the bodies under a contact pressure; 0 without elements at the slave [L³/F]
     pub compliance: f64,
 }
 
-/// The penalties of a contact, those given checked.
+/// Returns the penalties of a contact, after checking the given ones.
 pub fn penalty(place: &str, contact: &Contact, model: &Model) -> Checked<Penalty> {
     let elastic = elastic_stiffness(place, contact, model)?;
     let at = format!("{place}.normal.alpha_n");
@@ -382,7 +382,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model) -> Checked<Penalty
     Ok(Penalty { alpha_n, alpha_t, compliance: elastic.map_or(0.0, |elastic| 1.0 / elastic) })
 }
 
-/// (λ + 2G)/h of (1); none where the slave has no edges [F/L³].
+/// (λ + 2G)/h of (1); `None` if the slave has no edges [F/L³].
 fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<Option<f64>> {
     if contact.area.is_some() {
         return Ok(None);
@@ -398,16 +398,16 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
     Ok(Some(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64))
 }
 
-/// Depth of the element behind an edge [L].
+/// Depth of the element at an edge [L].
 pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
     let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
     model.solids[edge.element].area() / (b - a).norm()
 }
 
-/// Find nodes of the surface of the slave's bodies that are not on the slave and outside a rigid master at the start: inside,
-/// they would not be seen.
+/// Finds surface nodes of the slave's bodies that are not on the slave and initially outside a rigid master, whose penetration
+/// would not be detected.
 pub fn unseen(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
-    // Many contacts may be of the same bodies.
+    // Several contacts may belong to the same bodies.
     let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
     for (contact, pair) in contacts.iter().zip(pairs) {
         let (Master::Rigid(rigid), Ok(Group::Edges(slave))) = (&pair.master, model.mesh.group(&contact.slave)) else {
@@ -425,7 +425,7 @@ fn is_outside(rigid: &Rigid, point: &SlavePoint, mesh: &Mesh) -> bool {
     rigid.project(point, &mesh.undeformed()).is_none_or(|projection| projection.gap > 0.0)
 }
 
-/// Nodes on sides that belong to one element only.
+/// Nodes on element sides that belong to one element only.
 fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
     let mut sides: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
     for (element, body) in model.mesh.elements.iter().zip(&model.body_of_element) {
@@ -442,7 +442,7 @@ fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
     sides.into_values().flatten().flatten().collect()
 }
 
-/// G*: what slip that varies along the interface is resisted with, 0 for points without bodies [F/L²]
+/// G*: stiffness against slip that varies along the interface, 0 for points without bodies [F/L²]
 ///
 /// ```text
 /// 1/G* = ½ (1/G₁* + 1/G₂*),   Gᵢ* = Gᵢ/(1 − νᵢ),   a rigid master has 1/G₂* = 0

@@ -1,5 +1,5 @@
-//! Periodic sides and loading plates, as they are given, and which node moves with which; plates that turn, or of which one
-//! component is alike.
+//! Periodic sides and loading platens, and the resulting ties of nodes; platens that rotate, or with one equal
+//! component.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,14 +22,14 @@ use crate::model::written::written;
 #[schemars(rename = "PlateMotion")]
 #[non_exhaustive]
 pub enum Plate {
-    /// Alike, without turning: what the name of the group alone says
+    /// Equal displacements without rotation, the default for a group name
     #[default]
     AsOne,
     /// Equal ux, free uy: a frictionless platen
     UxAlike,
     /// Equal uy, free ux
     UyAlike,
-    /// As a rigid body that rotates under forces, springs and a `moment`; supports may constrain at most one of its
+    /// Rigid body that rotates under forces, springs and a `moment`; supports may constrain at most one of its
     /// nodes
     Rigid,
 }
@@ -38,9 +38,9 @@ pub enum Plate {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum LoadingPlateInput {
-    /// Group that moves as one, without turning
+    /// Group with equal displacements, without rotation
     Group(String),
-    /// Group that moves in another way
+    /// Group with another kind of motion
     Moving(MovingPlateInput),
 }
 
@@ -51,18 +51,18 @@ written!(
     object: MovingPlateInput => Self::Moving
 );
 
-/// A loading plate that moves in another way than as one.
+/// A loading plate with another kind of motion.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MovingPlateInput {
     /// Group of its nodes
     pub on: String,
-    /// How they move
+    /// Kind of motion
     pub moves: Plate,
 }
 
 impl LoadingPlateInput {
-    /// Its group, and how it moves.
+    /// Returns its group and kind of motion.
     pub fn parts(&self) -> (&str, Plate) {
         match self {
             Self::Group(name) => (name, Plate::AsOne),
@@ -71,17 +71,17 @@ impl LoadingPlateInput {
     }
 }
 
-/// Partners may be off by this share of the distance between their sides.
+/// Tolerance of matching positions, relative to the distance between the sides.
 const ROUNDED: f64 = 1e-6;
 
-/// The nodes of loading plates that move as one.
+/// Nodes of loading platens with equal displacements.
 pub fn plates(given: &[LoadingPlateInput], mesh: &Mesh) -> Result<Vec<Vec<usize>>, ModelError> {
     let as_one =
         given.iter().map(LoadingPlateInput::parts).enumerate().filter(|(_, (_, moves))| *moves == Plate::AsOne);
     as_one.map(|(k, (name, _))| Ok(mesh.nodes_of(group(mesh, name, &format!("plates[{k}]"))?))).collect()
 }
 
-/// Ties between the nodes of pairs of sides, and of plates.
+/// Ties between the nodes of pairs of sides, and of platens.
 pub fn ties(periodic: &[[String; 2]], plates: &[Vec<usize>], mesh: &Mesh) -> Result<Ties, ModelError> {
     let mut joined = Vec::new();
     for (k, names) in periodic.iter().enumerate() {
@@ -91,7 +91,7 @@ pub fn ties(periodic: &[[String; 2]], plates: &[Vec<usize>], mesh: &Mesh) -> Res
     Ok(Ties::new(mesh.nodes.len(), &joined))
 }
 
-/// Each node of one side with the node of the other that lies as far from it as the sides' middles are apart.
+/// Pairs each node of one side with the node of the other at the offset of the sides' centers.
 fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize; 2]>, ModelError> {
     let complain = |message: String| ModelError::new(place, message);
     let side = |name: &String| mesh.group(name).map(|group| mesh.nodes_of(group));
@@ -117,7 +117,7 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize;
         let tag = mesh.node_tags[*shared];
         return Err(complain(format!("node {tag} is on both sides: periodic sides must have nodes of their own")));
     }
-    // Along the sides, the order of partners is the same but for round-off; sorted by one coordinate, few are looked at.
+    // Along the sides, the order of partners agrees except for round-off; sorting by one coordinate limits the candidates.
     let mut by_x: Vec<(f64, usize)> = second.iter().map(|&node| (mesh.nodes[node].x, node)).collect();
     by_x.sort_by(|a, b| a.0.total_cmp(&b.0));
     let partner = |node: usize| {
@@ -139,7 +139,7 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize;
     first.iter().map(paired).collect()
 }
 
-/// The nodes of plates that follow others.
+/// Follower nodes of platens.
 pub fn linkage(given: &[LoadingPlateInput], steps: &[LoadStep], model: &Model) -> Checked<Linkage> {
     let mesh = &model.mesh;
     let tied: BTreeSet<usize> = model.ties.pairs().iter().flat_map(|&(copy, original)| [copy, original]).collect();
@@ -189,8 +189,8 @@ pub fn linkage(given: &[LoadingPlateInput], steps: &[LoadStep], model: &Model) -
     Ok(linkage)
 }
 
-/// G of the centers of mass of rigid plates. A node has the sum of its row of the mass matrix: with these shares the momentum of a
-/// body is that of its nodes.
+/// G of the centers of mass of rigid platens. The weight of a node is the sum of its row of the mass matrix, so that the
+/// momentum of a body is that of its nodes.
 fn centers(linkage: &Linkage, model: &Model) -> Vec<Matrix2<f64>> {
     let mut mass = vec![0.0; model.mesh.nodes.len()];
     if !linkage.rigid.is_empty() {
@@ -211,7 +211,7 @@ fn centers(linkage: &Linkage, model: &Model) -> Vec<Matrix2<f64>> {
     linkage.rigid.iter().map(center).collect()
 }
 
-/// A and B of the rigid plate that a moment acts on.
+/// A and B of the rigid platen on which a moment acts.
 pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize; 2]> {
     let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
     let is_plate = model.linkage.plates.iter().any(|(plate, components)| *components == [true; 2] && *plate == nodes);
@@ -224,7 +224,7 @@ pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize
     })
 }
 
-/// Nodes that supports hold in any step.
+/// Nodes supported in any step.
 fn held_nodes(steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<BTreeSet<usize>> {
     let mut held = BTreeSet::new();
     for support in steps.iter().flat_map(|step| &step.supports) {
@@ -233,7 +233,7 @@ fn held_nodes(steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<BTreeSet<
     Ok(held)
 }
 
-/// The node by which a rigid plate is held, or its first one, and the one farthest from it.
+/// The supported node of a rigid platen, or its first one, and the one farthest from it.
 fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
     let held: BTreeSet<usize> = nodes.iter().copied().filter(|node| all_held.contains(node)).collect();
     if held.len() > 1 {
@@ -257,7 +257,7 @@ fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str
     }
 }
 
-/// Whether a support can be on nodes of plates that follow others.
+/// Checks whether a support is possible on follower nodes of platens.
 pub fn check_support(support: &Support, nodes: &[usize], model: &Model, place: &str) -> Checked<()> {
     let inclined = support.along.is_some() || support.un.is_some();
     for (plate, components) in &model.linkage.plates {

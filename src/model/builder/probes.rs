@@ -1,4 +1,4 @@
-//! Probes: from places to elements.
+//! Gauges: from positions to elements.
 
 use std::collections::BTreeSet;
 
@@ -12,57 +12,57 @@ use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::shape::ElementKind;
 use crate::model::{Model, Probe};
 
-/// A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; places are undeformed ones.
+/// A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; positions are undeformed ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Probe")]
 #[non_exhaustive]
 #[must_use]
 pub struct Gauge {
-    /// Name in results; a case has it before the gauge
+    /// Name in results; the key of the gauge in a case
     #[serde(skip)]
     pub name: String,
     /// The point [x, y]
     pub at: Option<[f64; 2]>,
-    /// Where a line begins [x, y]
+    /// Start of a line [x, y]
     pub from: Option<[f64; 2]>,
-    /// Where it ends [x, y]
+    /// End of a line [x, y]
     pub to: Option<[f64; 2]>,
-    /// How many points it has, both ends included; the k-th is called NAME.k, from 1
+    /// Number of points of a line, including both ends; the k-th is called NAME.k, from 1
     pub number: Option<usize>,
-    /// The body, needed where two bodies touch
+    /// Body of the point, required where two bodies touch
     pub body: Option<String>,
 }
 
-/// How far outside of an element round-off may put a point, in its coordinates.
+/// Tolerance of element coordinates for points outside of an element by round-off.
 const OUTSIDE: f64 = 1e-6;
 
-/// Newton iterations from a place to its coordinates.
+/// Maximum number of Newton iterations for the coordinates of a point.
 const ITERATIONS: usize = 30;
 
-/// Share of its size by which a curved side may lie outside of the box of an element's nodes.
+/// Margin of the bounding box of an element's nodes for curved sides, as a fraction of its size.
 const BULGE: f64 = 0.3;
 
-/// Points of a line at most.
+/// Maximum number of points of a line.
 const MOST: usize = 100_000;
 
 impl Gauge {
-    /// A point.
+    /// Creates a gauge at a point.
     pub fn at(name: impl Into<String>, place: [f64; 2]) -> Self {
         Self { name: name.into(), at: Some(place), ..Self::default() }
     }
 
-    /// Points at equal distances from one place to another, both included; the k-th is called `name.k`, from 1.
+    /// Creates points at equal distances between two positions, both included; the k-th is called `name.k`, from 1.
     pub fn line(name: impl Into<String>, from: [f64; 2], to: [f64; 2], number: usize) -> Self {
         Self { name: name.into(), from: Some(from), to: Some(to), number: Some(number), ..Self::default() }
     }
 
-    /// The body it is in, for places where two bodies touch.
+    /// Sets the body, for positions where two bodies touch.
     pub fn of(self, body: impl Into<String>) -> Self {
         Self { body: Some(body.into()), ..self }
     }
 
-    /// Names and places of all points.
+    /// Names and positions of all points.
     fn points(&self) -> Checked<Vec<(String, Vector2<f64>)>> {
         let (from, to, number) = match (self.at, self.from, self.to, self.number) {
             (Some(at), None, None, None) => return Ok(vec![(self.name.clone(), at.into())]),
@@ -87,10 +87,10 @@ impl Gauge {
     }
 }
 
-/// The probes of a model.
+/// Builds the gauges of a model.
 ///
 /// # Errors
-/// A place that lies in no body, or in two without saying which is meant.
+/// Returns an error for a position outside all bodies, or in two bodies without `body`.
 pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     if gauges.is_empty() {
         return Ok(Vec::new());
@@ -124,17 +124,17 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     Ok(probes)
 }
 
-/// A box that no point of an element lies outside of.
+/// Bounding box of all points of an element.
 fn reach(model: &Model, element: usize) -> Box2 {
     let nodes = model.mesh.elements[element].nodes.iter().map(|&node| model.mesh.nodes[node]);
     let own = Box2::around(nodes).unwrap_or(Box2 { low: Vector2::zeros(), high: Vector2::zeros() });
     own.wider(BULGE * own.size().max())
 }
 
-/// (ξ, η) of a place in an element, if it lies there.
+/// (ξ, η) of a position in an element, if it lies there.
 ///
 /// ```text
-/// Σ N_a(ξ, η) X_a = X                     Newton's method from the centre; places count from the first node
+/// Σ N_a(ξ, η) X_a = X                     Newton's method from the centre; positions relative to the first node
 /// ```
 fn coordinates(model: &Model, element: usize, place: Vector2<f64>) -> Option<[f64; 2]> {
     let element = &model.mesh.elements[element];

@@ -1,4 +1,4 @@
-//! Rigid bodies as they are given: what rigid masters are parts of, how supports move them, and what is free of them.
+//! Input of rigid bodies: their nodes, supports of their motion, and their free components.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -15,21 +15,21 @@ use crate::model::Model;
 use crate::model::boundary::Span;
 use crate::model::support::Motion;
 
-/// A rigid body that moves: contacts with a rigid master name it; supports, forces and a moment `on` its name move it. Its mass is
-/// given as a point mass of its name, and is at the reference point
+/// A moving rigid body: contacts with a rigid master refer to it; supports, forces and a moment `on` its name act on it. Its
+/// mass is given as a point mass with its name, located at the reference point
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "RigidBody")]
 pub struct RigidBodyInput {
     /// Reference point [x, y]: `ux` and `uy` of a support are its displacement, `angle` is the rotation about it, and the
-    /// moment in the history is about it [L]
+    /// moment in the history refers to it [L]
     pub reference: [f64; 2],
-    /// Moment of inertia about the reference point, which is then the centre of mass; needed in dynamic steps unless supports
-    /// give the `angle` [M L²]
+    /// Moment of inertia about the reference point, which is then the centre of mass; required in dynamic steps unless supports
+    /// prescribe the `angle` [M L²]
     pub inertia: Option<f64>,
 }
 
-/// Add rigid bodies to a mesh.
+/// Adds rigid bodies to a mesh.
 pub fn add(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
     for (name, RigidBodyInput { reference, inertia }) in given {
         let place = format!("rigid_bodies.{name}");
@@ -59,7 +59,7 @@ pub fn add(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
     Ok(())
 }
 
-/// The rigid body that the rigid master of a contact is a part of, if it moves.
+/// Returns the moving rigid body of the rigid master of a contact, if it has one.
 pub fn of_contact(contact: &Contact, mesh: &Mesh, place: &str) -> Checked<Option<RigidBody>> {
     let Some(name) = &contact.rigid_body else { return Ok(None) };
     let place = format!("{place}.rigid_body");
@@ -82,7 +82,7 @@ fn unknown(name: &str, mesh: &Mesh) -> String {
     }
 }
 
-/// What a support says of the rotation of a rigid body: the dof that carries it, and its motion or none where it is freed.
+/// Returns the dof of the rotation of a rigid body that a support prescribes, with its motion, or `None` if it is released.
 pub fn angle(support: &Support, place: &str, span: Span, model: &Model) -> Checked<Option<(usize, Option<Motion>)>> {
     let Some(change) = &support.angle else { return Ok(None) };
     let place = format!("{place}.angle");
@@ -101,7 +101,7 @@ pub fn angle(support: &Support, place: &str, span: Span, model: &Model) -> Check
     Ok(Some((2 * body.turning, Some(Motion::Displacement(drive.times(body.radius), span)))))
 }
 
-/// A rigid body is moved by its own keys.
+/// Checks that a support of a rigid body uses the keys of rigid bodies.
 pub fn check_support(support: &Support, place: &str, mesh: &Mesh) -> Checked<()> {
     let Place::Group(name) = &support.on else { return Ok(()) };
     match (&support.rotation, mesh.rigid_body(name)) {
@@ -114,7 +114,7 @@ pub fn check_support(support: &Support, place: &str, mesh: &Mesh) -> Checked<()>
     }
 }
 
-/// Dofs of rigid bodies that never move: the second of their turning nodes, and of axisymmetric ones all but uy.
+/// Dofs of rigid bodies that are always zero: the second of their turning nodes, and in axisymmetry all but uy.
 pub fn still(model: &Model) -> impl Iterator<Item = usize> {
     let of_rings = model.mesh.section.is_axisymmetric();
     model.mesh.rigid_bodies.iter().flat_map(move |RigidBody { reference, turning, .. }| {
@@ -123,7 +123,7 @@ pub fn still(model: &Model) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The rigid body that a moment acts on, if it is one.
+/// The rigid body on which a moment acts, if it is one.
 pub fn of_moment<'m>(on: &Place, model: &'m Model) -> Option<&'m RigidBody> {
     match on {
         Place::Group(name) => model.mesh.rigid_body(name),
@@ -131,7 +131,7 @@ pub fn of_moment<'m>(on: &Place, model: &'m Model) -> Option<&'m RigidBody> {
     }
 }
 
-/// In words, what a dof that nothing holds or carries is of a rigid body; none of any other node.
+/// Rigid body and name of its motion for a dof without support or mass; `None` for any other node.
 pub fn free_motion(mesh: &Mesh, dof: usize) -> Option<(&RigidBody, &'static str)> {
     let body = mesh.rigid_bodies.iter().find(|body| body.nodes().contains(&(dof / 2)))?;
     let along = if dof == 2 * body.turning { "angle" } else { ["ux", "uy"][dof % 2] };

@@ -1,8 +1,8 @@
-//! The schedule of a run: what each load step takes over from the one before, and what it replaces or ends.
+//! Schedule of a run: what each load step inherits from the previous one, and what it replaces or ends.
 //!
-//! Increments of a step, its stabilization, and when it goes on explicitly.
+//! Increments of a step, its stabilization, and its switch to explicit integration.
 //!
-//! A reaction that ends a step, and what has no meaning in a step that may end before its time.
+//! Reactions that end a step, and restrictions of such a step.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ use crate::model::step::{ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
-/// The steps of a run.
+/// Builds the steps of a run.
 pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
     if given.is_empty() {
         return Err(ModelError::new("steps", "is empty: give at least one step"));
@@ -44,17 +44,17 @@ pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
     given.iter().enumerate().map(|(k, step)| schedule.next(&format!("steps[{k}]"), step)).collect()
 }
 
-/// What one step hands on to the next.
+/// State passed from one step to the next.
 struct Schedule<'m> {
     model: &'m Model,
     start: f64,
     scheme: Scheme,
     increments: Option<IncrementSettings>,
     in_force: InForce,
-    /// whether the last step may end before its time
+    /// whether the last step may end early
     may_end_early: bool,
     damping: Vec<Damping>,
-    /// those of the last step
+    /// supports of the last step
     supports: Vec<Prescribed>,
     loads: LoadsInForce,
     temperatures: BTreeMap<usize, Amplitude>,
@@ -80,7 +80,7 @@ impl Schedule<'_> {
         }
         hold_axis(&mut self.in_force.dofs, place, span, self.model)?;
         let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
-        // In motion there is no rest of the reaction: what held is gone.
+        // In dynamics a released reaction vanishes at once.
         let released = if scheme.is_dynamic() { Vec::new() } else { freed(&before, &self.supports) };
         for (k, load) in given.loads.iter().enumerate() {
             self.loads.change(load, &format!("{place}.loads[{k}]"), span, self.model)?;
@@ -110,7 +110,7 @@ impl Schedule<'_> {
         Ok(step)
     }
 
-    /// Give bodies another damping.
+    /// Sets the damping of bodies.
     fn damp(&mut self, given: &BTreeMap<String, Damping>, place: &str) -> Checked<()> {
         for (name, damping) in given {
             let place = format!("{place}.damping.{name}");
@@ -122,13 +122,13 @@ impl Schedule<'_> {
     }
 }
 
-/// Shortest increment as a share of the run time at its end: below it, round-off would swallow the increment.
+/// Shortest increment relative to the run time at its end, below which round-off would dominate.
 const SHORTEST_INCREMENT: f64 = 16.0 * f64::EPSILON;
 
-/// A run of more increments, or rows of results, is a slip of the keyboard: it would take days for a single point.
+/// Number of increments or result rows above which a run is refused as a typing error: it would take days for a single point.
 pub const MOST_INCREMENTS: f64 = 1e8;
 
-/// The increments of a step, what is not given chosen by its first.
+/// Returns the increments of a step, with defaults derived from the first one.
 pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, scheme: Scheme) -> Checked<Increments> {
     let duration = span.end - span.start;
     let given = given.unwrap_or(IncrementSettings::from(0.1 * duration));
@@ -160,8 +160,8 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     Ok(increments)
 }
 
-/// Bounds of increments must leave room between them, not be lost in the round-off of the time, and not ask for too many
-/// increments of what is left of a step.
+/// Checks that bounds of increments are consistent, exceed the round-off of the time, and do not require too many increments
+/// for the rest of a step.
 pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Scheme) -> Checked<()> {
     check_positive(&format!("{place}.min"), min, "")?;
     check_positive(&format!("{place}.max"), max, "")?;
@@ -171,7 +171,7 @@ pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Schem
     }
     let (end, least, duration) = (left.end, SHORTEST_INCREMENT * left.end, left.end - left.start);
     if min < least {
-        // Where the two are one number, it is max that was given.
+        // If the two are equal, max was given.
         let name = if min < max { "min" } else { "max" };
         let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
         return Err(ModelError::new(format!("{place}.{name}"), message));
@@ -202,10 +202,10 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
     for body in &model.bodies {
         let coefficient = share * body.material.p_wave_modulus() * given.duration / body.nodes.len() as f64;
         let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        // A node of two bodies has the shares of both.
+        // A node of two bodies has the sum of both.
         dofs.for_each(|dof| coefficients[dof] += coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
     }
-    // A rigid body has the dashpots of the softest body.
+    // The dashpots of a rigid body are those of the softest body.
     let softest = model.bodies.iter().map(|body| body.material.p_wave_modulus()).reduce(f64::min).unwrap_or_default();
     let depth = model.solids.iter().map(|solid| solid.mean_weight()).reduce(f64::min).unwrap_or_default();
     for body in &model.mesh.rigid_bodies {
@@ -215,7 +215,7 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
     Ok(coefficients)
 }
 
-/// When a step goes on explicitly, and how.
+/// Returns the criteria of the switch to explicit integration.
 pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: &Model) -> Checked<Option<Rupture>> {
     let Some(RuptureSettings { slip_rate, safety }) = given else { return Ok(None) };
     check_positive(&format!("{place}.slip_rate"), slip_rate, "")?;
@@ -246,10 +246,10 @@ pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: 
     Ok(Some(Rupture { slip_rate, calm, explicit }))
 }
 
-/// A looser tolerance is no value.
+/// Largest tolerance; a larger one would not define a value.
 const LOOSEST: f64 = 0.1;
 
-/// The reaction that ends a step, if one does.
+/// Returns the reaction that ends a step, if there is one.
 pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<Option<Until>> {
     let Some(given_until) = &given.until else { return Ok(None) };
     let UntilSettings { on, tolerance, .. } = given_until;
@@ -290,7 +290,7 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
     Ok(Some(Until { on: on.to_string(), held, part, value, tolerance }))
 }
 
-/// What counts on the whole of the step.
+/// Checks settings that refer to the whole step.
 fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<()> {
     let refused = |message: &str| Err(ModelError::new(place, message));
     if matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. }) {
@@ -311,7 +311,7 @@ fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Chec
     check_ramps(place, step, model)
 }
 
-/// What comes to a value over the whole of the step would go on coming to it in the next one.
+/// Refuses quantities that reach a value at the end of the step, since they would continue to change in the next one.
 fn check_ramps(place: &str, step: &Step, model: &Model) -> Checked<()> {
     let refused = |what: &str, instead: &str| {
         let message = format!("may end the step early, before {what} is fully applied: {instead}");

@@ -1,4 +1,4 @@
-//! What a section asks of mesh, bodies, supports and loads, and what it has no meaning for.
+//! Requirements of a section on mesh, bodies, supports and loads.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use crate::model::boundary::{Drive, Span};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::text::number;
 
-/// Share of the model's size within which a node counts as one on the axis.
+/// Distance from the axis, relative to the model size, within which a node is on the axis.
 const ON_AXIS: f64 = 1e-12;
 
-/// A thickness must be positive, and rings lie beside the axis.
+/// Checks that a thickness is positive and axisymmetric bodies do not cross the axis.
 pub fn check(mesh: &Mesh) -> Checked<()> {
     match mesh.section {
         Section::PlaneStress { thickness } => {
@@ -37,7 +37,7 @@ pub fn check(mesh: &Mesh) -> Checked<()> {
     }
 }
 
-/// The law of a body in a section.
+/// Returns the law of a body in a section.
 pub fn material(given: Arc<dyn Material>, f_bar: bool, section: Section, place: &str) -> Checked<Arc<dyn Material>> {
     let refused = |key: &str, message: &str| Err(ModelError::new(format!("{place}.{key}"), message));
     match section {
@@ -57,15 +57,15 @@ pub fn material(given: Arc<dyn Material>, f_bar: bool, section: Section, place: 
     }
 }
 
-/// Nodes of rings on the axis, which cannot leave it.
+/// Nodes of axisymmetric bodies on the axis, which they cannot leave.
 fn on_axis(model: &Model) -> impl Iterator<Item = usize> {
     let mesh = &model.mesh;
     let near = ON_AXIS * mesh.diagonal();
     (0..mesh.nodes.len()).filter(move |&node| mesh.section.is_axisymmetric() && mesh.nodes[node].x <= near)
 }
 
-/// Hold the nodes on the axis and the plates, whose radii do not change, and refuse what would move them along the radius, or turn
-/// a ring.
+/// Constrains nodes on the axis and platens, whose radii are constant, and refuses prescribed radial motion and rotation of
+/// axisymmetric bodies.
 pub fn hold_axis(in_force: &mut BTreeMap<usize, Prescribed>, place: &str, span: Span, model: &Model) -> Checked<()> {
     if !model.mesh.section.is_axisymmetric() {
         return Ok(());
@@ -98,7 +98,7 @@ pub fn hold_axis(in_force: &mut BTreeMap<usize, Prescribed>, place: &str, span: 
     Ok(())
 }
 
-/// Rings have no weight along their radius.
+/// Refuses radial gravity in axisymmetry.
 pub fn check_gravity(radial: Option<&Drive>, place: &str, model: &Model) -> Checked<()> {
     let none = matches!(radial, None | Some(Drive::Constant(0.0)));
     if !none && model.mesh.section.is_axisymmetric() {
@@ -108,7 +108,7 @@ pub fn check_gravity(radial: Option<&Drive>, place: &str, model: &Model) -> Chec
     Ok(())
 }
 
-/// No ring flies off as a whole along its radius.
+/// Refuses radial initial velocities in axisymmetry.
 pub fn check_velocities<'v>(
     place: &str,
     given: impl IntoIterator<Item = (&'v String, &'v [f64; 2])>,

@@ -1,4 +1,4 @@
-//! What a load on a side or a body leaves to each node.
+//! Nodal weights of a load on a side or a body.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,21 @@ use crate::mesh::{Edge, Mesh, shape};
 use crate::model::Model;
 use crate::model::boundary::Absorber;
 
-/// A node, its share, and the reference position where the load is taken.
+/// A node, its weight, and the reference position at which the load is evaluated.
 pub type Share = (usize, f64, Vector2<f64>);
 
-/// Consistent nodal shares of a traction: ∫ N_a w |X'| dξ at the Gauss points.
+/// Consistent nodal weights of a traction: ∫ N_a w |X'| dξ at the Gauss points.
 pub fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
     along_edges(mesh, edges, |along| along.norm())
 }
 
-/// Those of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its edges.
+/// Weights of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its
+/// edges.
 pub fn pressure_shares(mesh: &Mesh, edges: &[Edge]) -> [Vec<Share>; 2] {
     [along_edges(mesh, edges, |along| -along.y), along_edges(mesh, edges, |along| along.x)]
 }
 
-/// Those of a force on all edges together, as an even traction: what a traction has, over ∫ w |X'| dξ.
+/// Weights of a total force on edges as a uniform traction: those of a traction divided by ∫ w |X'| dξ.
 pub fn even_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
     let shares = edge_shares(mesh, edges);
     let total: f64 = shares.iter().map(|(_, share, _)| share).sum();
@@ -47,7 +48,7 @@ fn along_edges(mesh: &Mesh, edges: &[Edge], f: impl Fn(Vector2<f64>) -> f64) -> 
     shares
 }
 
-/// Nodal shares of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
+/// Nodal weights of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
 pub fn mass_shares(model: &Model, name: &str, place: &str) -> Checked<Vec<Share>> {
     let body = model.bodies.iter().find(|body| body.name == name);
     let points = model.point_masses.iter().find(|point| point.name == name);
@@ -78,7 +79,7 @@ pub fn mass_shares(model: &Model, name: &str, place: &str) -> Checked<Vec<Share>
     Ok(shares)
 }
 
-/// What the nodes of an absorbing side have of it.
+/// Nodal parts of an absorbing side.
 pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
     for Edge { nodes, element } in edges {

@@ -1,16 +1,14 @@
-//! What nothing holds or carries, found before anything is solved: bodies that float in a static step, bodies and nodes
-//! without mass in a dynamic one, and nodes outside all bodies that nothing holds.
+//! Detection of unconstrained motions before the run: bodies with rigid-body modes in a static step, bodies and nodes
+//! without mass in a dynamic one, and unsupported nodes outside all bodies.
 //!
-//! # Floating bodies
+//! # Unconstrained bodies
 //!
-//! Bodies that float in a static step.
-//!
-//! A shared node, a periodic copy, a follower of a plate, a support, a spring and a dashpot are equations between the rigid
-//! motions of the parts of a model, a row of numbers each. A motion at right angles to all of them meets no resistance.
+//! A shared node, a periodic copy, a follower of a platen, a support, a spring and a dashpot are equations between the rigid
+//! motions of the parts of a model, one row of numbers each. A motion orthogonal to all of them meets no resistance.
 //!
 //! # Parts
 //!
-//! Parts of a model that move as rigid bodies, and what couples their motions.
+//! The parts of a model move as rigid bodies:
 //!
 //! ```text
 //! u(X) = (U, V) + Θ J (X − X_c)/R          R: to the farthest node, so that all three numbers are lengths
@@ -18,7 +16,7 @@
 //!
 //! # Resistance
 //!
-//! Motions that something resists.
+//! The resisted motions form a vector space.
 
 use std::collections::BTreeMap;
 
@@ -35,7 +33,7 @@ use crate::mesh::rigid::RigidBody;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
-/// Every motion must meet stiffness or, in a dynamic step, mass.
+/// Checks that every motion meets stiffness or, in a dynamic step, mass.
 pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
     for (k, step) in model.steps.iter().enumerate() {
         if step.scheme.is_dynamic() || step.rupture.is_some() {
@@ -48,19 +46,19 @@ pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
     check_floating(given, model)
 }
 
-/// A node of no body meets nothing but its supports, springs, dashpots and contact.
+/// Checks nodes without a body, which have only their supports, springs, dashpots and contact.
 fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     let mut held = vec![false; model.dofs()];
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
     nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
-    // Whether contact holds a node that may part is left to the solver.
+    // Whether contact constrains a node that may separate is left to the solver.
     let rigid = model.contacts.iter().filter_map(|pair| pair.master.rigid_body()).flat_map(RigidBody::nodes);
     let points = model.contacts.iter().flat_map(ContactPair::slave_nodes).chain(rigid);
     points.for_each(|node| held[2 * node..2 * node + 2].fill(true));
     let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
     follow.for_each(|(_, dof)| held[dof] = true);
     for (node, d) in holding(step) {
-        // An inclined direction and what is across it are counted as the dofs that have their equations.
+        // An inclined direction and its perpendicular count as the dofs whose equations they replace.
         held[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
     }
     let free = held.iter().position(|held| !held);
@@ -82,7 +80,7 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
     }
 }
 
-/// Accelerations follow from masses, so a node that may move needs one.
+/// Checks that free nodes have mass, from which accelerations follow.
 fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     let mut carried = vec![false; model.mesh.nodes.len()];
     let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
@@ -115,15 +113,16 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     }
 }
 
-/// Parts of a group whose motions cost nothing; larger groups are left to the solver, which names what is free.
+/// Number of parts of a group up to which motions are checked here; larger groups are left to the solver, which reports free
+/// modes.
 const FEW_PARTS: usize = 32;
 
-/// Motions that are smaller than this share of the largest are not named.
+/// Fraction of the largest motion below which motions are not reported.
 const NAMED: f64 = 0.1;
 
-/// Bodies must be held against x, y and rotation by supports, springs or dashpots in every static step, each by its own or
-/// through what couples it with others: contact, shared nodes, periodic sides and plates. Contact holds in every direction, and a
-/// single shared node is a hinge. A group that touches a rigid body is left to the solver.
+/// Checks that bodies are constrained in x, y and rotation by supports, springs or dashpots in every static step, directly or
+/// through their coupling with others: contact, shared nodes, periodic sides and platens. Contact counts as constraint in every
+/// direction, and a single shared node as a hinge. A group that touches a rigid body is left to the solver.
 pub fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
     if model.steps.iter().all(|step| step.scheme.is_dynamic()) {
         return Ok(());
@@ -144,7 +143,7 @@ pub fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelErro
     Ok(())
 }
 
-/// Nodes and directions that supports, springs and dashpots hold.
+/// Nodes and directions constrained by supports, springs and dashpots.
 pub fn holding(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
     let springs = step.loads.springs.iter().map(|spring| spring.dof);
     let absorbers = step.loads.absorbers.iter().flat_map(|absorber| [2 * absorber.node, 2 * absorber.node + 1]);
@@ -157,9 +156,9 @@ pub fn holding(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
 struct Groups<'m> {
     parts: &'m Parts<'m>,
     members: Vec<Vec<usize>>,
-    /// group of each part and its place there; none of what is left to the solver
+    /// group of each part and its index there; `None` for parts left to the solver
     place: Vec<Option<(usize, usize)>>,
-    /// motions that couplings resist in each group
+    /// motions resisted by couplings in each group
     resisted: Vec<Resisted>,
 }
 
@@ -186,7 +185,7 @@ impl<'m> Groups<'m> {
         Self { resisted, ..groups }
     }
 
-    /// Let what a row says be resisted.
+    /// Adds a row to the resisted motions.
     fn add(&self, row: &Row, resisted: &mut [Resisted]) {
         let Some((group, _)) = row.first().and_then(|(part, _)| self.place[*part]) else { return };
         let mut sum = DVector::zeros(3 * self.members[group].len());
@@ -194,12 +193,12 @@ impl<'m> Groups<'m> {
             let Some((_, slot)) = self.place[*part] else { return };
             (0..3).for_each(|i| sum[3 * slot + i] += share[i]);
         }
-        // What cancels leaves round-off of the size of its terms.
+        // Cancelling terms leave round-off relative to their size.
         let size = row.iter().map(|(_, share)| share.norm_squared()).sum::<f64>().sqrt();
         resisted[group].add(sum, size);
     }
 
-    /// What can move how in a step, in words.
+    /// Describes the unconstrained motion in a step, if there is one.
     fn free_motion(&self, step: &Step) -> Option<String> {
         let mut resisted = self.resisted.clone();
         holding(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
@@ -218,12 +217,12 @@ impl<'m> Groups<'m> {
     }
 }
 
-/// An equation between the motions of parts: shares of U, V and Θ of each.
+/// An equation between the motions of parts: coefficients of U, V and Θ of each.
 pub type Row = Vec<(usize, Vector3<f64>)>;
 
-/// A part: bodies in contact or that share nodes at two places, or a node outside all bodies.
+/// A part: bodies in contact or with two shared nodes, or a node outside all bodies.
 pub struct Part {
-    /// its bodies
+    /// bodies
     pub bodies: Vec<usize>,
     /// whether it touches a rigid body
     pub on_rigid: bool,
@@ -232,17 +231,17 @@ pub struct Part {
     radius: f64,
 }
 
-/// All parts.
+/// All parts of a model.
 pub struct Parts<'m> {
-    /// part by part
+    /// list of parts
     pub parts: Vec<Part>,
     model: &'m Model,
-    /// parts of each node: more than one is a hinge
+    /// parts of each node: more than one for a hinge
     of_node: Vec<Vec<usize>>,
 }
 
 impl<'m> Parts<'m> {
-    /// The parts of a model.
+    /// Finds the parts of a model.
     pub fn of(model: &'m Model) -> Self {
         let owners = owners(model);
         let groups = joined(model, &owners);
@@ -264,7 +263,7 @@ impl<'m> Parts<'m> {
         Self { parts, model, of_node }
     }
 
-    /// What is moved, in words: bodies, or a node.
+    /// Names of the bodies of a part, or of its node.
     pub fn names(&self, part: usize) -> Vec<String> {
         let Part { bodies, nodes, .. } = &self.parts[part];
         match bodies.is_empty() {
@@ -278,14 +277,14 @@ impl<'m> Parts<'m> {
         terms.iter().map(|&(node, d)| self.term(self.of_node[node][0], node, d)).collect()
     }
 
-    /// d·u of a node as a part moves it.
+    /// d·u of a node as part of a rigid motion.
     fn term(&self, part: usize, node: usize, d: Vector2<f64>) -> (usize, Vector3<f64>) {
         let Part { centre, radius, .. } = self.parts[part];
         let arm = (self.model.mesh.nodes[node] - centre) / radius;
         (part, Vector3::new(d.x, d.y, d.y * arm.x - d.x * arm.y))
     }
 
-    /// Everything that is zero in every step.
+    /// All expressions that are zero in every step.
     pub fn couplings(&self) -> Vec<Row> {
         let mut rows = self.of_shape();
         for (node, parts) in self.of_node.iter().enumerate() {
@@ -301,7 +300,7 @@ impl<'m> Parts<'m> {
             };
             rows.extend(follower.dofs().map(row));
         }
-        // The leaders of a plate that turns keep their distance.
+        // The leaders of a rotating platen keep their distance.
         let apart = |&[a, b]: &[usize; 2]| (self.model.mesh.nodes[b] - self.model.mesh.nodes[a]).normalize();
         rows.extend(
             self.model
@@ -313,7 +312,7 @@ impl<'m> Parts<'m> {
         rows
     }
 
-    /// What a part cannot do by itself: hoops resist all but the motion along the axis, and a node does not turn.
+    /// Intrinsic constraints of a part: in axisymmetry all motions except the axial one, and the rotation of a node.
     fn of_shape(&self) -> Vec<Row> {
         let axisymmetric = self.model.mesh.section.is_axisymmetric();
         let of = |(part, Part { bodies, nodes, .. }): (usize, &Part)| {
@@ -340,7 +339,7 @@ impl Part {
     }
 }
 
-/// The bodies of each node; one outside all bodies has a number of its own after theirs.
+/// Bodies of each node; a node outside all bodies has a number of its own after theirs.
 fn owners(model: &Model) -> Vec<Vec<usize>> {
     let mut owners = vec![Vec::new(); model.mesh.nodes.len()];
     for (body, of) in model.bodies.iter().enumerate() {
@@ -351,13 +350,13 @@ fn owners(model: &Model) -> Vec<Vec<usize>> {
     owners
 }
 
-/// Groups of owners that move as one.
+/// Groups of bodies and nodes that move as one.
 fn joined(model: &Model, owners: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut joined = Joined::new(1 + owners.iter().flatten().max().copied().unwrap_or(0));
     bonded(model, owners).into_iter().for_each(|(a, b)| joined.join(a, b));
     for pair in &model.contacts {
         let Master::Mesh(Surface { segments, .. }) = &pair.master else { continue };
-        // A group of edges may run along several bodies.
+        // An edge group may belong to several bodies.
         let nodes = pair.slave_nodes().chain(segments.iter().flat_map(|segment| segment.ends));
         let met: Vec<usize> = nodes.flat_map(|node| owners[node].iter().copied()).collect();
         met.windows(2).for_each(|two| joined.join(two[0], two[1]));
@@ -365,7 +364,7 @@ fn joined(model: &Model, owners: &[Vec<usize>]) -> Vec<Vec<usize>> {
     joined.groups()
 }
 
-/// Bodies that share nodes at two places.
+/// Bodies that share two nodes.
 fn bonded(model: &Model, owners: &[Vec<usize>]) -> Vec<(usize, usize)> {
     let mut first: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     let mut bonded = Vec::new();
@@ -382,10 +381,10 @@ fn bonded(model: &Model, owners: &[Vec<usize>]) -> Vec<(usize, usize)> {
     bonded
 }
 
-/// Share of an equation below which it says nothing that others do not.
+/// Relative remainder below which an equation is linearly dependent on the others.
 const NOTHING_NEW: f64 = 1e-5;
 
-/// The motions that equations resist: vectors of unit length, at right angles to each other.
+/// Motions resisted by equations: an orthonormal basis.
 #[derive(Clone)]
 pub struct Resisted {
     size: usize,
@@ -393,14 +392,14 @@ pub struct Resisted {
 }
 
 impl Resisted {
-    /// Nothing of motions of so many numbers.
+    /// Creates an empty basis for motions with `size` components.
     pub fn nothing(size: usize) -> Self {
         Self { size, basis: Vec::new() }
     }
 
-    /// What of a vector is at right angles to all that is resisted.
+    /// Component of a vector orthogonal to the basis.
     fn rest(&self, mut of: DVector<f64>) -> DVector<f64> {
-        // Twice, as the first time leaves round-off.
+        // The second pass removes the round-off of the first.
         for known in self.basis.iter().chain(&self.basis) {
             let along = known.dot(&of);
             of.axpy(-along, known, 1.0);
@@ -408,7 +407,7 @@ impl Resisted {
         of
     }
 
-    /// One more equation, a row of terms of a size.
+    /// Adds one more equation, with terms of the given size.
     pub fn add(&mut self, row: DVector<f64>, size: f64) {
         if self.basis.len() == self.size {
             return;
@@ -420,7 +419,7 @@ impl Resisted {
         }
     }
 
-    /// A motion that nothing resists: as much as can be of one number.
+    /// A unit motion without resistance.
     pub fn free(&self) -> Option<DVector<f64>> {
         if self.basis.len() == self.size {
             return None;

@@ -1,26 +1,26 @@
-//! Supports in force: those of the step before, unless they are given anew or freed.
+//! Supports in force: those of the previous step, unless they are replaced or released.
 //!
 //! # Supports at nodes
 //!
-//! Supports in force at each node: along the coordinates, and along inclined directions.
+//! Supports at a node act along the coordinates or along inclined directions.
 //!
-//! One inclined direction is a support of its own. Two directions at a node hold both of its components:
+//! One inclined direction is a support of its own. Two directions at a node constrain both of its components:
 //!
 //! ```text
 //! d₁·u = ū₁,  d₂·u = ū₂    ⇒    u = D⁻¹ ū,  D = [d₁ d₂]ᵀ
 //! ```
 //!
-//! Directions that are nearly the same would hold by their difference what nobody meant to hold, and are refused.
+//! Nearly parallel directions are refused: their difference would constrain the node unintentionally.
 //!
 //! # Normals
 //!
-//! The normals of a side at its nodes, in the undeformed body.
+//! Normals of a side at its nodes, in the undeformed body:
 //!
 //! ```text
 //! n_a = ∫ N_a n dS / |∫ N_a n dS|
 //! ```
 //!
-//! so that u·n_a = 0 at all nodes lets no volume through the side. Where edges meet at a corner, a node has the normals of both.
+//! so that u·n_a = 0 at all nodes conserves the volume. Where edges meet at a corner, a node has the normals of both.
 //!
 //! Source: Engelman, Sani & Gresho (1982), Int. J. Numer. Meth. Fluids 2, 225.
 
@@ -41,7 +41,7 @@ use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::support::{Direction, Inclined, Motion, Prescribed};
 use crate::model::text::number;
 
-/// Take over the supports of the step before, and replace those given again.
+/// Adds the supports of a step to those in force, replacing those given again.
 pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Span, model: &Model) -> Checked<()> {
     let before = in_force.clone();
     in_force.begin(span);
@@ -83,7 +83,7 @@ pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Sp
     Ok(())
 }
 
-/// What a support says along inclined directions and normals, node by node.
+/// Prescribed inclined directions and normals of a support, node by node.
 fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Model) -> Checked<Vec<Along<'s>>> {
     let mut all = Vec::new();
     if let (Some(direction), Some(change)) = (&support.along, &support.u) {
@@ -107,7 +107,7 @@ fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Mode
     Ok(all)
 }
 
-/// A support must prescribe something, and no direction twice.
+/// Checks that a support prescribes something, and no direction twice.
 fn check_directions(support: &Support, place: &str) -> Checked<()> {
     let Support { ux, uy, along, u, un, rotation, angle, .. } = support;
     match (along, u) {
@@ -132,7 +132,7 @@ fn check_directions(support: &Support, place: &str) -> Checked<()> {
     }
 }
 
-/// A plate moves as a whole: what differs from node to node is none of its motions.
+/// Checks that a support on a platen does not vary from node to node, since a platen moves as a whole.
 fn check_on_plates(support: &Support, nodes: &[usize], model: &Model, place: &str) -> Checked<()> {
     let on_plate =
         |node: &usize| model.plates.iter().any(|plate| plate.iter().any(|own| model.ties.original(*own) == *node));
@@ -160,7 +160,7 @@ fn displacement(change: &Change<Drive>, place: &str, span: Span) -> Checked<Opti
     Ok(Some(Motion::Displacement(drive.clone(), span)))
 }
 
-/// A rotation, which goes on from that which was in force.
+/// Adds a rotation, continued from the one in force.
 fn rotation(
     change: &Change<Rotation>,
     before: Option<&Prescribed>,
@@ -177,57 +177,57 @@ fn rotation(
     Ok(Some(Motion::Rotation { about: Vector2::from(*about), angle }))
 }
 
-/// Nothing was in force that could end.
+/// Error for a release without a support in force.
 pub fn frees_nothing(place: &str, on: &Place) -> ModelError {
     ModelError::new(place, format!("null ends what an earlier step gave, but none gave this on {on}: check the name"))
 }
 
-/// Sine of an angle between two directions that are the same but for round-off.
+/// Sine of the angle between two directions below which they are parallel within round-off.
 const PARALLEL: f64 = 1e-9;
 
-/// Least angle between an inclined direction and another at its node [°].
+/// Smallest angle between an inclined direction and another at its node [°].
 const LEAST_ANGLE: f64 = 15.0;
 
-/// Two sides that meet at less than this angle are one, bent in pieces, as far as their normals are concerned [°].
+/// Angle between two sides below which they share a normal at their common node [°].
 pub const CORNER: f64 = 45.0;
 
-/// Share of a value by which a third direction at a node may miss what the other two say.
+/// Relative tolerance by which a third direction at a node may deviate from the other two.
 const ROUNDED: f64 = 1e-9;
 
 /// Supports in force.
 #[derive(Clone, Default)]
 pub struct InForce {
-    /// those of dofs
+    /// supports of dofs
     pub dofs: BTreeMap<usize, Prescribed>,
-    /// those along inclined directions, by node
+    /// supports along inclined directions, by node
     inclined: BTreeMap<usize, Vec<Held>>,
 }
 
-/// A node that is held along an inclined direction.
+/// A node supported along an inclined direction.
 #[derive(Clone)]
 struct Held {
     support: Inclined,
     is_normal: bool,
-    /// where the present step gives it, if it does
+    /// place in the present step, if given there
     given: Option<String>,
 }
 
-/// A support along d at a node, as it is given.
+/// A support along d at a node.
 pub struct Along<'s> {
-    /// the node
+    /// node
     pub node: usize,
     /// d
     pub d: Vector2<f64>,
-    /// its displacement, or the end of it
+    /// displacement, or its end
     pub change: &'s Change<Drive>,
     /// whether d is the normal of a side
     pub is_normal: bool,
-    /// where it stands
+    /// place in the input
     pub key: String,
 }
 
 impl InForce {
-    /// Begin a step with what the one before has left.
+    /// Starts a step with the supports in force.
     pub fn begin(&mut self, span: Span) {
         for support in self.dofs.values_mut() {
             if let Motion::Displacement(_, own) = &mut support.motion {
@@ -239,7 +239,7 @@ impl InForce {
         }
     }
 
-    /// After a step that may have ended before its time, what it moved to a place stays where it came to.
+    /// Keeps supports at their final position after a step that may have ended early.
     pub fn stay(&mut self) {
         let stays = |drive: &mut Drive| {
             if let Drive::Constant(_) | Drive::ByPlace(..) = drive {
@@ -254,7 +254,7 @@ impl InForce {
         self.inclined.values_mut().flatten().for_each(|held| stays(&mut held.support.drive));
     }
 
-    /// Prescribe a dof, or free it.
+    /// Prescribes or releases a dof.
     pub fn set(&mut self, dof: usize, motion: Option<&Motion>) {
         match motion {
             Some(motion) => self.dofs.insert(dof, Prescribed { at: dof.into(), motion: motion.clone() }),
@@ -262,7 +262,7 @@ impl InForce {
         };
     }
 
-    /// All supports of a step, `place`, ascending by their dofs.
+    /// All supports of a step, `place`, ascending by dof.
     pub fn all(&self, place: &str, model: &Model) -> Checked<Vec<Prescribed>> {
         let mut all = self.dofs.clone();
         for (&node, held) in &self.inclined {
@@ -276,7 +276,7 @@ impl InForce {
     }
 }
 
-/// Directions in which nodes were held and are free from now on.
+/// Directions that were supported and are free from now on.
 pub fn freed(before: &[Prescribed], now: &[Prescribed]) -> Vec<Direction> {
     let find = |all: &[Prescribed], dof: usize| {
         all.binary_search_by_key(&dof, |support| support.at.dof).ok().map(|k| all[k].at)
@@ -296,7 +296,7 @@ pub fn freed(before: &[Prescribed], now: &[Prescribed]) -> Vec<Direction> {
 }
 
 impl Along<'_> {
-    /// Put it into force, or end it. Along a coordinate it is a support of that dof.
+    /// Puts it into force, or ends it. Along a coordinate it is a support of that dof.
     pub fn change(&self, in_force: &mut InForce, span: Span, model: &Model) -> Checked<()> {
         let drive = self.change.given();
         if let Some(i) = (0..2).find(|&i| self.d[1 - i].abs() <= PARALLEL) {
@@ -366,7 +366,7 @@ fn is_same(a: &Drive, b: &Drive) -> bool {
     }
 }
 
-/// The supports of a node that is held along its coordinates as `given` and along some directions; what is wrong otherwise.
+/// Supports of a node with the coordinate supports `given` and some inclined directions, or an error.
 fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Prescribed>, String> {
     let mut all: Vec<Inclined> = Vec::new();
     for support in &given {
@@ -402,7 +402,7 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
     Ok((0..2).map(|i| own(i).unwrap_or_else(|| component(i))).collect())
 }
 
-/// Inclined directions must differ from each other, and from the coordinates that are held, so much that it is meant.
+/// Checks that inclined directions differ sufficiently from each other and from the supported coordinates.
 fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), String> {
     for a in 0..all.len() {
         for b in (a + 1).max(straight)..all.len() {
@@ -421,7 +421,7 @@ fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), 
     Ok(())
 }
 
-/// A third direction may say again what the first two do.
+/// Checks that a third direction agrees with the first two.
 fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -> Result<(), String> {
     let value = |of: &Inclined| match (&of.drive, &first.drive) {
         (Drive::Constant(value), Drive::Constant(_)) | (Drive::Rate(value), Drive::Rate(_)) => Some(*value),
@@ -440,7 +440,7 @@ fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -
         .into())
 }
 
-/// Unit normals out of the body, node by node; the sides of a periodic model share those of their nodes.
+/// Outward unit normals of the body, node by node; the sides of a periodic model share those of their nodes.
 pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<Item = (usize, Vector2<f64>)>> {
     let Place::Group(name) = on else {
         return Err(ModelError::new(
@@ -452,7 +452,7 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
     let mut at_node: BTreeMap<(usize, usize), Vec<Vector2<f64>>> = BTreeMap::new();
     for edge in edges {
         for (node, area) in areas(model, edge) {
-            // The nodes of a plate have normals of their own.
+            // Nodes of a platen have separate normals.
             let on_plate = model.plates.iter().any(|plate| plate.binary_search(&node).is_ok());
             let original = model.ties.original(node);
             at_node.entry((original, if on_plate { node } else { original })).or_default().push(area);
@@ -462,7 +462,7 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
     Ok(at_node.into_iter().flat_map(of_node))
 }
 
-/// ∫ N_a n dS of an edge, node by node. On the axis, where a ring has no area, it is that beside the axis.
+/// ∫ N_a n dS of an edge, node by node; at the axis, where the area is zero, the value next to it is used.
 fn areas(model: &Model, edge: &Edge) -> Vec<(usize, Vector2<f64>)> {
     let [x, y] = pressure_shares(&model.mesh, std::slice::from_ref(edge));
     edge.nodes

@@ -1,21 +1,21 @@
 //! Solid elements: internal force, tangent, stress and mass of one element.
 //!
-//! Degrees of freedom of an element are ordered by node: component i of node a is 2a + i. Integrals are
-//! weighted as the [`Section`] says.
+//! Degrees of freedom of an element are ordered by node: component i of node a is 2a + i. Integrals are weighted according to
+//! the [`Section`].
 //!
 //! # Mass
 //!
-//! Mass of one element, per direction: component i of node a and component j of node b share M_ab δ_ij.
+//! The mass of one element is the same for both directions: component i of node a and component j of node b have M_ab δ_ij.
 //!
 //! # Follower pressure
 //!
-//! Pressure on an edge that follows the surface.
+//! A follower pressure on an edge has the internal force
 //!
 //! ```text
 //! f_a = p ∫ N_a w n̂ |x'| dξ,   n̂ |x'| = (x'_y, −x'_x) out of the body (on the left of the edge)
 //! ```
 //!
-//! as internal force: the load −p n̂ w da moved to the left-hand side, w being the weight of the section at x.
+//! This is the load −p n̂ w da moved to the left-hand side, where w is the weight of the section at x.
 
 mod solid;
 
@@ -29,7 +29,7 @@ use crate::mesh::shape;
 use crate::mesh::shape::ElementKind;
 pub use solid::{Memory, SolidElement};
 
-/// An element that cannot be built on its nodes.
+/// Reason why an element is invalid on its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ElementError {
     /// det(∂X/∂ξ) ≤ 0 at a quadrature point
@@ -37,10 +37,10 @@ pub enum ElementError {
         "the element is degenerate, too distorted or numbered clockwise (Jacobian {jacobian:.3e} at a quadrature point)"
     )]
     Degenerate {
-        /// det(∂X/∂ξ), or not a number [L²]
+        /// det(∂X/∂ξ), or NaN [L²]
         jacobian: f64,
     },
-    /// F-bar was asked of an element that is not a four-node quadrilateral
+    /// F-bar was requested for an element that is not a four-node quadrilateral
     #[error("f_bar is for four-node quadrilaterals (Q4), not for {kind:?}")]
     FBarNeedsQ4 {
         /// kind of the element
@@ -53,7 +53,7 @@ pub enum ElementError {
 /// ```text
 /// ∂X/∂ξ = Σ_a (X_a − X_1) ⊗ ∂N_a/∂ξ,   ∂N_a/∂X = (∂X/∂ξ)⁻ᵀ ∂N_a/∂ξ
 /// ```
-/// Positions count from the first node, so that nothing is lost far from the origin.
+/// Positions are relative to the first node, to avoid round-off far from the origin.
 fn gradients(
     kind: ElementKind,
     at: [f64; 2],
@@ -75,7 +75,7 @@ fn gradients(
 /// ```
 ///
 /// # Errors
-/// [`ElementError::Degenerate`] when the element has no positive area at a quadrature point.
+/// Returns [`ElementError::Degenerate`] if the element has no positive area at a quadrature point.
 pub fn consistent_mass(
     kind: ElementKind,
     section: Section,
@@ -102,7 +102,7 @@ pub fn consistent_mass(
 /// The row sums of quadratic elements are zero or negative at the corners, hence (2).
 ///
 /// # Errors
-/// As [`consistent_mass`].
+/// The same as for [`consistent_mass`].
 ///
 /// Source: Hinton, Rock & Zienkiewicz (1976), Earthq. Engng Struct. Dyn. 4, 245, doi:10.1002/eqe.4290040305.
 pub fn lumped_mass(
@@ -117,16 +117,16 @@ pub fn lumped_mass(
     Ok(density * volumes)
 }
 
-/// An element's mass without any at the nodes that are `massless`: in its kinetic energy they move with the mean of the
+/// Mass of an element with zero mass at the `massless` nodes: in its kinetic energy they move with the mean of the
 /// others.
 ///
 /// ```text
 /// M̃ = Tᵀ M T,   (T v)_a = v_a, or the mean of all v_b that have mass if a is massless
 /// ```
 ///
-/// The mass as a whole and the momentum stay. A surface without inertia follows the contact at once, as in statics; with
-/// inertia its nodes bounce on the penalty stiffness faster than increments resolve, and schemes without damping then create
-/// energy. An element all of whose nodes are massless keeps its mass.
+/// Total mass and momentum are conserved. A surface without inertia follows the contact at once, as in statics; with
+/// inertia its nodes oscillate on the penalty stiffness faster than increments resolve, and undamped schemes then create
+/// energy. An element with massless nodes only keeps its mass.
 ///
 /// Source: Khenous, Laborde & Renard (2008), Eur. J. Mech. A 27, 918; Hager, Hüeber & Wohlmuth (2008), Int. J. Numer. Meth.
 /// Eng. 73, 205 (mass kept in the strip of elements).

@@ -1,8 +1,8 @@
-//! One page to look at results in a browser, without a network and without another program.
+//! Report of results: one page for a browser, without a network or another program.
 //!
-//! The numbers of the folders are packed into the page ([`table`]), and unpacked and drawn there by what stands in
-//! `page/`. Where there are too many, some are left out; the page says which. Faults in a folder are reported on the
-//! page and hide no more than they must.
+//! The numbers of the folders are packed into the page ([`table`]), and unpacked and drawn by the scripts in `page/`.
+//! Where there are too many, some are omitted, which the page reports. Defects in a folder are reported on the page; the
+//! remaining data are shown.
 
 mod newton;
 mod run;
@@ -27,7 +27,7 @@ pub const FILE: &str = "report.html";
 /// Marker of pages written by this program.
 const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
 
-/// All packed numbers at most [bytes]; with the rest the page stays below 30 MB.
+/// Upper bound of the packed numbers; the whole page then stays below 30 MB [bytes].
 const ROOM: usize = 28_000_000;
 
 /// Scripts of the page, in the order of execution.
@@ -53,15 +53,15 @@ const SCRIPTS: [&str; 19] = [
     include_str!("page/main.js"),
 ];
 
-/// Whether a file is a page of ours: one that a user has under the same name is not.
+/// Whether a file is a page of this program, not a user's file of the same name.
 pub fn is_page(path: &Path) -> bool {
     files::bears(path, OURS)
 }
 
-/// Write the page of result folders, finished or still growing; several are overlaid.
+/// Writes the page of result folders, finished or still growing; several are overlaid.
 ///
 /// # Errors
-/// [`ReportError`].
+/// Returns [`ReportError`] if a folder cannot be read or the page cannot be written.
 pub fn write(folders: &[PathBuf], file: &Path) -> Result<(), ReportError> {
     if file.is_dir() {
         return Err(failed(file, &"is a folder: give the name of the page").into());
@@ -77,10 +77,10 @@ pub fn write(folders: &[PathBuf], file: &Path) -> Result<(), ReportError> {
     Ok(files::replace(file, page.as_bytes()).map_err(|cause| failed(file, &cause))?)
 }
 
-/// The page of result folders.
+/// Returns the page of result folders.
 ///
 /// # Errors
-/// [`ReportError::Unreadable`].
+/// Returns [`ReportError::Unreadable`] if a folder cannot be read.
 pub fn page(folders: &[PathBuf]) -> Result<String, ReportError> {
     let unreadable = |path: &Path, cause: &str| ReportError::Unreadable { path: path.to_owned(), cause: cause.into() };
     for folder in folders {
@@ -101,9 +101,9 @@ pub fn page(folders: &[PathBuf]) -> Result<String, ReportError> {
     Ok(assembled(&data, &pack))
 }
 
-/// The page of its data.
+/// Assembles the page from its data.
 fn assembled(data: &Value, pack: &Pack) -> String {
-    // Nothing in the data ends the element that it stands in.
+    // The data must not close their HTML element.
     let json = data.to_string().replace('<', "\\u003c");
     let licence = include_str!("page/uplot/LICENSE");
     let scripts = SCRIPTS.map(|script| format!("<script>\n{script}\n</script>\n")).concat();

@@ -11,10 +11,10 @@ use super::table::Columns;
 /// Increments whose residuals are drawn, those with the most linear solves.
 pub const HARDEST: usize = 100;
 
-/// Rows of `newton.csv` that belong to each increment, failed attempts included.
+/// Rows of `newton.csv` that belong to each increment, including failed attempts.
 ///
 /// # Errors
-/// [`ReportError::Unreadable`] when a column is missing.
+/// Returns [`ReportError::Unreadable`] if a column is missing.
 pub fn increments(newton: &Columns) -> Result<Vec<Range<usize>>, ReportError> {
     let numbers = newton.get("increment")?;
     let mut start = 0;
@@ -25,19 +25,20 @@ pub fn increments(newton: &Columns) -> Result<Vec<Range<usize>>, ReportError> {
     Ok(rows.collect())
 }
 
-/// Linear solves of an increment over the time at its end: an attempt given up before its first solve has a row without one.
+/// Number of linear solves of an increment, with the time at its end; the row of an attempt rejected before its first solve
+/// does not count.
 ///
 /// # Errors
-/// [`ReportError::Unreadable`] when a column is missing.
+/// Returns [`ReportError::Unreadable`] if a column is missing.
 pub fn solves(newton: &Columns, increment: &Range<usize>) -> Result<[f64; 2], ReportError> {
     let iterations = &newton.get("iteration")?[increment.clone()];
     Ok([newton.get("time")?[increment.end - 1], iterations.iter().filter(|iteration| **iteration > 0.0).count() as f64])
 }
 
-/// Residual over iteration in the hardest increments, one attempt after the other, broken between them.
+/// Residual over iteration in the hardest increments, attempts in sequence with gaps between them.
 ///
 /// # Errors
-/// [`ReportError::Unreadable`] when a column is missing.
+/// Returns [`ReportError::Unreadable`] if a column is missing.
 pub fn residuals(newton: &Columns, increments: &[Range<usize>]) -> Result<Vec<[f64; 2]>, ReportError> {
     let (iterations, values) = (newton.get("iteration")?, newton.get("residual")?);
     let mut hardest: Vec<&Range<usize>> = increments.iter().collect();
@@ -53,17 +54,17 @@ pub fn residuals(newton: &Columns, increments: &[Range<usize>]) -> Result<Vec<[f
     Ok(curve)
 }
 
-/// Attempts that were given up and are shown at most.
+/// Upper bound of the number of rejected attempts shown.
 const MOST: usize = 500;
 
 /// Summary of the rows of one attempt.
 struct Attempt {
     rows: Range<usize>,
-    /// whether another one at the same increment followed
+    /// whether another attempt at the same increment followed
     given_up: bool,
 }
 
-/// The columns needed of the table; `None` where it lacks them.
+/// Required columns of the table; `None` where they are missing.
 struct Table<'a> {
     step: (&'a [f64], &'a [String]),
     increment: &'a [f64],
@@ -113,28 +114,28 @@ impl<'a> Table<'a> {
         attempts
     }
 
-    /// Outcome of an attempt, if the table has it.
+    /// Outcome of an attempt, if the table contains it.
     fn verdict(&self, rows: &Range<usize>) -> Option<&str> {
         word(self.verdict?, rows.end - 1)
     }
 
-    /// Why an attempt was given up, as the table says.
+    /// Reason of a rejected attempt according to the table.
     fn why(&self, rows: &Range<usize>) -> &str {
         let reason = self.reason.and_then(|reason| word(reason, rows.end - 1)).filter(|reason| !reason.is_empty());
         reason.or_else(|| self.verdict(rows)).unwrap_or("not solved")
     }
 }
 
-/// The word of a row in a column of words.
+/// Word of a row in a column of words.
 fn word<'a>((values, words): (&[f64], &'a [String]), row: usize) -> Option<&'a str> {
     words.get(values[row] as usize).map(String::as_str)
 }
 
-/// Every increment with its solves, and every attempt that was given up with what is known of why.
+/// Every increment with its solves, and every rejected attempt with its reason as far as known.
 pub fn attempts(newton: &Columns, complete: bool) -> Value {
     let Some(table) = Table::of(newton) else { return Value::Null };
     let mut attempts = table.attempts();
-    // A run that has stopped did so in its last attempt, unless the table knows better.
+    // A stopped run ended in its last attempt, unless the table states otherwise.
     if !complete && let Some(last) = attempts.last_mut() {
         last.given_up |= table.verdict(&last.rows).is_none();
     }

@@ -1,4 +1,4 @@
-//! Data of the page from one folder of results.
+//! Page data of one results folder.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use crate::laws::friction::FrictionParameters;
 use crate::output::files;
 use crate::output::store::read::{StoredContact, contacts};
 
-/// Rows of a table at most.
+/// Upper bound of the rows of a table.
 const ROWS: usize = 40_000;
 
 /// Rough size of a packed number [bytes].
@@ -19,12 +19,12 @@ const NUMBER: f64 = 3.0;
 /// Rows of newton.csv beyond which only its increments are shown.
 const ITERATIONS: usize = 20_000;
 
-/// A folder being put on a page.
+/// A results folder being added to a page.
 pub struct Run<'a> {
     source: &'a Source,
-    /// share of the page for it [bytes]
+    /// part of the page available to it [bytes]
     room: usize,
-    /// what is left out, and what is wrong
+    /// omissions and defects
     notes: Vec<String>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Run<'a> {
         (share * self.room as f64 / (NUMBER * numbers.max(1) as f64)) as usize
     }
 
-    /// Everything that the page shows of the run.
+    /// Returns all page data of the run.
     pub fn show(mut self, pack: &mut Pack) -> Value {
         let summary = self.summary();
         let status = summary["status"].as_str().unwrap_or("unknown").to_owned();
@@ -80,7 +80,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// A table whose rows follow each other in time: the history of a run, or the path of a law driven alone.
+    /// Table of a time series: the history of a run or of a law test.
     fn over_time(&mut self, file: &str, pack: &mut Pack) -> Value {
         let Some(table) = read(&self.source.folder, file, &mut self.notes) else { return Value::Null };
         if table.get("time").is_err() {
@@ -104,7 +104,7 @@ impl<'a> Run<'a> {
         table.sheet(&shown, pack)
     }
 
-    /// Residuals of the hardest increments, solves of all, and the attempts that were given up.
+    /// Residuals of the hardest increments, solves of all, and rejected attempts.
     fn newton(&mut self, complete: bool, pack: &mut Pack) -> Value {
         let Some(newton) = read(&self.source.folder, "newton.csv", &mut self.notes) else { return Value::Null };
         self.convergence(&newton, complete, pack).unwrap_or_else(|fault| {
@@ -123,7 +123,7 @@ impl<'a> Run<'a> {
             iterations.push(iteration);
             of_increment.push(residual);
         }
-        // Of many increments the one with the most solves in each group is shown.
+        // Of many increments, the one with the most solves in each group is shown.
         let group = all.len().div_ceil(self.fit(0.05, 3).clamp(1, ROWS));
         let (mut times, mut counts) = (Vec::new(), Vec::new());
         for hardest in all.chunks(group).filter_map(|some| some.iter().max_by_key(|rows| rows.len())) {
@@ -142,7 +142,7 @@ impl<'a> Run<'a> {
         }))
     }
 
-    /// A table that is written at the end of a run, whole but for the rows there is no room for.
+    /// Table written at the end of a run, complete except for rows that do not fit.
     fn small_table(&mut self, file: &str, pack: &mut Pack) -> Value {
         let Some(table) = read(&self.source.folder, file, &mut self.notes) else { return Value::Null };
         let all = table.rows();
@@ -154,7 +154,7 @@ impl<'a> Run<'a> {
         table.sheet(&shown, pack)
     }
 
-    /// Values of a quantity of each map at most.
+    /// Upper bound of the number of values per quantity of each map.
     fn values(&self, maps: &[StoredContact]) -> usize {
         self.fit(0.4, maps.iter().map(|map| map.quantities.len()).sum())
     }
@@ -178,7 +178,7 @@ impl<'a> Run<'a> {
         let start = pack.text.len();
         let contact = Series::read(&self.source.folder, "contact", room / 2, &mut self.notes);
         let left = |pack: &Pack| room.saturating_sub(pack.text.len() - start);
-        // Half of what is left is enough for tractions.
+        // Half of the remaining room suffices for tractions.
         let solid = Series::read(&self.source.folder, "solid", left(pack) * 4 / 5, &mut self.notes);
         let bodies = solid.as_ref().map_or(Value::Null, |solid| solid.show(&solid.times(), pack));
         let times = solid.as_ref().or(contact.as_ref()).map_or_else(Vec::new, Series::times);

@@ -1,6 +1,6 @@
-//! Frames of bodies and of interfaces for the page: as many as there is room for.
+//! Frames of bodies and interfaces for the page, as many as fit.
 //!
-//! What interfaces did over place and time, for the page.
+//! Maps of interface quantities over place and time.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::output::results::{Array, Frame, Grid, frames};
 use crate::output::store::STORE;
 use crate::output::store::read::StoredContact;
 
-/// Places before anything moves are shown as they differ from the middle, so that single precision does far from the origin.
+/// Undeformed positions are stored relative to the center, so that single precision suffices far from the origin.
 fn middle(points: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|i| {
         let [low, high] = range(points.iter().map(|x| x[i]));
@@ -22,14 +22,14 @@ fn middle(points: &[[f64; 2]]) -> [f64; 2] {
 
 /// Frames of one kind.
 pub struct Series {
-    /// those that can be read
+    /// readable frames
     frames: Vec<(Frame, Grid)>,
 }
 
 /// A frame, packed for the page.
 struct PackedFrame {
     time: f64,
-    /// displacement of all [L]
+    /// largest displacement [L]
     largest: f64,
     displacement: Option<Packed>,
     fields: Vec<Field>,
@@ -38,9 +38,9 @@ struct PackedFrame {
 /// A field of a frame, packed.
 struct Field {
     name: String,
-    /// of each component its range, that of most of it, and its values
+    /// for each component: its full range, its typical range, and its values
     components: Vec<([f64; 2], [f64; 2], Packed)>,
-    /// of a vector, the length of the longest of all, and of most
+    /// length of the longest vector, and of the longest typical one
     longest: [f64; 2],
 }
 
@@ -52,8 +52,8 @@ impl PackedFrame {
 }
 
 impl Series {
-    /// Read the frames that `NAME.pvd` lists, evenly spread and as many as fit into so many bytes of a page; what cannot be
-    /// read goes to the notes.
+    /// Reads frames listed by `NAME.pvd`, evenly spaced and as many as fit into `room` bytes of a page; unreadable ones are
+    /// noted.
     pub fn read(folder: &Path, name: &str, room: usize, notes: &mut Vec<String>) -> Option<Self> {
         let listed = match frames(folder, name) {
             Ok(listed) => listed?,
@@ -66,7 +66,7 @@ impl Series {
             return None;
         }
         let read = |&k: &usize| (listed[k].clone(), Grid::read(&folder.join(&listed[k].file)));
-        // Frames at rest take next to nothing: the largest of some tells.
+        // Frames of an undeformed state compress to almost nothing; the largest of some samples is representative.
         let samples = spread(listed.len(), 7).into_iter().filter_map(|k| Some((listed[k].clone(), read(&k).1.ok()?)));
         let samples = Self { frames: samples.collect() };
         let most = (room.saturating_sub(samples.mesh()) / samples.estimate()).min(MOST);
@@ -113,7 +113,7 @@ impl Series {
         self.frames.iter().map(|(frame, _)| frame.time).collect()
     }
 
-    /// The largest displacement of all.
+    /// Largest displacement of all frames.
     fn size(&self) -> f64 {
         let all = self.frames.iter().filter_map(|(_, grid)| displacement(grid)).flat_map(|u| &u.values);
         all.filter(|u| u.is_finite()).fold(0.0, |size, u| u.abs().max(size))
@@ -125,7 +125,7 @@ impl Series {
             Packed::stepped(&values, 2, size, DISPLACEMENT_ERROR)
         });
         let fields = grid.at_points.iter().filter(|array| array.name != DISPLACEMENT).map(|array| {
-            // VTK has three components where the plane has two.
+            // VTK stores three components, the plane has two.
             let components = if array.components == 3 { 2 } else { array.components };
             let component = |i: usize| {
                 let values: Vec<f64> = array.values.iter().skip(i).step_by(array.components).copied().collect();
@@ -141,7 +141,7 @@ impl Series {
         PackedFrame { time: frame.time, largest, displacement: moved, fields: fields.collect() }
     }
 
-    /// The series for the page: its frames of these times.
+    /// Page data of the frames at these times.
     pub fn show(&self, times: &[f64], pack: &mut Pack) -> Value {
         let grid = &self.frames[0].1;
         let size = self.size();
@@ -169,23 +169,23 @@ impl Series {
     }
 }
 
-/// Error of a component of a field, over its largest value in the frame.
+/// Error of a field component relative to its largest value in the frame.
 const FIELD_ERROR: f64 = 1.0 / 16_384.0;
 
-/// Error of a component of a displacement, over the largest displacement of the run.
+/// Error of a displacement component relative to the largest displacement of the run.
 const DISPLACEMENT_ERROR: f64 = 1.0 / 1_048_576.0;
 
-/// Frames of one kind at most.
+/// Upper bound of the number of frames of one kind.
 const MOST: usize = 2000;
 
-/// Array that moves the points.
+/// Array that displaces the points.
 const DISPLACEMENT: &str = "displacement";
 
 fn displacement(grid: &Grid) -> Option<&Array> {
     grid.at_points.iter().find(|array| array.name == DISPLACEMENT && array.components >= 2)
 }
 
-/// Length of the longest vector in the plane, of all and of most.
+/// Length of the longest vector in the plane, and of the longest typical one.
 fn longest(array: &Array) -> [f64; 2] {
     if array.components < 2 {
         return [0.0; 2];
@@ -194,7 +194,7 @@ fn longest(array: &Array) -> [f64; 2] {
     [range(lengths())[1], most(lengths())[1]]
 }
 
-/// A packed frame for the page.
+/// Page data of a packed frame.
 fn shown(frame: &PackedFrame, pack: &mut Pack) -> Value {
     let mut fields = serde_json::Map::new();
     for Field { name, components, longest } in &frame.fields {
@@ -206,7 +206,7 @@ fn shown(frame: &PackedFrame, pack: &mut Pack) -> Value {
     json!({ "time": frame.time, "displacement": displacement, "largest": frame.largest, "fields": fields })
 }
 
-/// Evenly spread numbers below `count`, first and last among them; the last alone, if there may be only one.
+/// Evenly spaced numbers below `count`, including the first and last; the last alone if `most` is one.
 fn spread(count: usize, most: usize) -> Vec<usize> {
     match most {
         _ if count <= most => (0..count).collect(),
@@ -216,7 +216,7 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
     }
 }
 
-/// What of a grid is no number. A further field that some laws do not have is none there, and nothing is wrong.
+/// Arrays of a grid with non-finite values. An additional field that some laws lack is NaN there, which is no defect.
 fn not_numbers(grid: &Grid) -> impl Iterator<Item = String> {
     let bad = |array: &&Array| array.values.iter().filter(|value| !value.is_finite()).count();
     let arrays = grid.at_points.iter().map(move |array| (array, bad(&array)));
@@ -224,7 +224,7 @@ fn not_numbers(grid: &Grid) -> impl Iterator<Item = String> {
     some.map(|(array, bad)| format!("{bad} values of {} are not numbers", array.name))
 }
 
-/// Places in order: those of a further line of the interface go on behind the one before.
+/// Positions in order; each further line of the interface follows behind the previous one.
 fn end_to_end(positions: &[f64]) -> (Vec<f64>, bool) {
     let mut along: Vec<f64> = Vec::with_capacity(positions.len());
     let (mut offset, mut lines) = (0.0, 1);
@@ -238,7 +238,7 @@ fn end_to_end(positions: &[f64]) -> (Vec<f64>, bool) {
     (along, lines > 1)
 }
 
-/// The values of the rows that are shown; of slip rates the fastest since the row before.
+/// Values of the rows shown; for slip rates, the largest since the previous row shown.
 fn thinned(name: &str, values: &[f32], shown: &[usize], points: usize) -> Vec<f64> {
     let mut all = Vec::with_capacity(shown.len() * points);
     let mut first = 0;
@@ -253,12 +253,12 @@ fn thinned(name: &str, values: &[f32], shown: &[usize], points: usize) -> Vec<f6
     all
 }
 
-/// The map of the contact of a number for the page, with at most `most` values per quantity; what is left out goes to the notes.
+/// Page data of the map of a contact, with at most `most` values per quantity; omissions are noted.
 pub fn map(number: usize, map: &StoredContact, most: usize, pack: &mut Pack, notes: &mut Vec<String>) -> Value {
     let StoredContact { name: contact, times, positions, quantities, .. } = map;
     let (points, rows) = (positions.len(), times.len());
     let group = (rows * points).div_ceil(most.max(points)).max(1);
-    // The last of each group is shown.
+    // The last row of each group is shown.
     let shown: Vec<usize> = (0..rows).filter(|row| (row + 1) % group == 0 || row + 1 == rows).collect();
     if group > 1 {
         notes.push(format!(
@@ -294,15 +294,15 @@ pub fn map(number: usize, map: &StoredContact, most: usize, pack: &mut Pack, not
     })
 }
 
-/// The lowest and the highest number of all.
+/// Smallest and largest of all numbers.
 pub fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let numbers = values.filter(|value| value.is_finite());
     let [low, high] = numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], value| [value.min(a), value.max(b)]);
     if low <= high { [low, high] } else { [0.0, 0.0] }
 }
 
-/// Two numbers between which nearly all lie, but for a fiftieth at either end: zeros, where nothing happens, are between them
-/// and do not count.
+/// Bounds that contain nearly all numbers, except a fiftieth at either end. Zeros, where nothing happens, lie between them and
+/// are not counted.
 pub fn most(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let mut numbers: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     let all = numbers.len();

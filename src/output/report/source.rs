@@ -1,4 +1,4 @@
-//! Folders of results: their names, their cases and their units; why there is no page of them.
+//! Results folders as sources of a page: names, cases and units; errors of the page.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::output::summary::About;
 use crate::run::error::Error;
 
-/// Why there is no page.
+/// Error of the page.
 #[derive(Debug, Error)]
 pub enum ReportError {
     /// A folder cannot be read or understood.
@@ -15,7 +15,7 @@ pub enum ReportError {
     Unreadable {
         /// the file or folder
         path: PathBuf,
-        /// what is wrong
+        /// description of the defect
         cause: String,
     },
     /// The page cannot be written.
@@ -23,22 +23,21 @@ pub enum ReportError {
     Output(#[from] Error),
 }
 
-/// A result folder.
+/// A results folder.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// where it lies
+    /// path
     pub folder: PathBuf,
     /// its name in legends
     pub name: String,
-    /// what its `summary.json` says; nothing while it runs
+    /// content of its `summary.json`; empty while it runs
     pub about: About,
 }
 
-/// The folders with their names, made different from each other where necessary, and what is known about them: nothing of one
-/// whose `summary.json` cannot be understood.
+/// Returns the folders with distinct names and the content of their `summary.json`, which is empty if it cannot be read.
 ///
 /// # Errors
-/// [`ReportError::Unreadable`] where two folders have different units.
+/// Returns [`ReportError::Unreadable`] if two folders have different units.
 pub fn sources(folders: &[PathBuf]) -> Result<Vec<Source>, ReportError> {
     let last = |folder: &PathBuf| {
         let whole = folder.canonicalize().unwrap_or_else(|_| folder.clone());
@@ -62,7 +61,7 @@ fn about(folder: &Path) -> About {
     text.ok().and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
 }
 
-/// Millimetres are not drawn over metres.
+/// Checks that two folders use the same units.
 fn check_units(one: &Source, other: &Source) -> Result<(), ReportError> {
     let differs = |(of, unit): &(&String, &String)| other.about.units.get(*of).is_some_and(|theirs| theirs != *unit);
     match one.about.units.iter().find(differs) {

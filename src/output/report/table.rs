@@ -1,6 +1,7 @@
-//! Tables of results for the page: read as far as they go, with fewer rows where there are too many, columns packed.
+//! Tables of results for the page: read up to the first defect, with fewer rows where there are too many, and packed by
+//! column.
 //!
-//! Numbers packed into text: rounded, their bytes sorted by weight, compressed, in base64.
+//! Numbers are packed into text: rounded, shuffled by byte significance, compressed, in base64.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
@@ -15,35 +16,35 @@ use serde_json::{Value, json};
 use super::source::ReportError;
 use crate::output::store::codec::{rounded, shuffled};
 
-/// Columns of words; their values are the numbers of the words.
+/// Columns of words; their values are indices of the words.
 const WORDS: [&str; 4] = ["step", "contact", "verdict", "reason"];
 
-/// Columns in which single precision would not tell rows apart.
+/// Columns in which single precision would not distinguish rows.
 const EXACT: [&str; 6] = ["time", "onset", "arrival", "place", "position", "increment"];
 
 /// A column of numbers, or of words.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// its name
+    /// name
     pub name: String,
-    /// row by row; of words their numbers
+    /// values by row; for words, their indices
     pub values: Vec<f64>,
-    /// the words by their numbers; `None` if it is one of numbers
+    /// words by index; `None` for a column of numbers
     pub words: Option<Vec<String>>,
 }
 
 impl Column {
-    /// A column of numbers.
+    /// Creates a column of numbers.
     pub fn numbers(name: &str, values: Vec<f64>) -> Self {
         Self { name: name.into(), values, words: None }
     }
 
-    /// Read a cell; `None` if it is no number.
+    /// Reads a cell; `None` if it is not a number.
     fn read(&mut self, cell: &str) -> Option<()> {
         self.values.push(match &mut self.words {
             None => cell.parse().ok()?,
             Some(words) => {
-                // The same word as in the row before, mostly.
+                // Usually the same word as in the row before.
                 let before = self.values.last().map(|&number| number as usize).filter(|&number| words[number] == cell);
                 let known = before.or_else(|| words.iter().rposition(|word| word == cell));
                 known.unwrap_or_else(|| {
@@ -56,7 +57,7 @@ impl Column {
     }
 }
 
-/// The columns of a CSV file, in its order.
+/// Columns of a CSV file, in their order.
 #[derive(Clone, Debug)]
 pub struct Columns {
     path: PathBuf,
@@ -64,11 +65,11 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Read a file line by line, up to one that cannot be understood, if there is one. A last line without its end is left out: it
-    /// is being written, or its writer was killed.
+    /// Reads a file line by line, up to the first defective line, if any. An incomplete last line is skipped: it is being
+    /// written, or its writer was killed.
     ///
     /// # Errors
-    /// [`ReportError::Unreadable`] when there is not even a header.
+    /// Returns [`ReportError::Unreadable`] if there is no header.
     fn read(path: &Path) -> Result<(Self, Option<ReportError>), ReportError> {
         let unreadable = |cause: String| ReportError::Unreadable { path: path.to_owned(), cause };
         let file = File::open(path).map_err(|cause| unreadable(format!("cannot be read: {cause}")))?;
@@ -115,10 +116,10 @@ impl Columns {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// A column by its name.
+    /// Returns a column by its name.
     ///
     /// # Errors
-    /// [`ReportError::Unreadable`] when the file does not have it.
+    /// Returns [`ReportError::Unreadable`] if the file does not have it.
     pub fn get(&self, name: &str) -> Result<&[f64], ReportError> {
         self.find(name).map(|column| &column.values[..]).ok_or_else(|| ReportError::Unreadable {
             path: self.path.clone(),
@@ -131,20 +132,19 @@ impl Columns {
         self.find(name)?.words.as_deref()
     }
 
-    /// Number of values that are not numbers, by column.
+    /// Number of non-finite values, by column.
     pub fn not_numbers(&self) -> impl Iterator<Item = (&str, usize)> {
         let bad = |column: &Column| column.values.iter().filter(|value| !value.is_finite()).count();
         self.columns.iter().map(move |column| (column.name.as_str(), bad(column))).filter(|(_, count)| *count > 0)
     }
 
-    /// The rows that are shown: all, or the first, last, lowest and highest of every column in each of as many groups of rows as
-    /// there is room for.
+    /// Rows to be shown: all, or the first, last, minimum and maximum of every column in each of as many groups of rows as fit.
     pub fn spread(&self, most: usize) -> Vec<usize> {
         let count = self.rows();
         if count <= most {
             return (0..count).collect();
         }
-        // Columns that never change, and the ones that only grow, have their extremes at the ends of the groups.
+        // Constant and monotonic columns have their extremes at the ends of the groups.
         let swinging = |column: &&Column| column.words.is_none() && !column.values.is_sorted();
         let swinging: Vec<&Column> = self.columns.iter().filter(swinging).collect();
         let group = (count * (2 + 2 * swinging.len())).div_ceil(most).max(1);
@@ -164,7 +164,7 @@ impl Columns {
         kept
     }
 
-    /// Some rows, for the page.
+    /// Page data of some rows.
     pub fn sheet(&self, rows: &[usize], pack: &mut Pack) -> Value {
         let some = |column: &Column| Column {
             values: rows.iter().map(|&row| column.values[row]).collect(),
@@ -175,7 +175,7 @@ impl Columns {
     }
 }
 
-/// Read a row; the error goes on behind the number of its line.
+/// Reads a row; the error text follows the line number.
 fn row(line: &str, columns: &mut [Column]) -> Result<(), String> {
     let mut cells = line.split(',');
     for column in columns {
@@ -185,7 +185,7 @@ fn row(line: &str, columns: &mut [Column]) -> Result<(), String> {
     Ok(())
 }
 
-/// Read a table up to what cannot be understood, which goes to the notes; nothing if there is no such table.
+/// Reads a table up to the first defect, which is noted; `None` if there is no such table.
 pub fn read(folder: &Path, file: &str, notes: &mut Vec<String>) -> Option<Columns> {
     let path = folder.join(file);
     if !path.is_file() {
@@ -203,7 +203,7 @@ pub fn read(folder: &Path, file: &str, notes: &mut Vec<String>) -> Option<Column
     }
 }
 
-/// Columns of a table for the page.
+/// Page data of the columns of a table.
 pub fn sheet(columns: impl IntoIterator<Item = Column>, pack: &mut Pack) -> Value {
     let mut rows = 0;
     let mut column = |Column { name, values, words }: Column| {
@@ -216,17 +216,17 @@ pub fn sheet(columns: impl IntoIterator<Item = Column>, pack: &mut Pack) -> Valu
     json!({ "rows": rows, "columns": packed })
 }
 
-/// Bits of the fraction that maps of interfaces keep: their relative error is at most 2⁻¹².
+/// Mantissa bits of the maps of interfaces: their relative error is at most 2⁻¹².
 const BITS: u32 = 11;
 
-/// Stands for what is no number among whole steps.
+/// Code of non-finite values among integers.
 const NO_NUMBER: i32 = i32::MIN;
 
-/// Packed numbers, by themselves.
+/// Packed array of numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Packed {
     text: String,
-    /// of numbers in whole steps: the step, and how many belong to a point
+    /// for values in integer steps: the step, and the number of components per point
     steps: Option<(f64, usize)>,
 }
 
@@ -236,24 +236,25 @@ impl Packed {
         self.text.len()
     }
 
-    /// Doubles, as they are.
+    /// Packs doubles unchanged.
     pub fn exact(values: &[f64]) -> Self {
         Self::of(values.iter().map(|value| value.to_le_bytes()), values.len())
     }
 
-    /// Pack values in single precision.
+    /// Packs values in single precision.
     pub fn single(values: &[f64]) -> Self {
         Self::of(values.iter().map(|value| (*value as f32).to_le_bytes()), values.len())
     }
 
-    /// Single precision with fewer bits.
+    /// Packs values in single precision with fewer mantissa bits.
     pub fn rounded(values: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = values.len();
         Self::of(values.map(|value| rounded(value, BITS).to_le_bytes()), count)
     }
 
-    /// Values of some components a point, none above `size`, to `error` times `size`: in whole steps, of which the difference from
-    /// the point before is packed, since points that follow each other in a mesh are mostly neighbours.
+    /// Packs values with several components per point and magnitude up to `size`, to an error of `error` times `size`: in
+    /// integer steps, of which the difference from the previous point is stored, since consecutive points of a mesh are mostly
+    /// neighbours.
     pub fn stepped(values: &[f64], components: usize, size: f64, error: f64) -> Self {
         let step = if size > 0.0 && size.is_finite() { 2.0 * error * size } else { 1.0 };
         let mut last = vec![0; components];
@@ -268,17 +269,17 @@ impl Packed {
         Self { steps: Some((step, components)), ..packed }
     }
 
-    /// Pack whole numbers.
+    /// Packs non-negative integers.
     pub fn counts(values: &[u32]) -> Self {
         Self::of(values.iter().map(|value| value.to_le_bytes()), values.len())
     }
 
-    /// Pack values of one byte each.
+    /// Packs values of one byte each.
     pub fn bytes(values: &[u8]) -> Self {
         Self::of(values.iter().map(|value| [*value]), values.len())
     }
 
-    /// All first bytes, then all second ones, and so on: alike bytes beside each other.
+    /// Packs all first bytes, then all second ones, and so on, which groups similar bytes.
     fn of<const N: usize>(values: impl Iterator<Item = [u8; N]>, count: usize) -> Self {
         let mut bytes = Vec::with_capacity(N * count);
         values.for_each(|value| bytes.extend_from_slice(&value));
@@ -292,13 +293,13 @@ impl Packed {
 /// All packed numbers of a page.
 #[derive(Debug, Default)]
 pub struct Pack {
-    /// one after the other
+    /// packed arrays in sequence
     pub text: String,
 }
 
 impl Pack {
-    /// Add packed numbers; returns their range among all: start, length; of numbers in whole steps also the step, and how many
-    /// belong to a point.
+    /// Adds a packed array and returns its range in the text: start, length; for integer steps also the step and the number of
+    /// components per point.
     pub fn add(&mut self, packed: &Packed) -> Value {
         let start = self.text.len();
         self.text += &packed.text;

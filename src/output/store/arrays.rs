@@ -1,4 +1,4 @@
-//! What the arrays of the store are called, and what they are.
+//! Names and descriptions of the arrays of the store.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ use crate::output::quantities::{LENGTH, NONE, PLACE, Quantity, TIME, Unit, in_st
 /// Meaning of the slip of a frictionless contact.
 const FREE_MOTION: &str = "motion along the master so far; the contact has no friction";
 
-/// Names of the contacts as they can stand in names of files, each one once.
+/// Unique names of the contacts that are valid in file names.
 pub fn prefixes(model: &Model) -> Vec<String> {
     let (mut prefixes, mut taken) = (Vec::new(), BTreeSet::new());
     for pair in &model.contacts {
@@ -31,7 +31,7 @@ pub fn prefixes(model: &Model) -> Vec<String> {
     prefixes
 }
 
-/// The times of the records.
+/// Describes the times of the records.
 pub fn time(units: &BTreeMap<String, String>) -> Description {
     let mut attributes = Map::new();
     attributes.insert("long_name".into(), json!("time"));
@@ -40,7 +40,7 @@ pub fn time(units: &BTreeMap<String, String>) -> Description {
     Description { name: "time".into(), number: Number::Double, dimensions: vec!["time".into()], attributes }
 }
 
-/// Undeformed positions of the points of a contact.
+/// Describes the undeformed positions of the points of a contact.
 pub fn along(
     model: &Model,
     pair: &ContactPair,
@@ -66,7 +66,7 @@ pub fn along(
     ]
 }
 
-/// A quantity of a contact.
+/// Describes a quantity of a contact.
 pub fn quantity(pair: &ContactPair, prefix: &str, name: &str, units: &BTreeMap<String, String>) -> Description {
     let known = in_store(name);
     let free = pair.laws.iter().all(|law| law.description.is_frictionless) && ["slip", "total_slip"].contains(&name);
@@ -81,7 +81,7 @@ pub fn quantity(pair: &ContactPair, prefix: &str, name: &str, units: &BTreeMap<S
     Description { name: format!("{prefix}.{name}"), number: Number::Single, dimensions, attributes }
 }
 
-/// The labels of units as CF has them; under their full names numbers of time would be read as durations.
+/// Unit label according to the CF conventions; full names of time units would be decoded as durations.
 fn label(unit: Unit, units: &BTreeMap<String, String>) -> Option<String> {
     let mut units = units.clone();
     if let Some(time) = units.get_mut("time") {

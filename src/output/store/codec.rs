@@ -1,27 +1,26 @@
-//! How chunks of numbers are packed: rounded, shuffled, compressed.
+//! Compression of chunks of numbers: rounded, shuffled, deflated.
 //!
 //! ```text
 //! x̃ = round(x, b bits of mantissa),   |x̃ − x| ≤ 2^(−b−1) |x|          bit rounding, half to even
 //! bytes of one significance side by side (numcodecs `shuffle`), then zlib (RFC 1950)
 //! ```
 //!
-//! The error is relative, so that slip rates over many decades keep their digits. Zeros and values that are no numbers stay
-//! as they are.
+//! The error is relative, so that slip rates over many decades keep their digits. Zeros and non-finite values stay unchanged.
 //!
 //! Source: Klöwer, Razinger, Dominguez, Düben & Palmer (2021), Nat. Comput. Sci. 1, 713, doi:10.1038/s43588-021-00156-2.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 
-/// b: bits of mantissa kept behind the leading one.
+/// b: stored mantissa bits.
 pub const BITS: u32 = 15;
 
 /// Largest relative error of a rounded value, 2^(−b−1).
 pub const RELATIVE_ERROR: f64 = 1.0 / (1u64 << (BITS + 1)) as f64;
 
-/// Level of zlib for chunks that are complete, and for those that are going to be written again.
+/// zlib level of complete chunks.
 pub const THOROUGH: u8 = 6;
-/// See [`THOROUGH`].
+/// zlib level of chunks that will be rewritten.
 pub const QUICK: u8 = 1;
 
 /// Type of the numbers of an array.
@@ -31,7 +30,7 @@ pub enum Number {
     Single,
     /// Unchanged, in 8 bytes
     Double,
-    /// A whole number in 4 bytes
+    /// Integer, in 4 bytes
     Whole,
 }
 
@@ -45,17 +44,17 @@ impl Number {
         }
     }
 
-    /// The type of this name.
+    /// Returns the type of this name.
     pub fn named(name: &str) -> Option<Self> {
         [Self::Single, Self::Double, Self::Whole].into_iter().find(|number| number.name() == name)
     }
 
-    /// Bytes of a number.
+    /// Size of a number in bytes.
     pub fn size(self) -> usize {
         if self == Self::Double { 8 } else { 4 }
     }
 
-    /// Append a number.
+    /// Appends a number.
     pub fn write(self, value: f64, bytes: &mut Vec<u8>) {
         match self {
             Self::Single => bytes.extend_from_slice(&rounded(value, BITS).to_le_bytes()),
@@ -64,7 +63,7 @@ impl Number {
         }
     }
 
-    /// The numbers of some bytes.
+    /// Decodes the numbers of some bytes.
     pub fn read(self, bytes: &[u8]) -> impl Iterator<Item = f64> {
         bytes.chunks_exact(self.size()).map(move |bytes| match (self, bytes) {
             (Self::Double, &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
@@ -75,22 +74,22 @@ impl Number {
     }
 }
 
-/// A number with so many bits of mantissa, half to even.
+/// Rounds a number to `bits` mantissa bits, half to even.
 pub fn rounded(value: f64, bits: u32) -> f32 {
     let lost = 52 - bits;
     let digits = value.to_bits();
-    // Half of the last bit, less a little where the last bit is even.
+    // Half of the last bit, minus one unit where the last bit is even.
     let up = (1 << (lost - 1)) - 1 + ((digits >> lost) & 1);
     let rounded = f64::from_bits(digits.wrapping_add(up) & !((1 << lost) - 1)) as f32;
     if value.is_finite() && rounded.is_finite() { rounded } else { value as f32 }
 }
 
-/// A chunk for its file.
+/// Compresses a chunk for its file.
 pub fn packed(bytes: &[u8], size: usize, level: u8) -> Vec<u8> {
     compress_to_vec_zlib(&shuffled(bytes, size), level)
 }
 
-/// The bytes of a packed chunk, which are `length` if it is not damaged.
+/// Returns the bytes of a packed chunk, `length` of them unless it is damaged.
 pub fn unpacked(packed: &[u8], size: usize, length: usize) -> Result<Vec<u8>, String> {
     let shuffled = decompress_to_vec_zlib_with_limit(packed, length).map_err(|cause| cause.to_string())?;
     match shuffled.len() == length {
@@ -99,12 +98,12 @@ pub fn unpacked(packed: &[u8], size: usize, length: usize) -> Result<Vec<u8>, St
     }
 }
 
-/// The first bytes of all numbers, then the second ones, ...
+/// Groups the first bytes of all numbers, then the second ones, ...
 pub fn shuffled(bytes: &[u8], size: usize) -> Vec<u8> {
     (0..size).flat_map(|k| bytes.iter().skip(k).step_by(size).copied()).collect()
 }
 
-/// The other way round.
+/// Inverse of [`shuffled`].
 pub fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
     let count = bytes.len() / size;
     (0..count).flat_map(|number| (0..size).map(move |k| bytes[k * count + number])).collect()
@@ -128,7 +127,7 @@ mod tests {
             assert_eq!(f64::from(rounded(same, BITS)), same);
         }
         assert!(rounded(f64::NAN, BITS).is_nan());
-        // Half way goes to the even neighbour.
+        // A tie is rounded to the even neighbour.
         let near = |halves: f64| rounded(1.0 + halves * 2f64.powi(-16), BITS);
         assert_eq!((near(1.0), near(3.0)), (1.0, 1.0 + 2f32.powi(-14)));
         assert_eq!(rounded(f32::MAX.into(), 11), f32::MAX, "what would be infinite stays");

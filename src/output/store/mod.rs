@@ -1,13 +1,13 @@
-//! `interface.zarr`: what every contact does over time and place, in a store that xarray opens as it is.
+//! `interface.zarr`: contact quantities over time and place, in a store that xarray opens directly.
 //!
 //! | array | dimensions | meaning |
 //! |---|---|---|
 //! | `time` | `time` | t of the rows of `history.csv` [T] |
-//! | `C.position`, `C.x`, `C.y`, `C.line` | `C.point` | undeformed points of contact C: way along the slave, place, number of the unbroken line [L] |
-//! | `C.slip`, `C.pressure` … | `time`, `C.point` | the quantities of every contact ([`IN_STORE`]); slip rates are plastic slip since the row before over the time since |
-//! | `C.theta` … | | what else a law lets observe, by its name; NaN where another law acts |
+//! | `C.position`, `C.x`, `C.y`, `C.line` | `C.point` | undeformed points of contact C: arc length along the slave, coordinates, number of the continuous line [L] |
+//! | `C.slip`, `C.pressure` … | `time`, `C.point` | quantities of every contact ([`IN_STORE`]); slip rates are mean plastic slip rates since the previous row |
+//! | `C.theta` … | | further observables of a law, by their names; NaN where another law acts |
 //!
-//! Times and places are as computed; what varies over time is rounded, with a relative error of 2⁻¹⁶ ([`codec`]).
+//! Times and places are exact; quantities that vary in time are rounded, with a relative error of 2⁻¹⁶ ([`codec`]).
 
 mod arrays;
 pub mod codec;
@@ -33,18 +33,18 @@ use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Row};
 pub use zarr::{files_of, forget, is_own};
 
-/// Folder of the store in that of the results.
+/// Folder of the store in the results folder.
 pub const STORE: &str = "interface.zarr";
 
-/// Writes `interface.zarr` at the rows of the history.
+/// Observer that writes `interface.zarr` at the rows of the history.
 #[derive(Debug)]
 pub struct InterfaceStore {
     store: Store,
     /// Names of the quantities of each contact
     names: Vec<Vec<&'static str>>,
-    /// A record that is written if an event follows
+    /// Record that is written only if an event follows
     held: Option<Record>,
-    /// Time of the last record, and slip of every contact and point then
+    /// Time of the last record, and slip of every contact and point at that time
     last: (f64, Vec<Vec<f64>>),
 }
 
@@ -53,18 +53,18 @@ const SLIP: usize = 0;
 /// ... and its rate.
 const SLIP_RATE: usize = 2;
 
-/// Time and quantities of all contacts, one after the other.
+/// Time, and the quantities of all contacts in sequence.
 type Record = Vec<Vec<f64>>;
 
-/// What is remembered: of the store, and of the records.
+/// Saved memory: of the store, the record held back, and the last record.
 type Memory = (Saved, Option<Record>, (f64, Vec<Vec<f64>>));
 
 impl InterfaceStore {
-    /// Create the store in `folder`; `start` is the state before the first increment. Units are labels of `length`, `force`,
-    /// `time` and `stress`, as far as they are known.
+    /// Creates the store in `folder`; `start` is the state before the first increment. `units` contains the known labels of
+    /// `length`, `force`, `time` and `stress`.
     ///
     /// # Errors
-    /// [`Error::Output`] when it cannot be written.
+    /// Returns [`Error::Output`] if it cannot be written.
     pub fn create(
         folder: &Path,
         model: &Model,
@@ -76,7 +76,7 @@ impl InterfaceStore {
         Ok(store)
     }
 
-    /// The store that is there, to be restored.
+    /// Opens the existing store, to be restored.
     pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
         let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "fluid_pressure");
@@ -107,7 +107,7 @@ impl InterfaceStore {
         }
     }
 
-    /// Record of a state; its slip rates are still those of its increment.
+    /// Creates the record of a state; its slip rates still refer to its increment.
     fn record_of(&self, model: &Model, state: &State) -> Record {
         let mut record = vec![vec![state.time]];
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {

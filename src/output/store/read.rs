@@ -1,7 +1,7 @@
-//! Reading `interface.zarr` back, of a run that goes on as well: all records up to the last flush.
+//! Reader of `interface.zarr`, also of a growing one: all records up to the last flush.
 //!
-//! The chunks may be compressed with zlib or not, shuffled or not, of `<f4`, `<f8` or `<i4`: all that is written here, and
-//! what a script may write in its place.
+//! The chunks may be compressed with zlib or not, shuffled or not, of type `<f4`, `<f8` or `<i4`: all formats written here or
+//! by a typical script.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,35 +18,35 @@ use crate::output::quantities::FORMER;
 /// Stored history of one contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StoredContact {
-    /// its name
+    /// name
     pub name: String,
-    /// t of the records, ascending [T]
+    /// times of the records, ascending [T]
     pub times: Vec<f64>,
-    /// way along the undeformed slave of the points [L]
+    /// arc length of the points along the undeformed slave [L]
     pub positions: Vec<f64>,
-    /// undeformed places of the points [L]
+    /// undeformed coordinates of the points [L]
     pub places: Vec<[f64; 2]>,
-    /// numbers of the unbroken lines that the points belong to
+    /// number of the continuous line of each point
     pub lines: Vec<usize>,
-    /// quantities that were asked for, by name, as far as there are any: one value a point, record after record
+    /// requested quantities by name, as far as available: one value per point, record after record
     pub quantities: BTreeMap<String, Vec<f32>>,
 }
 
 impl StoredContact {
-    /// A quantity at all points of a record.
+    /// Values of a quantity at all points of a record.
     pub fn at(&self, quantity: &str, record: usize) -> Option<&[f32]> {
         let points = self.positions.len();
         self.quantities.get(quantity)?.get(record * points..(record + 1) * points)
     }
 }
 
-/// Why a store cannot be read.
+/// Reason why a store cannot be read.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}: {cause}", path.display())]
 pub struct Unreadable {
     /// the file
     pub path: PathBuf,
-    /// what is wrong with it
+    /// description of the defect
     pub cause: String,
 }
 
@@ -74,11 +74,11 @@ struct Codec {
     id: String,
 }
 
-/// The contacts of a folder of results in the order of the store, with those quantities that are `wanted`; none if it has no
-/// store. All have as many records.
+/// Returns the contacts of a results folder in the order of the store, with the quantities `wanted`; empty if there is no
+/// store. All have the same number of records.
 ///
 /// # Errors
-/// [`Unreadable`] with the file, and what is wrong with it.
+/// Returns [`Unreadable`] with the file and its defect.
 pub fn contacts(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<StoredContact>, Unreadable> {
     let store = folder.join(STORE);
     if !store.join(METADATA).is_file() {
@@ -90,7 +90,7 @@ pub fn contacts(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<Stor
     names.into_iter().zip(&prefixes).map(|(name, prefix)| reader.contact(name, prefix, &times, &wanted)).collect()
 }
 
-/// Present name of a quantity of a store; earlier versions used other names for some.
+/// Present name of a quantity of the store; earlier versions used other names for some.
 fn name_of_now(quantity: &str) -> &str {
     FORMER.iter().find(|(former, _)| *former == quantity).map_or(quantity, |(_, now)| now)
 }
@@ -113,7 +113,7 @@ impl Reader {
         Unreadable { path: self.store.join(file), cause: cause.into() }
     }
 
-    /// A list of names among the attributes of the store.
+    /// Returns a list of names among the attributes of the store.
     fn names(&self, attribute: &str) -> Result<Vec<String>, Unreadable> {
         let value = self.metadata.get(ATTRIBUTES).and_then(|all| all.get(attribute)).cloned().unwrap_or_default();
         let missing = |_| self.unreadable(METADATA, format!("the store does not name its `{attribute}`"));
@@ -164,7 +164,7 @@ impl Reader {
         Ok(values)
     }
 
-    /// All values of an array, record by record. Its chunks are parts of the first dimension only.
+    /// Reads all values of an array, record by record. Chunks must divide the first dimension only.
     fn read(&self, array: &str, mut take: impl FnMut(f64)) -> Result<(), Unreadable> {
         let shape = self.shape(array)?;
         let strange = |what: String| Err(self.unreadable(&format!("{array}/{ARRAY}"), what));

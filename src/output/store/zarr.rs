@@ -1,21 +1,21 @@
 //! A store of arrays that grow record by record: zarr version 2, as xarray opens it.
 //!
 //! ```text
-//! .zgroup .zattrs          what the store is
+//! .zgroup .zattrs          description of the store
 //! NAME/.zarray .zattrs     shape, chunks and codecs of an array; its dimensions, units and meaning
 //! NAME/k  NAME/k.0         chunk k: records k R … (k + 1) R − 1 of all places, NaN where there is none yet
 //! .zmetadata               all of the above but the chunks, once more in one file
 //! ```
 //!
-//! Every file is the old one or the new one at any moment. A flush writes chunks first, then the shapes, and `.zmetadata` at
-//! last, by which readers go: whatever ends the process, a reader finds all records up to the last flush, in all arrays. Where
-//! records are taken back it is the other way round.
+//! Every file is the old one or the new one at any moment. A flush writes chunks first, then the shapes, and last
+//! `.zmetadata`, which readers use: if the process is killed, a reader finds all records up to the last flush in all arrays.
+//! Records are removed in the reverse order.
 //!
 //! Source: Zarr storage specification version 2, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>.
 //!
 //! # Arrays
 //!
-//! Arrays of a store of zarr, and the files they consist of.
+//! Arrays of a zarr store and their files.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -29,18 +29,18 @@ use crate::output::csv::failed;
 use crate::output::files;
 use crate::run::error::Error;
 
-/// Numbers of a chunk: enough to be compressed well, few enough to be written again with every flush.
+/// Number of values per chunk: enough to compress well, few enough to be rewritten with every flush.
 const CHUNK: usize = 1 << 15;
 
-/// Records of a chunk at most.
+/// Upper bound of the records per chunk.
 const MOST_RECORDS: usize = 1 << 12;
 
-/// Time between two flushes: this at least, and this many times what the last one took.
+/// Minimum time between two flushes.
 const BLINK: Duration = Duration::from_millis(50);
-/// See [`BLINK`].
+/// Minimum time between two flushes, as a multiple of the duration of the last one.
 const REST: u32 = 40;
 
-/// Number of records; array by array the checksum of the complete chunks, and the bytes of the records since.
+/// Number of records, and for each array the checksum of the complete chunks and the bytes of the records since.
 pub type Saved = (u64, Vec<(u32, Vec<u8>)>);
 
 /// A store being written.
@@ -51,22 +51,22 @@ pub struct Store {
     /// arrays that do not grow, with their values
     fixed: Vec<(Description, Vec<f64>)>,
     series: Vec<Series>,
-    /// R: records of a chunk
+    /// R: number of records per chunk
     chunk: usize,
     /// records so far
     records: usize,
-    /// whether all of them are in the files
+    /// whether all records are in the files
     settled: bool,
     flushed: Instant,
-    /// what the last flush took
+    /// duration of the last flush
     took: Duration,
     /// complete chunks that may not be on the disk yet
     young: Vec<PathBuf>,
 }
 
 impl Store {
-    /// A store in `folder`, to be created or restored: arrays with their values, and arrays that grow by so many numbers a
-    /// record (`None`: one, without a dimension of its own).
+    /// Creates the description of a store in `folder`, to be created or restored: fixed arrays with their values, and growing
+    /// arrays with the number of values per record (`None`: one, without a dimension of its own).
     pub fn new(
         folder: PathBuf,
         attributes: Map<String, Value>,
@@ -89,16 +89,16 @@ impl Store {
         }
     }
 
-    /// Begin it, without records.
+    /// Creates the files of the store, without records.
     ///
     /// # Errors
-    /// [`Error::Output`] when it cannot be written.
+    /// Returns [`Error::Output`] if they cannot be written.
     pub fn create(&mut self) -> Result<(), Error> {
         self.describe()?;
         self.flush()
     }
 
-    /// Write all that does not grow.
+    /// Writes everything that does not grow.
     fn describe(&self) -> Result<(), Error> {
         let made = |folder: &Path| files::folder(folder).map_err(|cause| failed(folder, &cause));
         made(&self.folder)?;
@@ -117,10 +117,10 @@ impl Store {
         Ok(())
     }
 
-    /// Add a record: the numbers of each growing array.
+    /// Adds a record: the numbers of each growing array.
     ///
     /// # Errors
-    /// [`Error::Output`] when a chunk that is complete cannot be written.
+    /// Returns [`Error::Output`] if a complete chunk cannot be written.
     pub fn push(&mut self, record: &[Vec<f64>]) -> Result<(), Error> {
         for (series, values) in self.series.iter_mut().zip(record) {
             debug_assert_eq!(values.len(), series.width.unwrap_or(1), "{}", series.is.name);
@@ -135,18 +135,18 @@ impl Store {
         Ok(())
     }
 
-    /// Hand the records so far to the system, unless that was done a short while ago.
+    /// Writes pending records to the system, unless that was done recently.
     ///
     /// # Errors
-    /// As [`flush`](Self::flush).
+    /// The same as for [`flush`](Self::flush).
     pub fn share(&mut self) -> Result<(), Error> {
         if self.flushed.elapsed() < BLINK.max(REST * self.took) { Ok(()) } else { self.flush() }
     }
 
-    /// Hand the records so far to the system.
+    /// Writes pending records to the system.
     ///
     /// # Errors
-    /// [`Error::Output`] when they cannot be written.
+    /// Returns [`Error::Output`] if they cannot be written.
     pub fn flush(&mut self) -> Result<(), Error> {
         let started = Instant::now();
         self.settle(QUICK)?;
@@ -154,18 +154,18 @@ impl Store {
         Ok(())
     }
 
-    /// Flush the last records.
+    /// Flushes the last records.
     ///
     /// # Errors
-    /// As [`flush`](Self::flush).
+    /// The same as for [`flush`](Self::flush).
     pub fn finish(&mut self) -> Result<(), Error> {
         self.settle(THOROUGH)
     }
 
-    /// How many records there are, and those since the last complete chunk; the complete ones are on the disk.
+    /// Returns the number of records and those since the last complete chunk, after synchronizing complete chunks to the disk.
     ///
     /// # Errors
-    /// [`Error::Output`] when they do not get there.
+    /// Returns [`Error::Output`] if that fails.
     pub fn save(&mut self) -> Result<Saved, Error> {
         for path in std::mem::take(&mut self.young) {
             File::open(&path).and_then(|file| file.sync_all()).map_err(|cause| failed(&path, &cause))?;
@@ -174,10 +174,10 @@ impl Store {
         Ok((self.records as u64, self.series.iter().map(saved).collect()))
     }
 
-    /// Whether the records that were saved are there as they were.
+    /// Checks that the saved records are unchanged.
     ///
     /// # Errors
-    /// [`Error::Output`] with what is gone or was changed.
+    /// Returns [`Error::Output`] with what is missing or was changed.
     pub fn check(&self, (records, saved): &Saved) -> Result<(), Error> {
         let records = usize::try_from(*records).unwrap_or(usize::MAX);
         let (chunks, length) = (records / self.chunk, records % self.chunk);
@@ -190,10 +190,10 @@ impl Store {
         Ok(())
     }
 
-    /// Go on from what was saved; later records are taken back.
+    /// Resumes from the saved records and removes later ones.
     ///
     /// # Errors
-    /// [`Error::Output`] when what follows cannot be taken away.
+    /// Returns [`Error::Output`] if later records cannot be removed.
     pub fn restore(&mut self, (records, saved): Saved) -> Result<(), Error> {
         self.records = usize::try_from(records).unwrap_or(usize::MAX);
         let complete = self.records / self.chunk;
@@ -203,7 +203,7 @@ impl Store {
         }
         self.describe()?;
         self.settled = false;
-        // What is taken back is no longer counted when it goes.
+        // The number of records is reduced before they are removed.
         if counted(&self.folder, self.series.iter().map(|series| &*series.is.name)) > records {
             self.write_shapes()?;
         }
@@ -220,7 +220,7 @@ impl Store {
         Ok(())
     }
 
-    /// Write what is not in the files yet: chunks, then shapes.
+    /// Writes pending data: chunks, then shapes.
     fn settle(&mut self, level: u8) -> Result<(), Error> {
         if self.settled && level == QUICK {
             return Ok(());
@@ -233,7 +233,7 @@ impl Store {
         Ok(())
     }
 
-    /// Write how many records there are.
+    /// Writes the number of records.
     fn write_shapes(&self) -> Result<(), Error> {
         let shapes: Vec<(String, Value)> = self.shapes().collect();
         for (name, shape) in &shapes {
@@ -297,34 +297,34 @@ fn json_bytes(value: &Value) -> Vec<u8> {
     format!("{value:#}\n").into_bytes()
 }
 
-/// The store's own files.
+/// File of a group.
 pub const GROUP: &str = ".zgroup";
-/// See [`GROUP`].
+/// File of the shape and type of an array.
 pub const ARRAY: &str = ".zarray";
-/// See [`GROUP`].
+/// File of the attributes of an array.
 pub const ATTRIBUTES: &str = ".zattrs";
-/// See [`GROUP`].
+/// File with all metadata of the store.
 pub const METADATA: &str = ".zmetadata";
 
 /// Description of an array without its values.
 #[derive(Clone, Debug)]
 pub struct Description {
-    /// its name
+    /// name
     pub name: String,
-    /// what its numbers are
+    /// number type
     pub number: Number,
-    /// its dimensions; the first is that of the records, if it grows
+    /// dimensions; the first is that of the records, if it grows
     pub dimensions: Vec<String>,
-    /// units, meaning and the like
+    /// units, meaning and other attributes
     pub attributes: Map<String, Value>,
 }
 
-/// An array that grows.
+/// A growing array.
 #[derive(Debug)]
 pub struct Series {
-    /// what it is
+    /// description
     pub is: Description,
-    /// numbers of a record, in each dimension behind that of the records
+    /// number of values per record in each dimension after that of the records
     pub width: Option<usize>,
     /// checksum of the files of its complete chunks, one after the other
     pub complete: crc32fast::Hasher,
@@ -333,15 +333,15 @@ pub struct Series {
 }
 
 impl Series {
-    /// An array without records.
+    /// Creates an array without records.
     pub fn new(is: Description, width: Option<usize>) -> Self {
         Self { is, width, complete: crc32fast::Hasher::new(), chunk: Vec::new() }
     }
 
-    /// Whether the first chunks still are what was written.
+    /// Checks that the first chunks are unchanged.
     ///
     /// # Errors
-    /// [`Error::Output`] with the first one that is gone, or the array if its chunks were changed.
+    /// Returns [`Error::Output`] with the first missing chunk, or the array if its chunks were changed.
     pub fn check(&self, store: &Path, chunks: usize, crc: u32) -> Result<(), Error> {
         let mut found = crc32fast::Hasher::new();
         for path in (0..chunks).map(|number| store.join(self.file(number))) {
@@ -355,31 +355,31 @@ impl Series {
         if found.finalize() == crc { Ok(()) } else { Err(failed(&store.join(&self.is.name), &changed)) }
     }
 
-    /// Bytes of a record.
+    /// Size of a record in bytes.
     pub fn record(&self) -> usize {
         self.width.unwrap_or(1) * self.is.number.size()
     }
 
-    /// File of a chunk below the store.
+    /// File of a chunk, relative to the store.
     pub fn file(&self, number: usize) -> PathBuf {
         let name = if self.width.is_some() { format!("{number}.0") } else { number.to_string() };
         Path::new(&self.is.name).join(name)
     }
 }
 
-/// `.zgroup`.
+/// Content of `.zgroup`.
 pub fn group() -> Value {
     json!({"zarr_format": 2})
 }
 
-/// `.zattrs` of an array.
+/// Content of `.zattrs` of an array.
 pub fn all_attributes(is: &Description) -> Value {
     let mut attributes = is.attributes.clone();
     attributes.insert("_ARRAY_DIMENSIONS".into(), json!(is.dimensions));
     Value::Object(attributes)
 }
 
-/// `.zarray`.
+/// Content of `.zarray`.
 pub fn shape(is: &Description, shape: &[usize], chunks: &[usize]) -> Value {
     json!({
         "zarr_format": 2,
@@ -393,8 +393,8 @@ pub fn shape(is: &Description, shape: &[usize], chunks: &[usize]) -> Value {
     })
 }
 
-/// Records of growing arrays of the store in a folder, as its files say; the largest number where they differ, and 0 where there
-/// are none.
+/// Number of records of growing arrays of the store in a folder, according to its files: the largest where they differ, 0 where
+/// there are none.
 pub fn counted<'n>(store: &Path, names: impl Iterator<Item = &'n str>) -> u64 {
     let read = |path: PathBuf| {
         let bytes = fs::read(path).unwrap_or_default();
@@ -408,11 +408,11 @@ pub fn counted<'n>(store: &Path, names: impl Iterator<Item = &'n str>) -> u64 {
     names.filter_map(of_one).max().unwrap_or(0)
 }
 
-/// The files of a store that lies in a folder, those first by which readers go: removed in this order, they never count what is
-/// gone; others than its own are none of them, nor is anything behind a link.
+/// Files of a store in a folder, those used by readers first: removed in this order, they never list missing data. Other files
+/// and files behind links are excluded.
 ///
 /// # Errors
-/// What the system says.
+/// Returns the error of the system.
 pub fn files_of(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let is_folder = |path: &Path| path.symlink_metadata().is_ok_and(|known| known.is_dir());
     let entries = |folder: &Path| -> io::Result<Vec<PathBuf>> {
@@ -437,7 +437,7 @@ pub fn files_of(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Whether a file has the name of one of a store: a chunk, or what describes the chunks.
+/// Whether a file has the name of a file of a store: a chunk or metadata.
 pub fn is_own(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let name = name.strip_suffix(".new").unwrap_or(name);
@@ -445,11 +445,11 @@ pub fn is_own(path: &Path) -> bool {
     [GROUP, ARRAY, ATTRIBUTES, METADATA].contains(&name) || name.split('.').all(is_number)
 }
 
-/// Take away the folders of arrays that are empty.
+/// Removes empty folders of arrays.
 pub fn forget(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
-        // One that is not empty, or no folder, stays.
+        // Non-empty folders and other files are kept.
         let _ = fs::remove_dir(entry.path());
     }
 }

@@ -1,5 +1,5 @@
-//! Explicit increments by central differences: [`crate::model::scheme`] has the equations, here are the longest stable increment and
-//! the increment itself.
+//! Explicit increments by central differences: the stability limit and the increment itself; equations in
+//! [`crate::model::scheme`].
 //!
 //! ```text
 //! Δt ≤ 2/ω,   ω² ≤ max over elements of (λ_e + max over its nodes of k/m)                                    (1)
@@ -7,18 +7,19 @@
 //! k: Σ |w_a| Σ |w_b| max(α_n, α_t) ℓ of the contact points at the node, and its springs                           (3)
 //! Δt² ω² + 2 Δt c ≤ 4   or   Δt ≤ 4/(c + √(c² + 4 ω²)),   c: (2) of the viscous K_e                          (4)
 //! ```
-//! (1) holds because a sum of stiffnesses vibrates no faster than the fastest of its parts, each with its share of the
-//! mass (Irons & Treharne), the shares of elements and contact being in the ratio of their ω²; (2) with the Frobenius
-//! norm is at most 8^⅛ = 1.3 times the eigenvalue, commonly 1.05; (3) is Gershgorin's theorem. Every contact point that
-//! faces the master counts, open or closed. `stability.rs` says when these are found again. (4) takes the place of Δt ≤ 2/ω in a viscous body, whose stress is that of
-//! the mean velocity of the increment before, (u₁ − u₀)/Δt: with a damping ratio ζ = c/(2ω) it is 2/ω (√(1 + ζ²) − ζ).
-//! Damping by the masses and dashpots act at the end of the increment and cost nothing.
+//! (1) holds because the highest frequency of a sum of stiffnesses is bounded by those of its parts, each with its fraction of
+//! the mass (Irons & Treharne), the fractions of elements and contact being in the ratio of their ω². (2) with the Frobenius
+//! norm is at most 8^⅛ = 1.3 times the eigenvalue, commonly 1.05. (3) is Gershgorin's theorem; every contact point with a
+//! projection on the master counts, open or closed. `stability.rs` says when the bounds are re-evaluated. (4) replaces
+//! Δt ≤ 2/ω in a viscous body, whose stress is evaluated with the mean velocity of the previous increment, (u₁ − u₀)/Δt: with a
+//! damping ratio ζ = c/(2ω) it is 2/ω (√(1 + ζ²) − ζ). Mass-proportional damping and dashpots act at the end of the increment
+//! and do not reduce the limit.
 //!
-//! Contact answers in each increment as it does in an implicit one: the friction law takes the slip of the whole increment
-//! and returns the traction at its end, an elastic predictor and a plastic corrector. No sign of a velocity is asked for, so
-//! that stick and slip do not chatter; a point that sticks swings on its contact spring. If that is much stiffer than an
-//! element, the swing is faster than any wave of the mesh and stays where it is: an impact rattles, unless the body is
-//! viscous.
+//! Contact is evaluated in each increment as in an implicit one: the friction law takes the slip of the whole increment and
+//! returns the traction at its end, an elastic predictor and a plastic corrector. It does not depend on the sign of a velocity,
+//! so stick and slip do not chatter; a sticking point oscillates on its contact spring. If that spring is much stiffer than an
+//! element, the oscillation is faster than any wave of the mesh and stays local: an impact produces high-frequency oscillation
+//! unless the body is viscous.
 //!
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
@@ -46,54 +47,54 @@ use plates::Plates;
 pub use stability::ExplicitMemory;
 use stability::Stability;
 
-/// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
-/// before it inverts.
+/// Largest change of an element in one increment, as a fraction of its size: the stiffness of an element that is hit then
+/// stops the motion before the element inverts.
 const MOST_CHANGE: f64 = 0.1;
 
 /// Factor on the increments after a collapse.
 const CUT: f64 = 0.5;
 
-/// Increments are not made shorter than this share of the safe ones.
+/// Smallest increment, as a fraction of the stable one.
 const MOST_CAREFUL: f64 = 0.125;
 
-/// Share of a step's end within which an output falls on it.
+/// Fraction of a step's end within which an output coincides with it.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Data of the explicit increments of one step besides the state.
+/// Data of the explicit increments of one step in addition to the state.
 #[derive(Clone)]
 pub struct Explicit {
     model: Arc<Model>,
     step: Arc<Step>,
-    /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
+    /// Mass of every node; that of tied copies is both with their nodes and with the copies [M]
     mass: Vec<f64>,
-    /// Plates with one equal component, and rigid ones
+    /// Platens with one equal component, and rigid platens
     plates: Plates,
-    /// Dashpots, absorbing sides and damping by the masses, one entry a node
+    /// Dashpots, absorbing sides and mass-proportional damping, one entry per node
     dampers: Vec<Absorber>,
     /// Their forces [F]
     pulls: Vec<Vector2<f64>>,
     /// Mean velocity of an increment if bodies are viscous [L/T]
     mean_velocity: Vec<f64>,
     stability: Stability,
-    /// Share of the safe increment that is taken: less after a collapse
+    /// Fraction of the stable increment that is used; less after a collapse
     care: f64,
-    /// The longest increment to take, when last looked at [T]
+    /// Last evaluated stable increment [T]
     stable: f64,
-    /// Displacements at the end of the increment that is next
+    /// Displacements at the end of the next increment
     displacement: Vec<f64>,
     /// Motion of each support in the increment, and its velocity before
     places: Vec<([f64; 4], f64)>,
 }
 
-/// Degrees of freedom that one thread moves at a time.
+/// Number of degrees of freedom that one thread updates at a time.
 const CHUNK: usize = 8192;
 
 impl Explicit {
-    /// Begin explicit increments, at the start of a step or within it: lump the masses, and find the accelerations that the
-    /// loads begin with.
+    /// Starts explicit increments, at the start of a step or within it: lumps the masses and computes the initial
+    /// accelerations.
     ///
     /// # Errors
-    /// [`IncrementFailure`] when the state cannot be evaluated.
+    /// Returns [`IncrementFailure`] if the state cannot be evaluated.
     pub fn begin(
         model: &Arc<Model>,
         step: &Arc<Step>,
@@ -103,16 +104,16 @@ impl Explicit {
         Self::with_care(1.0, model, step, state, assembler)
     }
 
-    /// Whether increments are as short as it makes sense.
+    /// Whether increments have reached their lower bound.
     pub fn is_most_careful(&self) -> bool {
         self.care <= MOST_CAREFUL
     }
 
-    /// Shorter increments, from the state before others in which the mesh collapsed or the motion grew without bounds;
-    /// `false` if they are as short as it makes sense.
+    /// Shortens the increments, starting from the state before the mesh collapsed or the motion diverged; returns `false` if
+    /// they have reached their lower bound.
     ///
     /// # Errors
-    /// As [`Explicit::begin`].
+    /// The same as for [`Explicit::begin`].
     pub fn more_carefully(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<bool, IncrementFailure> {
         if self.is_most_careful() {
             return Ok(false);
@@ -135,7 +136,7 @@ impl Explicit {
         Ok(explicit)
     }
 
-    /// Increments that have not begun yet.
+    /// Creates the data of increments that have not begun yet.
     fn of(model: &Arc<Model>, step: &Arc<Step>, stability: Stability, care: f64) -> Self {
         let mass = masses(model);
         Self {
@@ -154,7 +155,7 @@ impl Explicit {
         }
     }
 
-    /// The safe share of (1), but no more than the step allows [T].
+    /// Safe fraction of (1), bounded by the limits of the step [T].
     fn stable_increment(&mut self, state: &State) -> f64 {
         let longest = self.stability.longest_increment(&self.step, &self.mass, state);
         self.safe(longest)
@@ -164,12 +165,12 @@ impl Explicit {
         (self.step.scheme.safety() * self.care * longest).min(self.step.increments.max)
     }
 
-    /// Equal increments to a time, none longer than is stable. What is stored in motion and contacts is told at the end only,
-    /// the work and dissipation in between having been summed. A `pause` that is asked for ends it after an increment short of
-    /// that time; going on from there leads to the same bits.
+    /// Makes equal increments up to a time, none longer than the stable one. Stored energies of motion and contacts are
+    /// evaluated at the end only; work and dissipation are summed in between. A requested `pause` ends the call after an
+    /// increment before that time; the continuation is bitwise the same.
     ///
     /// # Errors
-    /// [`IncrementFailure`] when an element inverts, a friction law fails, a load has no value, or the motion has none.
+    /// Returns [`IncrementFailure`] if an element inverts, a friction law fails, or a load or the motion has no finite value.
     pub fn go_to(
         &mut self,
         time: f64,
@@ -193,8 +194,8 @@ impl Explicit {
         }
     }
 
-    /// End of the next increment on the way to a time, and the displacements there. Where an element changes, or a contact
-    /// does, the longest stable increment is found again.
+    /// End of the next increment towards a time, and the displacements there. Where an element or a contact has changed, the
+    /// stable increment is re-evaluated.
     fn next(&mut self, time: f64, state: &State) -> Result<f64, IncrementFailure> {
         let end = part(state.time, time, self.stable);
         let way = self.predict(end, state)?;
@@ -204,7 +205,7 @@ impl Explicit {
         match self.stability.contacts_changed(state) {
             true => self.stable = self.stable_increment(state),
             false if changed.is_empty() => return Ok(end),
-            // What became longer waits for the next look at all.
+            // Increases are picked up at the next full evaluation.
             false => self.stable = self.safe(self.stability.longest_of(changed.iter().copied())).min(self.stable),
         }
         let end = part(state.time, time, self.stable);
@@ -218,7 +219,7 @@ impl Explicit {
         Ok(end)
     }
 
-    /// (7), and where the supports go; returns how far two nodes move against each other at most [L].
+    /// Evaluates (7) and the motion of supports; returns an upper bound of the relative displacement of any two nodes [L].
     fn predict(&mut self, time: f64, state: &State) -> Result<f64, IncrementFailure> {
         let (model, step, dt) = (&*self.model.clone(), &*self.step.clone(), time - state.time);
         let old = (&state.displacement, &state.velocity, &state.acceleration);

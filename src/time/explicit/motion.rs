@@ -17,7 +17,7 @@ use crate::time::accept::{accept, heat, take_stock};
 use crate::time::beginning::{keep_to_supports, launch};
 
 impl Explicit {
-    /// Give nodes the velocities that they take when the step begins; what that changes of ½ Σ m v² is work from outside.
+    /// Sets the initial velocities of nodes at the start of the step; the change of ½ Σ m v² counts as external work.
     pub fn launch(model: &Model, step: &Step, state: &mut State) {
         if step.launch.is_empty() {
             return;
@@ -25,7 +25,7 @@ impl Explicit {
         let mass = masses(model);
         let before = energy_of_motion(model, &mass, &state.velocity);
         launch(model, step, state);
-        // The audit of a run begins with what moves then.
+        // The energy audit of a run starts with the initial motion.
         if state.increment > 0 {
             let change = energy_of_motion(model, &mass, &state.velocity) - before;
             state.energy.external_work += change;
@@ -33,8 +33,8 @@ impl Explicit {
         }
     }
 
-    /// After implicit increments the same velocities have the kinetic energy of lumped masses: what that changes of the energy of a
-    /// motion counts as work from outside.
+    /// After implicit increments the velocities have the kinetic energy of lumped masses; the change of kinetic energy by
+    /// lumping counts as external work.
     pub fn lump(&self, state: &mut State) {
         if state.energy.kinetic > 0.0 {
             let kinetic = self.kinetic_energy(state, self.stable);
@@ -43,14 +43,14 @@ impl Explicit {
         }
     }
 
-    /// The forces and accelerations at the start of the step.
+    /// Computes the forces and accelerations at the start of the step.
     pub(super) fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         keep_to_supports(model, step, self.stable, state);
         let still = Trial::new(state, step, state.time, 0.0);
         assembler.evaluation.damping.fill(0.0);
         if model.is_viscous(step) {
-            // The stress of viscous bodies is that of the increment that led here: v₁ = v½ + ½ Δt a₁.
+            // Viscous stress is evaluated with the velocity of the previous increment: v₁ = v½ + ½ Δt a₁.
             let rates = state.velocity.iter().zip(&state.acceleration);
             self.mean_velocity.iter_mut().zip(rates).for_each(|(mean, (v, a))| *mean = v - 0.5 * state.dt * a);
         }
@@ -67,7 +67,7 @@ impl Explicit {
         let first = Trial::new(state, step, state.time + self.stable, self.stable);
         let starts: Vec<f64> =
             step.supports.iter().map(|support| start_acceleration(first.thirds(support, model), self.stable)).collect();
-        // A freed support has no reaction any more.
+        // A released support has no reaction any more.
         state.reaction.fill(0.0);
         self.plates.begin(0.0, state);
         self.plates.accelerate((model, 0.0), (&self.displacement, &found.force), |k| starts[k], state);
@@ -88,7 +88,7 @@ impl Explicit {
     }
 
     /// ½ v₋ᵀ M v₊ of the velocities half an increment before and after: by (7) and (8) its change is exactly the mean force
-    /// times the way, so that what the audit of energies leaves is not the scheme's own swing, ⅛ Δt² aᵀ M a [F·L].
+    /// times the displacement increment, so the energy audit is free of the scheme's own oscillation ⅛ Δt² aᵀ M a [F·L].
     pub(super) fn kinetic_energy(&self, state: &State, dt: f64) -> f64 {
         let square = |v: &[f64]| v[0] * v[0] + v[1] * v[1];
         let of = |node: usize| {
@@ -99,7 +99,7 @@ impl Explicit {
         (0..self.mass.len()).map(of).sum::<f64>() - copies + self.plates.turning_energy(state, dt)
     }
 
-    /// One increment to the displacements predicted.
+    /// Makes one increment to the predicted displacements.
     pub(super) fn advance(
         &mut self,
         time: f64,
@@ -165,8 +165,8 @@ impl Explicit {
         });
     }
 
-    /// (8) for dofs with dashpots, of which [`Explicit::accelerate`] knows nothing: (M + ½ Δt C) (a − a_free) = C (v_driver
-    /// − v_free) with what it found.
+    /// (8) for dofs with dashpots, which [`Explicit::accelerate`] ignores: (M + ½ Δt C) (a − a_free) = C (v_driver − v_free)
+    /// with its result a_free.
     fn damp(&mut self, time: f64, dt: f64, state: &mut State) {
         damping::pull(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
         let alone = self.dampers.iter().zip(&self.pulls).filter(|(damper, _)| !self.plates.has(damper.node));
@@ -183,7 +183,7 @@ impl Explicit {
         self.plates.damp((&self.model, dt), dampers, there, state);
     }
 
-    /// Subtract the forces of the dampers at a velocity from what was found, and count them as damping.
+    /// Subtracts the damper forces at a velocity from the forces found, and books their work as damping.
     pub(super) fn add_pulls(&mut self, time: f64, velocity: &[f64], found: &mut Evaluation) {
         damping::pull(&self.model, &self.step, &self.dampers, time, velocity, &mut self.pulls);
         for (damper, pull) in self.dampers.iter().zip(&self.pulls) {

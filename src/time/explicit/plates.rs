@@ -1,21 +1,21 @@
-//! Plates with one equal component, and rigid ones, in explicit increments.
+//! Loading platens (one equal component) and rigid platens in explicit increments.
 //!
 //! ```text
-//! Σ m_c a = −Σ f_c                              alike in one component; m_c: lumped masses
+//! Σ m_c a = −Σ f_c                              one equal component; m_c: lumped masses
 //! ```
 //!
-//! The masses of a plate are no smaller than those of its nodes by themselves: the bound of the increment holds.
+//! The mass of a platen is no smaller than that of any of its nodes, so the stability limit holds.
 //!
 //! # Rigid plates
 //!
-//! A rigid plate in explicit increments.
+//! A rigid platen in explicit increments follows
 //!
 //! ```text
 //! [m 1, m J c; (m J c)ᵀ, J_R] [a_R; θ̈] = [−F + ω² m c; −M_R]       c = x_C − x_R,   J_R = Σ m_c |x_c − x_R|²
 //! ```
 //!
-//! R is the center of mass C, or the node A if a support holds it, whose equations are then the support's. (7) and (8) of
-//! [`crate::model::scheme`] hold for x_R and the angle, so that the plate is turned and not stretched.
+//! R is the center of mass C, or the node A if it is supported; the equations of R are then those of the support. (7) and (8)
+//! of [`crate::model::scheme`] hold for x_R and the angle, so that the platen rotates without stretching.
 
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Rotation2, RowVector3, Vector2, Vector3};
 
@@ -26,19 +26,19 @@ use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
-/// All plates of a model but those that move as one.
+/// All platens of a model except those with two equal components.
 #[derive(Clone)]
 pub(super) struct Plates {
     alike: Vec<Alike>,
     rigid: Vec<Rigid>,
-    /// Whether a node is one of them; empty if there are none
+    /// Whether a node belongs to a platen; empty if there are none
     members: Vec<bool>,
 }
 
-/// A plate with one equal component.
+/// A platen with one equal component.
 #[derive(Clone)]
 struct Alike {
-    /// Its nodes, the first of which is the master
+    /// Nodes, the first of which is the master
     nodes: Vec<usize>,
     component: usize,
     /// Σ m [M]
@@ -48,7 +48,7 @@ struct Alike {
 }
 
 impl Plates {
-    /// The plates of a model in a step, with the lumped mass of every node.
+    /// Creates the platens of a model in a step, with the lumped mass of every node.
     pub fn new(model: &Model, step: &Step, mass: &[f64]) -> Self {
         let linkage = &model.linkage;
         let alike = linkage.plates.iter().filter(|(_, [x, y])| x != y).map(|(nodes, components)| Alike {
@@ -63,18 +63,18 @@ impl Plates {
         Self { alike: alike.collect(), rigid: rigid.collect(), members }
     }
 
-    /// Whether a node is one of them.
+    /// Whether a node belongs to a platen.
     pub fn has(&self, node: usize) -> bool {
         self.members.get(node).is_some_and(|member| *member)
     }
 
-    /// (7): where rigid plates are turned to in `dt`, R and all other plates being where they go already.
+    /// (7): rotates rigid platens over `dt`, where R and all other platens have been moved already.
     pub fn turn(&self, model: &Model, dt: f64, state: &State, u: &mut [f64]) {
         self.rigid.iter().for_each(|plate| plate.turn(dt, state, u));
         model.linkage.spread(u);
     }
 
-    /// The first half of (8): take note of v½.
+    /// First half of (8): stores v½.
     pub fn begin(&mut self, dt: f64, state: &State) {
         for plate in &mut self.alike {
             let [v, a] = [&state.velocity, &state.acceleration].map(|values| values[plate.leader()]);
@@ -83,7 +83,7 @@ impl Plates {
         self.rigid.iter_mut().for_each(|plate| plate.begin(dt, state));
     }
 
-    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as prescribed.
+    /// Second half of (8) at the displacement `u` under the gathered forces, with prescribed accelerations of supports.
     pub fn accelerate(
         &mut self,
         (model, dt): (&Model, f64),
@@ -99,7 +99,7 @@ impl Plates {
         self.tell(model, u, state);
     }
 
-    /// (8) for the dampers of plates: see [`super::Explicit::damp`].
+    /// (8) for dampers on platens; see [`super::Explicit::damp`].
     pub fn damp(
         &mut self,
         (model, dt): (&Model, f64),
@@ -113,7 +113,7 @@ impl Plates {
         let mut own: Vec<(f64, f64)> = self.alike.iter().map(|plate| (plate.mass, 0.0)).collect();
         for (Absorber { node, coefficients }, pull) in dampers.iter().zip(pulls).filter(|(at, _)| self.has(at.node)) {
             let plates = [0, 1].map(|i| self.alike.iter().position(|plate| plate.leads(*node, i)));
-            // What an absorbing side couples of the two components is with the pull alone.
+            // The coupling of the two components by an absorbing side is contained in its force only.
             for i in (0..2).filter(|_| plates != [None; 2]) {
                 let resisting = 0.5 * dt * coefficients[(i, i)];
                 match plates[i] {
@@ -133,7 +133,7 @@ impl Plates {
         self.tell(model, u, state);
     }
 
-    /// Give leaders and all other nodes of plates the rates found.
+    /// Gives master and all other nodes of platens the computed rates.
     fn tell(&self, model: &Model, u: &[f64], state: &mut State) {
         for plate in &self.alike {
             (state.velocity[plate.leader()], state.acceleration[plate.leader()]) = (plate.rates[0], plate.rates[1]);
@@ -142,24 +142,24 @@ impl Plates {
         self.spread(model, u, state);
     }
 
-    /// Give all nodes of plates the rates of their leaders.
+    /// Gives all nodes of platens the rates of their masters.
     pub fn spread(&self, model: &Model, u: &[f64], state: &mut State) {
         self.rigid.iter().for_each(|plate| plate.spread(u, state));
         model.linkage.spread(&mut state.velocity);
         model.linkage.spread(&mut state.acceleration);
     }
 
-    /// F + M a of a direction in which a support holds a plate.
+    /// F + M a in a direction in which a support constrains a platen.
     pub fn reaction(&self, at: Direction, force: &[f64], acceleration: &[f64]) -> Option<f64> {
         if let Some(plate) = self.rigid.iter().find(|plate| plate.leaders[0] == at.node()) {
             return Some(plate.reaction(at, force, acceleration));
         }
-        // Their other component is the node's own.
+        // The other component is the node's own.
         let plate = self.alike.iter().find(|plate| plate.leader() == at.dof)?;
         Some(at.of(force) + plate.mass * at.of(acceleration))
     }
 
-    /// What ½ v₋ᵀ M v₊ counts too little, node by node: the pull to the center of what turns does no work [F·L].
+    /// Correction of the nodal sum ½ v₋ᵀ M v₊: the centripetal force of a rotating platen does no work [F·L].
     pub fn turning_energy(&self, state: &State, dt: f64) -> f64 {
         self.rigid.iter().map(|plate| plate.turning_energy(state, dt)).sum()
     }
@@ -170,7 +170,7 @@ impl Alike {
         2 * self.nodes[0] + self.component
     }
 
-    /// Whether a component of a node is its.
+    /// Whether a component of a node belongs to this platen.
     fn leads(&self, node: usize, component: usize) -> bool {
         component == self.component && self.nodes.binary_search(&node).is_ok()
     }
@@ -179,15 +179,15 @@ impl Alike {
 /// A rigid plate.
 #[derive(Clone)]
 struct Rigid {
-    /// A and B
+    /// Nodes A and B
     pub leaders: [usize; 2],
-    /// e at rest [L]
+    /// e in the reference configuration [L]
     arm: Vector2<f64>,
-    /// Its nodes and their G − G_R
+    /// Nodes and their G − G_R
     nodes: Vec<(usize, Matrix2<f64>)>,
     /// G_R
     reference: Matrix2<f64>,
-    /// Supports that hold A, and their numbers
+    /// Supports of A, with their numbers
     held: Vec<(usize, Direction)>,
     /// m [M]
     mass: f64,
@@ -200,7 +200,7 @@ struct Rigid {
 }
 
 impl Rigid {
-    /// The plate of a model in a step, with the lumped mass of every node.
+    /// Creates the platen of a model in a step, with the lumped mass of every node.
     pub fn new(model: &Model, step: &Step, mass: &[f64], [a, b]: [usize; 2]) -> Self {
         let own = model.linkage.turning().filter(|follower| follower.leaders[0].0 == a);
         let followers = own.map(|follower| (follower.node, follower.leaders[1].1));
@@ -218,7 +218,7 @@ impl Rigid {
         Self { leaders: [a, b], arm, nodes, reference, held, mass: total, shift, inertia, rates }
     }
 
-    /// (7): where it is turned to in `dt`; R is where it goes already.
+    /// (7): rotates the platen over `dt`; R has been moved already.
     pub fn turn(&self, dt: f64, state: &State, u: &mut [f64]) {
         let e = self.arm + relative(self.leaders, &state.displacement);
         let [spin, angular] = self.turning(e, state);
@@ -234,7 +234,7 @@ impl Rigid {
         self.rates = [v + a * (0.5 * dt), a];
     }
 
-    /// Give A the rates found.
+    /// Gives A the computed rates.
     pub fn tell(&self, u: &[f64], state: &mut State) {
         let values = [&mut state.velocity, &mut state.acceleration];
         for ((rates, along), values) in self.rates.iter().zip(self.relative(u)).zip(values) {
@@ -243,7 +243,7 @@ impl Rigid {
         }
     }
 
-    /// Give B the rates found, as A has its own.
+    /// Gives B the computed rates, given those of A.
     pub fn spread(&self, u: &[f64], state: &mut State) {
         let [a, b] = self.leaders;
         for (values, along) in [&mut state.velocity, &mut state.acceleration].into_iter().zip(self.relative(u)) {
@@ -258,7 +258,7 @@ impl Rigid {
         at.vector().dot(&(vector(force, a) + vector(force, b) + center * self.mass))
     }
 
-    /// What ½ v₋ᵀ M v₊ counts too little, node by node [F·L].
+    /// Correction of the nodal sum ½ v₋ᵀ M v₊ [F·L].
     pub fn turning_energy(&self, state: &State, dt: f64) -> f64 {
         let e = self.arm + relative(self.leaders, &state.displacement);
         0.125 * dt * dt * self.inertia * self.turning(e, state)[0].powi(4)
@@ -280,14 +280,14 @@ impl Rigid {
         [of(&state.velocity, turning[0]), of(&state.acceleration, turning[1])]
     }
 
-    /// Velocity and acceleration of B against A.
+    /// Velocity and acceleration of B relative to A.
     fn relative(&self, u: &[f64]) -> [Vector2<f64>; 2] {
         let e = self.arm + relative(self.leaders, u);
         let [spin, angular] = [self.rates[0].z, self.rates[1].z];
         [perpendicular(e) * spin, perpendicular(e) * angular - e * (spin * spin)]
     }
 
-    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as prescribed.
+    /// Second half of (8) at the displacement `u` under the gathered forces, with prescribed accelerations of supports.
     pub fn accelerate(&mut self, dt: f64, (u, force): (&[f64], &[f64]), supported: &impl Fn(usize) -> f64) {
         let [a, b] = self.leaders;
         let e = self.arm + relative(self.leaders, u);
@@ -300,7 +300,7 @@ impl Rigid {
         self.rates = [self.rates[0] + found * (0.5 * dt), found];
     }
 
-    /// (8) for its dampers.
+    /// (8) for dampers on the platen.
     pub fn damp(&mut self, dt: f64, (dampers, pulls): (&[Absorber], &[Vector2<f64>]), u: &[f64]) {
         let e = self.arm + relative(self.leaders, u);
         let (mut resisting, mut pulled) = (Matrix3::zeros(), Vector3::zeros());
@@ -315,8 +315,7 @@ impl Rigid {
         self.rates = [self.rates[0] + found * (0.5 * dt), self.rates[1] + found];
     }
 
-    /// a_R and θ̈ from forces and moment, with what resists them besides the masses; where A is supported, they are
-    /// prescribed.
+    /// a_R and θ̈ from forces and moment, with damping added to the masses; prescribed where A is supported.
     fn solve(
         &self,
         e: Vector2<f64>,
@@ -338,7 +337,7 @@ impl Rigid {
             matrix.set_row(row, &RowVector3::new(d.x, d.y, 0.0));
             right[row] = supported(k);
         }
-        // Masses are positive definite, and what resists adds to them.
+        // Masses are positive definite, and damping adds to them.
         matrix.lu().solve(&right).unwrap_or_default()
     }
 }

@@ -1,20 +1,19 @@
-//! The longest stable increment, (1) to (4) of [`super`], and when it has to be found again.
+//! Stability limit, (1) to (4) of [`super`], and its re-evaluation.
 //!
-//! An element has its own bound until its shape has changed: a node moved, against its first one, by more than the share
-//! [`CHANGED`] of the element's size, which is its area over its diagonal. That is told before the increment in which it
-//! happens, from the displacements at its end, which are known. All elements are compared as soon as nodes may have moved
-//! so far against each other that one has changed by [`LATEST`]. What contacts add is found again when a point meets another segment.
+//! The bound of an element is re-evaluated when its shape has changed: when a node has moved, relative to the first node, by
+//! more than the fraction [`CHANGED`] of the element's size (area over diagonal). This is checked before the increment in which
+//! it happens, with the known displacements at its end. All elements are compared as soon as two nodes may have moved so
+//! far relative to each other that an element has changed by [`LATEST`]. The stiffness added by contacts is re-evaluated when a
+//! point moves to another segment.
 //!
 //! # Elements
 //!
-//! The bounds (2) of one element, of [`super`].
-//!
-//! Elements that are equal, and have the same bounds of the stable increment.
+//! This section evaluates the bounds (2) of [`super`] for one element. Identical elements share their bounds.
 //!
 //! # Memory
 //!
-//! What explicit increments remember that follows neither from the model nor from the state: when each element was looked at,
-//! and what was found then. A run that goes on from a file takes the same increments with it.
+//! The memory of explicit increments follows neither from the model nor from the state: the displacement at which each
+//! element was last evaluated, and the result. A run resumed from a file takes the same increments with it.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -34,36 +33,36 @@ use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
 
-/// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
+/// Change of an element, as a fraction of its size, at which its bound is re-evaluated; this is also about its accuracy.
 const CHANGED: f64 = 0.04;
 
-/// Share of its size by which an element may have changed before it is compared.
+/// Possible change of an element, as a fraction of its size, at which the elements are compared.
 const LATEST: f64 = 0.06;
 
-/// Increments after which what contacts and springs add is looked at in any case.
+/// Number of increments after which the contributions of contacts and springs are re-evaluated in any case.
 const LOOK_AGAIN: usize = 200;
 
-/// Elements that are compared sooner than another thread wakes up.
+/// Number of elements below which a comparison takes less time than starting another thread.
 const FEW: usize = 2048;
 
-/// Bounds of the increment, as last evaluated.
+/// Bounds of the increment as last evaluated.
 #[derive(Clone)]
 pub(super) struct Stability {
     pub(super) model: Arc<Model>,
     retardation: Vec<f64>,
     pub(super) elements: Vec<Element>,
-    /// Nodes of the elements, `stride` places an element, filled up with the first one
+    /// Nodes of the elements, `stride` entries per element, padded with the first node
     nodes: Vec<usize>,
-    /// Their displacements against the first one when the element was looked at [L]
+    /// Their displacements relative to the first node at the last evaluation of the element [L]
     seen: Vec<Vector2<f64>>,
     stride: usize,
     /// k/m of (3) at every node [1/T²]
     softness: Vec<f64>,
-    /// Segment that every contact point met
+    /// Segment of the projection of every contact point
     segments: Vec<Option<usize>>,
-    /// Increments since contacts were looked at
+    /// Increments since the contacts were evaluated
     since: usize,
-    /// Whether some elements were looked at again since
+    /// Whether some elements were re-evaluated since
     relooked: bool,
     /// Relative motion of nodes below which an element counts as unchanged [L]
     margin: f64,
@@ -72,7 +71,7 @@ pub(super) struct Stability {
 }
 
 impl Stability {
-    /// Look at all elements.
+    /// Evaluates all elements.
     pub(super) fn new(model: &Arc<Model>, step: &Step, state: &State) -> Result<Self, IncrementFailure> {
         let count = model.mesh.elements.len();
         let stride = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
@@ -103,13 +102,13 @@ impl Stability {
         self.since += 1;
     }
 
-    /// Whether what contacts add must be looked at again.
+    /// Whether the contributions of contacts must be re-evaluated.
     pub(super) fn contacts_changed(&self, state: &State) -> bool {
         let stale = self.since > LOOK_AGAIN && (self.relooked || !self.model.contacts.is_empty());
         stale || segments(state).zip(&self.segments).any(|(now, seen)| now != *seen)
     }
 
-    /// Elements that changed by more than [`CHANGED`] at the displacements `u`, and now and then those that may be heated.
+    /// Elements that changed by more than [`CHANGED`] at the displacements `u`, and at intervals the heated ones.
     pub(super) fn changed(&mut self, u: &[f64]) -> Vec<usize> {
         let mut changed = self.deformed(u);
         if self.since > LOOK_AGAIN && !self.heated.is_empty() {
@@ -121,7 +120,7 @@ impl Stability {
         changed
     }
 
-    /// Elements that changed by their nodes' motion; all are compared, unless none can have.
+    /// Elements deformed by the motion of their nodes; all are compared, unless none can have changed.
     fn deformed(&mut self, u: &[f64]) -> Vec<usize> {
         if self.margin >= 0.0 {
             return Vec::new();
@@ -150,7 +149,7 @@ impl Stability {
         changed
     }
 
-    /// The largest change of elements that were just looked at again, at the displacements `u`, as a share of their size.
+    /// Largest change of the elements re-evaluated last, at the displacements `u`, as a fraction of their size.
     pub(super) fn largest_change(&mut self, elements: &[usize], u: &[f64]) -> f64 {
         let mut largest = 0.0f64;
         for &e in elements {
@@ -170,7 +169,7 @@ impl Stability {
         nodes.iter().zip(seen).map(square).fold(0.0, f64::max).sqrt()
     }
 
-    /// Look at some elements again.
+    /// Re-evaluates some elements.
     pub(super) fn look(&mut self, elements: &[usize], state: &State) -> Result<(), IncrementFailure> {
         let (model, retardation, u) = (&self.model, &self.retardation, &state.displacement);
         let look = |&e: &usize| {
@@ -189,7 +188,7 @@ impl Stability {
         Ok(())
     }
 
-    /// (1) or (4), with the masses of the nodes, after a look at all contacts [T].
+    /// (1) or (4) with the masses of the nodes, after an evaluation of all contacts [T].
     pub(super) fn longest_increment(&mut self, step: &Step, mass: &[f64], state: &State) -> f64 {
         self.segments.clear();
         self.segments.extend(segments(state));
@@ -201,7 +200,7 @@ impl Stability {
         self.longest_of(0..self.elements.len()).min(lone)
     }
 
-    /// (1) or (4) of some elements, with what contacts add as last looked at [T].
+    /// (1) or (4) of some elements, with the contributions of contacts as last evaluated [T].
     pub(super) fn longest_of(&self, elements: impl Iterator<Item = usize>) -> f64 {
         let of_element = |e: usize| {
             let [elastic, viscous] = self.elements[e].bounds;
@@ -211,7 +210,7 @@ impl Stability {
         elements.map(of_element).fold(f64::INFINITY, f64::min)
     }
 
-    /// Write k of (3) at every node over its softness [F/L].
+    /// Writes k of (3) at every node divided by its softness [F/L].
     fn add_stiffness(&mut self, step: &Step, mass: &[f64], state: &State) {
         let Self { model, softness: added, .. } = self;
         let x = model.configuration(&state.displacement);
@@ -236,7 +235,7 @@ impl Stability {
     }
 }
 
-/// How far the nodes of a rigid body that has mass move what it touches; none of one whose motion is prescribed.
+/// Displacement of a contact point per displacement of the nodes of a rigid body with mass; zero if its motion is prescribed.
 fn rigid_weights(body: Option<&RigidBody>, slave: &SlavePoint, mass: &[f64], x: &Configuration) -> SegmentWeights {
     let Some(body) = body else { return SegmentWeights::default() };
     let lever = (slave.at(x) - x.at(body.reference)).norm() / body.radius;
@@ -244,19 +243,19 @@ fn rigid_weights(body: Option<&RigidBody>, slave: &SlavePoint, mass: &[f64], x: 
     weights.into_iter().filter(|(node, _)| mass[*node] > 0.0).collect()
 }
 
-/// Elements of bodies that expand when they are heated; those of a linear law are as stiff as before.
+/// Elements of bodies with thermal expansion; the stiffness of those with a linear law does not change.
 fn heated(model: &Model) -> Vec<usize> {
     let bodies = model.bodies.iter().filter(|body| body.thermal.is_some() && !body.material.is_linear());
     bodies.flat_map(|body| body.elements.iter().copied()).collect()
 }
 
-/// The nodes of an element and as often the first one as it takes to fill `stride` places.
+/// Nodes of an element, padded with its first node to `stride` entries.
 fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
     let first = nodes.iter().take(1).cycle();
     nodes.iter().chain(first).take(stride).copied()
 }
 
-/// Segment that every contact point meets; `None` where it faces no master.
+/// Segment of the projection of every contact point; `None` without a projection.
 fn segments(state: &State) -> impl Iterator<Item = Option<usize>> {
     state.contacts.iter().flatten().map(|contact| contact.foot.map(|foot| foot.segment))
 }
@@ -266,20 +265,20 @@ fn longest(square: f64, viscous: f64) -> f64 {
     4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
 }
 
-/// Fraction of its size to which an element may be compressed: increments would become shorter without end.
+/// Fraction of its size to which an element may be compressed; beyond it increments would shorten without limit.
 const CRUSHED: f64 = 1e-3;
 
-/// One element, as last looked at.
+/// One element as last evaluated.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Element {
     /// λ_e and c [1/T², 1/T]
     bounds: [f64; 2],
-    /// Area over diagonal; infinite where the law is linear, and the bounds depend on no displacement [L]
+    /// Area over diagonal; infinite for a linear law, whose bounds do not depend on the displacement [L]
     size: f64,
 }
 
 impl Element {
-    /// Look at an element at the displacement `u`, with what its material remembers if something is imposed on it.
+    /// Evaluates an element at the displacement `u`, with the internal variables of its material if strain is imposed on it.
     pub(super) fn at(
         model: &Model,
         retardation: f64,
@@ -312,7 +311,7 @@ fn size(model: &Model, e: usize, u: &[Vector2<f64>]) -> f64 {
     area.abs() / pairs.map(|(a, b)| (places[a] - places[b]).norm()).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// λ_e and c of an element at nodal displacements and what its material remembers [1/T², 1/T].
+/// λ_e and c of an element at nodal displacements and internal variables of its material [1/T², 1/T].
 fn bounds(
     model: &Model,
     retardation: f64,
@@ -325,7 +324,7 @@ fn bounds(
     let (solid, law) = (&model.solids[e], &*body.material);
     let answer = match body.is_imposed() {
         false => solid.force_and_tangent(law, local, &mut force, tangent.as_mut_slice()).map(drop),
-        // What is imposed stiffens.
+        // Imposed strain stiffens the element.
         true => {
             let memory = Memory { dt: 0.0, old: memory, new: &mut memory.to_vec() };
             solid.evolve(law, memory, local, &mut force, Some(tangent.as_mut_slice())).map(drop)
@@ -337,7 +336,7 @@ fn bounds(
     if retardation == 0.0 {
         return Ok([elastic, 0.0]);
     }
-    // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
+    // The viscous tangent at zero displacement increment is the derivative with respect to the velocities.
     let still = vec![Vector2::zeros(); local.len()];
     model.solids[e].viscous_tangent(law, retardation, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
     Ok([elastic, largest_eigenvalue(&tangent, &mass)])
@@ -355,8 +354,8 @@ fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
     largest * (&square * &square).norm().powf(0.25)
 }
 
-/// The first of the elements of a linear body that have the same shape and masses as each one in every bit, and so the same
-/// bounds at any displacement; itself if its law is not linear.
+/// For each element, the first element of a linear body with bitwise the same shape and masses, and therefore the same bounds
+/// at any displacement; the element itself if its law is not linear.
 fn alike(model: &Model) -> Vec<usize> {
     let mut seen = HashMap::new();
     let first = |e: usize| {
@@ -371,7 +370,7 @@ fn alike(model: &Model) -> Vec<usize> {
     (0..model.solids.len()).map(first).collect()
 }
 
-/// Memory of explicit increments.
+/// Stored memory of explicit increments.
 #[derive(Serialize, Deserialize)]
 pub struct ExplicitMemory {
     care: f64,
@@ -386,7 +385,7 @@ pub struct ExplicitMemory {
 }
 
 impl ExplicitMemory {
-    /// Whether it is one of this model.
+    /// Whether it belongs to this model.
     pub fn fits(&self, model: &Model) -> bool {
         let elements = model.mesh.elements.len();
         let points: usize = model.contacts.iter().map(|pair| pair.points.len()).sum();
@@ -398,7 +397,7 @@ impl ExplicitMemory {
 }
 
 impl Explicit {
-    /// Its memory, for a checkpoint.
+    /// Returns the memory for a checkpoint.
     pub fn memory(&self) -> ExplicitMemory {
         let Stability { elements, seen, softness, segments, since, relooked, margin, .. } = self.stability.clone();
         let seen = seen.into_iter().map(Into::into).collect();
@@ -406,7 +405,7 @@ impl Explicit {
         ExplicitMemory { care, stable, elements, seen, softness, segments, since, relooked, margin }
     }
 
-    /// Go on from what was remembered.
+    /// Resumes from a stored memory.
     pub fn again(model: &Arc<Model>, step: &Arc<Step>, memory: ExplicitMemory) -> Self {
         let ExplicitMemory { care, stable, elements, seen, softness, segments, since, relooked, margin } = memory;
         let stride = stride(model);
@@ -428,7 +427,7 @@ impl Explicit {
     }
 }
 
-/// Most nodes of an element.
+/// Largest number of nodes of an element.
 fn stride(model: &Model) -> usize {
     model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0)
 }

@@ -1,10 +1,10 @@
 //! Quasi-dynamic steps: linear bodies without inertia, radiation damping, and friction whose slip rate follows from traction
-//! and state. The interface alone is integrated, explicitly and with error control (`steps.rs`), by the differential equations of
-//! `slip_equations.rs`; the bodies are condensed on it once a step ([`crate::equations::slip_operator`]), and follow where a result is asked
-//! for. Rates of slip may change by ten decades and more in one run, and lengths of steps with them.
+//! and state. Only the interface is integrated, explicitly and with error control (`steps.rs`), by the differential equations
+//! of `slip_equations.rs`. The bodies are condensed on it once per load step ([`crate::equations::slip_operator`]) and
+//! evaluated at requested results. Slip rates, and with them step lengths, may vary by ten decades or more in one run.
 //!
-//! Source: Rice (1993), J. Geophys. Res. 98, 9885; Erickson et al. (2023), Bull. Seismol. Soc. Am. 113, 499 (how the community
-//! compares such runs).
+//! Source: Rice (1993), J. Geophys. Res. 98, 9885; Erickson et al. (2023), Bull. Seismol. Soc. Am. 113, 499 (community
+//! benchmarks).
 
 mod slip_equations;
 mod steps;
@@ -24,31 +24,31 @@ use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
 
-/// Share of the length of a step within which it ends on the end of the load step.
+/// Fraction of a step's length within which it ends at the end of the load step.
 const NEAR_END: f64 = 1e-9;
 
-/// Data of quasi-dynamic steps besides the state, which follow from the model and the load step.
+/// Data of quasi-dynamic steps in addition to the state; they follow from the model and the load step.
 pub struct QuasiDynamic {
     model: Arc<Model>,
     step: Arc<Step>,
     jumps: SlipOperator,
-    /// What supports and loads do to tractions and displacements in a unit of time where nothing slips
+    /// Rates of tractions and displacements by supports and loads at zero slip
     loading: Shift,
 }
 
-/// Outcome of some steps.
+/// Outcome of several steps.
 pub struct Gone {
-    /// steps taken
+    /// number of steps taken
     pub steps: usize,
     /// length of the next one [T]
     pub next: f64,
 }
 
 impl QuasiDynamic {
-    /// Condense the bodies for a load step; `state` is any of its states.
+    /// Condenses the bodies for a load step; `state` is any of its states.
     ///
     /// # Errors
-    /// [`IncrementFailure`] where something is held by contact alone.
+    /// Returns [`IncrementFailure`] if a body is constrained by contact only.
     pub fn new(model: &Arc<Model>, step: &Arc<Step>, state: &State) -> Result<Self, IncrementFailure> {
         let duration = step.span.end - step.span.start;
         let [first, last] = [step.span.start, step.span.end].map(|time| Trial::new(state, step, time, duration));
@@ -68,8 +68,8 @@ impl QuasiDynamic {
         Ok(Self { model: model.clone(), step: step.clone(), jumps, loading })
     }
 
-    /// Bring a state that a load step begins with to rest: what motion before has left out of balance moves the bodies at once,
-    /// and its work counts as damped.
+    /// Brings the initial state of a load step to static equilibrium: unbalanced inertia forces move the bodies at once, and
+    /// their work counts as damping.
     pub fn settle(&mut self, state: &mut State) {
         let mut residual = state.force.clone();
         self.step.supports.iter().for_each(|support| support.at.set(0.0, &mut residual));
@@ -91,10 +91,10 @@ impl QuasiDynamic {
         self.model.ties.spread(2, &mut state.displacement);
     }
 
-    /// Some steps from a state on, the first of length `dt`; the state moves on with them.
+    /// Takes several steps, the first of length `dt`, and advances the state with them.
     ///
     /// # Errors
-    /// [`IncrementFailure::Slip`] where a point opens or its law has no slip rate, or no step is short enough.
+    /// Returns [`IncrementFailure::Slip`] if a point opens, its law has no slip rate, or no step is short enough.
     pub fn go(&mut self, dt: f64, state: &mut State) -> Result<Gone, IncrementFailure> {
         let Scheme::QuasiDynamic { tolerance, every } = self.step.scheme else {
             return Ok(Gone { steps: 0, next: dt });
@@ -119,7 +119,7 @@ impl QuasiDynamic {
                 Tried::Refused { share, worst, rates } => {
                     ended = false;
                     if h <= self.step.increments.min * (1.0 + NEAR_END) {
-                        // Where some steps were taken, the next attempt begins with what they have come to.
+                        // After successful steps the next attempt starts from their end.
                         if gone > 0 {
                             break;
                         }
@@ -143,7 +143,7 @@ impl QuasiDynamic {
         SlipEquations { points: points.collect(), by_slip: self.jumps.by_slip(), loading: &self.loading.tractions }
     }
 
-    /// The contact states that steps have come to, and the jumps since they began.
+    /// Contact states at the end of the steps, and the traction changes since their start.
     fn contacts(&self, old: &State, steps: &Steps, time: f64) -> (Vec<Vec<ContactState>>, Vec<f64>) {
         let n = steps.last.len();
         let jumps = self.jumps.jumps(&steps.z[..n], &steps.tractions());
@@ -176,7 +176,7 @@ impl QuasiDynamic {
         (contacts, jumps)
     }
 
-    /// The bodies follow: their displacements, forces and energies.
+    /// Evaluates the bodies: their displacements, forces and energies.
     fn follow(
         &mut self,
         old: &State,
@@ -209,7 +209,7 @@ impl QuasiDynamic {
         Ok(())
     }
 
-    /// Why a point cannot go on from a state by a step of length `dt`, the shortest; from the state itself where that is 0.
+    /// Reason why a point cannot continue from a state by the shortest step `dt`, or cannot be evaluated there (`dt` = 0).
     fn failure(&self, state: &State, number: usize, rates: &Rates, dt: f64) -> IncrementFailure {
         let (pair, slave, _) = self.interface(state).points[number];
         let at = slave.at(&self.model.configuration(&state.displacement));
@@ -234,7 +234,7 @@ impl QuasiDynamic {
     }
 }
 
-/// Add what the contacts put on the nodes.
+/// Adds the contact forces on the nodes.
 fn pull(model: &Model, contacts: &[Vec<ContactState>], found: &mut Evaluation) {
     for (pair, states) in model.contacts.iter().zip(contacts) {
         for (point, state) in pair.small.iter().flat_map(|small| small.points.iter().flatten()).zip(states) {

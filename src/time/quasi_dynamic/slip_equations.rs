@@ -5,7 +5,7 @@
 //! τ = q(V, x, p) + η V                          solved for V at every point                                          (2)
 //! (p, −τ) = (p, −τ)₀ + Y s + ẏ (t − t₀)         bodies and springs of the contact, ẏ: loading ([`crate::equations::slip_operator`])   (3)
 //! ```
-//! The contact's spring α_t is in series with the slider and its damper, as they both are with the bodies.
+//! The contact spring α_t is in series with the slider and its damper, and these with the bodies.
 
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{PointLoad, RateLaw};
 
-/// Points that one thread takes at a time; their order does not matter to any sum.
+/// Number of points that one thread takes at a time; no sum depends on their order.
 const PART: usize = 32;
 
 /// Rates and tractions of a point at a time.
@@ -33,20 +33,20 @@ pub struct Rates {
 }
 
 impl Rates {
-    /// Whether the point is pressed and slips at some rate.
+    /// Whether the point is closed and has a finite slip rate.
     pub fn is_good(&self) -> bool {
         self.pressure > 0.0 && self.slip_rate.is_finite() && self.evolution.is_finite()
     }
 
-    /// Power that friction takes, and that is radiated, per area [F/(L T)].
+    /// Power dissipated by friction, and radiated, per area [F/(L T)].
     pub fn powers(&self) -> [f64; 2] {
         [self.traction * self.slip_rate, self.radiation * self.slip_rate]
     }
 }
 
-/// The points of all contacts from one state on.
+/// Points of all contacts, starting from one state.
 pub struct SlipEquations<'a> {
-    /// contact, point and state at t₀ of each
+    /// contact, point and its state at t₀
     pub points: Vec<(&'a ContactPair, &'a SlavePoint, &'a ContactState)>,
     /// Y of (3), row by row
     pub by_slip: &'a [f64],
@@ -55,7 +55,8 @@ pub struct SlipEquations<'a> {
 }
 
 impl SlipEquations<'_> {
-    /// All rates at a time after t₀, from the slips since then and the states, both in one list; `now` is the run time.
+    /// All rates at a time after t₀, from the slips since then and the state variables, both in one list; `now` is the run
+    /// time.
     pub fn rates(&self, now: f64, since: f64, z: &[f64], rates: &mut Vec<Rates>) {
         let points = 0..self.points.len();
         let all = points.into_par_iter().with_min_len(PART).map(|k| self.point(k, now, since, z));
@@ -78,19 +79,19 @@ impl SlipEquations<'_> {
         Rates { slip_rate, evolution, traction: traction - radiation, pressure, radiation }
     }
 
-    /// p and −τ at t₀ + `since`, less those at t₀.
+    /// p and −τ at t₀ + `since`, minus those at t₀.
     pub fn tractions(&self, since: f64, slips: &[f64]) -> Vec<f64> {
         let rows = self.by_slip.chunks_exact(slips.len().max(1));
         rows.zip(self.loading).map(|(row, loading)| dot(row, slips) + loading * since).collect()
     }
 }
 
-/// Ask the law of a point, as it is at a time; none where it has no good parameters then.
+/// Evaluates the law of a point with its parameters at a time; `None` if they are invalid then.
 pub fn with_rates<T>(pair: &ContactPair, slave: &SlavePoint, now: f64, ask: impl Fn(&dyn RateLaw) -> T) -> Option<T> {
     pair.ask_law(slave, [now, now], |law| law.law.rates().map(ask)).ok()?
 }
 
-/// Σ a b, several at a time and always in the same order.
+/// Σ a b, vectorized with a fixed order of summation.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut sums = [0.0; LANES];

@@ -1,4 +1,4 @@
-//! Steps of the differential equations, as long as their error allows.
+//! Steps of the differential equations with error control.
 //!
 //! ```text
 //! e = max over the points of w |e_x|  and  |∂τ/∂s| |e_s|/p          both in the coefficient of friction; w = |∂(q/p)/∂x|
@@ -7,7 +7,7 @@
 //!
 //! # Tableau
 //!
-//! Dormand and Prince's pair of the orders 5 and 4.
+//! The tableau is the Dormand–Prince pair of orders 5 and 4.
 //!
 //! ```text
 //! k_i = f(t + c_i h, z + h Σ a_ij k_j),   z₁ = z + h Σ b_i k_i,   e = h Σ (b_i − b̂_i) k_i          c_i = Σ a_ij
@@ -16,21 +16,21 @@
 
 use super::slip_equations::{Rates, SlipEquations, with_rates};
 
-/// Part of the length that the error allows which is taken.
+/// Safety factor on the length that the error allows.
 const SAFETY: f64 = 0.9;
 
-/// Least and most that one step changes the length of the next.
+/// Smallest and largest ratio of successive step lengths.
 const SHARES: [f64; 2] = [0.2, 5.0];
 
-/// An accepted step, or the point that was worst in one that is repeated.
+/// An accepted step, or the worst point of a rejected one.
 pub enum Tried {
-    /// Taken; the next may be this many times as long
+    /// Accepted; ratio of the next length to this one
     Taken(f64),
-    /// Its error was too large, or a point had no rate: this one, and what it did
+    /// Rejected: the error was too large or a point had no rate; the worst point with its rates
     Refused { share: f64, worst: usize, rates: Rates },
 }
 
-/// The integration from one state on.
+/// Integration from one state on.
 pub struct Steps<'a> {
     interface: SlipEquations<'a>,
     /// w, and |∂τ/∂s|/p [-], [1/L]
@@ -40,11 +40,11 @@ pub struct Steps<'a> {
     start: f64,
     /// t − t₀ [T]
     pub since: f64,
-    /// Slips since t₀, and states of the laws
+    /// Slips since t₀, and state variables of the laws
     pub z: Vec<f64>,
     /// Slips of the last step [L]
     pub last: Vec<f64>,
-    /// Taken by friction and radiated since t₀, per area [F/L]
+    /// Energies dissipated by friction and radiated since t₀, per area [F/L]
     pub works: Vec<[f64; 2]>,
     /// Rates at the stages; the first stage is the present state
     rates: Vec<Vec<Rates>>,
@@ -52,7 +52,7 @@ pub struct Steps<'a> {
 }
 
 impl<'a> Steps<'a> {
-    /// Begin at a time.
+    /// Starts at a time.
     pub fn new(interface: SlipEquations<'a>, start: f64, tolerance: f64) -> Self {
         let n = interface.points.len();
         let state = |&(pair, slave, state): &(_, _, &crate::contact::force::ContactState)| {
@@ -70,17 +70,17 @@ impl<'a> Steps<'a> {
         Self { interface, weights, tolerance, start, since: 0.0, z, last, works, rates, trial }
     }
 
-    /// The rates of the present.
+    /// Current rates.
     pub fn now(&self) -> &[Rates] {
         &self.rates[0]
     }
 
-    /// p and −τ of the present, less those at t₀.
+    /// Current p and −τ, minus those at t₀.
     pub fn tractions(&self) -> Vec<f64> {
         self.interface.tractions(self.since, &self.z[..self.last.len()])
     }
 
-    /// Try a step of length `h`.
+    /// Tries a step of length `h`.
     pub fn attempt(&mut self, h: f64) -> Tried {
         for stage in 1..STAGES {
             self.advance(A[stage], h);
@@ -112,7 +112,7 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// e, and the point where it is.
+    /// e, and the point at which it occurs.
     fn error(&self, h: f64) -> (f64, usize) {
         let mut largest = (0.0f64, 0);
         for (k, [of_state, of_slip]) in self.weights.iter().enumerate() {
@@ -146,7 +146,7 @@ impl<'a> Steps<'a> {
 /// Number of stages.
 pub const STAGES: usize = 7;
 
-/// a_ij, a row a stage; the last is b.
+/// a_ij, one row per stage; the last row is b.
 pub const A: [&[f64]; STAGES] = [
     &[],
     &[1.0 / 5.0],

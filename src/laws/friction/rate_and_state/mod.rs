@@ -1,5 +1,5 @@
-//! Rate-and-state friction: the law, its increments of first order (`relaxation.rs`) and, along given paths, with their error
-//! controlled (`path.rs`).
+//! Rate-and-state friction: the law, its increments of first order (`relaxation.rs`) and their error-controlled integration
+//! along prescribed paths (`path.rs`).
 mod path;
 mod relaxation;
 
@@ -16,7 +16,7 @@ use path::Ramp;
 pub use relaxation::StateEvolution;
 use relaxation::{Coefficients, Relaxation, Relaxed, arsinh_of_exp};
 
-/// Parameters of [`RateAndState`] as the case file writes them.
+/// Parameters of [`RateAndState`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -34,10 +34,10 @@ pub struct RateAndStateParameters {
     /// D_c: slip over which the state evolves, D_c > 0 [L]
     #[serde(rename = "D_c")]
     pub critical_slip: f64,
-    /// How the state evolves
+    /// Evolution law of the state
     #[serde(default)]
     pub evolution: StateEvolution,
-    /// θ: state at the start, θ > 0; D_c/V₀, steady sliding at V₀, unless given [T]
+    /// θ: state at the start, θ > 0; default D_c/V₀, steady sliding at V₀ [T]
     #[serde(default)]
     pub theta: Option<f64>,
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
@@ -46,23 +46,24 @@ pub struct RateAndStateParameters {
 }
 
 impl RateAndStateParameters {
-    /// Ageing, sliding steadily at the reference rate at the start, with the tangential stiffness left to the contact.
+    /// Creates parameters with the ageing law, initially in steady sliding at the reference rate, and the default tangential
+    /// stiffness.
     pub const fn new(f_0: f64, reference_rate: f64, a: f64, b: f64, critical_slip: f64) -> Self {
         let evolution = StateEvolution::Ageing;
         Self { f_0, reference_rate, a, b, critical_slip, evolution, theta: None, alpha_t: None }
     }
 
-    /// With another evolution of the state.
+    /// Sets the evolution law of the state.
     pub const fn evolution(self, evolution: StateEvolution) -> Self {
         Self { evolution, ..self }
     }
 
-    /// Starting with this state θ [T].
+    /// Sets the initial state θ [T].
     pub const fn theta(self, theta: f64) -> Self {
         Self { theta: Some(theta), ..self }
     }
 
-    /// With this tangential stiffness [F/L³].
+    /// Sets the tangential stiffness α_t [F/L³].
     pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
@@ -79,29 +80,29 @@ numbers!(
 /// |q| = a p arsinh(V/(2 V₀) exp(ψ/a)),   ψ = f₀ + b ln(V₀ θ/D_c)      ≈ p (ψ + a ln(V/V₀))                  (2)
 /// θ̇ = 1 − V θ/D_c   or   θ̇ = −(V θ/D_c) ln(V θ/D_c)                                                       (3)
 /// ```
-/// The law remembers θ. V₀ only says at which rate f₀ is measured: with f₀ + (a − b) ln(V₁/V₀) and V₁ in their place, and the
-/// same θ, friction is the same. The μ that is shown is ψ, the coefficient at V₀, and R = |q|/(ψ p) is 1 at V₀.
+/// The internal variable is θ. V₀ is only the rate to which f₀ refers: with f₀ + (a − b) ln(V₁/V₀) and V₁ in their place, and
+/// the same θ, friction is the same. The observable μ is ψ, the coefficient at V₀, and R = |q|/(ψ p) is 1 at V₀.
 ///
-/// There is plastic slip whenever there is traction. A point *slips* where this outweighs ageing, V θ/D_c ≥ ½: in (3), where
-/// it takes from θ half of what time adds, or more. Steady sliding has V θ/D_c = 1 at every rate, a locked interface next
-/// to nothing, one that accelerates more than 1.
+/// Plastic slip occurs whenever there is traction. A point *slips* where slip outweighs ageing, V θ/D_c ≥ ½: in (3), where it
+/// reduces θ by at least half of the increase with time. Steady sliding has V θ/D_c = 1 at every rate, a locked interface
+/// almost 0, an accelerating one more than 1.
 ///
-/// An increment takes V = Δλ/Δt as constant, for which (3) is integrated exactly: with x = Δλ/D_c
+/// In an increment V = Δλ/Δt is taken as constant, for which (3) is integrated exactly: with x = Δλ/D_c
 /// ```text
 /// θ₁ = θ₀ e⁻ˣ + Δt (1 − e⁻ˣ)/x                  ageing law                                                   (4)
 /// ln θ₁ = e⁻ˣ ln θ₀ + (1 − e⁻ˣ) ln(D_c/V)        slip law                                                    (5)
 /// ```
 /// and Δλ is the *smallest* root of G(Δλ) = |q_tr| − α_t Δλ − |q|(Δλ) with |q| from (2) at the end of the increment. G is
-/// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening by slip, G falls throughout; else bounds
-/// of its slope single out the first root. The method is of first order in Δt. Along paths that are
-/// [given](FrictionLaw::controlled) sub-steps of an increment, even in slip and pressure, are extrapolated from such answers
-/// and halved until their error is below 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ.
+/// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening with slip, G decreases monotonically;
+/// otherwise bounds of its slope isolate the first root. The method is of first order in Δt. Along
+/// [prescribed](FrictionLaw::controlled) paths, sub-steps of an increment, linear in slip and pressure, are extrapolated from
+/// such responses and halved until their error is below 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ.
 ///
-/// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V once the traction, elastic until then, has
-/// met at q_y what (2) asks for V; that goes evenly from its value at the start to |q|.
+/// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V after the traction, elastic until then, has
+/// reached at q_y the strength (2) at V; this varies linearly from its value at the start to |q|.
 ///
 /// # Errors
-/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
+/// Returns [`LawFailure`](super::LawFailure) if the increment or the response is not finite, or Δt is negative.
 ///
 /// Source: Dieterich (1979), J. Geophys. Res. 84, 2161; Ruina (1983), J. Geophys. Res. 88, 10359; Rice & Ben-Zion (1996),
 /// PNAS 93, 3811 (the regularized form).
@@ -109,17 +110,17 @@ numbers!(
 pub struct RateAndState {
     coefficients: Coefficients,
     initial_theta: f64,
-    /// Whether θ at the start is given, and not D_c/V₀.
+    /// Whether the initial θ is given, instead of D_c/V₀.
     has_theta: bool,
     /// Whether the error of an increment is controlled.
     is_controlled: bool,
 }
 
 impl RateAndState {
-    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    /// Creates the law from checked parameters; `default_alpha_t` is used if they do not specify `alpha_t`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range.
+    /// Returns [`InvalidParameter`] if a parameter is out of range.
     pub fn new(parameters: &RateAndStateParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
         let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, evolution, .. } = *parameters;
         let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
@@ -140,7 +141,7 @@ impl RateAndState {
         slip * theta >= OUTWEIGHS * self.coefficients.critical_slip * dt
     }
 
-    /// One increment of first order, and where its equation is solved if it has one.
+    /// One increment of first order, with the solution of its equation if it has one.
     fn relax(&self, old: &FrictionState, sliding: Sliding) -> Result<(FrictionResponse, Option<Relaxed>), LawFailure> {
         let law = &self.coefficients;
         let alpha_t = law.alpha_t;
@@ -152,7 +153,7 @@ impl RateAndState {
         let log_state = law.log_state(old.variables[0]);
         let relaxation = Relaxation { law, trial: trial.abs(), pressure, dt, log_state };
         if dt == 0.0 || pressure <= 0.0 || trial == 0.0 {
-            // No time to slip in, or nothing to slip for.
+            // No slip, for zero time or zero traction.
             let aged = |theta| if dt == 0.0 { theta } else { law.theta(relaxation.log_state_after(0.0).0) };
             let old = old.with_variables([aged(old.variables[0])]);
             if pressure <= 0.0 {
@@ -165,7 +166,7 @@ impl RateAndState {
         }
         let (found, evaluations) = relaxation.solve()?;
         let traction = trial.signum() * found.traction.min(trial.abs());
-        // What (2) asks at the start for the slip rate of the increment
+        // Strength (2) at the start for the slip rate of the increment
         let rate_share = (trial.abs() - traction.abs()) / alpha_t / (2.0 * law.reference_rate * dt);
         let before = law.a * old.pressure * arsinh_of_exp(rate_share.ln() + law.psi(log_state) / law.a).0;
         let elastic = [trial.signum() * old.traction, trial.abs()];
@@ -185,7 +186,7 @@ impl RateAndState {
     }
 }
 
-/// V θ/D_c from which a point slips.
+/// V θ/D_c above which a point counts as slipping.
 const OUTWEIGHS: f64 = 0.5;
 
 /// x = ln(V₀ θ/D_c), ψ = f₀ + b x.
@@ -201,7 +202,7 @@ impl RateLaw for RateAndState {
             return 0.0;
         }
         let exponent = self.coefficients.psi(x) / a;
-        // V over its scale |τ|/η, as a function of z, and the share of the traction that friction takes
+        // V divided by |τ|/η, as a function of z, and the fraction of the traction carried by friction
         let log_share = (2.0 * reference_rate * damping / traction.abs()).ln() - exponent;
         let friction = a * pressure / traction.abs();
         let sinh = |z: f64| {
@@ -210,7 +211,7 @@ impl RateLaw for RateAndState {
         let cosh = |z: f64| {
             if z > LARGE { 0.5 * (z + log_share).exp() } else { z.cosh() * log_share.exp() }
         };
-        // Both terms alone bound z from above, and from above Newton's method descends to the root.
+        // Each term alone bounds z from above, from where Newton's method decreases monotonically to the root.
         let mut z = arsinh_of_exp(-log_share).0.min(1.0 / friction);
         for _ in 0..MOST_STEPS {
             let step = (friction * z + sinh(z) - 1.0) / (friction + cosh(z));
@@ -256,10 +257,10 @@ impl RateLaw for RateAndState {
     }
 }
 
-/// z from which sinh z is ½ eᶻ.
+/// z above which sinh z equals ½ eᶻ.
 const LARGE: f64 = 20.0;
 
-/// Newton's method gains digits by the square; this many steps are never taken.
+/// Maximum number of Newton steps, never reached because of quadratic convergence.
 const MOST_STEPS: usize = 60;
 
 impl FrictionLaw for RateAndState {
@@ -338,11 +339,10 @@ impl SensitiveLaw for RateAndState {
 }
 
 impl RateAndState {
-    /// One increment of first order, and how the state at its end varies along two directions, and with the pressure at the
-    /// end.
+    /// One increment of first order, with the variation of the final state along two directions and with the final pressure.
     ///
     /// # Errors
-    /// As of the answer itself.
+    /// The same as for the response.
     pub(super) fn increment(
         &self,
         old: &FrictionState,

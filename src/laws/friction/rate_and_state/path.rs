@@ -1,38 +1,38 @@
-//! Rate-and-state friction along a path that is given: increments of slip and pressure, even in time, whose error is controlled.
+//! Rate-and-state friction along a prescribed path: error-controlled increments of slip and pressure linear in time.
 
 use super::RateAndState;
 use crate::laws::friction::sensitivity::{Direction, Variation};
 use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, PointLoad, RateLaw, Regime, Sliding};
 
-/// Error of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ, relative to f₀: the
-/// errors of several, and of what they start from, come to at most 1e-6.
+/// Tolerance of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ, relative to f₀:
+/// the errors of several, and of their initial values, sum to at most 1e-6.
 const TOLERANCE: f64 = 2e-7;
 
-/// An increment is so many of the shortest sub-steps.
+/// Number of the shortest sub-steps in an increment.
 const WHOLE: u64 = 1 << 40;
 
-/// Sub-steps this short may hold a snap, if slip and pressure do next to nothing in them ...
+/// Length of sub-steps that may contain a jump, if slip and pressure have almost no effect in them ...
 const SHORT: u64 = 1 << 10;
 
-/// ... which is to change tractions by at most this share of the tolerance.
+/// ... defined by this fraction of the tolerance in the tractions.
 const SNAP: f64 = 1e-3;
 
-/// Attempts at sub-steps after which the increment is given up: it is far too long.
+/// Maximum number of sub-steps tried before an increment is rejected as far too long.
 const MOST_ATTEMPTS: usize = 20_000;
 
-/// A sub-step is taken by 1, 2, ... and at most so many increments of first order.
+/// Maximum number of extrapolation rows: a sub-step is integrated by 1, 2, ... increments of first order.
 const MOST_ROWS: usize = 4;
 
-/// Errors of 2, 3 and 4 rows, in tolerances, above which further rows will not do.
+/// Errors of 2, 3 and 4 rows, in tolerances, above which further rows are not sufficient.
 const HOPELESS: [f64; MOST_ROWS] = [f64::INFINITY, 1e4, 1e2, 1.0];
 
-/// An error below this, in tolerances, lets the next sub-step be twice as long.
+/// Error, in tolerances, below which the next sub-step may be twice as long.
 const DOUBLED: f64 = 0.1;
 
-/// Errors below this, relative to what they come from, are round-off.
+/// Relative round-off; errors below are ignored.
 const NOISE: f64 = 2e-13;
 
-/// A fall of |q|/(a p) that the rows of a sub-step resolve.
+/// Decrease of |q|/(a p) that the rows of a sub-step resolve.
 const RESOLVED: f64 = 2.0;
 
 /// q, ln θ, plastic slip, and the work ∫ q du = W + q²/(2 α_t)
@@ -41,7 +41,7 @@ type Values = [f64; 4];
 /// d(q, ln θ) along two directions
 type Derivatives = [[f64; 2]; 2];
 
-/// Values and derivatives that are extrapolated.
+/// Extrapolated values and derivatives.
 #[derive(Clone, Copy)]
 struct Entry {
     values: Values,
@@ -63,7 +63,7 @@ pub(super) struct Ramp<'a> {
     /// Directions along which slip, pressure and a parameter vary
     directions: [Direction; 2],
     dpressure: [f64; 2],
-    /// Evaluations of the law's equation so far
+    /// Number of evaluations of the law's equation so far
     evaluations: usize,
 }
 
@@ -79,7 +79,7 @@ impl<'a> Ramp<'a> {
         Self { law, start, sliding, directions, dpressure, evaluations: 0 }
     }
 
-    /// The answer at the end of the increment, the directions being those of the consistent tangent.
+    /// Response at the end of the increment; the directions are those of the consistent tangent.
     pub(super) fn answer(mut self) -> Answer {
         let old = self.start.state;
         let PathState { state, variations } = self.end()?;
@@ -100,7 +100,7 @@ impl<'a> Ramp<'a> {
     /// Variations of the state at the end of the path.
     ///
     /// # Errors
-    /// As of the answer.
+    /// The same as for the response.
     pub(super) fn variations(mut self) -> Result<[Variation; 2], LawFailure> {
         Ok(self.end()?.variations)
     }
@@ -110,7 +110,7 @@ impl<'a> Ramp<'a> {
         self.law.slip_rate(self.law.evolving(state), loading)
     }
 
-    /// The end: sub-steps are halved until their error is below the tolerance, and doubled where it allows.
+    /// State at the end: sub-steps are halved until their error is below the tolerance, and doubled where possible.
     fn end(&mut self) -> Result<PathState, LawFailure> {
         let (mut path_state, mut at, mut step) = (self.start, 0, WHOLE);
         for _ in 0..MOST_ATTEMPTS {
@@ -142,7 +142,7 @@ impl<'a> Ramp<'a> {
         Err(LawFailure::NotConverged { evaluations: self.evaluations, rest: trial, trial })
     }
 
-    /// Most that slip and pressure change tractions by over a sub-step without a snap, in tolerances.
+    /// Maximum change of tractions by slip and pressure over a sub-step without a jump, in tolerances.
     fn drive(&self, from: &PathState, step: u64) -> f64 {
         let change = self.law.coefficients.alpha_t * self.sliding.slip.abs()
             + self.law.coefficients.f_0 * (self.sliding.pressure - self.start.state.pressure).abs();
@@ -150,13 +150,13 @@ impl<'a> Ramp<'a> {
         share(step) * change / (TOLERANCE * self.law.coefficients.f_0 * most)
     }
 
-    /// The end of a sub-step, and its error in tolerances.
+    /// State at the end of a sub-step, and its error in tolerances.
     ///
     /// ```text
     /// T_j1: the sub-step by j increments of first order,   T_j,k+1 = T_jk + (T_jk − T_j−1,k)/(j/(j − k) − 1)
     /// ```
-    /// T_jj is of the order j, and its difference to T_j,j−1 bounds its error. Where the sub-step snaps nothing is to be
-    /// extrapolated: the answer of the finest row is taken.
+    /// T_jj is of order j, and its difference from T_j,j−1 bounds its error. Across a jump no extrapolation is made: the result
+    /// of the finest row is used.
     ///
     /// Source: Deuflhard (1985), SIAM Review 27, 505; Hairer & Wanner, Solving Ordinary Differential Equations II, IV.9.
     fn extrapolated(&mut self, from: &PathState, at: u64, step: u64) -> Result<(PathState, f64), LawFailure> {
@@ -183,7 +183,7 @@ impl<'a> Ramp<'a> {
         Ok((fine, error))
     }
 
-    /// A sub-step by so many increments.
+    /// A sub-step by `count` increments.
     fn increments(&mut self, from: &PathState, at: u64, step: u64, count: usize) -> Result<PathState, LawFailure> {
         let Sliding { slip, pressure, dt } = self.sliding;
         let first = self.start.state.pressure;
@@ -213,7 +213,7 @@ impl<'a> Ramp<'a> {
         }
     }
 
-    /// The state at the end of a sub-step that an entry stands for; `fine` is there too.
+    /// State at the end of a sub-step represented by an entry; `fine` is located there too.
     fn path_state(&self, entry: &Entry, fine: PathState) -> PathState {
         let [traction, log_theta, plastic_slip, work] = entry.values;
         let theta = log_theta.exp();
@@ -237,14 +237,14 @@ impl<'a> Ramp<'a> {
             [(law.a + law.b) * (log_theta + overlooked / law.critical_slip), law.f_0],
             [work, strength * slip + noise * entry.values[3].abs()],
         ];
-        // What is exactly 0 is right, whatever it is compared with.
+        // An exact 0 has no error, whatever the reference.
         let shares = parts.map(|[part, of]| if part == 0.0 { 0.0 } else { part / (TOLERANCE * of) });
         if shares.iter().any(|share| share.is_nan()) { f64::NAN } else { shares.into_iter().fold(0.0, f64::max) }
     }
 }
 
 impl Ramp<'_> {
-    /// Slip at the beginning of a sub-step that unloads so much that none of its rows resolves it: V decays by |q|/(a
+    /// Slip at the start of a sub-step with unloading that none of its rows resolves: V decays by |q|/(a
     /// p).
     fn overlooked(&self, from: &FrictionState, to: &FrictionState, step: u64) -> f64 {
         if from.pressure <= 0.0 || to.pressure <= 0.0 {

@@ -1,4 +1,4 @@
-//! The equation of an increment of rate-and-state friction, its smallest root, and how that varies.
+//! Equation of an increment of rate-and-state friction, its smallest root, and the variation of the root.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,10 +12,10 @@ use crate::laws::friction::{LEAST_SLOPE, LawFailure};
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum StateEvolution {
-    /// Ageing law, θ̇ = 1 − V θ/D_c: heals at rest
+    /// Ageing law, θ̇ = 1 − V θ/D_c: heals in stationary contact
     #[default]
     Ageing,
-    /// Slip law, θ̇ = −(V θ/D_c) ln(V θ/D_c): evolves by slip alone
+    /// Slip law, θ̇ = −(V θ/D_c) ln(V θ/D_c): evolves only with slip
     Slip,
 }
 
@@ -37,27 +37,27 @@ impl Coefficients {
         (self.reference_rate * theta / self.critical_slip).ln()
     }
 
-    /// θ of a ln(V₀ θ/D_c) [T]
+    /// θ from ln(V₀ θ/D_c) [T]
     pub(super) fn theta(&self, log_state: f64) -> f64 {
         log_state.exp() * self.critical_slip / self.reference_rate
     }
 
-    /// ψ of a ln(V₀ θ/D_c) [-]
+    /// ψ from ln(V₀ θ/D_c) [-]
     pub(super) fn psi(&self, log_state: f64) -> f64 {
         self.f_0 + self.b * log_state
     }
 }
 
-/// G is right to this share of |q_tr|.
+/// Relative accuracy of G with respect to |q_tr|.
 const PRECISION: f64 = 1e-14;
 
-/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be told apart.
+/// Width of a piece of the bracket of ln Δλ below which two roots cannot be distinguished.
 const LEAST_PIECE: f64 = 1e-13;
 
-/// Exponents above it would overflow.
+/// Exponent above which the exponential would overflow.
 const MOST_EXPONENT: f64 = 700.0;
 
-/// One increment with a traction to relax: G over Δλ.
+/// One increment with a traction to be relaxed: G as a function of Δλ.
 pub(super) struct Relaxation<'a> {
     pub law: &'a Coefficients,
     /// |q_tr| > 0
@@ -74,7 +74,7 @@ pub(super) struct Relaxation<'a> {
 pub(super) struct Relaxed {
     /// Δλ [L]
     pub slip: f64,
-    /// ln Δλ, from that of the largest slip down
+    /// ln Δλ, relative to that of the largest slip
     log: f64,
     /// w: |q| = a p arsinh(eʷ)
     pub log_sinh: f64,
@@ -89,7 +89,7 @@ pub(super) struct Relaxed {
 }
 
 impl Relaxation<'_> {
-    /// ln(V₀ θ/D_c) at the end after Δλ, and its derivative by Δλ.
+    /// ln(V₀ θ/D_c) at the end after Δλ, and its derivative with respect to Δλ.
     pub(super) fn log_state_after(&self, slip: f64) -> (f64, f64) {
         let Coefficients { reference_rate, critical_slip, evolution, .. } = *self.law;
         let x = slip / critical_slip;
@@ -129,8 +129,8 @@ impl Relaxation<'_> {
         Relaxed { slip, log: 0.0, log_sinh: w, excess, slope, log_state, traction }
     }
 
-    /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, of which the slip law knows some.
-    /// With y = V θ₀/D_c it is x ln(1/y), which rises up to y = 1/e.
+    /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, which also occurs in the slip law.
+    /// With y = V θ₀/D_c it is x ln(1/y), which increases up to y = 1/e.
     fn healing(&self, slip: f64) -> f64 {
         let Coefficients { b, reference_rate, critical_slip, evolution, .. } = *self.law;
         if evolution == StateEvolution::Ageing {
@@ -141,7 +141,7 @@ impl Relaxation<'_> {
         b * self.dt * reference_rate / critical_slip * -at * (at - self.log_state).min(MOST_EXPONENT).exp()
     }
 
-    /// Bounds of ∂ψ/∂ln Δλ between two slips: from the monotony of its parts, and exact where the slips are the same.
+    /// Bounds of ∂ψ/∂ln Δλ between two slips: from the monotonicity of its parts, and exact if the slips are equal.
     ///
     /// ```text
     /// ageing:  −b (c + g (x − c)),  c = 1 − x/(eˣ − 1),  g = θ₀ e⁻ˣ/θ₁     x, c and x − c rise with x, g falls
@@ -182,7 +182,7 @@ impl Relaxation<'_> {
     fn fall_bounds(&self, low: &Relaxed, high: &Relaxed) -> [f64; 2] {
         let Coefficients { a, alpha_t, .. } = *self.law;
         let [less, more] = self.effect_bounds(low.slip, high.slip).map(|effect| a + effect);
-        // w grows with ln Δλ by (a + ∂ψ/∂ln Δλ)/a.
+        // w increases with ln Δλ by (a + ∂ψ/∂ln Δλ)/a.
         let way = (high.log - low.log) / a;
         let least = (low.log_sinh + way * less.min(0.0)).max(high.log_sinh - way * more.max(0.0));
         let most = (low.log_sinh + way * more.max(0.0)).min(high.log_sinh - way * less.min(0.0));
@@ -193,7 +193,7 @@ impl Relaxation<'_> {
         ]
     }
 
-    /// Whether G falls throughout.
+    /// Whether G decreases monotonically.
     fn is_monotone(&self) -> bool {
         let Coefficients { b, reference_rate, critical_slip, alpha_t, evolution, .. } = *self.law;
         let fastest = match evolution {
@@ -203,7 +203,7 @@ impl Relaxation<'_> {
         alpha_t > self.pressure * b / critical_slip * (1.0 + fastest.max(0.0))
     }
 
-    /// A slip that is surely not beyond the first root: neither the contact nor (2) takes more than half of |q_tr|.
+    /// A slip certainly not beyond the first root: neither the contact nor (2) takes more than half of |q_tr|.
     fn least(&self) -> f64 {
         let Coefficients { a, reference_rate, alpha_t, .. } = *self.law;
         let half = 0.5 * self.trial;
@@ -214,7 +214,7 @@ impl Relaxation<'_> {
             let log = (2.0 * reference_rate * self.dt).ln() - (psi + healing) / a + log_sinh;
             log.min((half / alpha_t).ln())
         };
-        // Healing up to a slip rises with the slip: halve towards the largest that still holds.
+        // Healing increases with slip: bisection finds the largest slip for which the condition holds.
         let (mut low, mut high) = (f64::MIN_POSITIVE.ln(), reached(0.0));
         while high - low > 1.0 {
             let middle = 0.5 * (low + high);
@@ -224,14 +224,14 @@ impl Relaxation<'_> {
         low.exp()
     }
 
-    /// The smallest root, and the evaluations it took.
+    /// Smallest root, and the number of evaluations.
     ///
     /// # Errors
-    /// [`LawFailure::NotConverged`] when it is not found.
+    /// Returns [`LawFailure::NotConverged`] if it is not found.
     pub(super) fn solve(&self) -> Result<(Relaxed, usize), LawFailure> {
         let (least, most) = (self.least().max(f64::MIN_POSITIVE), self.trial / self.law.alpha_t);
         let mut evaluations = 0;
-        // By the logarithm of Δλ, in which (2) is nearly linear; from the largest down, so that round-off is least.
+        // In the logarithm of Δλ, (2) is nearly linear; it is relative to the largest slip to minimize round-off.
         let mut at = |log: f64| {
             evaluations += 1;
             Relaxed { log, ..self.outcome(most * log.exp()) }
@@ -268,7 +268,7 @@ impl Relaxation<'_> {
 }
 
 impl Relaxation<'_> {
-    /// Derivatives of (2) to (5) of the law and of G where it is solved, `dtrial` being that of |q_tr| and `dpressure` of p:
+    /// Derivatives of (2) to (5) of the law and of G at its solution, with `dtrial` that of |q_tr| and `dpressure` that of p:
     ///
     /// ```text
     /// d ln θ₁ = e⁻ˣ dθ₀/θ − x S dD_c + S dλ,   S = ∂ ln θ₁/∂λ         θ: θ₁ of the ageing law, θ₀ of the slip law
@@ -305,7 +305,7 @@ impl Variation {
     }
 }
 
-/// arsinh(eʷ) and its derivative by w, without eʷ where it would overflow.
+/// arsinh(eʷ) and its derivative with respect to w, without eʷ where it would overflow.
 pub(super) fn arsinh_of_exp(w: f64) -> (f64, f64) {
     if w > 20.0 {
         return (w + std::f64::consts::LN_2, 1.0);

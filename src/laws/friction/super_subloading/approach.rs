@@ -1,4 +1,4 @@
-//! How R approaches 1 with plastic slip, integrated exactly; with the exponential integral E₁, accurate to round-off.
+//! Approach of R to 1 with plastic slip, integrated exactly; with the exponential integral E₁, accurate to round-off.
 
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
@@ -24,9 +24,9 @@ pub(super) struct SlidingCurve {
 /// A point of the curve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurvePoint {
-    /// ζ, or the plastic slip itself where R = 1
+    /// ζ, or the plastic slip itself if R = 1
     pub coordinate: f64,
-    /// Plastic slip up to here, from y = 0 or from where R = 1 was met [L]
+    /// Plastic slip up to here, from y = 0 or from where R = 1 was reached [L]
     pub slip: f64,
     /// d(slip)/d(coordinate)
     pub stretch: f64,
@@ -40,7 +40,7 @@ pub(super) struct CurvePoint {
     pub full: bool,
 }
 
-/// y below which slip is taken as elastic: small enough to mean R = R_e.
+/// y below which slip counts as elastic: so small that R = R_e numerically.
 const LEAST_Y: f64 = 1e-100;
 
 impl SlidingCurve {
@@ -48,7 +48,7 @@ impl SlidingCurve {
         Self { approach, elastic_core, r, length: (1.0 - elastic_core) / r, per_range: 1.0 / (1.0 - elastic_core) }
     }
 
-    /// The point where plastic slip starts from a ratio R.
+    /// The point at which plastic slip starts from a ratio R.
     #[inline]
     pub(super) fn start(&self, ratio: f64) -> CurvePoint {
         let y = self.progress(ratio).max(LEAST_Y);
@@ -65,7 +65,7 @@ impl SlidingCurve {
         self.progress(curve_point.ratio) <= LEAST_Y
     }
 
-    /// The point at a coordinate of the curve that begins at `start`.
+    /// The point at a coordinate of the curve that starts at `start`.
     #[inline(always)]
     pub(super) fn at(&self, coordinate: f64, start: &CurvePoint) -> CurvePoint {
         if start.full {
@@ -88,9 +88,9 @@ impl SlidingCurve {
         }
     }
 
-    /// How R varies where r varies by `dr` and R_e by `dcore`, after a given plastic slip, R at the start being given.
+    /// Variation of R for variations `dr` of r and `dcore` of R_e, after a given plastic slip from a given initial R.
     pub(super) fn varied(&self, start: &CurvePoint, here: &CurvePoint, dr: f64, dcore: f64) -> f64 {
-        // Far along the curve U underflows: R is 1 there, too.
+        // Far along the curve U underflows: R is 1 there too.
         if start.full || start.rate == 0.0 {
             return 0.0;
         }
@@ -114,7 +114,7 @@ impl SlidingCurve {
         (self.elastic_core + (1.0 - self.elastic_core) * mean).clamp(from.ratio, to.ratio.max(from.ratio))
     }
 
-    /// A coordinate that is at least `slip` beyond the start.
+    /// A coordinate at least `slip` beyond the start.
     #[inline]
     pub(super) fn beyond(&self, slip: f64, start: &CurvePoint) -> f64 {
         let slip = start.slip + slip;
@@ -128,7 +128,7 @@ impl SlidingCurve {
     }
 }
 
-/// U(R): how fast the normal-sliding ratio approaches 1 with plastic slip.
+/// U(R): rate of approach of the normal-sliding ratio to 1 with plastic slip.
 ///
 /// ```text
 /// dR/dλ = U(R),   y = (R − R_e)/(1 − R_e)
@@ -152,12 +152,12 @@ pub enum Approach {
 
 /// A point on the curve y(T), T = r λ/(1 − R_e) being the plastic slip since y = 0 in units of (1 − R_e)/r.
 ///
-/// The curve is known in closed form along a coordinate ζ that covers 0 < y < 1 evenly from −∞ to ∞:
+/// The curve has a closed form in a coordinate ζ that covers 0 < y < 1 evenly from −∞ to ∞:
 /// ```text
 /// logarithmic:  y = exp(−e^(−ζ)),        T = E₁(e^(−ζ)),             dT/dζ = y
 /// cotangent:    y = (2/π) atan(e^ζ),     T = ln(1 + e^(2ζ))/π,       dT/dζ = (2/π)/(1 + e^(−2ζ))
 /// ```
-/// so that no inverse function is ever needed, and T is nearly linear in ζ where sliding is nearly full.
+/// so that no inverse function is needed, and T is nearly linear in ζ where sliding is nearly full.
 pub(super) struct Progress {
     /// y = (R − R_e)/(1 − R_e) [-]
     pub y: f64,
@@ -205,7 +205,7 @@ impl Approach {
                 (zeta, Progress { y, distance: e1(w, -zeta, y), stretch: y, bend: y * w, rate: w })
             }
             Self::Cotangent => {
-                // Whichever of the two angles is exact in floating point.
+                // The angle that is exact in floating point is used.
                 let cotangent = if y < 0.5 { 1.0 / (0.5 * PI * y).tan() } else { (0.5 * PI * (1.0 - y)).tan() };
                 let zeta = -cotangent.ln();
                 (zeta, Self::Cotangent.at(zeta))
@@ -233,7 +233,7 @@ impl Approach {
         }
     }
 
-    /// A ζ where T is at least `distance`: T > ζ − γ, or T > 2ζ/π. Close where `distance` is large.
+    /// A ζ where T is at least `distance`: T > ζ − γ, or T > 2ζ/π; close where `distance` is large.
     pub(super) fn beyond(self, distance: f64) -> f64 {
         match self {
             Self::Logarithmic => distance + EULER,
@@ -268,13 +268,13 @@ const SINE_SERIES: [f64; 22] = [
     5.741_759_480_890_025e-17,
 ];
 
-/// Below this argument the entire part of E₁ is used, above it the scaled tail.
+/// Argument below which the entire part of E₁ is used, and above which the scaled tail.
 const SPLIT: f64 = 1.5;
 
 /// γ: Euler's constant
 const EULER: f64 = 0.577_215_664_901_532_9;
 
-/// E₁(w) for w ≥ 0; callers have ln w and e^(−w) at hand, the two costly parts.
+/// E₁(w) for w ≥ 0; callers supply ln w and e^(−w), the two costly parts.
 ///
 /// ```text
 /// E₁(w) = ∫_w^∞ e^(−t)/t dt = −γ − ln w + Ein(w)            li(y) = −E₁(−ln y) for 0 < y < 1
@@ -289,7 +289,7 @@ fn e1(w: f64, ln_w: f64, exp_of_minus_w: f64) -> f64 {
     if w <= SPLIT { w * rational(w, &ENTIRE) - ln_w - EULER } else { exp_of_minus_w / w * rational(1.0 / w, &TAIL) }
 }
 
-/// Σ aᵢ xⁱ / Σ bᵢ xⁱ; even and odd powers apart, which halves the chain of dependent operations.
+/// Σ aᵢ xⁱ / Σ bᵢ xⁱ; even and odd powers are separate, which halves the chain of dependent operations.
 #[inline(always)]
 fn rational(x: f64, coefficients: &[(f64, f64)]) -> f64 {
     let square = x * x;

@@ -2,7 +2,7 @@
 //!
 //! # Plastic slip
 //!
-//! The scalar equation of plastic slip, and its smallest root.
+//! The sub-step is governed by a scalar equation of plastic slip, of which the smallest root is required.
 
 use super::SuperSubloading;
 use super::approach::{CurvePoint, SlidingCurve};
@@ -10,7 +10,7 @@ use super::peak::{Peak, PeakShift};
 use crate::laws::friction::root::{Argument, Piece, bracketed_root, first_root_bracket};
 use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
 
-/// Derivatives along two directions of what an answer depends on.
+/// Derivatives of an input or result along two directions.
 pub(super) type Derivative = [f64; 2];
 
 /// Derivatives of the inputs of an increment along the two directions.
@@ -43,7 +43,7 @@ pub(super) struct Shift {
     pub peak: PeakShift,
 }
 
-/// The part of an increment in which slip may be plastic, mirrored so that the traction does not become negative.
+/// The part of an increment in which slip may be plastic, with signs such that the traction is not negative.
 ///
 /// Along it slip, pressure and time are linear in x, 0 ≤ x ≤ 1.
 pub(super) struct LoadPath<'a> {
@@ -62,7 +62,7 @@ pub(super) struct LoadPath<'a> {
     pub dtime: Derivative,
     /// Derivatives of the parameters, if they vary
     pub parameters: Option<[Shift; 2]>,
-    /// Evaluations of the slip equation so far
+    /// Number of evaluations of the slip equation so far
     pub evaluations: usize,
 }
 
@@ -78,18 +78,18 @@ pub(super) struct PathState {
     pub mu: f64,
     /// Derivatives of μ
     pub dmu: Derivative,
-    /// R and where it is on its curve
+    /// R, and its point on the curve
     pub curve_point: CurvePoint,
     /// Plastic slip since the start of the path [L]
     pub plastic_slip: f64,
     /// Work dissipated since the start of the path [F/L]
     pub work: f64,
-    /// Bound of the traction lost by plastic slip that an elastic sub-step has overlooked [F/L²]
+    /// Bound of the traction lost by plastic slip that was neglected in an elastic sub-step [F/L²]
     pub overlooked: f64,
 }
 
 impl LoadPath<'_> {
-    /// The beginning of the path.
+    /// Start of the path.
     pub(super) fn start(
         &self,
         traction: f64,
@@ -103,7 +103,7 @@ impl LoadPath<'_> {
         PathState { x: 0.0, traction, dtraction, mu, dmu, curve_point, plastic_slip, work, overlooked }
     }
 
-    /// Integrate one sub-step.
+    /// Integrates one sub-step.
     #[inline]
     pub(super) fn advance(&mut self, from: &PathState, x: f64) -> Result<PathState, LawFailure> {
         let share = x - from.x;
@@ -121,7 +121,7 @@ impl LoadPath<'_> {
         }
         let (end, evaluations) = equation.solve(start)?;
         self.evaluations += evaluations;
-        // The tangent leaves out what the last step of the search changes in it, which adds up over many increments.
+        // The tangent neglects the change by the last step of the search, which would accumulate over many increments.
         let end = if self.parameters.is_some() { equation.settled(end) } else { end };
         Ok(self.slide(from, x, &end))
     }
@@ -131,7 +131,7 @@ impl LoadPath<'_> {
     fn stick(&self, from: &PathState, x: f64, trial: f64) -> PathState {
         let share = x - from.x;
         let pressure = self.pressure(x);
-        // Only weakening that has taken the traction from under an unloading can leave it to reverse: it waits at 0.
+        // Only weakening that has reduced the traction during unloading can leave it to reverse: it stays at 0.
         let traction = trial.max(0.0);
         let (mu, by_time) = self.law.evolution.rested(from.mu, self.time * share);
         let old_rate = self.law.evolution.recovery(from.mu);
@@ -156,8 +156,8 @@ impl LoadPath<'_> {
         }
     }
 
-    /// A sub-step with plastic slip. The consistent tangent is that of the equation of plastic slip, with what the sub-step starts
-    /// from varying too:
+    /// A sub-step with plastic slip. The consistent tangent is that of the equation of plastic slip, including the variation of
+    /// the initial state of the sub-step:
     ///
     /// ```text
     /// dq = dq_tr − α_t dΔλ,   dq_tr = dq₀ + α_t dΔu
@@ -165,7 +165,7 @@ impl LoadPath<'_> {
     /// δR = U/U₀ dR₀,   δμ = ∂μ/∂μ₀ dμ₀ + ∂μ/∂Δt dΔt                 of R and μ after a given Δλ
     /// dμ = δμ + ∂μ/∂Δλ dΔλ
     /// ```
-    /// Parameters that vary add their own part to α_t Δλ, δμ and δR.
+    /// Varying parameters add their contributions to α_t Δλ, δμ and δR.
     #[inline]
     fn slide(&self, from: &PathState, x: f64, point: &Point) -> PathState {
         let share = x - from.x;
@@ -174,7 +174,7 @@ impl LoadPath<'_> {
         let traction = curve_point.ratio * peak.mu * pressure;
         let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.law.alpha_t);
 
-        // U/(U₀ μ₀ p₀), as dR₀ = (dq₀ − R₀ (p₀ dμ₀ + μ₀ dp₀))/(μ₀ p₀); R₀ does not matter where the curve begins.
+        // U/(U₀ μ₀ p₀), as dR₀ = (dq₀ − R₀ (p₀ dμ₀ + μ₀ dp₀))/(μ₀ p₀); R₀ is irrelevant where the curve begins.
         let given = from.x == 0.0 && self.parameters.is_none();
         let begins = given || self.law.curve.begins_at(&from.curve_point) || from.curve_point.rate == 0.0;
         let inherited =
@@ -234,7 +234,7 @@ impl LoadPath<'_> {
         ]
     }
 
-    /// dλ/dx of the rate equations, 0 where R falls by itself or the answer is not unique.
+    /// dλ/dx of the rate equations, 0 where R decreases without slip or the solution is not unique.
     #[inline]
     fn rate(&self, traction: f64, mu: f64, pressure: f64, curve_point: &CurvePoint) -> f64 {
         if traction < curve_point.ratio * mu * pressure * (1.0 - ROUND_OFF) {
@@ -258,8 +258,9 @@ impl LoadPath<'_> {
     }
 }
 
-/// Mean of q over the plastic slip of a step: μ p is taken as linear in ∫ R dλ. Where the traction falls, it is itself taken
-/// as linear in λ, which it is where it snaps: the contact springs back, and what the strength does not take is lost too.
+/// Mean of q over the plastic slip of a step: μ p is taken as linear in ∫ R dλ. Where the traction decreases, it is itself
+/// taken as linear in λ, which is exact for a jump: the contact springs back, and the energy not taken by the strength is lost
+/// too.
 pub(super) fn mean_traction(
     curve: &SlidingCurve,
     curve_points: [&CurvePoint; 2],
@@ -308,38 +309,38 @@ pub(super) struct Point {
     pub slope: f64,
     /// Step to the root along the coordinate, by Chebyshev's method
     step: f64,
-    /// Whether the step is so small that it is as good as made.
+    /// Whether the step is negligible.
     close: bool,
 }
 
-/// Trial tractions above the elastic limit by less than this, relative, are round-off.
+/// Relative excess of a trial traction over the elastic limit that counts as round-off.
 pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// Residual, relative to |q_tr|, at which the equation is solved.
+/// Residual, relative to |q_tr|, at which the equation counts as solved.
 const TOLERANCE: f64 = 3e-14;
 
-/// Steps below this are made without another evaluation: to second order, or to first where μ is costly (m or n not 1).
+/// Step below which no further evaluation is made: to second order, or to first where μ is costly (m or n not 1).
 const LAST_STEP: f64 = 1e-5;
 const LAST_STEP_OF_FIRST_ORDER: f64 = 1e-8;
 
-/// y below which Chebyshev's method from the start is no good guess, as U is too large.
+/// y below which Chebyshev's method from the start is a poor guess, as U is too large.
 const SMALL_Y: f64 = 0.05;
 
-/// Pieces of the bracket narrower than this hold roots that cannot be told apart.
+/// Width of a piece of the bracket below which two roots cannot be distinguished.
 const LEAST_PIECE: f64 = 1e-12;
 
 impl SlipEquation<'_> {
-    /// Whether the trial is the answer: no plastic slip. Gives the equation at Δλ = 0.
+    /// Whether the trial is the solution, without plastic slip; also returns the equation at Δλ = 0.
     #[inline]
     pub(super) fn start(&self) -> (bool, Point) {
         let start = self.point(self.start);
         (start.residual <= ROUND_OFF * self.trial, start)
     }
 
-    /// The smallest root, and how many evaluations it took.
+    /// Smallest root, and the number of evaluations.
     ///
     /// # Errors
-    /// [`LawFailure::NotConverged`] when it is not singled out.
+    /// Returns [`LawFailure::NotConverged`] if it is not isolated.
     #[inline]
     pub(super) fn solve(&self, start: Point) -> Result<(Point, usize), LawFailure> {
         if start.close {
@@ -389,13 +390,13 @@ impl SlipEquation<'_> {
         self.law.alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope)
     }
 
-    /// The point with μ and D as they are there, and not as they were before the last step.
+    /// The point with μ and D evaluated there, instead of before the last step.
     pub(super) fn settled(&self, point: Point) -> Point {
         let peak = self.law.evolution.after(self.old_mu, point.slip, self.dt);
         Point { peak, slope: self.slope(point.curve_point.ratio, point.curve_point.rate, &peak), ..point }
     }
 
-    /// Whether terms of third order of the step are round-off; the fold where D = 0 magnifies them.
+    /// Whether third-order terms of the step are round-off, which is magnified near the fold D = 0.
     #[inline(always)]
     fn is_close(&self, curve_point: &CurvePoint, slope: f64, step: f64) -> bool {
         let last = if self.law.evolution.is_linear() { LAST_STEP } else { LAST_STEP_OF_FIRST_ORDER };
@@ -405,8 +406,8 @@ impl SlipEquation<'_> {
         step.abs() * relative * self.law.alpha_t <= last * curve_point.stretch * slope.min(self.law.alpha_t)
     }
 
-    /// A first coordinate: a step from the start or, near R = R_e where U is infinite, the elastic answer if there is
-    /// one, else the least plastic slip possible.
+    /// Initial coordinate: a step from the start or, near R = R_e where U is infinite, the elastic solution if there is
+    /// one, else the smallest possible plastic slip.
     #[inline]
     fn guess(&self, start: &Point) -> f64 {
         let strength = start.peak.mu * self.pressure;
@@ -419,7 +420,7 @@ impl SlipEquation<'_> {
         }
     }
 
-    /// A bracket that holds the smallest root, found by plastic slip.
+    /// A bracket that contains the smallest root; the slope of G is bounded per plastic slip.
     fn first_root_bracket(&self, start: Point, end: f64, evaluations: &mut usize) -> Result<[f64; 2], LawFailure> {
         let mut at = |coordinate| {
             *evaluations += 1;
@@ -440,7 +441,7 @@ impl SlipEquation<'_> {
         })
     }
 
-    /// Least and greatest D between two points, from the monotony of U, R, μ and ∂μ/∂Δλ.
+    /// Smallest and largest D between two points, from the monotonicity of U, R, μ and ∂μ/∂Δλ.
     fn slope_bounds(&self, left: &Point, right: &Point) -> [f64; 2] {
         let least = right.curve_point.rate * right.peak.mu + right.curve_point.ratio * left.peak.slope;
         let most = left.curve_point.rate * left.peak.mu + left.curve_point.ratio * right.peak.slope;

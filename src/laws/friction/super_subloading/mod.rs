@@ -1,4 +1,4 @@
-//! Super/subloading friction: the law, and what a case may say of it.
+//! Super/subloading friction: the law, and its parameters in a case.
 mod approach;
 mod increment;
 mod path;
@@ -23,33 +23,33 @@ pub use peak::{Integration, Onset, Rise};
 /// Ṙ = U(R) λ,   R = |q|/(μ p),   U = −r ln R           approach to full sliding     (2)
 /// μ̇ = −κ (μ/μ_k − 1)^m λ + ξ (1 − μ/μ_s)^n             weakening, recovery          (3)
 /// ```
-/// λ ≥ 0 is the rate of plastic slip; R falls freely while λ = 0. With an elastic core R_e, ln R becomes
+/// λ ≥ 0 is the rate of plastic slip; R decreases freely while λ = 0. With an elastic core R_e, ln R becomes
 /// ln (R − R_e)/(1 − R_e); [`Approach`](super::Approach) offers a second U. Units: q, p [F/L²], α_t [F/L³], λ and v [L/T],
 /// r and κ [1/L], ξ [1/T], all others [-].
 ///
-/// An increment leads slip, pressure and time along straight lines, Δu, p₀ → p, Δt. While R can only fall it is elastic.
-/// Plastic slip starts from R_s = max(R₀, R_e), or from R_e where the traction passes 0 or nothing was pressed, and Δλ is
+/// In an increment slip, pressure and time vary linearly, Δu, p₀ → p, Δt. It is elastic as long as R can only decrease.
+/// Plastic slip starts from R_s = max(R₀, R_e), or from R_e where the traction passes 0 or there was no pressure, and Δλ is
 /// the *smallest* root of one scalar equation,
 /// ```text
 /// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t,   q_tr = q₀ + α_t Δu     (4)
 /// ```
-/// with R from (2) integrated exactly ([`Approach`](super::Approach)). G is positive at the left end and not at the right, so a bracketed
-/// search cannot fail. G falls throughout, and the root is the only one, while α_t exceeds R p |dμ/dΔλ|; where this
-/// cannot be guaranteed ([`Description::uniqueness_limit`]), bounds of the slope of G single out the first root.
+/// with R from (2) integrated exactly ([`Approach`](super::Approach)). G is positive at the left end and not at the right, so a
+/// bracketed search cannot fail. G decreases monotonically, and the root is unique, while α_t exceeds R p |dμ/dΔλ|; where this
+/// cannot be guaranteed ([`Description::uniqueness_limit`]), bounds of the slope of G isolate the first root.
 ///
-/// [`Integration`] says where μ of (4) comes from. *Backward Euler* takes one step of (3) and of (4) an increment. The
-/// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
-/// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is bounded for
-/// short increments, which one step answers (`path.rs`), and else found by halving the increment, and halving again,
-/// until q, μ p and the mean of q are right to the tolerance (there as well).
-/// The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or where |q| falls with |q|
-/// linear in λ; the work of the increment, ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
+/// [`Integration`] determines μ of (4). *Backward Euler* takes one step of (3) and of (4) per increment. The *controlled*
+/// integration solves (3) for slip and time proportional to each other, which is exact where μ only weakens or only recovers (m
+/// = n = 1). The effect of the order of weakening and recovery is bounded for short increments, which need one step
+/// (`path.rs`), and otherwise found by repeated halving of the increment, until q, μ p and the mean of q are accurate to the
+/// tolerance (same file). The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or for
+/// decreasing |q| with |q| linear in λ; the work of the increment, ∫ q du, is this plus the energy stored in the contact. The
+/// tangent is consistent with the computed values; for one step
 /// ```text
 /// D = α_t + p (U μ + R ∂μ/∂Δλ),   ∂q/∂Δu = α_t (1 − α_t/D),   ∂q/∂p = sgn(q_tr) α_t R μ/D.
 /// ```
 ///
 /// # Errors
-/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
+/// Returns [`LawFailure`](super::LawFailure) if the increment or the response is not finite, or Δt is negative.
 ///
 /// Source: Yasuike, Toyoda & Noda, eqs 10–20; Toyoda, Yasuike & Noda (2024), Tribology International 191:109080;
 /// Ozaki & Hashiguchi (2010), Tribology International 43:2120.
@@ -57,7 +57,7 @@ pub use peak::{Integration, Onset, Rise};
 pub struct SuperSubloading {
     alpha_t: f64,
     initial_mu: f64,
-    /// 1/R*₀, if it is given
+    /// Initial 1/R*₀, if given
     structure: Option<f64>,
     curve: SlidingCurve,
     evolution: PeakEvolution,
@@ -66,10 +66,10 @@ pub struct SuperSubloading {
 }
 
 impl SuperSubloading {
-    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    /// Creates the law from checked parameters; `default_alpha_t` is used if they do not specify `alpha_t`.
     ///
     /// # Errors
-    /// [`InvalidParameter`] when a parameter is out of its range.
+    /// Returns [`InvalidParameter`] if a parameter is out of range.
     pub fn new(parameters: &SuperSubloadingParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
         let SuperSubloadingParameters { mu_s, mu_k, r, kappa, xi, m, n, approach, elastic_core, integration, .. } =
             *parameters;
@@ -109,14 +109,14 @@ impl SuperSubloading {
     }
 }
 
-/// R from which on plastic slip counts as slipping: the law slips plastically a little whenever it is loaded.
+/// R above which a point counts as slipping: the law has some plastic slip at any load.
 pub const SLIPPING: f64 = 0.9;
 
-/// A traction above the strength μ p by more than this, relative, has not come from this law.
+/// Relative excess of a traction over the strength μ p that cannot result from this law.
 const EXCESS: f64 = 1e-12;
 
 impl SuperSubloading {
-    /// The state with a traction above the strength μ p brought down to it, at once and by plastic slip alone.
+    /// Reduces a traction above the strength μ p to it, instantaneously and by plastic slip only.
     fn within_strength(&self, old: &FrictionState) -> FrictionState {
         let mu = self.evolution.clamp(mu_of(old));
         let old = FrictionState { plastic_increment: 0.0, ..*old }.with_variables([mu]);
@@ -128,7 +128,7 @@ impl SuperSubloading {
         old.slid(old.traction, strength.copysign(old.traction), mean, old.pressure, self.alpha_t)
     }
 
-    /// An increment that ends with the strength μ p, without plastic slip.
+    /// An increment without plastic slip that ends with the strength μ p.
     fn elastic(&self, old: &FrictionState, trial: f64, pressure: f64, mu: f64) -> FrictionResponse {
         FrictionResponse::elastic(old.stuck(trial, pressure).with_variables([mu]), self.alpha_t)
     }
@@ -152,7 +152,7 @@ impl SuperSubloading {
         }
         let (end, evaluations) = equation.solve(start)?;
         let strength = trial.signum() * end.curve_point.ratio * end.peak.mu;
-        // Plastic slip starts from the old pressure, or from that where the traction passes 0.
+        // Plastic slip starts at the old pressure, or at that where the traction passes 0.
         let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
         let start_pressure = old.pressure + passed * (pressure - old.pressure);
         let strengths = [old_mu * start_pressure, end.peak.mu * pressure];
@@ -199,19 +199,19 @@ fn falls(old: &FrictionState, trial: f64, pressure: f64) -> bool {
     trial * old.traction.signum() >= 0.0 && ratio_falls && old.pressure > 0.0
 }
 
-/// μ, the one variable of the law [-]
+/// μ, the internal variable of the law [-]
 fn mu_of(state: &FrictionState) -> f64 {
     state.variables[0]
 }
 
-/// The state of a pressed point with its regime.
+/// The state of a closed point with its contact status.
 fn ruled(state: FrictionState) -> FrictionState {
     let slips = state.plastic_increment != 0.0 && state.ratio(mu_of(&state)) >= SLIPPING;
     FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state }
 }
 
 impl FrictionLaw for SuperSubloading {
-    /// The least coefficient is μ_k, R being 1 in sliding that goes on.
+    /// The lowest coefficient is μ_k, with R = 1 in continued sliding.
     fn description(&self) -> Description {
         Description {
             stiffness: self.alpha_t,
@@ -267,7 +267,7 @@ impl FrictionLaw for SuperSubloading {
     }
 }
 
-/// Parameters of [`SuperSubloading`](super::SuperSubloading) as the case file writes them.
+/// Parameters of [`SuperSubloading`](super::SuperSubloading) as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -294,16 +294,16 @@ pub struct SuperSubloadingParameters {
     /// n: exponent of the recovery, n > 0 [-]
     #[serde(default = "one")]
     pub n: f64,
-    /// 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
+    /// 1/R*₀: structure at first contact, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
     #[serde(default)]
     pub structure: Option<f64>,
-    /// U(R): how R approaches 1
+    /// U(R): approach of R to 1
     #[serde(default)]
     pub approach: Approach,
     /// R_e: elastic core, no plastic slip for R ≤ R_e, 0 ≤ R_e < 1 [-]
     #[serde(default)]
     pub elastic_core: f64,
-    /// How an increment is integrated
+    /// Integration of an increment
     #[serde(default)]
     pub integration: Integration,
     /// Error tolerance of the controlled integration, as a fraction of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
@@ -314,7 +314,7 @@ pub struct SuperSubloadingParameters {
 numbers!(SuperSubloadingParameters: "mu_s" mu_s, "mu_k" mu_k, "r" r, "kappa" kappa, "xi" xi, "m" m, "n" n, "elastic_core" elastic_core; "alpha_t" alpha_t, "structure" structure, "tolerance" tolerance);
 
 impl SuperSubloadingParameters {
-    /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
+    /// Creates parameters without weakening and recovery, with the default tangential stiffness and the defaults of a case.
     pub const fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
         Self {
             mu_s,
@@ -333,47 +333,47 @@ impl SuperSubloadingParameters {
         }
     }
 
-    /// Losing strength with slip at the rate κ [1/L].
+    /// Sets the rate κ of weakening with slip [1/L].
     pub const fn kappa(self, kappa: f64) -> Self {
         Self { kappa, ..self }
     }
 
-    /// Recovering at rest at the rate ξ [1/T].
+    /// Sets the rate ξ of recovery in stationary contact [1/T].
     pub const fn xi(self, xi: f64) -> Self {
         Self { xi, ..self }
     }
 
-    /// With other exponents of weakening and recovery [-].
+    /// Sets the exponents of weakening and recovery [-].
     pub const fn exponents(self, m: f64, n: f64) -> Self {
         Self { m, n, ..self }
     }
 
-    /// Starting with this structure 1/R* [-].
+    /// Sets the initial structure 1/R* [-].
     pub const fn structure(self, structure: f64) -> Self {
         Self { structure: Some(structure), ..self }
     }
 
-    /// With another approach to full sliding.
+    /// Sets the approach to full sliding.
     pub const fn approach(self, approach: Approach) -> Self {
         Self { approach, ..self }
     }
 
-    /// With an elastic core R_e [-].
+    /// Sets the elastic core R_e [-].
     pub const fn elastic_core(self, elastic_core: f64) -> Self {
         Self { elastic_core, ..self }
     }
 
-    /// With another integration of an increment.
+    /// Sets the integration of an increment.
     pub const fn integration(self, integration: Integration) -> Self {
         Self { integration, ..self }
     }
 
-    /// With another tolerance of the controlled integration [-].
+    /// Sets the tolerance of the controlled integration [-].
     pub const fn tolerance(self, tolerance: f64) -> Self {
         Self { tolerance: Some(tolerance), ..self }
     }
 
-    /// With this tangential stiffness [F/L³].
+    /// Sets the tangential stiffness α_t [F/L³].
     pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }

@@ -1,16 +1,16 @@
-//! The path that an increment of super/subloading friction follows.
+//! Path of an increment of super/subloading friction.
 //!
 //! # Sub-steps
 //!
-//! One increment along linear paths of slip, pressure and time, in sub-steps where the tolerance asks for them.
+//! An increment with linear paths of slip, pressure and time is divided into sub-steps as the tolerance requires.
 //!
 //! # Short steps
 //!
-//! When one step is right without its halves: a bound of its error.
+//! An error bound decides whether one step is sufficient without comparison with its halves.
 //!
 //! # Sensitivity
 //!
-//! How the answers vary with the parameters, and with the state at the start.
+//! Responses are differentiated with respect to the parameters and the initial state.
 
 use super::increment::{Derivative, Directions, LoadPath, PathState, Shift};
 use super::peak::PeakShift;
@@ -19,8 +19,8 @@ use crate::laws::friction::sensitivity::{Direction, SensitiveLaw, Variation};
 use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 
 impl SuperSubloading {
-    /// The path of an increment in which slip may be plastic: from the start, or from where the traction passes 0; its first
-    /// station, and the sign of the traction, by which both are mirrored.
+    /// The path of an increment in which slip may be plastic: from the start, or from where the traction passes 0; its initial
+    /// state, and the sign of the traction, by which both are mirrored.
     pub(super) fn lead(
         &self,
         old: &FrictionState,
@@ -52,7 +52,8 @@ impl SuperSubloading {
         (path, start, sign)
     }
 
-    /// Leave to the path what comes after the share of the increment at which the traction passes 0; its first station.
+    /// Restricts the path to the part after the traction passes 0, at the fraction `share` of the increment; returns its
+    /// initial state.
     fn pass_zero(&self, path: &mut LoadPath, old_mu: f64, trial: f64, share: f64, by: &Directions) -> PathState {
         let (alpha_t, slip, dt) = (self.alpha_t, path.slip, path.time);
         let dstiffness = [0, 1].map(|i| by.parameters.map_or(0.0, |shifts| shifts[i].alpha_t));
@@ -77,25 +78,25 @@ impl SuperSubloading {
     }
 }
 
-/// Sub-steps are halved at most so often: until slip, pressure and time no longer change in floating point.
+/// Maximum number of halvings: until slip, pressure and time no longer change in floating point.
 const MAX_HALVINGS: u32 = 48;
 
-/// Evaluations of the slip equation after which the increment is given up: it is far too long.
+/// Number of evaluations of the slip equation after which the increment is rejected as far too long.
 const MAX_EVALUATIONS: usize = 20_000;
 
-/// A sub-step in which q and μ p change by this share of the tolerance, but for a snap, is short enough to hold a snap.
+/// Fraction of the tolerance in q and μ p below which a sub-step is short enough to contain a jump.
 const SNAP: f64 = 1e-3;
 
-/// Errors below this, relative to the tractions they come from, are round-off.
+/// Relative round-off of tractions; errors below are ignored.
 const NOISE: f64 = 2e-13;
 
-/// The difference of two stations over the error of the value extrapolated from them, where it converges slowly.
+/// Ratio of the difference of two results to the error of the value extrapolated from them, where convergence is slow.
 const CAUTION: f64 = 4.0;
 
 /// Errors in q, in μ p and in the work
 type Differences = [f64; 3];
 
-/// A sub-step, and the same in two halves.
+/// A sub-step, and the same interval in two halves.
 #[derive(Clone, Copy)]
 struct Halves<'a> {
     from: &'a PathState,
@@ -105,7 +106,7 @@ struct Halves<'a> {
 }
 
 impl Halves<'_> {
-    /// Whether there is plastic slip in the whole and in both halves.
+    /// Whether plastic slip occurs in the whole and in both halves.
     fn slide(&self) -> bool {
         let slips = |from: &PathState, to: &PathState| to.plastic_slip > from.plastic_slip;
         slips(self.from, self.coarse) && slips(self.from, self.middle) && slips(self.middle, self.fine)
@@ -113,10 +114,10 @@ impl Halves<'_> {
 }
 
 impl LoadPath<'_> {
-    /// The end of the path: one step where that is right by itself.
+    /// State at the end of the path: one step if that is sufficient.
     ///
     /// # Errors
-    /// [`LawFailure::NotConverged`] when sub-steps do not come to agree.
+    /// Returns [`LawFailure::NotConverged`] if sub-steps do not converge.
     pub(super) fn end(&mut self, start: &PathState) -> Result<PathState, LawFailure> {
         let end = self.advance(start, 1.0)?;
         if self.is_right_alone(start, &end) {
@@ -125,14 +126,14 @@ impl LoadPath<'_> {
         self.refine(start, end, [0.0; 3], MAX_HALVINGS)
     }
 
-    /// The station at the x of `coarse`, which one sub-step from `from` has reached, to within the tolerance.
+    /// State at the x of `coarse`, the result of one sub-step from `from`, to within the tolerance.
     ///
-    /// Two halves of the sub-step are compared with the whole and, where they differ too much, refined in their turn.
-    /// As errors are proportional to the third power of the sub-step, the difference should then be an eighth: what it
-    /// is `expected` to be. What it differs from that is an error that extrapolation cannot remove.
+    /// Two halves of the sub-step are compared with the whole and, if they differ too much, refined recursively.
+    /// As errors are proportional to the third power of the sub-step, the difference should then be an eighth, as
+    /// `expected`. A deviation from that is an error that extrapolation cannot remove.
     ///
-    /// Where the traction snaps the halves never agree: a sub-step that is so short that nothing else can happen in it is
-    /// a snap, whose place is known as well as the tolerance asks.
+    /// Where the traction jumps the halves never agree: a sub-step so short that nothing else can happen in it is
+    /// a jump, located with the required accuracy.
     fn refine(
         &mut self,
         from: &PathState,
@@ -168,7 +169,7 @@ impl LoadPath<'_> {
         self.refine(&middle, coarse, expected, halvings - 1)
     }
 
-    /// Most that slip, pressure and time change the traction or the strength by over a sub-step without a snap.
+    /// Maximum change of the traction or the strength by slip, pressure and time over a sub-step without a jump.
     fn drive(&self, from: &PathState, to: &PathState) -> f64 {
         let share = to.x - from.x;
         let recovery = self.law.evolution.recovery(from.mu.min(to.mu))
@@ -190,8 +191,8 @@ impl LoadPath<'_> {
         ]
     }
 
-    /// Differences that are allowed to a sub-step: more than its share of the tolerance in q and μ p, as R and μ forget
-    /// errors in the course of slip; its share in the work, for the mean of q is to be right to the tolerance.
+    /// Allowed differences of a sub-step: more than its fraction of the tolerance in q and μ p, as errors of R and μ decay with
+    /// slip; its fraction in the work, since the mean of q must be accurate to the tolerance.
     fn allowed(&self, halves: &Halves) -> Differences {
         let Halves { from, fine, .. } = *halves;
         let share = fine.x - from.x;
@@ -204,7 +205,7 @@ impl LoadPath<'_> {
         [strength, strength, work + NOISE * self.energy(fine)]
     }
 
-    /// The finer of two stations after plastic slip, extrapolated to vanishing sub-steps.
+    /// The finer of two results after plastic slip, extrapolated to vanishing sub-steps.
     fn extrapolated(&self, halves: &Halves) -> PathState {
         let Halves { from, coarse, fine, .. } = *halves;
         let beyond = |fine: f64, coarse: f64| fine + (fine - coarse) / 3.0;
@@ -236,26 +237,26 @@ impl LoadPath<'_> {
         }
     }
 
-    /// Work done by the traction: dissipated, and stored in the contact spring.
+    /// Work of the traction: dissipated, and stored in the contact spring.
     fn energy(&self, path_state: &PathState) -> f64 {
         path_state.work + 0.5 * path_state.traction * path_state.traction / self.law.alpha_t
     }
 }
 
-/// Share of the tolerance that q and μ p of a step taken alone may be off by: where halves begin, Newton's method meets a
-/// jump, and this is far below what it has to resolve.
+/// Allowed error of q and μ p of a single step, as a fraction of the tolerance: at the transition to halves Newton's method
+/// meets a jump, which must be far below its resolution.
 const SHARE: f64 = 0.01;
 
-/// Most that the rate of plastic slip changes by within a step taken alone, relative: bounds from its ends need it steady.
+/// Largest relative change of the rate of plastic slip within a single step, required for bounds from its ends.
 const STEADY: f64 = 0.25;
 
 /// Quantities that determine the rate of plastic slip at one end of a step.
 struct Ends {
-    /// p U μ, what R's approach adds to D = α_t + p (U μ − R κ (μ/μ_k − 1)) [F/L³]
+    /// p U μ, contribution of the approach of R to D = α_t + p (U μ − R κ (μ/μ_k − 1)) [F/L³]
     approach: f64,
-    /// p R κ (μ/μ_k − 1), what weakening takes from it [F/L³]
+    /// p R κ (μ/μ_k − 1), reduction of D by weakening [F/L³]
     weakening: f64,
-    /// R p ξ (1 − μ/μ_s) and R μ dp/dx: what recovery and pressure take from α_t du/dx, per x [F/L²]
+    /// R p ξ (1 − μ/μ_s) and R μ dp/dx: reductions of α_t du/dx by recovery and pressure, per x [F/L²]
     recovery: f64,
     pressing: f64,
     /// D [F/L³]
@@ -267,13 +268,14 @@ struct Ends {
 }
 
 impl LoadPath<'_> {
-    /// Whether one step over the whole path, with plastic slip, is right to the tolerance by itself.
+    /// Whether a single step over the whole path, with plastic slip, is accurate to the tolerance.
     ///
-    /// Where m = n = 1 its q and μ follow exactly from the plastic slip and the time, if these pass in step with one another:
-    /// with λ/Δλ never further than w from x (a quarter of what its rate varies by), μ is right to a b (μ_s − μ_k) w, where a = κ Δλ/μ_k, b = ξ Δt/μ_s (the
-    /// commutator of weakening and recovery), and q to α_t R p/D times this. The rate D dλ/dx = α_t du/dx − R (ξ (1 − μ/μ_s) p
-    /// dt/dx + μ dp/dx) is made of terms that are monotone in the step, so that its ends bound w; it must be positive
-    /// throughout. The mean of q is a trapezoidal rule, whose error the slopes at its ends bound.
+    /// For m = n = 1 its q and μ follow exactly from the plastic slip and the time, if these are proportional to each other:
+    /// with λ/Δλ deviating from x by at most w (a quarter of the variation of its rate), the error of μ is a b (μ_s − μ_k) w,
+    /// where a = κ Δλ/μ_k, b = ξ Δt/μ_s (the commutator of weakening and recovery), and that of q is α_t R p/D times this. The
+    /// rate D dλ/dx = α_t du/dx − R (ξ (1 − μ/μ_s) p dt/dx + μ dp/dx) consists of terms that are monotonic in the step, so that
+    /// its ends bound w; it must be positive throughout. The mean of q is a trapezoidal rule, whose error is bounded by the
+    /// slopes at its ends.
     fn is_right_alone(&self, from: &PathState, to: &PathState) -> bool {
         let slip = to.plastic_slip - from.plastic_slip;
         if !(self.law.evolution.is_linear() && slip > 0.0) {
@@ -315,12 +317,12 @@ impl LoadPath<'_> {
         }
     }
 
-    /// Bound of the error of the mean of q, by which plastic slip is multiplied in the dissipation: a trapezoidal rule of f
-    /// over the length L is off by at most L |f′(end) − f′(start)|/8 where f′ is monotone, taken part by part. The rule is for
-    /// q over λ where q falls, else for μ p over ∫ R dλ (`mean_traction`).
+    /// Bound of the error of the mean of q, by which plastic slip is multiplied in the dissipation: the error of a trapezoidal
+    /// rule of f over the length L is at most L |f′(end) − f′(start)|/8 where f′ is monotonic, applied to each part. The rule
+    /// is for q over λ where q decreases, else for μ p over ∫ R dλ (`mean_traction`).
     fn mean_error(&self, from: &PathState, to: &PathState, start: &Ends, end: &Ends) -> f64 {
         let slip = to.plastic_slip - from.plastic_slip;
-        // R d(μ p)/dλ by weakening, recovery and pressure, and μ p dR/dλ
+        // R d(μ p)/dλ from weakening, recovery and pressure, and μ p dR/dλ
         let parts = |e: &Ends| {
             let per_rate = e.stiffness / e.drive;
             [e.weakening, e.recovery * per_rate, e.pressing * per_rate, e.approach]
@@ -346,7 +348,7 @@ fn shift(by: &Direction) -> Shift {
 }
 
 impl SensitiveLaw for SuperSubloading {
-    /// All but the last, the tolerance.
+    /// All parameters except the last, the tolerance.
     fn parameters(&self) -> &'static [&'static str] {
         SuperSubloadingParameters::NUMBERS.split_last().map_or(&[], |(_, numbers)| numbers)
     }

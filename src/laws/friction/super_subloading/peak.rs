@@ -1,12 +1,13 @@
-//! How the peak coefficient μ weakens with slip and recovers with time.
+//! Weakening of the peak coefficient μ with slip and its recovery with time.
 //!
 //! # Sensitivity
 //!
-//! How the peak coefficient μ varies with the parameters of its evolution, by the controlled integration.
+//! The peak coefficient μ is differentiated with respect to the parameters of its evolution, in the controlled integration.
 //!
 //! # Onset
 //!
-//! What fast slip after rest does to friction, and rest after slip: the peak that is met, how far it falls and how soon it heals.
+//! The onset of fast slip after stationary contact is characterized by its peak friction, its residual, and the slip and time
+//! of half weakening and healing.
 
 use std::f64::consts::LN_2;
 
@@ -16,12 +17,12 @@ use serde::{Deserialize, Serialize};
 use super::approach::{CurvePoint, SlidingCurve};
 use crate::laws::friction::root::{Argument, bracketed_root};
 
-/// How the evolution of an increment is integrated.
+/// Integration of the evolution over an increment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum Integration {
-    /// Sub-steps of second order, as many as the tolerance asks for
+    /// Sub-steps of second order, as many as the tolerance requires
     #[default]
     Controlled,
     /// One backward-Euler step, of first order
@@ -41,7 +42,7 @@ pub(super) struct PeakEvolution {
     pub(super) xi: f64,
     m: f64,
     n: f64,
-    /// 1/μ_s and 1/μ_k: divisions are what an evaluation would spend most of its time on.
+    /// 1/μ_s and 1/μ_k, stored because divisions would dominate the cost of an evaluation.
     per_mu_s: f64,
     per_mu_k: f64,
     integration: Integration,
@@ -54,7 +55,7 @@ pub(super) struct Peak {
     pub mu: f64,
     /// ∂μ/∂Δλ ≤ 0 [1/L]
     pub slope: f64,
-    /// ∂²μ/∂Δλ², given for m = n = 1 only, else 0 [1/L²]
+    /// ∂²μ/∂Δλ², for m = n = 1 only, else 0 [1/L²]
     pub curvature: f64,
     /// ∂μ/∂μ₀ [-]
     pub by_old: f64,
@@ -62,7 +63,7 @@ pub(super) struct Peak {
     pub by_time: f64,
 }
 
-/// Largest a and b of [`Evolution::at_uniform_rate`]: μ is steady beyond, and squares must not overflow.
+/// Largest a and b of [`Evolution::at_uniform_rate`]: μ is stationary beyond, and squares must not overflow.
 const LARGEST: f64 = 1e100;
 
 impl PeakEvolution {
@@ -77,13 +78,13 @@ impl PeakEvolution {
         self.m == 1.0 && self.n == 1.0
     }
 
-    /// κ/μ_k: how sharply μ can bend with plastic slip [1/L]
+    /// κ/μ_k: bound of the curvature of μ with plastic slip [1/L]
     #[inline]
     pub(super) fn sharpness(&self) -> f64 {
         self.kappa * self.per_mu_k
     }
 
-    /// μ as it may be: between μ_k and μ_s.
+    /// Limits μ to the range from μ_k to μ_s.
     #[inline]
     pub(super) fn clamp(&self, mu: f64) -> f64 {
         mu.clamp(self.mu_k, self.mu_s)
@@ -101,8 +102,8 @@ impl PeakEvolution {
         self.xi * self.gain(mu).0
     }
 
-    /// a b (μ_s − μ_k), where a = κ Δλ/μ_k and b = ξ Δt/μ_s: how much it matters for m = n = 1 whether μ weakens first or
-    /// recovers first.
+    /// a b (μ_s − μ_k), where a = κ Δλ/μ_k and b = ξ Δt/μ_s: effect, for m = n = 1, of the order of weakening and recovery
+    /// on μ.
     pub(super) fn commutator(&self, slip: f64, dt: f64) -> f64 {
         self.sharpness() * slip * self.xi * dt * self.per_mu_s * (self.mu_s - self.mu_k)
     }
@@ -116,7 +117,7 @@ impl PeakEvolution {
         }
     }
 
-    /// μ after the time `dt` without plastic slip, exact save by backward Euler, and ∂μ/∂Δt.
+    /// μ after the time `dt` without plastic slip, exact except for backward Euler, and ∂μ/∂Δt.
     ///
     /// ```text
     /// d = 1 − μ/μ_s:   d^(1−n) = d₀^(1−n) + (n − 1) ξ Δt/μ_s,   d = d₀ exp(−ξ Δt/μ_s) for n = 1
@@ -168,7 +169,7 @@ impl PeakEvolution {
         mu
     }
 
-    /// One step in which plastic slip and time pass at a uniform rate.
+    /// One step in which plastic slip and time proceed at a uniform rate.
     ///
     /// ```text
     /// a = κ̂ Δλ/μ_k,   b = ξ̂ Δt/μ_s,   Z = a + b
@@ -176,7 +177,7 @@ impl PeakEvolution {
     /// κ̂ = κ (μ/μ_k − 1)^(m−1),   ξ̂ = ξ (1 − μ/μ_s)^(n−1)   at half the step, by backward Euler
     /// ```
     /// For m = n = 1 this is exact at a uniform rate, and without recovery or without weakening also at any other;
-    /// for other exponents it is of second order. Steady sliding is met at any step length.
+    /// for other exponents it is of second order. Steady sliding is reproduced at any step length.
     #[inline(always)]
     fn at_uniform_rate(&self, old: f64, slip: f64, dt: f64) -> Peak {
         let (kappa, xi) = (self.kappa * self.per_mu_k, self.xi * self.per_mu_s);
@@ -245,8 +246,8 @@ struct Decay {
     curvature: f64,
 }
 
-/// e^(−Z) and φ(Z) for Z ≥ 0. The round-off of φ and its derivatives is of the order ε/Z, ε/Z², ε/Z³, and harmless as
-/// they are used times Z, Z and Z².
+/// e^(−Z) and φ(Z) for Z ≥ 0. The round-off of φ and its derivatives is of the order ε/Z, ε/Z², ε/Z³, and harmless since
+/// they are multiplied by Z, Z and Z².
 #[inline]
 fn decay(z: f64) -> Decay {
     if z < 1e-3 {
@@ -273,7 +274,7 @@ fn power(x: f64, k: f64) -> (f64, f64) {
     }
 }
 
-/// A slope times a factor; a term without a factor counts for nothing even where its slope is infinite.
+/// A slope times a factor; a term with zero factor is zero even if its slope is infinite.
 fn scaled(slope: f64, factor: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { slope * factor }
 }
@@ -289,7 +290,7 @@ pub(super) struct PeakShift {
     pub n: f64,
 }
 
-/// κ̂ Δλ and ξ̂ Δt over μ_k and μ_s, a and b of a step at a uniform rate, and how they vary.
+/// κ̂ Δλ/μ_k and ξ̂ Δt/μ_s, a and b of a step at a uniform rate, and their variations.
 struct Exponents {
     a: f64,
     b: f64,
@@ -309,7 +310,7 @@ impl PeakEvolution {
         }
     }
 
-    /// ∂μ of one step at a uniform rate, the plastic slip `slip`, the time `dt` and μ at the start being given.
+    /// ∂μ of one step at a uniform rate for given plastic slip `slip`, time `dt` and initial μ.
     ///
     /// ```text
     /// dμ = ∂μ/∂a da + ∂μ/∂b db + (a dμ_k + b dμ_s) (1 − e^(−Z))/Z
@@ -339,7 +340,7 @@ impl PeakEvolution {
             (dhalf - half.mu * self.per_mu_k * by.mu_k) * self.per_mu_k,
             (half.mu * self.per_mu_s * by.mu_s - dhalf) * self.per_mu_s,
         );
-        // What is held at round-off does not vary.
+        // Values limited by round-off do not vary.
         let held = |share: f64, dshare: f64| {
             if share > f64::EPSILON { (share, dshare) } else { (f64::EPSILON, 0.0) }
         };
@@ -356,13 +357,13 @@ impl PeakEvolution {
         }
     }
 
-    /// ∂μ of one backward-Euler step that ends with `mu`, μ at the start being given.
+    /// ∂μ of one backward-Euler step that ends with `mu`, for given initial μ.
     ///
     /// ```text
     /// dμ (1 + A + B) = A μ/μ_k dμ_k + B μ/μ_s dμ_s + Δt (gain dξ + ξ ∂gain/∂n dn) − Δλ (loss dκ + κ ∂loss/∂m dm)
     /// A = κ Δλ ∂loss/∂μ,   B = ξ Δt ∂(−gain)/∂μ
     /// ```
-    /// Where m or n is less than 1 a slope is infinite at μ_k or μ_s: taken at round-off from there it holds μ to that end.
+    /// If m or n is less than 1, a slope is infinite at μ_k or μ_s: evaluated at round-off distance it keeps μ at that end.
     fn backward_euler_by(&self, mu: f64, slip: f64, dt: f64, by: &PeakShift) -> f64 {
         let (x, y) = ((mu - self.mu_k) * self.per_mu_k, (self.mu_s - mu) * self.per_mu_s);
         let slope = |x: f64, k: f64| power(if k < 1.0 { x.max(f64::EPSILON) } else { x }, k).1;
@@ -375,7 +376,7 @@ impl PeakEvolution {
         (drawn + gained - lost) / (1.0 + to_kinetic + to_static)
     }
 
-    /// dμ after the time `dt` without plastic slip, where μ at the start varies by `dold`, the time by `ddt` and the parameters `by`.
+    /// dμ after the time `dt` without plastic slip, for variations `dold` of the initial μ, `ddt` of the time and `by` of the parameters.
     ///
     /// ```text
     /// d = 1 − μ/μ_s,   d^(1−n) = d₀^(1−n) + (n − 1) b,   b = ξ Δt/μ_s
@@ -408,25 +409,25 @@ impl PeakEvolution {
     }
 }
 
-/// xᵏ ln x, the derivative of xᵏ by k; 0 at x = 0.
+/// xᵏ ln x, the derivative of xᵏ with respect to k; 0 at x = 0.
 fn logarithmic(power: f64, x: f64) -> f64 {
     if x > 0.0 { power * x.ln() } else { 0.0 }
 }
 
-/// Peak, residual and characteristic slips of q/p by the parameters of a law, for slip so fast that nothing heals
+/// Peak, residual and characteristic slips of q/p from the parameters of a law, for slip so fast that no healing occurs
 /// meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Onset {
-    /// from long rest, μ = μ_s
+    /// after a long hold, μ = μ_s
     pub rested: Rise,
-    /// from the μ that the interface has when a run begins
+    /// with the initial μ of the interface
     pub fresh: Rise,
-    /// what friction falls to, μ_k [-]
+    /// residual friction, μ_k [-]
     pub residual: f64,
-    /// plastic slip over which half of μ_s − μ_k is lost; none without weakening [L]
+    /// plastic slip over which half of μ_s − μ_k is lost; `None` without weakening [L]
     pub half_lost: Option<f64>,
-    /// time of rest in which half of μ_s − μ_k comes back; none without healing [T]
+    /// hold time in which half of μ_s − μ_k is recovered; `None` without healing [T]
     pub half_healed: Option<f64>,
 }
 
@@ -436,13 +437,13 @@ pub struct Onset {
 pub struct Rise {
     /// largest q/p = R μ [-]
     pub peak: f64,
-    /// plastic slip up to it; none where it is neared only [L]
+    /// plastic slip up to the peak; `None` if it is only approached asymptotically [L]
     pub slip: Option<f64>,
 }
 
 /// Coordinates of the curve between which R goes from 0 to 1 in double precision.
 const ENDS: [f64; 2] = [-20.0, 40.0];
-/// Places at which a peak is looked for, and thirds taken off to meet it.
+/// Number of points at which a peak is searched, and of section steps to locate it.
 const PLACES: u32 = 1200;
 const THIRDS: usize = 100;
 
@@ -477,7 +478,7 @@ impl Rise {
             if at(low + third).1 < at(high - third).1 { low += third } else { high -= third }
         }
         let (curve_point, peak) = at(0.5 * (low + high));
-        // Without weakening, or under one that is over long before R is near 1, friction only rises.
+        // Without weakening, or with weakening completed long before R is near 1, friction only increases.
         let limit = if evolution.kappa > 0.0 { evolution.mu_k } else { mu };
         match peak > limit * (1.0 + f64::EPSILON) {
             true => Self { peak, slip: Some(curve_point.slip) },
@@ -487,7 +488,7 @@ impl Rise {
 }
 
 impl PeakEvolution {
-    /// μ after the plastic slip `slip` in no time, exact.
+    /// μ after instantaneous plastic slip `slip`, exact.
     ///
     /// ```text
     /// e = μ/μ_k − 1:   e^(1−m) = e₀^(1−m) + (m − 1) κ Δλ/μ_k,   e = e₀ exp(−κ Δλ/μ_k) for m = 1
@@ -504,12 +505,12 @@ impl PeakEvolution {
         self.clamp(self.mu_k + (old - self.mu_k) * share)
     }
 
-    /// Plastic slip in no time that takes half of μ_s − μ_k; infinite without weakening [L]
+    /// Instantaneous plastic slip that halves μ − μ_k, starting from μ_s; infinite without weakening [L]
     fn slip_of_half(&self) -> f64 {
         half((self.mu_s - self.mu_k) * self.per_mu_k, self.m) / self.sharpness()
     }
 
-    /// Time of rest that gives half of μ_s − μ_k back; infinite without recovery [T]
+    /// Hold time that recovers half of μ_s − μ_k; infinite without recovery [T]
     fn rest_of_half(&self) -> f64 {
         half((self.mu_s - self.mu_k) * self.per_mu_s, self.n) / (self.xi * self.per_mu_s)
     }

@@ -1,7 +1,7 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
 //!
-//! Here are F-bar, (4) to (6) of [`SolidElement`], the viscous stress of a damped body, and elements whose material remembers,
-//! or whose tangent is not symmetric; in `stress.rs` their stress and reference geometry, in `ring.rs` axisymmetry.
+//! This file contains F-bar, (4) to (6) of [`SolidElement`], the viscous stress of a damped body, and elements with internal
+//! variables or an unsymmetric tangent; `stress.rs` contains their stress and reference geometry, `ring.rs` axisymmetry.
 
 mod ring;
 mod stress;
@@ -12,7 +12,7 @@ use crate::laws::bulk::{Material, MaterialFailure, MaterialResponse, Straining, 
 use crate::mesh::shape::ElementKind;
 use ring::Hoop;
 
-/// A solid element: what its reference geometry says at the quadrature points.
+/// A solid element: its reference geometry at the quadrature points.
 ///
 /// ```text
 /// F = 1 + Σ_a u_a ⊗ ∂N_a/∂X                              deformation gradient              (1)
@@ -20,8 +20,8 @@ use ring::Hoop;
 /// K_ai,bk = ∫ N_a,J A_iJkL N_b,L dV,   A = ∂P/∂F         tangent ∂f_ai/∂u_bk               (3)
 /// ```
 ///
-/// F-bar (Q4 only) lets every point have the volume change of the centre, so that nearly incompressible materials do
-/// not lock. The law is evaluated at F̄, and its Cauchy stress acts on the true geometry:
+/// F-bar (Q4 only) gives every point the volume change of the centre, so that nearly incompressible materials do
+/// not lock. The law is evaluated at F̄, and its Cauchy stress acts on the actual geometry:
 ///
 /// ```text
 /// F̄ = r F,   r = √(J₀/J),   J₀ = det F₀ at the centre                                      (4)
@@ -51,10 +51,10 @@ pub struct SolidElement {
 }
 
 impl SolidElement {
-    /// Writes the internal force (2) at nodal displacements `u` over `force`; returns the stored energy.
+    /// Computes the internal force (2) at nodal displacements `u` in `force`; returns the stored energy.
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn force(
         &self,
         material: &dyn Material,
@@ -70,10 +70,10 @@ impl SolidElement {
         Ok(energy)
     }
 
-    /// Writes the internal force (2) on each node over `forces`; returns the stored energy.
+    /// Computes the internal force (2) on each node in `forces`; returns the stored energy.
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn nodal_forces(
         &self,
         material: &dyn Material,
@@ -95,7 +95,7 @@ impl SolidElement {
         }
     }
 
-    /// Force (2) of an element of N nodes and at most M quadrature points, known when this is compiled.
+    /// Force (2) of an element of N nodes and at most M quadrature points, known at compile time.
     #[inline(always)]
     fn gathered<const N: usize, const M: usize>(
         &self,
@@ -134,10 +134,10 @@ impl SolidElement {
         Ok(energy)
     }
 
-    /// As [`SolidElement::force`], and writes the tangent (3) over `tangent`, column by column.
+    /// Computes the same as [`SolidElement::force`], and the tangent (3) in `tangent`, column by column.
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn force_and_tangent(
         &self,
         material: &dyn Material,
@@ -157,7 +157,7 @@ impl SolidElement {
         }
     }
 
-    /// Force (2) and tangent (3). The number of nodes is known when this is compiled, so that the loops over them are
+    /// Force (2) and tangent (3). The number of nodes is known at compile time, so that the loops over them are
     /// unrolled.
     fn evaluate<const N: usize>(
         &self,
@@ -208,8 +208,8 @@ fn add_force(gradients: &[Vector2<f64>], stress: &Matrix2<f64>, force: &mut [f64
     }
 }
 
-/// K_ai,bk += N_a,J A_iJkL N_b,L in `blocks[b][a][k][i]` for a ≥ b: A comes from an energy, so the rest is the mirror
-/// image.
+/// K_ai,bk += N_a,J A_iJkL N_b,L in `blocks[b][a][k][i]` for a ≥ b: A derives from an energy, so the rest follows by
+/// symmetry.
 fn add_tangent<const N: usize>(
     gradients: &[Vector2<f64>; N],
     tangent: &Matrix4<f64>,
@@ -227,7 +227,7 @@ fn add_tangent<const N: usize>(
     }
 }
 
-/// Add the blocks and their mirror image to the tangent, column by column.
+/// Adds the blocks and their transposes to the tangent, column by column.
 fn add_blocks<const N: usize>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f64]) {
     for (b, columns) in blocks.iter().enumerate() {
         for (a, block) in columns.iter().enumerate().skip(b) {
@@ -307,8 +307,8 @@ fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
 }
 
 impl SolidElement {
-    /// Forces on the nodes at displacements `u` and velocities `v` of a viscous stress of the time τ (Kelvin–Voigt), by
-    /// the element's own gradients, F-bar or not.
+    /// Nodal forces at displacements `u` and velocities `v` of a viscous stress with the retardation time τ (Kelvin–Voigt),
+    /// with the element's own gradients, F-bar or not.
     pub fn viscous_forces(
         &self,
         material: &dyn Material,
@@ -327,8 +327,8 @@ impl SolidElement {
         }
     }
 
-    /// Derivative of the viscous forces with respect to `u`, column by column, where the velocity of each dof varies
-    /// `dvelocity` times as much as its displacement.
+    /// Derivative of the viscous forces with respect to `u`, column by column, where the velocity of each dof varies by the
+    /// factor `dvelocity` with its displacement.
     pub fn viscous_tangent(
         &self,
         material: &dyn Material,
@@ -371,11 +371,11 @@ pub struct Memory<'a> {
 }
 
 impl SolidElement {
-    /// Force (2) and, on request, tangent (3) of a material with memory, or whose tangent is not symmetric; returns the stored
-    /// energy, and what the increment dissipated.
+    /// Force (2) and, on request, tangent (3) of a material with internal variables or an unsymmetric tangent; returns the
+    /// stored and the dissipated energy of the increment.
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn evolve(
         &self,
         material: &dyn Material,

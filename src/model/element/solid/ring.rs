@@ -1,4 +1,4 @@
-//! Elements of rings: axisymmetry about x = 0, x being the radius.
+//! Axisymmetric elements about x = 0, x being the radius.
 //!
 //! ```text
 //! F₃₃ = 1 + Σ_a u_ax N_a/R,   f_ai = ∫ (P_iJ N_a,J + δ_ix P₃₃ N_a/R) dV,   dV = 2π R dA                    (7)
@@ -9,7 +9,7 @@
 //! F̄ = r F,   r = (J₀/J)^⅓,   P = P(F̄)/r²                                                                    (8)
 //! dP = A:dF/r + ⅓ (F₀⁻ᵀ:dF₀ − F⁻ᵀ:dF) (A:F/r − 2P),   A = A(F̄)                                             (9)
 //! ```
-//! Quadrature points lie off the axis, so that u_r/R is a number wherever an element touches it.
+//! Quadrature points lie off the axis, so that u_r/R is finite for elements at the axis too.
 
 use nalgebra::{Matrix5, Vector2, Vector5};
 
@@ -52,7 +52,7 @@ struct Seen {
 }
 
 impl SolidElement {
-    /// Force (7) and, on request, its tangent; returns the stored energy, and what the increment dissipated.
+    /// Force (7) and, on request, its tangent; returns the stored and the dissipated energy of the increment.
     pub(super) fn ring(
         &self,
         material: &dyn Material,
@@ -84,7 +84,7 @@ impl SolidElement {
         Ok([energy, dissipated])
     }
 
-    /// Response without history, of a body that has not been strained before.
+    /// Response of a body without history, undeformed before.
     pub(super) fn ring_at_once(
         &self,
         material: &dyn Material,
@@ -118,7 +118,7 @@ impl SolidElement {
         self.ring_points().map(|(at, _)| at.deformation(u)[4]).collect()
     }
 
-    /// Forces of a viscous stress of the time τ.
+    /// Forces of a viscous stress with the retardation time τ.
     pub(super) fn ring_viscous_forces(
         &self,
         material: &dyn Material,

@@ -1,6 +1,6 @@
 //! Cauchy stress at the quadrature points and at the nodes.
 //!
-//! What the reference geometry of an element says.
+//! Construction of elements from their reference geometry.
 
 use std::sync::OnceLock;
 
@@ -15,10 +15,10 @@ use crate::mesh::shape::ElementKind;
 use crate::model::element::{ElementError, gradients};
 
 impl SolidElement {
-    /// Cauchy stress at each quadrature point, with what the material remembers there; nothing if it has no memory.
+    /// Cauchy stress at each quadrature point, given its internal variables there (empty for a material without any).
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn stresses(
         &self,
         material: &dyn Material,
@@ -47,12 +47,12 @@ impl SolidElement {
         self.points().map(|(gradients, _)| deformation_gradient(gradients, u)).collect()
     }
 
-    /// F₃₃ at each quadrature point of a ring; none of other sections.
+    /// F₃₃ at each quadrature point of an axisymmetric element; `None` in other sections.
     pub fn hoops(&self, u: &[Vector2<f64>]) -> Option<Vec<f64>> {
         self.hoop.is_some().then(|| self.hoop_stretches(u))
     }
 
-    /// The (bi)linear function nearest to values at the quadrature points, at the reference coordinates `at`.
+    /// The (bi)linear least-squares fit of values at the quadrature points, at the reference coordinates `at`.
     pub fn fitted<const N: usize>(&self, values: &[[f64; N]], at: [f64; 2]) -> [f64; N] {
         let fit = corner_fit(self.kind);
         let corners = linear(self.kind).values(at);
@@ -65,10 +65,10 @@ impl SolidElement {
         sum
     }
 
-    /// Cauchy stress at each node: the (bi)linear function nearest to the stresses at the quadrature points.
+    /// Cauchy stress at each node: the (bi)linear least-squares fit of the stresses at the quadrature points.
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn nodal_stresses(
         &self,
         material: &dyn Material,
@@ -99,7 +99,7 @@ impl SolidElement {
     }
 }
 
-/// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.
+/// Corner values of the (bi)linear least-squares fit of values at the quadrature points: corners × points.
 fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
     static FITS: [OnceLock<DMatrix<f64>>; 5] = [const { OnceLock::new() }; 5];
     FITS[kind as usize].get_or_init(|| {
@@ -110,17 +110,17 @@ fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
     })
 }
 
-/// The element with the same corners, and no other nodes.
+/// The element kind with the same corners, and no other nodes.
 fn linear(kind: ElementKind) -> ElementKind {
     if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 }
 }
 
 impl SolidElement {
-    /// The element of `kind` on the reference `positions` of its nodes, in a section.
+    /// Creates an element of `kind` on the reference `positions` of its nodes, in a section.
     ///
     /// # Errors
-    /// [`ElementError::Degenerate`] when det(∂X/∂ξ) is not positive at a quadrature point,
-    /// [`ElementError::FBarNeedsQ4`] when F-bar is asked of another kind.
+    /// Returns [`ElementError::Degenerate`] if det(∂X/∂ξ) is not positive at a quadrature point,
+    /// [`ElementError::FBarNeedsQ4`] if F-bar is requested for another kind.
     pub fn new(
         kind: ElementKind,
         f_bar: bool,
@@ -165,7 +165,7 @@ impl SolidElement {
         Ok(element)
     }
 
-    /// Whether it has the volume change of its centre everywhere.
+    /// Whether it has the volume change of its centre everywhere (F-bar).
     pub fn is_f_bar(&self) -> bool {
         self.centre.is_some()
     }
