@@ -36,7 +36,7 @@ fn vectors(size: f64, phase: f64) -> Vec<Vector2<f64>> {
 
 fn viscous_forces(material: &dyn Material, u: &[Vector2<f64>], v: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
     let mut forces = vec![Vector2::zeros(); 4];
-    element().0.viscous_forces((material, 0.3), [u, v], &mut forces);
+    element().0.viscous_forces(material, 0.3, [u, v], &mut forces);
     forces
 }
 
@@ -47,7 +47,7 @@ fn the_viscous_tangent_equals_differences() {
         let material = material(model);
         let (u, v) = (vectors(0.2, 0.3), vectors(1.5, 1.1));
         let mut tangent = vec![0.0; 64];
-        element().0.viscous_tangent((&*material, 0.3), [&u, &v], &dvelocity, &mut tangent);
+        element().0.viscous_tangent(&*material, 0.3, [&u, &v], &dvelocity, &mut tangent);
         let scale = tangent.iter().fold(0.0f64, |scale, k| scale.max(k.abs()));
         for (dof, dvelocity) in dvelocity.iter().enumerate() {
             let moved = |h: f64| {
