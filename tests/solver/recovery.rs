@@ -81,7 +81,7 @@ fn a_linear_field_is_recovered_to_round_off() {
                 let error = differ(&stress, (*at).into());
                 assert!(error < 1e-10, "{kind} {section} at {at}: {stress:?} is off by {error}");
             }
-            for (probe, at) in model.probes.iter().zip([[1.0, 0.0], [2.07, 0.31], [2.0, 0.7]]) {
+            for (probe, at) in model.requests.probes.iter().zip([[1.0, 0.0], [2.07, 0.31], [2.0, 0.7]]) {
                 let found = fecontact::output::probes::Reading::of(probe, &model, &state);
                 let error = differ(&found.stress, at);
                 assert!(error < 1e-10, "{kind} {section} {}: {error}", probe.name);
