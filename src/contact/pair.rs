@@ -210,7 +210,8 @@ impl ContactPair {
     /// α_n times what the iterations of an increment make it: more than one under the augmented Lagrangian alone, where answers
     /// do not depend on it; less than one on the way to a start value.
     pub fn normal_stiffness(&self, stiffening: f64) -> f64 {
-        if self.penetration.is_some() || stiffening < 1.0 { stiffening * self.alpha_n } else { self.alpha_n }
+        let varies = self.penetration.is_some() || stiffening < 1.0 && !self.tied;
+        if varies { stiffening * self.alpha_n } else { self.alpha_n }
     }
 
     /// p_w at a slave point; 0 without a fluid [F/L²].
