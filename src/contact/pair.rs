@@ -217,7 +217,8 @@ impl ContactPair {
     /// α_n multiplied by the factor of the iteration: above one in the augmented Lagrangian method only, where the solution
     /// does not depend on it; below one during the iterations for an initial guess.
     pub fn normal_stiffness(&self, stiffening: f64) -> f64 {
-        if self.penetration.is_some() || stiffening < 1.0 { stiffening * self.alpha_n } else { self.alpha_n }
+        let varies = self.penetration.is_some() || stiffening < 1.0 && !self.tied;
+        if varies { stiffening * self.alpha_n } else { self.alpha_n }
     }
 
     /// p_w at a slave point; 0 without a fluid [F/L²].

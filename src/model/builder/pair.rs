@@ -102,6 +102,7 @@ fn pair(contact: &Contact, model: &Model, explicit: bool) -> Checked<ContactPair
     if contact.tied {
         tied::check(contact, &place)?;
         pair.tie(contact.sliding == SlidingRange::Small, &model.mesh.undeformed());
+        tied::check_feet(&pair, &place)?;
     } else if contact.sliding == SlidingRange::Small {
         if contact.is_own() {
             let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \

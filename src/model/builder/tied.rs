@@ -2,6 +2,7 @@
 
 use super::contact::{Contact, MasterSide, Radiation};
 use super::error::{Checked, ModelError};
+use crate::contact::pair::ContactPair;
 
 /// A tie holds by itself, whatever the pressure: it takes no friction, and any other contact needs one.
 pub fn check_friction(contact: &Contact, place: &str) -> Checked<()> {
@@ -11,6 +12,13 @@ pub fn check_friction(contact: &Contact, place: &str) -> Checked<()> {
         _ => return Ok(()),
     };
     Err(ModelError::new(format!("{place}.friction"), message))
+}
+
+/// Some point must face the master.
+pub fn check_feet(pair: &ContactPair, place: &str) -> Checked<()> {
+    let faces = pair.small.iter().flat_map(|small| &small.points).any(Option::is_some);
+    let message = "ties nothing: no point of the slave has a projection on the master; check the groups named and their positions";
+    if faces { Ok(()) } else { Err(ModelError::new(format!("{place}.tied"), message)) }
 }
 
 /// Surfaces of two bodies can be tied, and what moves or presses them otherwise is refused.
