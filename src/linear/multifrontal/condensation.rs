@@ -31,7 +31,9 @@ impl Condensation {
     /// # Errors
     /// [`LinearFailure`] when the pattern is too large for an order of elimination.
     pub fn new(pattern: Arc<Pattern>, kept: &[usize]) -> Result<Self, LinearFailure> {
-        let symbolic = Arc::new(Symbolic::new(pattern, kept)?);
+        // Once a matrix, whatever it takes: what is held stays among the equations, and L and U are those of all.
+        let skew = vec![true; pattern.nodes()];
+        let symbolic = Arc::new(Symbolic::new(Arc::new(Pattern::clone(&pattern).symmetric_but(skew)), kept)?);
         Ok(Self { symbolic, scaling: Scaling::default(), kept: 2 * kept.len() })
     }
 
@@ -52,7 +54,7 @@ impl Condensation {
         let contributions = symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
         room_for(size_of::<f64>() * (symbolic.values() + contributions), 0).ok()?;
         factors.reserve(symbolic).ok()?;
-        scaling.compute(matrix);
+        scaling.compute_two_sided(matrix);
         factors.compute(symbolic, matrix, scaling);
         factors.settle();
         if factors.replaced() > 0 {

@@ -164,7 +164,10 @@ impl Numeric<'_> {
     fn forest(&self, forest: &Forest, mut rest: FrontBlock) {
         let fronts = &self.symbolic.fronts;
         let mut room = lock(&self.rooms).pop().unwrap_or_default();
-        room.resize(room.len().max(forest.room), 0.0);
+        if room.len() < forest.room {
+            // Pages that nothing is written to take no memory.
+            room = vec![0.0; forest.room];
+        }
         let (mut stacks, mut weighted) = (Stacks::new(room), Vec::new());
         for (number, front) in forest.fronts.clone().map(|number| (number, &fronts[number])) {
             let part = rest.take(std::slice::from_ref(front));
@@ -199,7 +202,7 @@ impl Numeric<'_> {
                 low += count;
                 &stacks.values[low - count..low]
             };
-            self.waiting.put(root, values.to_vec());
+            self.waiting.put(root, copied(front, values));
         }
         lock(&self.rooms).push(stacks.values);
     }
@@ -335,6 +338,19 @@ impl Sums<'_> {
             }
         }
     }
+}
+
+/// A copy of what a front passes on: the lower half of it where that is all. Pages of the other half take no memory.
+fn copied(front: &Front, values: &[f64]) -> Vec<f64> {
+    if front.mirrors || !front.symmetric {
+        return values.to_vec();
+    }
+    let rows = front.below().max(1);
+    let mut lower = vec![0.0; values.len()];
+    for (k, (column, from)) in lower.chunks_exact_mut(rows).zip(values.chunks_exact(rows)).enumerate() {
+        column[k..].copy_from_slice(&from[k..]);
+    }
+    lower
 }
 
 /// Add what a child passes on past the pivots.

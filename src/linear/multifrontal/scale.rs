@@ -1,6 +1,6 @@
 //! Row and column scaling by powers of two, which is free of rounding.
 
-use pulp::{Arch, NullaryFnOnce};
+use pulp::Arch;
 
 use super::super::SparseMatrix;
 use super::dense::largest;
@@ -28,62 +28,71 @@ pub struct Scaling {
 }
 
 impl Scaling {
+    /// Scales of a matrix as the fronts of its pattern need them, 0 for what is held.
     pub fn compute(&mut self, matrix: &SparseMatrix) {
-        Arch::new().dispatch(Find { scaling: self, matrix });
+        if matrix.pattern.is_all_skew() {
+            self.compute_two_sided(matrix);
+        } else {
+            self.clear(matrix.size());
+            Arch::new().dispatch(|| symmetric(matrix, &mut self.rows));
+            self.columns.copy_from_slice(&self.rows);
+        }
         for dof in (0..matrix.size()).filter(|&dof| matrix.held[dof]) {
             (self.rows[dof], self.columns[dof]) = (0.0, 0.0);
         }
     }
-}
 
-/// Finds the scales.
-struct Find<'a> {
-    scaling: &'a mut Scaling,
-    matrix: &'a SparseMatrix,
-}
-
-impl NullaryFnOnce for Find<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { scaling: Scaling { rows, columns: scales }, matrix } = self;
-        let n = matrix.size();
-        rows.clear();
-        rows.resize(n, 0.0);
-        scales.clear();
-        scales.resize(n, 0.0);
-        let skew = matrix.pattern.skew();
-        let symmetric = !matrix.pattern.is_all_skew();
-        each_column(matrix, |column, nodes, values| {
-            if matrix.held[column] {
-                return;
-            }
-            if symmetric {
-                rows[column] = largest(values).max(rows[column]);
-            }
-            if skew[column / 2] {
-                for (&row, pair) in nodes.iter().zip(values.as_chunks::<2>().0).filter(|(row, _)| skew[**row]) {
-                    let sizes = &mut rows[2 * row..2 * row + 2];
-                    sizes[0] = pair[0].abs().max(sizes[0]);
-                    sizes[1] = pair[1].abs().max(sizes[1]);
-                }
-            }
-        });
-        if symmetric {
-            rows.iter_mut().for_each(|size| *size = inverse_root_of_two(*size));
-            return scales.copy_from_slice(rows);
-        }
-        rows.iter_mut().for_each(|size| *size = inverse_power_of_two(*size));
-        each_column(matrix, |column, nodes, values| {
-            let mut most = [0.0f64; 2];
-            for (&row, pair) in nodes.iter().zip(values.as_chunks::<2>().0) {
-                most[0] = (pair[0] * rows[2 * row]).abs().max(most[0]);
-                most[1] = (pair[1] * rows[2 * row + 1]).abs().max(most[1]);
-            }
-            scales[column] = inverse_power_of_two(most[0].max(most[1]));
-        });
+    /// Scales of a matrix as one without any symmetry, all equations being solved together.
+    pub fn compute_two_sided(&mut self, matrix: &SparseMatrix) {
+        self.clear(matrix.size());
+        Arch::new().dispatch(|| two_sided(matrix, &mut self.rows, &mut self.columns));
     }
+
+    fn clear(&mut self, size: usize) {
+        for scales in [&mut self.rows, &mut self.columns] {
+            scales.clear();
+            scales.resize(size, 0.0);
+        }
+    }
+}
+
+#[inline(always)]
+fn symmetric(matrix: &SparseMatrix, scales: &mut [f64]) {
+    let skew = matrix.pattern.skew();
+    each_column(matrix, |column, nodes, values| {
+        if matrix.held[column] {
+            return;
+        }
+        scales[column] = largest(values).max(scales[column]);
+        // A row is like its column but between nodes with unsymmetric values.
+        if skew[column / 2] {
+            let rows = nodes.iter().zip(values.as_chunks::<2>().0).filter(|(row, _)| skew[**row]);
+            rows.for_each(|(&row, pair)| (0..2).for_each(|i| grow(&mut scales[2 * row + i], pair[i])));
+        }
+    });
+    scales.iter_mut().for_each(|size| *size = inverse_root_of_two(*size));
+}
+
+#[inline(always)]
+fn two_sided(matrix: &SparseMatrix, rows: &mut [f64], columns: &mut [f64]) {
+    each_column(matrix, |_, nodes, values| {
+        for (&row, pair) in nodes.iter().zip(values.as_chunks::<2>().0) {
+            (0..2).for_each(|i| grow(&mut rows[2 * row + i], pair[i]));
+        }
+    });
+    rows.iter_mut().for_each(|size| *size = inverse_power_of_two(*size));
+    each_column(matrix, |column, nodes, values| {
+        let mut most = [0.0; 2];
+        for (&row, pair) in nodes.iter().zip(values.as_chunks::<2>().0) {
+            (0..2).for_each(|i| grow(&mut most[i], pair[i] * rows[2 * row + i]));
+        }
+        columns[column] = inverse_power_of_two(most[0].max(most[1]));
+    });
+}
+
+#[inline(always)]
+fn grow(most: &mut f64, value: f64) {
+    *most = value.abs().max(*most);
 }
 
 /// Visit the columns with the nodes of their rows and their values.
