@@ -85,7 +85,7 @@ fn a_footing_on_clay_bears_prandtls_load() {
     let clay = || von_mises(1e4, 3f64.sqrt());
     let bearing = |run: &Finished| -run.reaction("footing", run.last())[1] / 0.5;
     let q4 = |element| footing(clay(), ("Q4", element), [14.0, 0.15], [20.0, 40.0], [22.0, 0.04]);
-    let q8 = footing(clay(), ("Q8", "reduced"), [8.0, 0.15], [11.0, 30.0], [12.0, 0.05]);
+    let q8 = footing(clay(), ("Q8", "reduced"), [10.0, 0.12], [16.0, 38.0], [16.0, 0.025]);
     relative("Q4 F-bar", bearing(&q4("f_bar")), 2.0 + PI, 0.0, 0.035);
     relative("Q8 reduced", bearing(&q8), 2.0 + PI, 0.0, 0.025);
     relative("Q4 in full", bearing(&q4("displacement")), 2.0 + PI, 0.05, 0.5);

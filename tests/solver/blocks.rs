@@ -481,3 +481,47 @@ fn a_sample_with_a_saw_cut_slides_by_its_angle() {
         close("Δσ", -run.reaction("top", run.last())[1] / 40.0, stress, 3e-3 * stress);
     }
 }
+
+/// Elements that lock where a body yields are told with those that do not, and an element with reduced integration that nothing holds
+/// is told; fit ones are not.
+#[test]
+fn elements_that_do_not_fit_their_body_are_warned_of() {
+    let warned = |kind: &str, element: &str, law: &str, elements: [usize; 2], section: Value| {
+        let block = json!({"body": "b", "corners": [[1, 0], [3, 0], [3, 1], [1, 1]], "elements": elements, "kind": kind,
+                           "sides": ["bottom", null, null, null]});
+        let material = match law {
+            "von_mises" => json!({"model": law, "E": 100, "nu": 0.3, "sigma_y": 1}),
+            "mohr_coulomb" => json!({"model": law, "E": 100, "nu": 0.3, "c": 1, "phi": 30, "psi": 30}),
+            _ => json!({"model": law, "E": 100, "nu": 0.3}),
+        };
+        let mut case = json!({
+            "mesh": {"blocks": [block]}, "bodies": {"b": {"material": material, "element": element}},
+            "steps": [{"name": "hold", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "b", "ux": 0, "uy": 0}]}]
+        });
+        if !section.is_null() {
+            case["section"] = section;
+        }
+        model(&case).warnings()
+    };
+    let lock =
+        |warnings: Vec<String>| warnings.into_iter().filter(|warning| warning.contains("body `b`")).collect::<Vec<_>>();
+    let plain = |kind, element, law| lock(warned(kind, element, law, [2, 2], Value::Null));
+    for (kind, element) in [("Q4", "f_bar"), ("Q8", "reduced"), ("T6", "displacement")] {
+        assert_eq!(plain(kind, element, "von_mises"), [""; 0], "{kind} {element}");
+    }
+    assert_eq!(plain("Q4", "displacement", "hencky"), [""; 0]);
+    assert_eq!(plain("Q8", "reduced", "mohr_coulomb"), [""; 0]);
+    for kind in ["Q4", "Q8"] {
+        let told = plain(kind, "displacement", "von_mises");
+        let expected = format!("its elements ({kind}) lock where it yields");
+        assert!(told.len() == 1 && told[0].contains(&expected) && told[0].contains("\"f_bar\""), "{told:?}");
+        let told = plain(kind, "displacement", "mohr_coulomb");
+        assert!(told.len() == 1 && told[0].contains("dilates") && !told[0].contains("f_bar"), "{told:?}");
+    }
+    let told = plain("Q4", "f_bar", "mohr_coulomb");
+    assert!(told.len() == 1 && told[0].contains("f_bar cures in part only"), "{told:?}");
+    let plate = json!({"plane_stress": {"thickness": 1}});
+    assert_eq!(lock(warned("Q4", "displacement", "von_mises", [2, 2], plate)), [""; 0]);
+    let told = lock(warned("Q8", "reduced", "hencky", [1, 1], Value::Null));
+    assert!(told.len() == 1 && told[0].contains("can bend into an hourglass"), "{told:?}");
+}
