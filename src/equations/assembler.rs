@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::contact::pair::Presumption;
-use crate::contact::response::PairResponse;
+use crate::contact::response::{LastAnswers, PairResponse};
 use crate::equations::convergence::ConvergenceCriterion;
 use crate::equations::coupling::{Coupling, Layout};
 use crate::equations::damping::ByMass;
@@ -44,6 +44,8 @@ pub struct Assembler {
     equilibrium: ConvergenceCriterion,
     /// Contacts where nothing is presumed, kept for their memory
     responses: Vec<PairResponse>,
+    /// What the laws of each contact answered last
+    answered: Vec<LastAnswers>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
@@ -77,6 +79,7 @@ impl Assembler {
             magnitudes: vec![0.0; model.dofs()],
             equilibrium: ConvergenceCriterion::new(model),
             responses: Vec::new(),
+            answered: Vec::new(),
             evaluation: Evaluation::default(),
             seconds: Seconds::default(),
         }
@@ -311,7 +314,8 @@ impl Assembler {
             return Ok(());
         }
         let clock = Instant::now();
-        let answer = contacts::respond(&self.model, trial, u, presumed, request, responses);
+        let answered = &mut self.answered;
+        let answer = contacts::respond(&self.model, trial, u, presumed, request, responses, answered);
         self.seconds.contact += clock.elapsed().as_secs_f64();
         answer
     }
