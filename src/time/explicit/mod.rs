@@ -59,28 +59,28 @@ const MOST_CAREFUL: f64 = 0.125;
 /// Share of a step's end within which an output falls on it.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Data of the explicit increments of one step besides the state.
+/// Data of the explicit increments of one step besides the state. What stays as it is is shared with its clones.
 #[derive(Clone)]
 pub struct Explicit {
     model: Arc<Model>,
     step: Arc<Step>,
     /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
-    mass: Vec<f64>,
+    mass: Arc<[f64]>,
     /// Plates with one equal component, and rigid ones
     plates: Plates,
     /// Dashpots, absorbing sides and damping by the masses, one entry a node
-    dampers: Vec<Absorber>,
+    dampers: Arc<[Absorber]>,
     /// Their forces [F]
     pulls: Vec<Vector2<f64>>,
-    /// Mean velocity of an increment if bodies are viscous [L/T]
-    mean_velocity: Vec<f64>,
     stability: Stability,
     /// Share of the safe increment that is taken: less after a collapse
     care: f64,
     /// The longest increment to take, when last looked at [T]
     stable: f64,
-    /// Displacements at the end of the increment that is next
+    /// Displacements at the end of the increment that is next; memory alone between two increments
     displacement: Vec<f64>,
+    /// Mean velocity of an increment if bodies are viscous; as that [L/T]
+    mean_velocity: Vec<f64>,
     /// Motion of each support in the increment, and its velocity before
     places: Vec<([f64; 4], f64)>,
 }
@@ -101,6 +101,12 @@ impl Explicit {
         assembler: &mut Assembler,
     ) -> Result<Self, IncrementFailure> {
         Self::with_care(1.0, model, step, state, assembler)
+    }
+
+    /// Increments that go on from where these are; the memory goes with them, and these make their own if they go on as well.
+    pub fn branch(&mut self) -> Self {
+        let [displacement, mean_velocity] = [&mut self.displacement, &mut self.mean_velocity].map(std::mem::take);
+        Self { displacement, mean_velocity, ..self.clone() }
     }
 
     /// Whether increments are as short as it makes sense.
@@ -142,14 +148,14 @@ impl Explicit {
             model: model.clone(),
             step: step.clone(),
             plates: Plates::new(model, step, &mass),
-            mass,
-            dampers: damping::by_node(model, step),
+            mass: mass.into(),
+            dampers: damping::by_node(model, step).into(),
             pulls: Vec::new(),
-            mean_velocity: vec![0.0; if model.is_viscous(step) { model.dofs() } else { 0 }],
             stability,
             care,
             stable: 0.0,
-            displacement: vec![0.0; model.dofs()],
+            displacement: Vec::new(),
+            mean_velocity: Vec::new(),
             places: Vec::new(),
         }
     }
@@ -222,6 +228,7 @@ impl Explicit {
     fn predict(&mut self, time: f64, state: &State) -> Result<f64, IncrementFailure> {
         let (model, step, dt) = (&*self.model.clone(), &*self.step.clone(), time - state.time);
         let old = (&state.displacement, &state.velocity, &state.acceleration);
+        self.displacement.resize(state.displacement.len(), 0.0);
         let ways = self.displacement.par_chunks_mut(CHUNK).enumerate().map(|(chunk, u)| {
             let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
             let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
