@@ -108,14 +108,17 @@ impl Give {
 /// The largest |u₁| and |u₁ − u₀|, what is no number left out. Some at a time: each maximum alone waits for the one before.
 fn largest([old, new]: [&[f64]; 2]) -> [f64; 2] {
     const TOGETHER: usize = 8;
-    let most = |most: &mut f64, value: f64| *most = if value > *most { value } else { *most };
+    let most = |most: f64, value: f64| if value > most { value } else { most };
     let (mut reach, mut way) = ([0.0; TOGETHER], [0.0; TOGETHER]);
-    for (old, new) in old.chunks(TOGETHER).zip(new.chunks(TOGETHER)) {
-        let all = reach.iter_mut().zip(&mut way).zip(old.iter().zip(new));
-        for ((reach, way), (old, new)) in all {
-            most(reach, new.abs());
-            most(way, (new - old).abs());
+    let ((olds, old_rest), (news, new_rest)) = (old.as_chunks::<TOGETHER>(), new.as_chunks::<TOGETHER>());
+    for (old, new) in olds.iter().zip(news) {
+        for k in 0..TOGETHER {
+            reach[k] = most(reach[k], new[k].abs());
+            way[k] = most(way[k], (new[k] - old[k]).abs());
         }
+    }
+    for (old, new) in old_rest.iter().zip(new_rest) {
+        (reach[0], way[0]) = (most(reach[0], new.abs()), most(way[0], (new - old).abs()));
     }
     [reach, way].map(|all| all.into_iter().fold(0.0, f64::max))
 }
