@@ -11,7 +11,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
+use serde::de::value::{BorrowedStrDeserializer, MapAccessDeserializer, MapDeserializer, SeqDeserializer};
 use serde::de::{
     Deserialize, DeserializeOwned, Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
 };
@@ -180,14 +180,19 @@ impl<'de> Visitor<'de> for DocumentVisitor {
 }
 
 pub(super) fn input<T: DeserializeOwned>(document: &Value) -> Result<T, ModelError> {
-    serde_path_to_error::deserialize(Strict(document)).map_err(|error| {
+    tracked(document).map_err(|error| {
         let message = error.inner().to_string();
         let key = blamed_key::<T>(document, error.path(), &message);
         ModelError::new(place(error.path(), key.as_deref()), explain(&message))
     })
 }
 
-/// Place of a key in messages: `steps[0].dt.min`.
+/// The types of a case are read in this one way: each other one would be compiled for all of them once more.
+fn tracked<T: DeserializeOwned>(document: &Value) -> Result<T, serde_path_to_error::Error<serde_json::Error>> {
+    serde_path_to_error::deserialize(Strict(document))
+}
+
+/// The place of a key as messages show it: `steps[0].dt.min`.
 fn place(path: &KeyPath, key: Option<&str>) -> String {
     let path = path.to_string();
     let known = if path == "." { "" } else { path.as_str() };
@@ -209,7 +214,7 @@ fn blamed_key<T: DeserializeOwned>(document: &Value, path: &KeyPath, message: &s
     others.into_iter().chain(tags).find(|key| {
         let mut without = document.clone();
         object_at(&mut without, path).map(|object| object.remove(key));
-        T::deserialize(Strict(&without)).map_or_else(|error| error.to_string() != message, |_| true)
+        tracked::<T>(&without).map_or_else(|error| error.inner().to_string() != message, |_| true)
     })
 }
 
@@ -223,7 +228,23 @@ fn object_at<'v>(document: &'v mut Value, path: &KeyPath) -> Option<&'v mut Map<
     path.iter().try_fold(document, step)?.as_object_mut()
 }
 
-/// A value whose lists are accepted as lists only.
+/// A value that is none of the expected ones, in serde's words.
+fn unexpected(value: &Value) -> Unexpected<'_> {
+    match value {
+        Value::Null => Unexpected::Unit,
+        Value::Bool(value) => Unexpected::Bool(*value),
+        Value::Number(number) => match (number.as_u64(), number.as_i64()) {
+            (Some(number), _) => Unexpected::Unsigned(number),
+            (_, Some(number)) => Unexpected::Signed(number),
+            _ => Unexpected::Float(number.as_f64().unwrap_or(f64::NAN)),
+        },
+        Value::String(text) => Unexpected::Str(text),
+        Value::Array(_) => Unexpected::Seq,
+        Value::Object(_) => Unexpected::Map,
+    }
+}
+
+/// A value whose lists are taken for lists only.
 #[derive(Clone, Copy)]
 pub struct Strict<'de>(pub &'de Value);
 
@@ -266,7 +287,10 @@ impl<'de> Deserializer<'de> for Strict<'de> {
                     Err(_) => Err(serde_json::Error::invalid_length(object.len(), &"fewer elements in map")),
                 }
             }
-            scalar => scalar.deserialize_any(visitor),
+            Value::Null => visitor.visit_unit(),
+            Value::Bool(value) => visitor.visit_bool(*value),
+            Value::Number(number) => number.deserialize_any(visitor),
+            Value::String(text) => visitor.visit_borrowed_str(text),
         }
     }
 
@@ -309,7 +333,8 @@ impl<'de> Deserializer<'de> for Strict<'de> {
             Value::Object(object) => {
                 MapAccessDeserializer::new(Self::entries(object)).deserialize_enum(name, variants, visitor)
             }
-            other => other.deserialize_enum(name, variants, visitor),
+            Value::String(variant) => visitor.visit_enum(BorrowedStrDeserializer::new(variant)),
+            other => Err(serde_json::Error::invalid_type(unexpected(other), &"string or map")),
         }
     }
 

@@ -54,7 +54,7 @@ fn with_alpha_t(parameters: &FrictionParameters, alpha_t: f64) -> FrictionParame
             Some(open @ Value::Null) => *open = alpha_t.into(),
             _ => return None,
         }
-        serde_json::from_value(fields).ok()
+        super::read::input(&fields).ok()
     };
     serde_json::to_value(parameters).ok().and_then(filled).unwrap_or_else(|| parameters.clone())
 }

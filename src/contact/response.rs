@@ -30,8 +30,24 @@ const TOGETHER: usize = 16;
 pub struct PairResponse {
     /// Trial states
     pub states: Vec<ContactState>,
+    /// What the laws answered; it may come from another evaluation of the pair
+    pub answered: LastAnswers,
     parts: Vec<Chunk>,
     kept: Kept,
+}
+
+/// What the laws of a pair answered at its last evaluation. They are pure: asked the same again, as for the tangent of what a residual
+/// was found for, they need not be asked.
+#[derive(Clone, Debug, Default)]
+pub struct LastAnswers(Vec<Together>);
+
+/// Questions to the laws of some points in a row, and their answers.
+#[derive(Clone, Debug)]
+struct Together {
+    laws: Vec<Arc<ContactLaw>>,
+    old: [FrictionState; TOGETHER],
+    sliding: [Sliding; TOGETHER],
+    answers: [Answer; TOGETHER],
 }
 
 /// Search data that are reused while they stay valid.
@@ -160,17 +176,26 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
         place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics, &mut Room) -> PointPlace + Sync,
     ) -> Result<(), (usize, LawFailure)> {
         let points = &self.pair.points;
-        let PairResponse { states, parts, .. } = response;
+        let PairResponse { states, answered: LastAnswers(answered), parts, .. } = response;
         states.clear();
         states.extend_from_slice(old);
+        answered.resize_with(points.len().div_ceil(TOGETHER), Together::default);
         parts.resize_with(points.len().div_ceil(PART), Chunk::default);
-        let one = |(number, (part, states)): (usize, (&mut Chunk, &mut [ContactState]))| {
-            let numbers = PART * number..PART * number + states.len();
-            part.evaluate(self, numbers, old, states, &place);
-        };
+        let one =
+            |(number, ((part, answered), states)): (usize, ((&mut Chunk, &mut [Together]), &mut [ContactState]))| {
+                let numbers = PART * number..PART * number + states.len();
+                part.evaluate(self, numbers, old, (states, answered), &place);
+            };
+        const ANSWERED: usize = PART / TOGETHER;
         match parts.len() {
-            0 | 1 => parts.iter_mut().zip(states.chunks_mut(PART)).enumerate().for_each(one),
-            _ => parts.par_iter_mut().zip(states.par_chunks_mut(PART)).enumerate().for_each(one),
+            0 | 1 => {
+                let parts = parts.iter_mut().zip(answered.chunks_mut(ANSWERED));
+                parts.zip(states.chunks_mut(PART)).enumerate().for_each(one);
+            }
+            _ => {
+                let parts = parts.par_iter_mut().zip(answered.par_chunks_mut(ANSWERED));
+                parts.zip(states.par_chunks_mut(PART)).enumerate().for_each(one);
+            }
         }
         parts.iter_mut().find_map(|part| part.failure.take()).map_or(Ok(()), Err)
     }
@@ -183,14 +208,14 @@ impl Chunk {
         question: &Question<P>,
         numbers: std::ops::Range<usize>,
         old: &[ContactState],
-        states: &mut [ContactState],
+        (states, answered): (&mut [ContactState], &mut [Together]),
         place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics, &mut Room) -> PointPlace,
     ) {
         let Question { pair, ref laws, during, .. } = *question;
         let Self { closed, kinematics, room, failure } = self;
         closed.clear();
         kinematics.resize_with(TOGETHER.min(numbers.len()), Kinematics::default);
-        for (first, states) in numbers.step_by(TOGETHER).zip(states.chunks_mut(TOGETHER)) {
+        for ((first, states), answered) in numbers.step_by(TOGETHER).zip(states.chunks_mut(TOGETHER)).zip(answered) {
             let together = first..first + states.len();
             let (points, old) = (&pair.points[together.clone()], &old[together]);
             let mut loadings = [const { None }; TOGETHER];
@@ -211,9 +236,9 @@ impl Chunk {
                     }
                 }
             }
-            let answers = answers(laws, points, old, &sliding[..points.len()]);
+            let answers = answered.answers(laws, points, old, &sliding[..points.len()]);
             for (i, (loading, answer)) in loadings.into_iter().flatten().zip(answers).enumerate() {
-                match loading.finish(answer, closed) {
+                match loading.finish(*answer, closed) {
                     Ok(state) => states[i] = state,
                     Err(cause) => {
                         *failure = Some((first + i, cause));
@@ -225,24 +250,55 @@ impl Chunk {
     }
 }
 
-/// Responses of the laws of consecutive points.
-fn answers(
-    laws: &[Arc<ContactLaw>],
-    points: &[SlavePoint],
-    old: &[ContactState],
-    sliding: &[Sliding],
-) -> [Answer; TOGETHER] {
-    let mut committed = [FrictionState::default(); TOGETHER];
-    committed.iter_mut().zip(old).for_each(|(committed, old)| *committed = old.friction);
-    let mut answers = [Ok(FrictionResponse::default()); TOGETHER];
-    let mut start = 0;
-    for alike in points.chunk_by(|a, b| a.law == b.law) {
-        let range = start..start + alike.len();
-        start = range.end;
-        let (old, sliding, answers) = (&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
-        laws[alike[0].law].respond_many(old, sliding, answers);
+impl Default for Together {
+    fn default() -> Self {
+        Self {
+            laws: Vec::new(),
+            old: [FrictionState::default(); TOGETHER],
+            sliding: [Sliding { slip: 0.0, pressure: 0.0, dt: 0.0 }; TOGETHER],
+            answers: [Ok(FrictionResponse::default()); TOGETHER],
+        }
     }
-    answers
+}
+
+impl Together {
+    /// Responses of the laws of consecutive points.
+    fn answers(
+        &mut self,
+        laws: &[Arc<ContactLaw>],
+        points: &[SlavePoint],
+        old: &[ContactState],
+        sliding: &[Sliding],
+    ) -> &[Answer] {
+        if !self.were_asked(laws, points, old, sliding) {
+            self.laws.clear();
+            self.laws.extend(points.iter().map(|slave| laws[slave.law].clone()));
+            self.old.iter_mut().zip(old).for_each(|(own, old)| *own = old.friction);
+            self.sliding[..sliding.len()].copy_from_slice(sliding);
+            let mut start = 0;
+            for alike in points.chunk_by(|a, b| a.law == b.law) {
+                let range = start..start + alike.len();
+                start = range.end;
+                let (old, sliding) = (&self.old[range.clone()], &self.sliding[range.clone()]);
+                laws[alike[0].law].respond_many(old, sliding, &mut self.answers[range]);
+            }
+        }
+        &self.answers[..points.len()]
+    }
+
+    /// Whether these are the last questions, to the last bit, to the same laws.
+    fn were_asked(
+        &self,
+        laws: &[Arc<ContactLaw>],
+        points: &[SlavePoint],
+        old: &[ContactState],
+        sliding: &[Sliding],
+    ) -> bool {
+        let same_laws = || self.laws.iter().zip(points).all(|(own, slave)| Arc::ptr_eq(own, &laws[slave.law]));
+        let same_sliding = || self.sliding.iter().zip(sliding).all(|(own, sliding)| own.is_same(sliding));
+        let same_old = || self.old.iter().zip(old).all(|(own, old)| own.is_same(&old.friction));
+        self.laws.len() == points.len() && same_sliding() && same_laws() && same_old()
+    }
 }
 
 /// Kinematic state of a point with this projection, before its gap is corrected for overlap.

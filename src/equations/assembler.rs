@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::contact::pair::Presumption;
-use crate::contact::response::PairResponse;
+use crate::contact::response::{LastAnswers, PairResponse};
 use crate::equations::convergence::ConvergenceCriterion;
 use crate::equations::coupling::{Coupling, Layout};
 use crate::equations::damping::ByMass;
@@ -44,7 +44,9 @@ pub struct Assembler {
     equilibrium: ConvergenceCriterion,
     /// Responses of contacts without presumptions, kept to reuse their memory
     responses: Vec<PairResponse>,
-    /// Results at the last evaluated displacement
+    /// What the laws of each contact answered last
+    answered: Vec<LastAnswers>,
+    /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
     pub seconds: Seconds,
@@ -84,6 +86,7 @@ impl Assembler {
             magnitudes: vec![0.0; model.dofs()],
             equilibrium: ConvergenceCriterion::new(model),
             responses: Vec::new(),
+            answered: Vec::new(),
             evaluation: Evaluation::default(),
             seconds: Seconds::default(),
         }
@@ -330,7 +333,8 @@ impl Assembler {
             return Ok(());
         }
         let clock = Instant::now();
-        let answer = contacts::respond(&self.model, trial, u, presumed, request, responses);
+        let answered = &mut self.answered;
+        let answer = contacts::respond(&self.model, trial, u, presumed, request, responses, answered);
         self.seconds.contact += clock.elapsed().as_secs_f64();
         answer
     }

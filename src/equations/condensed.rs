@@ -32,6 +32,7 @@
 //! by contact is constrained by its jumps. A node has no jump if it participates in more than its own point, is tied to
 //! another, or is supported while its opposite nodes are not: the contact force on these would not cancel.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::Assembler;
@@ -76,6 +77,8 @@ fn bound_at_contacts(model: &Model, step: &Step) -> bool {
 pub struct CondensedEquations<'a> {
     nodes: &'a ContactNodes,
     bodies: &'a Condensed,
+    /// Rows between which each column of S is not zero: bodies that only contact joins do not reach each other
+    reach: Vec<Range<usize>>,
     /// x₀ [L]
     start: Vec<f64>,
     /// ρ₀ [F]
@@ -111,7 +114,9 @@ impl<'a> CondensedEquations<'a> {
         let hidden = |side: &Vec<usize>| side.iter().map(|&node| round_off[node]).sum::<f64>();
         let hidden = nodes.sides.iter().map(hidden).collect();
         let ways = nodes.sides.iter().map(|side| assembler.ways(trial, u, side)).collect();
-        Self { nodes, bodies, start: nodes.gather(u), constant, share, free, hidden, ways, forces: system.forces }
+        let (start, forces) = (nodes.gather(u), system.forces);
+        let reach = bodies.stiffness.chunks_exact(start.len().max(1)).map(reach).collect();
+        Self { nodes, bodies, reach, start, constant, share, free, hidden, ways, forces }
     }
 
     /// Computes ρ at `x` with the given responses of the contact points, and its tangent on request.
@@ -127,9 +132,11 @@ impl<'a> CondensedEquations<'a> {
         assembler.note_contacts(trial, responses);
         let size = x.len();
         system.residual.clone_from(&self.constant);
-        for (column, (x, start)) in self.bodies.stiffness.chunks_exact(size).zip(x.iter().zip(&self.start)) {
+        let columns = self.bodies.stiffness.chunks_exact(size).zip(&self.reach);
+        for ((column, reach), (x, start)) in columns.zip(x.iter().zip(&self.start)) {
             let way = x - start;
-            system.residual.iter_mut().zip(column).for_each(|(residual, s)| *residual += s * way);
+            let rows = system.residual[reach.clone()].iter_mut().zip(&column[reach.clone()]);
+            rows.for_each(|(residual, s)| *residual += s * way);
         }
         if request == Request::Tangent {
             system.tangent.values.copy_from_slice(&self.bodies.stiffness);
@@ -194,8 +201,14 @@ impl<'a> CondensedEquations<'a> {
     }
 }
 
-/// Nodes at contacts: those of the slaves, and all that they may slide to unless the slave nodes are jumps. Copies are
-/// represented by their originals.
+/// From the first to the last value that is not zero.
+fn reach(column: &[f64]) -> Range<usize> {
+    let first = column.iter().position(|value| *value != 0.0).unwrap_or(0);
+    first..column.iter().rposition(|value| *value != 0.0).map_or(0, |last| last + 1)
+}
+
+/// The nodes at contacts: those of the slaves, and all that they may slide to unless the slaves are counted from these. Copies
+/// come with the nodes they move with.
 pub struct ContactNodes {
     /// The nodes, ascending
     pub nodes: Vec<usize>,

@@ -4,7 +4,7 @@ use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
 use crate::contact::force::ContactState;
 use crate::contact::pair::{BadPressure, ContactIncrement, ContactPair, InitialTraction, Presumption};
-use crate::contact::response::PairResponse;
+use crate::contact::response::{LastAnswers, PairResponse};
 use crate::equations::sums::TrialFailure;
 use crate::laws::friction::Description;
 use crate::linear::system::Request;
@@ -15,8 +15,8 @@ pub(super) fn dependence(model: &Model) -> Dependence {
     if model.contacts.is_empty() { Dependence::Nothing } else { Dependence::Displacement }
 }
 
-/// Evaluates the responses of all contact points at the displacement `u`, one per pair, with presumptions about each point;
-/// tangents on request.
+/// Responses of all contact points at the displacement `u`, one a pair, with what is presumed about a point of a pair; tangents
+/// on request. What laws `answered` goes from one evaluation to the next, whatever its responses are for.
 pub(super) fn respond(
     model: &Model,
     trial: Trial,
@@ -24,6 +24,7 @@ pub(super) fn respond(
     presumed: impl Fn(usize, usize) -> Presumption + Sync,
     request: Request,
     responses: &mut Vec<PairResponse>,
+    answered: &mut Vec<LastAnswers>,
 ) -> Result<(), TrialFailure> {
     let [before, x] = [&trial.old.displacement, u].map(|u| model.configuration(u));
     let fading = 1.0 - model.steps[0].span.share(trial.time);
@@ -31,14 +32,17 @@ pub(super) fn respond(
     let radiates = !trial.step.scheme.is_dynamic();
     let during = ContactIncrement { time, dt, radiates, fading, stiffening, settles };
     responses.resize_with(model.contacts.len(), PairResponse::default);
-    let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses).enumerate();
-    for (number, ((pair, old), response)) in pairs {
+    answered.resize_with(model.contacts.len(), LastAnswers::default);
+    let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses.iter_mut().zip(answered)).enumerate();
+    for (number, ((pair, old), (response, answered))) in pairs {
         if let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&x, time) {
             let contact = pair.name.clone();
             return Err(TrialFailure::FluidPressure { contact, at: [at.x, at.y], pressure, time });
         }
         let presumed = |point| presumed(number, point);
+        std::mem::swap(&mut response.answered, answered);
         let answer = pair.respond(old, [&before, &x], during, presumed, request, response);
+        std::mem::swap(&mut response.answered, answered);
         answer.map_err(|(point, cause)| TrialFailure::Friction { contact: pair.name.clone(), point, cause })?;
     }
     Ok(())

@@ -12,6 +12,8 @@
 //! ```
 //! In every scheme, forces are taken at both ends of the increment.
 
+use std::ops::Range;
+
 use super::{contacts, damping, links};
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
@@ -116,10 +118,14 @@ impl Flows {
         let (times, ends) = ([old.time, time], [&old.displacement, u]);
         let way = |dof: usize| u[dof] - old.displacement[dof];
         let driven = damping::driven(model, step, times, way);
-        let damped = if model.is_damped(step) { mean_work([&old.damping, &found.damping], ends) } else { 0.0 };
+        let loads = [&old.external, &found.loads].map(|forces| &forces[..]);
+        let [loaded, damped] = match model.is_damped(step) {
+            true => mean_work([loads, [&old.damping, &found.damping].map(|forces| &forces[..])], ends),
+            false => [mean_work([loads], ends)[0], 0.0],
+        };
         let fitted = contacts::fitted(model, [&old.contacts, &found.contacts], times);
         Self {
-            work: mean_work([&old.external, &found.loads], ends) + driven + fitted,
+            work: loaded + driven + fitted,
             damping: driven - damped + relaxed(model, step, old, u),
             stabilization: damping::stabilization_dissipated(step, times, way),
             friction: contacts::dissipated(&old.contacts, &found.contacts),
@@ -144,18 +150,27 @@ fn relaxed(model: &Model, step: &Step, old: &State, u: &[f64]) -> f64 {
     -0.5 * (all - supported)
 }
 
-/// Σ ½ (f₀ + f₁) (u₁ − u₀): the work of forces known at both ends of an increment [F·L]. The parallel sum has a fixed
-/// order.
-fn mean_work([f0, f1]: [&[f64]; 2], [u0, u1]: [&[f64]; 2]) -> f64 {
-    if u0.len() > CHUNK {
-        let half = u0.len() / 2;
-        let part = |k: usize| {
-            let of = |values: &'_ [f64]| if k == 0 { 0..half } else { half..values.len() };
-            mean_work([&f0[of(f0)], &f1[of(f1)]], [&u0[of(u0)], &u1[of(u1)]])
-        };
-        let (first, second) = rayon::join(|| part(0), || part(1));
-        return first + second;
+/// Σ ½ (f₀ + f₁) (u₁ − u₀): the work of each of some forces known at both ends of an increment [F·L]. Halves are summed up in
+/// parallel, always the same ones.
+fn mean_work<const N: usize>(forces: [[&[f64]; 2]; N], [u0, u1]: [&[f64]; 2]) -> [f64; N] {
+    let count = u0.len();
+    let part = |range: Range<usize>| {
+        let forces = forces.map(|ends| ends.map(|force| &force[range.clone()]));
+        (forces, [&u0[range.clone()], &u1[range]])
+    };
+    if count > CHUNK {
+        let halves = [part(0..count / 2), part(count / 2..count)];
+        let [first, second] = halves.map(|(forces, ends)| move || mean_work(forces, ends));
+        let (first, second) = rayon::join(first, second);
+        return std::array::from_fn(|k| first[k] + second[k]);
     }
-    let forces = f0.iter().zip(f1).map(|(f0, f1)| 0.5 * (f0 + f1));
-    forces.zip(u0.iter().zip(u1)).map(|(force, (u0, u1))| force * (u1 - u0)).sum()
+    let (forces, [u0, u1]) = part(0..count);
+    let mut sums = [0.0; N];
+    for dof in 0..count {
+        let way = u1[dof] - u0[dof];
+        for (sum, [f0, f1]) in sums.iter_mut().zip(&forces) {
+            *sum += 0.5 * (f0[dof] + f1[dof]) * way;
+        }
+    }
+    sums
 }

@@ -44,16 +44,19 @@ pub(super) fn add(
     sums: &mut Sums,
 ) -> Result<(), TrialFailure> {
     loads.clear();
+    loads.extend(model.prestress.iter().map(|prestress| 0.0 + prestress));
     loads.resize(u.len(), 0.0);
     if !any(model, trial.step) {
         return Ok(());
     }
     collect(model, trial, u, loads, sums);
-    for (dof, (force, load)) in sums.force.iter_mut().zip(&*loads).enumerate() {
+    let mut are_finite = true;
+    for (force, load) in sums.force.iter_mut().zip(&*loads) {
         *force -= load;
-        if !load.is_finite() {
-            return Err(TrialFailure::Undefined { node: model.mesh.node_tags[dof / 2], time: trial.time });
-        }
+        are_finite &= load.is_finite();
+    }
+    if let Some(dof) = (0..loads.len()).find(|&dof| !are_finite && !loads[dof].is_finite()) {
+        return Err(TrialFailure::Undefined { node: model.mesh.node_tags[dof / 2], time: trial.time });
     }
     if let Some(magnitudes) = &mut sums.magnitudes {
         magnitudes.iter_mut().zip(&*loads).for_each(|(magnitude, load)| *magnitude += load.abs());
@@ -61,10 +64,9 @@ pub(super) fn add(
     Ok(())
 }
 
-/// Adds all loads to `loads`, and their tangents.
+/// Add all loads but the initial stress to `loads`, and their tangents.
 fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut Sums) {
     let (Trial { old, step, time, .. }, at) = (trial, trial.moment());
-    loads.iter_mut().zip(&model.prestress).for_each(|(load, prestress)| *load += prestress);
     for load in &step.loads.dead {
         for &(node, weight, position) in &load.shares {
             loads[2 * node + load.component] += weight * load.amplitude.value(position, at);

@@ -59,7 +59,45 @@ impl State {
         (self.dt, self.last_increment) = (0.0, None);
     }
 
-    /// Whether it was reached by an explicit increment, with accelerations of lumped masses.
+    /// Another state in the memory of this one.
+    pub(crate) fn become_like(self, other: &Self) -> Self {
+        let mut vectors = [
+            (self.displacement, &other.displacement),
+            (self.velocity, &other.velocity),
+            (self.acceleration, &other.acceleration),
+            (self.force, &other.force),
+            (self.external, &other.external),
+            (self.damping, &other.damping),
+            (self.reaction, &other.reaction),
+            (self.memory, &other.memory),
+        ];
+        vectors.iter_mut().for_each(|(own, other)| own.clone_from(other));
+        let [displacement, velocity, acceleration, force, external, damping, reaction, memory] =
+            vectors.map(|(own, _)| own);
+        let mut contacts = self.contacts;
+        contacts.clone_from(&other.contacts);
+        let (last_increment, step_start) = (other.last_increment.clone(), other.step_start.clone());
+        let Self { time, increment, dt, energy, .. } = *other;
+        Self {
+            time,
+            increment,
+            dt,
+            displacement,
+            velocity,
+            acceleration,
+            force,
+            external,
+            damping,
+            reaction,
+            contacts,
+            memory,
+            last_increment,
+            step_start,
+            energy,
+        }
+    }
+
+    /// Whether an explicit increment led to it: its accelerations are those of lumped masses.
     pub fn is_of_explicit(&self) -> bool {
         self.last_increment.is_none() && self.dt > 0.0
     }

@@ -89,8 +89,8 @@ impl Audit {
             self.worst = (error, new.time);
         }
         self.give.record(model, new);
-        let ways = old.displacement.iter().zip(&new.displacement).map(|(old, new)| (new - old).abs());
-        self.noise += round_off(model, new) * ways.fold(0.0, f64::max);
+        let [reach, way] = largest([&old.displacement, &new.displacement]);
+        self.noise += round_off(model, new, reach) * way;
     }
 
     /// Warnings at the end of a run: that the energies do not balance, or contacts give way.
@@ -174,9 +174,27 @@ fn rounded_up(value: f64) -> String {
     format!("{:.0e}", (value / unit).ceil() * unit)
 }
 
-/// Round-off of the forces on a model [F].
-fn round_off(model: &Model, state: &State) -> f64 {
-    let reach = state.displacement.iter().fold(model.mesh.diagonal(), |most, u| most.max(u.abs()));
+/// The largest |u₁| and |u₁ − u₀|, what is no number left out. Some at a time: each maximum alone waits for the one before.
+fn largest([old, new]: [&[f64]; 2]) -> [f64; 2] {
+    const TOGETHER: usize = 8;
+    let most = |most: f64, value: f64| if value > most { value } else { most };
+    let (mut reach, mut way) = ([0.0; TOGETHER], [0.0; TOGETHER]);
+    let ((olds, old_rest), (news, new_rest)) = (old.as_chunks::<TOGETHER>(), new.as_chunks::<TOGETHER>());
+    for (old, new) in olds.iter().zip(news) {
+        for k in 0..TOGETHER {
+            reach[k] = most(reach[k], new[k].abs());
+            way[k] = most(way[k], (new[k] - old[k]).abs());
+        }
+    }
+    for (old, new) in old_rest.iter().zip(new_rest) {
+        (reach[0], way[0]) = (most(reach[0], new.abs()), most(way[0], (new - old).abs()));
+    }
+    [reach, way].map(|all| all.into_iter().fold(0.0, f64::max))
+}
+
+/// Round-off of the forces on a model whose displacements reach so far [F].
+fn round_off(model: &Model, state: &State, reach: f64) -> f64 {
+    let reach = model.mesh.diagonal().max(reach);
     let contacts = model
         .contacts
         .iter()

@@ -24,7 +24,6 @@ pub struct BodyMeans {
     /// ∫ N_a N_b dV of its nodes, a ≤ b
     pairs: Vec<(usize, usize, f64)>,
     shares: Vec<Share>,
-    volume: f64,
     centre: Vector2<f64>,
     /// ∫ |X − C|² dV
     inertia: f64,
@@ -34,12 +33,14 @@ pub struct BodyMeans {
 #[derive(Clone, Debug)]
 struct Share {
     node: usize,
-    /// ∫ N_a dV
+    /// ∫ N_a dV, and its share of the body's volume
     volume: f64,
+    share: f64,
     /// ∫ N_a (X − C) dV
     moment: Vector2<f64>,
-    /// Volume of the lumped mass
+    /// Volume of the lumped mass, and its share
     lumped: f64,
+    lumped_share: f64,
 }
 
 /// Momentum, centre of mass and rotation of a body.
@@ -78,18 +79,18 @@ impl BodyMeans {
                 }
             }
         }
-        let volume: f64 = lengths.iter().map(|(volume, ..)| volume).sum();
+        let all: f64 = lengths.iter().map(|(volume, ..)| volume).sum();
         let moment: Vector2<f64> = lengths.iter().map(|(_, moment, _)| moment).sum();
-        let from_origin = moment / volume;
+        let from_origin = moment / all;
         let share = |(&node, (volume, moment, lumped)): (&usize, (f64, Vector2<f64>, f64))| {
             let moment = moment - from_origin * volume;
-            Share { node, volume, moment, lumped }
+            Share { node, volume, share: volume / all, moment, lumped, lumped_share: lumped / all }
         };
         let shares: Vec<Share> = body.nodes.iter().zip(lengths).map(share).collect();
         let pairs = summed(pairs);
         let inertia = shares.iter().map(|share| share.moment.dot(&(place(share.node) - origin - from_origin))).sum();
         let density = body.material.density();
-        Self { density, pairs, shares, volume, centre: origin + from_origin, inertia }
+        Self { density, pairs, shares, centre: origin + from_origin, inertia }
     }
 
     /// Motion of the body in a state.
@@ -97,9 +98,9 @@ impl BodyMeans {
         let is_lumped = state.is_of_explicit();
         let (mut shift, mut momentum) = (Vector2::zeros(), Vector2::zeros());
         let (mut turned, mut stayed) = (0.0, self.inertia);
-        for &Share { node, volume, moment, lumped } in &self.shares {
+        for &Share { node, volume, share, moment, lumped, .. } in &self.shares {
             let u = vector(&state.displacement, node);
-            shift += u * (volume / self.volume);
+            shift += u * share;
             momentum += vector(&state.velocity, node) * (self.density * if is_lumped { lumped } else { volume });
             turned += moment.perp(&u);
             stayed += moment.dot(&u);
@@ -110,7 +111,7 @@ impl BodyMeans {
                 |node: usize| (model.mesh.nodes[node] - self.centre) + (vector(&state.displacement, node) - shift);
             // The center of lumped masses follows from their positions.
             let centre = match is_lumped {
-                true => self.shares.iter().map(|share| place(share.node) * (share.lumped / self.volume)).sum(),
+                true => self.shares.iter().map(|share| place(share.node) * share.lumped_share).sum(),
                 false => Vector2::zeros(),
             };
             let spin = |a: usize, b: usize| (place(a) - centre).perp(&vector(&state.velocity, b));

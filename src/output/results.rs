@@ -18,7 +18,8 @@
 
 use std::path::{Path, PathBuf};
 
-use vtkio::model::{Attribute, Attributes, DataSet, UnstructuredGridPiece, VertexNumbers};
+use super::vtu;
+pub use super::vtu::Array;
 
 /// A listed frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,19 +31,7 @@ pub struct Frame {
     pub file: String,
 }
 
-/// Values at the points or cells of a grid.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Array {
-    /// name
-    pub name: String,
-    /// number of values per point or cell
-    pub components: usize,
-    /// all values
-    pub values: Vec<f64>,
-}
-
-/// Points and cells with their values.
+/// Points and cells with what is known there.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Grid {
@@ -96,38 +85,24 @@ impl Grid {
         if !path.is_file() {
             return Err("is missing".into());
         }
-        // The VTU reader may panic on damaged files.
-        let read = std::panic::catch_unwind(|| Self::import(path));
-        read.unwrap_or_else(|_| Err("is damaged".into()))
-    }
-
-    fn import(path: &Path) -> Result<Self, String> {
-        let file = vtkio::Vtk::import(path).map_err(|cause| format!("cannot be read: {cause}"))?;
-        let DataSet::UnstructuredGrid { pieces, .. } = file.data else { return Err("is no unstructured grid".into()) };
-        let piece = pieces.into_iter().next().ok_or("has no piece")?;
-        let piece = piece.into_loaded_piece_data(None).map_err(|cause| format!("cannot be read: {cause}"))?;
-        let grid = Self::of(piece).ok_or("has arrays of unknown types")?;
-        grid.is_whole().then_some(grid).ok_or_else(|| "has arrays that do not fit its points and cells".into())
-    }
-
-    fn of(piece: UnstructuredGridPiece) -> Option<Self> {
-        let places: Vec<f64> = piece.points.cast_into()?;
-        let (connectivity, ends) = match piece.cells.cell_verts {
-            VertexNumbers::XML { connectivity, offsets } => (connectivity, offsets),
-            VertexNumbers::Legacy { .. } => return None,
+        let file = std::fs::read_to_string(path).map_err(|cause| format!("cannot be read: {cause}"))?;
+        let arrays = |section: &str| vtu::arrays(&file, section);
+        let (places, mut cells) = (arrays("Points")?, arrays("Cells")?);
+        let mut numbers = |name: &str| {
+            let array = cells.iter_mut().find(|array| array.name == name);
+            array.map(|array| std::mem::take(&mut array.values)).ok_or_else(|| format!("has no array `{name}`"))
         };
-        let small = |numbers: Vec<u64>| {
-            numbers.into_iter().map(|number| u32::try_from(number).ok()).collect::<Option<Vec<u32>>>()
-        };
-        let Attributes { point, cell } = piece.data;
-        Some(Self {
+        let whole = |numbers: Vec<f64>| numbers.into_iter().map(|number| number as u32).collect();
+        let places = places.into_iter().next().ok_or("has no points")?.values;
+        let grid = Self {
             points: places.chunks_exact(3).map(|x| [x[0], x[1]]).collect(),
-            connectivity: small(connectivity)?,
-            ends: small(ends)?,
-            kinds: piece.cells.types.iter().map(|kind| *kind as u8).collect(),
-            at_points: arrays(point),
-            at_cells: arrays(cell),
-        })
+            connectivity: whole(numbers("connectivity")?),
+            ends: whole(numbers("offsets")?),
+            kinds: numbers("types")?.into_iter().map(|kind| kind as u8).collect(),
+            at_points: arrays("PointData")?,
+            at_cells: arrays("CellData")?,
+        };
+        grid.is_whole().then_some(grid).ok_or_else(|| "has arrays that do not fit its points and cells".into())
     }
 
     /// Whether all arrays have the required length.
@@ -146,13 +121,4 @@ impl Grid {
     pub fn is_like(&self, other: &Self) -> bool {
         self.points.len() == other.points.len() && self.connectivity == other.connectivity && self.ends == other.ends
     }
-}
-
-fn arrays(attributes: Vec<Attribute>) -> Vec<Array> {
-    let array = |attribute| {
-        let Attribute::DataArray(array) = attribute else { return None };
-        let components = array.num_comp();
-        Some(Array { components, values: array.data.cast_into()?, name: array.name })
-    };
-    attributes.into_iter().filter_map(array).collect()
 }

@@ -4,9 +4,12 @@
 //! base64(number of blocks, bytes of a block, bytes of the last one if it is shorter, compressed bytes of each)  base64(blocks)
 //! ```
 //!
-//! A frame is a grid that rarely changes, and values that do: the text of the grid is made once and kept. For this reason
-//! frames are written here and not by [`vtkio`], which only reads them. Positions have 64 bits; values at points have 32, or 64
-//! if requested.
+//! A frame is a grid that hardly ever changes, and values that do: the text of the grid is made once and kept. Places have 64
+//! bits; values at points have 32, unless they are asked for as they are.
+//!
+//! # Read back
+//!
+//! The arrays of such a file, of which nothing else is understood.
 //!
 //! Source: VTK file formats, "XML file formats", inline binary data,
 //! <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
@@ -17,8 +20,8 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use miniz_oxide::deflate::compress_to_vec_zlib;
+use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use nalgebra::Vector2;
-pub use vtkio::model::CellType;
 
 use super::files;
 use crate::mesh::shape::ElementKind;
@@ -29,7 +32,26 @@ const BLOCK: usize = 1 << 18;
 /// zlib level: the fastest, since frames are written while the run continues.
 const LEVEL: u8 = 1;
 
-/// VTK cell type of an element.
+/// VTK's numbers of the cells that frames have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellType {
+    /// a point
+    Vertex = 1,
+    /// a line through some points
+    PolyLine = 4,
+    /// T3
+    Triangle = 5,
+    /// Q4
+    Quad = 9,
+    /// T6
+    QuadraticTriangle = 22,
+    /// Q8
+    QuadraticQuad = 23,
+    /// Q9
+    BiquadraticQuad = 28,
+}
+
+/// VTK's name of an element.
 pub fn cell_type(kind: ElementKind) -> CellType {
     match kind {
         ElementKind::T3 => CellType::Triangle,
@@ -80,10 +102,10 @@ impl Grid {
     pub fn at_points(&mut self, name: &str, components: usize, values: impl Iterator<Item = f64>) {
         let text = &mut self.values[0];
         match self.exact {
-            true => array(text, Array { kind: "Float64", name, components }, values.map(f64::to_le_bytes)),
+            true => array(text, Head { kind: "Float64", name, components }, values.map(f64::to_le_bytes)),
             false => {
                 let singles = values.map(|value| (value as f32).to_le_bytes());
-                array(text, Array { kind: "Float32", name, components }, singles);
+                array(text, Head { kind: "Float32", name, components }, singles);
             }
         }
     }
@@ -95,7 +117,7 @@ impl Grid {
 
     /// Adds integers at the cells.
     pub fn at_cells(&mut self, name: &str, values: impl Iterator<Item = i32>) {
-        array(&mut self.values[1], Array { kind: "Int32", name, components: 1 }, values.map(i32::to_le_bytes));
+        array(&mut self.values[1], Head { kind: "Int32", name, components: 1 }, values.map(i32::to_le_bytes));
     }
 
     /// Writes the file.
@@ -129,9 +151,9 @@ impl Mesh {
             Some(*end)
         });
         let kinds = cells.iter().map(|(kind, _)| [*kind as u8]);
-        let of_one = |kind, name| Array { kind, name, components: 1 };
+        let of_one = |kind, name| Head { kind, name, components: 1 };
         let mut text = String::from("<Points>\n");
-        array(&mut text, Array { kind: "Float64", name: "Points", components: 3 }, places);
+        array(&mut text, Head { kind: "Float64", name: "Points", components: 3 }, places);
         text += "</Points>\n<Cells>\n";
         array(&mut text, of_one("UInt64", "connectivity"), connectivity);
         array(&mut text, of_one("UInt64", "offsets"), ends.map(number));
@@ -142,15 +164,15 @@ impl Mesh {
 }
 
 /// Description of an array: its VTK type, its name and the number of components.
-struct Array<'a> {
+struct Head<'a> {
     kind: &'a str,
     name: &'a str,
     components: usize,
 }
 
-/// Appends an array.
-fn array<const N: usize>(text: &mut String, is: Array, values: impl Iterator<Item = [u8; N]>) {
-    let Array { kind, name, components } = is;
+/// Append an array.
+fn array<const N: usize>(text: &mut String, is: Head, values: impl Iterator<Item = [u8; N]>) {
+    let Head { kind, name, components } = is;
     let bytes: Vec<u8> = values.flatten().collect();
     *text +=
         &format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">");
@@ -166,4 +188,79 @@ fn encode(bytes: &[u8], text: &mut String) {
     let head: Vec<u8> = head.flat_map(|size| (size as u64).to_le_bytes()).collect();
     STANDARD.encode_string(head, text);
     STANDARD.encode_string(blocks.concat(), text);
+}
+
+/// Values at the points or cells of a grid, as they are read back.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Array {
+    /// what they are
+    pub name: String,
+    /// values a point or cell
+    pub components: usize,
+    /// all of them
+    pub values: Vec<f64>,
+}
+
+/// The arrays in a section of a file; none where there is no such section.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn arrays(file: &str, section: &str) -> Result<Vec<Array>, String> {
+    let Some((_, rest)) = file.split_once(&format!("<{section}>")) else { return Ok(Vec::new()) };
+    let (inside, _) = rest.split_once(&format!("</{section}>")).ok_or_else(|| format!("ends within <{section}>"))?;
+    inside.split("<DataArray ").skip(1).map(read).collect()
+}
+
+/// The array that follows the beginning of its tag.
+fn read(text: &str) -> Result<Array, String> {
+    let parts = || {
+        let (tag, rest) = text.split_once('>')?;
+        let of = |key: &str| tag.split_once(&format!("{key}=\""))?.1.split('"').next();
+        let (kind, name, components) = (of("type")?, of("Name")?, of("NumberOfComponents")?.parse().ok()?);
+        Some((kind, name, components, rest.split_once("</DataArray>")?.0.trim()))
+    };
+    let (kind, name, components, packed) = parts().ok_or("has an array without an end, or a name")?;
+    let bytes = decode(packed).ok_or_else(|| format!("has an array `{name}` that is damaged"))?;
+    let values = numbers(kind, &bytes).ok_or_else(|| format!("has an array `{name}` of an unknown type"))?;
+    Ok(Array { name: name.into(), components, values })
+}
+
+/// The bytes that [`encode`] has packed, if they are undamaged.
+fn decode(text: &str) -> Option<Vec<u8>> {
+    let number = |bytes: &[u8]| Some(usize::try_from(u64::from_le_bytes(bytes.try_into().ok()?)).ok()?);
+    // Three bytes are four letters: twelve of these have the number of blocks.
+    let count = number(STANDARD.decode(text.get(..12)?).ok()?.get(..8)?)?;
+    let letters = count.checked_add(3)?.checked_mul(8)?.div_ceil(3).checked_mul(4)?;
+    let head = STANDARD.decode(text.get(..letters)?).ok()?;
+    let head: Vec<usize> = head.chunks_exact(8).map(number).collect::<Option<_>>()?;
+    let (block, last) = (*head.get(1)?, *head.get(2)?);
+    let packed = STANDARD.decode(text.get(letters..)?).ok()?;
+    let (mut bytes, mut rest) = (Vec::new(), &packed[..]);
+    for (number, &size) in head.get(3..)?.iter().enumerate() {
+        let whole = if number + 1 == count && last > 0 { last } else { block };
+        let unpacked = decompress_to_vec_zlib_with_limit(rest.get(..size)?, whole).ok()?;
+        if unpacked.len() != whole {
+            return None;
+        }
+        bytes.extend(unpacked);
+        rest = &rest[size..];
+    }
+    rest.is_empty().then_some(bytes)
+}
+
+/// Numbers of a type that frames have.
+fn numbers(kind: &str, bytes: &[u8]) -> Option<Vec<f64>> {
+    fn all<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f64) -> Option<Vec<f64>> {
+        let (numbers, rest) = bytes.as_chunks::<N>();
+        rest.is_empty().then(|| numbers.iter().map(|bytes| number(*bytes)).collect())
+    }
+    match kind {
+        "Float64" => all(bytes, f64::from_le_bytes),
+        "Float32" => all(bytes, |bytes| f32::from_le_bytes(bytes).into()),
+        "Int32" => all(bytes, |bytes| i32::from_le_bytes(bytes).into()),
+        "UInt64" => all(bytes, |bytes| u64::from_le_bytes(bytes) as f64),
+        "UInt8" => all(bytes, |[byte]| byte.into()),
+        _ => None,
+    }
 }

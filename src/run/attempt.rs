@@ -107,7 +107,11 @@ impl Simulation {
         let (time, following) = outputs.next(self.step.span, self.model.requests.next_time(self.state.time));
         let (from, before_pause) =
             self.midway.as_ref().map_or((&self.state, 0), |midway| (&midway.state, midway.increments));
-        let (mut state, mut explicit) = (State::clone(from), self.explicit.clone());
+        let mut state = match self.spare.take() {
+            Some(spare) => spare.become_like(from),
+            None => State::clone(from),
+        };
+        let mut explicit = self.explicit.as_mut().map(Explicit::branch);
         let (assembler, pause) = (&mut self.work.assembler, &*self.pause);
         let gone = explicit.as_mut().map_or(Ok(0), |one| one.go_to(time, &mut state, assembler, pause));
         let state = Arc::new(state);

@@ -48,6 +48,8 @@ pub struct Simulation {
     pub(super) explicit: Option<Explicit>,
     /// Progress of explicit increments since the last output, if they paused
     pub(super) midway: Option<Midway>,
+    /// A state that is gone, for its memory
+    pub(super) spare: Option<State>,
     /// Whether explicit increments must pause before the next output
     pub(super) pause: Pause,
     /// Data of quasi-dynamic steps besides the state, during such steps
@@ -75,6 +77,7 @@ impl Simulation {
             state: Arc::new(state),
             explicit: None,
             midway: None,
+            spare: None,
             pause: Arc::new(|| false),
             quasi_dynamic: None,
             work,
@@ -197,7 +200,8 @@ impl Simulation {
         self.report.note(&outcome);
         self.control.coupling = coupling;
         if let Some(state) = accepted {
-            self.state = state;
+            let gone = std::mem::replace(&mut self.state, state);
+            self.spare = explicit.as_ref().and_then(|_| Arc::into_inner(gone));
             self.explicit = explicit;
             self.control.moving = None;
             if is_row {

@@ -89,7 +89,8 @@ impl Constants {
 impl CondensedNewton {
     /// Creates the condensation of a model if it pays.
     pub fn new(model: &Arc<Model>) -> Option<Self> {
-        if model.contacts.is_empty() || !model.steps.iter().any(|step| is_linear(model, step)) {
+        let condenses = |step: &Step| !matches!(step.scheme, Scheme::Explicit { .. }) && is_linear(model, step);
+        if model.contacts.is_empty() || !model.aids.condense || !model.steps.iter().any(condenses) {
             return None;
         }
         let nodes = ContactNodes::new(model);

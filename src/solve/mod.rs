@@ -47,7 +47,7 @@ impl Workspace {
             iteration: ContactIteration::default(),
             solver,
             system,
-            interface: CondensedNewton::new(model).filter(|_| model.aids.condense),
+            interface: CondensedNewton::new(model),
             foreseen: Vec::new(),
             linear_seconds: 0.0,
         }

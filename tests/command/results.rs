@@ -10,9 +10,10 @@ use crate::delayed::DelayedPressure;
 use fecontact::laws::friction::{FrictionLaw, Regime, Sliding};
 use fecontact::output::fields::{Fields, Frames, Selection};
 use fecontact::output::history::History;
+use fecontact::output::results::Grid;
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use vtkio::model::{Attribute, CellType, DataSet, UnstructuredGridPiece};
+use vtkio::model::{Attribute, CellType, DataSet, UnstructuredGridPiece, VertexNumbers};
 
 const ALPHA_T: f64 = 800.0;
 
@@ -202,6 +203,41 @@ fn frames_hold_the_uniform_stress_of_a_pressed_block() {
         let reaction = values(&piece.data.point, "reaction");
         let on_top = reaction.chunks_exact(3).zip(places.chunks_exact(3)).filter(|(_, x)| x[1] == 2.0);
         close("force on top", on_top.map(|(force, _)| force[1]).sum(), 3.0 * along, 1e-10);
+    }
+}
+
+/// Frames of bodies and interfaces are read back as vtkio finds them, and cut or changed ones are refused.
+#[test]
+fn frames_are_read_back_as_another_reader_finds_them() {
+    let folder = TempDir::new().unwrap();
+    for exact in [false, true] {
+        let mut case = slider(0.2, 0.1);
+        case["output"] = json!({"exact": exact});
+        run(folder.path(), &case);
+        for file in ["solid/00001.vtu", "contact/00001.vtu"] {
+            let path = folder.path().join("out/case").join(file);
+            let (own, other) = (Grid::read(&path).unwrap(), frame(&path));
+            let places: Vec<f64> = other.points.cast_into().unwrap();
+            assert_eq!(
+                own.points.as_flattened(),
+                places.chunks_exact(3).flat_map(|x| [x[0], x[1]]).collect::<Vec<_>>()
+            );
+            let VertexNumbers::XML { connectivity, offsets } = other.cells.cell_verts else { panic!("no cells") };
+            let whole = |numbers: &[u32]| numbers.iter().map(|&number| u64::from(number)).collect::<Vec<_>>();
+            assert_eq!((whole(&own.connectivity), whole(&own.ends)), (connectivity, offsets));
+            assert_eq!(own.kinds, other.cells.types.iter().map(|kind| *kind as u8).collect::<Vec<_>>());
+            for (arrays, attributes) in [(&own.at_points, &other.data.point), (&own.at_cells, &other.data.cell)] {
+                assert_eq!(arrays.len(), attributes.len());
+                arrays.iter().for_each(|array| assert_eq!(array.values, values(attributes, &array.name)));
+            }
+            let text = fs::read_to_string(&path).unwrap();
+            let cut = path.with_extension("cut");
+            let wrong = text.replacen("</DataArray>", "A</DataArray>", 1);
+            for damaged in [&text[..text.len() / 3], &text[..text.len() / 2], &wrong, ""] {
+                fs::write(&cut, damaged).unwrap();
+                Grid::read(&cut).unwrap_err();
+            }
+        }
     }
 }
 

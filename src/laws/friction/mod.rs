@@ -292,7 +292,13 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Creates the increment Δu_t under the pressure p at its end, in the time Δt.
+    /// Whether another increment is the same in every bit.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let bits = |of: &Self| [of.slip, of.pressure, of.dt].map(f64::to_bits);
+        bits(self) == bits(other)
+    }
+
+    /// The increment Δu_t under the pressure p at its end, in the time Δt.
     pub const fn new(slip: f64, pressure: f64, dt: f64) -> Self {
         Self { slip, pressure, dt }
     }

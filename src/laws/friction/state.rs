@@ -97,7 +97,17 @@ impl FrictionState {
         }
     }
 
-    /// Whether all its numbers are finite.
+    /// Whether another state is the same in every bit.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let bits = |state: &Self| {
+            let Self { traction, pressure, plastic_slip, plastic_increment, dissipation, opening, wear, .. } = *state;
+            [traction, pressure, plastic_slip, plastic_increment, dissipation, opening, wear].map(f64::to_bits)
+        };
+        let own = |state: &Self| state.variables.map(f64::to_bits);
+        bits(self) == bits(other) && own(self) == own(other) && self.regime == other.regime
+    }
+
+    /// Whether all of it are numbers.
     pub(super) fn is_finite(&self) -> bool {
         let Self { traction, pressure, plastic_slip, plastic_increment, dissipation, opening, wear, variables, .. } =
             self;

@@ -60,28 +60,28 @@ const MOST_CAREFUL: f64 = 0.125;
 /// Fraction of a step's end within which an output coincides with it.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Data of the explicit increments of one step in addition to the state.
+/// Data of the explicit increments of one step besides the state. What stays as it is is shared with its clones.
 #[derive(Clone)]
 pub struct Explicit {
     model: Arc<Model>,
     step: Arc<Step>,
-    /// Mass of every node; that of tied copies is both with their nodes and with the copies [M]
-    mass: Vec<f64>,
-    /// Platens with one equal component, and rigid platens
+    /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
+    mass: Arc<[f64]>,
+    /// Plates with one equal component, and rigid ones
     plates: Plates,
-    /// Dashpots, absorbing sides and mass-proportional damping, one entry per node
-    dampers: Vec<Absorber>,
+    /// Dashpots, absorbing sides and damping by the masses, one entry a node
+    dampers: Arc<[Absorber]>,
     /// Their forces [F]
     pulls: Vec<Vector2<f64>>,
-    /// Mean velocity of an increment if bodies are viscous [L/T]
-    mean_velocity: Vec<f64>,
     stability: Stability,
     /// Fraction of the stable increment that is used; less after a collapse
     care: f64,
     /// Last evaluated stable increment [T]
     stable: f64,
-    /// Displacements at the end of the next increment
+    /// Displacements at the end of the increment that is next; memory alone between two increments
     displacement: Vec<f64>,
+    /// Mean velocity of an increment if bodies are viscous; as that [L/T]
+    mean_velocity: Vec<f64>,
     /// Motion of each support in the increment, and its velocity before
     places: Vec<([f64; 4], f64)>,
 }
@@ -104,7 +104,13 @@ impl Explicit {
         Self::with_care(1.0, model, step, state, assembler)
     }
 
-    /// Whether increments have reached their lower bound.
+    /// Increments that go on from where these are; the memory goes with them, and these make their own if they go on as well.
+    pub fn branch(&mut self) -> Self {
+        let [displacement, mean_velocity] = [&mut self.displacement, &mut self.mean_velocity].map(std::mem::take);
+        Self { displacement, mean_velocity, ..self.clone() }
+    }
+
+    /// Whether increments are as short as it makes sense.
     pub fn is_most_careful(&self) -> bool {
         self.care <= MOST_CAREFUL
     }
@@ -143,14 +149,14 @@ impl Explicit {
             model: model.clone(),
             step: step.clone(),
             plates: Plates::new(model, step, &mass),
-            mass,
-            dampers: damping::by_node(model, step),
+            mass: mass.into(),
+            dampers: damping::by_node(model, step).into(),
             pulls: Vec::new(),
-            mean_velocity: vec![0.0; if model.is_viscous(step) { model.dofs() } else { 0 }],
             stability,
             care,
             stable: 0.0,
-            displacement: vec![0.0; model.dofs()],
+            displacement: Vec::new(),
+            mean_velocity: Vec::new(),
             places: Vec::new(),
         }
     }
@@ -223,6 +229,7 @@ impl Explicit {
     fn predict(&mut self, time: f64, state: &State) -> Result<f64, IncrementFailure> {
         let (model, step, dt) = (&*self.model.clone(), &*self.step.clone(), time - state.time);
         let old = (&state.displacement, &state.velocity, &state.acceleration);
+        self.displacement.resize(state.displacement.len(), 0.0);
         let ways = self.displacement.par_chunks_mut(CHUNK).enumerate().map(|(chunk, u)| {
             let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
             let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

@@ -52,7 +52,8 @@ impl Explicit {
         if model.is_viscous(step) {
             // Viscous stress is evaluated with the velocity of the previous increment: v₁ = v½ + ½ Δt a₁.
             let rates = state.velocity.iter().zip(&state.acceleration);
-            self.mean_velocity.iter_mut().zip(rates).for_each(|(mean, (v, a))| *mean = v - 0.5 * state.dt * a);
+            self.mean_velocity.clear();
+            self.mean_velocity.extend(rates.map(|(v, a)| v - 0.5 * state.dt * a));
         }
         let velocity = model.is_viscous(step).then_some(&self.mean_velocity[..]);
         assembler.forces(still, &state.displacement, velocity).map_err(IncrementFailure::Start)?;
@@ -111,7 +112,8 @@ impl Explicit {
         let is_viscous = model.is_viscous(step);
         if is_viscous {
             let ways = self.displacement.iter().zip(&state.displacement);
-            self.mean_velocity.iter_mut().zip(ways).for_each(|(velocity, (new, old))| *velocity = (new - old) / dt);
+            self.mean_velocity.clear();
+            self.mean_velocity.extend(ways.map(|(new, old)| (new - old) / dt));
         }
         let velocity = is_viscous.then_some(&self.mean_velocity[..]);
         assembler.forces(

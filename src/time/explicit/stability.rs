@@ -45,20 +45,20 @@ const LOOK_AGAIN: usize = 200;
 /// Number of elements below which a comparison takes less time than starting another thread.
 const FEW: usize = 2048;
 
-/// Bounds of the increment as last evaluated.
+/// Bounds of the increment, as last evaluated. Clones share them until they are evaluated again.
 #[derive(Clone)]
 pub(super) struct Stability {
     pub(super) model: Arc<Model>,
     retardation: Vec<f64>,
-    pub(super) elements: Vec<Element>,
-    /// Nodes of the elements, `stride` entries per element, padded with the first node
-    nodes: Vec<usize>,
-    /// Their displacements relative to the first node at the last evaluation of the element [L]
-    seen: Vec<Vector2<f64>>,
+    pub(super) elements: Arc<Vec<Element>>,
+    /// Nodes of the elements, `stride` places an element, filled up with the first one
+    nodes: Arc<[usize]>,
+    /// Their displacements against the first one when the element was looked at [L]
+    seen: Arc<Vec<Vector2<f64>>>,
     stride: usize,
     /// k/m of (3) at every node [1/T²]
-    softness: Vec<f64>,
-    /// Segment of the projection of every contact point
+    softness: Arc<Vec<f64>>,
+    /// Segment that every contact point met
     segments: Vec<Option<usize>>,
     /// Increments since the contacts were evaluated
     since: usize,
@@ -78,11 +78,11 @@ impl Stability {
         let mut stability = Self {
             model: model.clone(),
             retardation: model.retardations(step),
-            elements: vec![Element { bounds: [0.0; 2], size: 0.0 }; count],
+            elements: Arc::new(vec![Element { bounds: [0.0; 2], size: 0.0 }; count]),
             nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
-            seen: vec![Vector2::zeros(); stride * count],
+            seen: Arc::new(vec![Vector2::zeros(); stride * count]),
             stride,
-            softness: Vec::new(),
+            softness: Arc::default(),
             segments: Vec::new(),
             since: 0,
             relooked: false,
@@ -92,7 +92,8 @@ impl Stability {
         let first = alike(model);
         let distinct: Vec<usize> = (0..count).filter(|&e| first[e] == e).collect();
         stability.look(&distinct, state)?;
-        (0..count).for_each(|e| stability.elements[e] = stability.elements[first[e]]);
+        let elements = Arc::make_mut(&mut stability.elements);
+        (0..count).for_each(|e| elements[e] = elements[first[e]]);
         Ok(stability)
     }
 
@@ -171,17 +172,21 @@ impl Stability {
 
     /// Re-evaluates some elements.
     pub(super) fn look(&mut self, elements: &[usize], state: &State) -> Result<(), IncrementFailure> {
+        if elements.is_empty() {
+            return Ok(());
+        }
         let (model, retardation, u) = (&self.model, &self.retardation, &state.displacement);
         let look = |&e: &usize| {
             let memory = model.memories.of(e, &state.memory);
             Element::at(model, retardation[model.body_of_element[e]], e, (u, memory))
         };
         let found: Vec<Result<Element, TrialFailure>> = elements.par_iter().with_min_len(64).map(look).collect();
+        let (own, seen) = (Arc::make_mut(&mut self.elements), Arc::make_mut(&mut self.seen));
         for (&e, element) in elements.iter().zip(found) {
-            self.elements[e] = element.map_err(IncrementFailure::Start)?;
+            own[e] = element.map_err(IncrementFailure::Start)?;
             let places = self.stride * e..self.stride * (e + 1);
             let first = vector(u, self.nodes[places.start]);
-            for (seen, &node) in self.seen[places.clone()].iter_mut().zip(&self.nodes[places]) {
+            for (seen, &node) in seen[places.clone()].iter_mut().zip(&self.nodes[places]) {
                 *seen = vector(u, node) - first;
             }
         }
@@ -194,7 +199,7 @@ impl Stability {
         self.segments.extend(segments(state));
         (self.since, self.relooked) = (0, false);
         self.add_stiffness(step, mass, state);
-        let softness = self.softness.iter_mut().zip(mass);
+        let softness = Arc::make_mut(&mut self.softness).iter_mut().zip(mass);
         softness.for_each(|(added, mass)| *added = if *mass > 0.0 { *added / mass } else { 0.0 });
         let lone = self.softness.iter().map(|softness| longest(*softness, 0.0)).fold(f64::INFINITY, f64::min);
         self.longest_of(0..self.elements.len()).min(lone)
@@ -214,6 +219,7 @@ impl Stability {
     fn add_stiffness(&mut self, step: &Step, mass: &[f64], state: &State) {
         let Self { model, softness: added, .. } = self;
         let x = model.configuration(&state.displacement);
+        let added = Arc::make_mut(added);
         added.clear();
         added.resize(model.mesh.nodes.len(), 0.0);
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
@@ -399,8 +405,10 @@ impl ExplicitMemory {
 impl Explicit {
     /// Returns the memory for a checkpoint.
     pub fn memory(&self) -> ExplicitMemory {
-        let Stability { elements, seen, softness, segments, since, relooked, margin, .. } = self.stability.clone();
-        let seen = seen.into_iter().map(Into::into).collect();
+        let Stability { elements, seen, softness, segments, since, relooked, margin, .. } = &self.stability;
+        let seen = seen.iter().map(|&seen| seen.into()).collect();
+        let (elements, softness) = (elements.to_vec(), softness.to_vec());
+        let (segments, since, relooked, margin) = (segments.clone(), *since, *relooked, *margin);
         let (care, stable) = (self.care, self.stable);
         ExplicitMemory { care, stable, elements, seen, softness, segments, since, relooked, margin }
     }
@@ -412,11 +420,11 @@ impl Explicit {
         let stability = Stability {
             model: model.clone(),
             retardation: model.retardations(step),
-            elements,
+            elements: Arc::new(elements),
             nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
-            seen: seen.into_iter().map(Vector2::from).collect(),
+            seen: Arc::new(seen.into_iter().map(Vector2::from).collect()),
             stride,
-            softness,
+            softness: Arc::new(softness),
             segments,
             since,
             relooked,
