@@ -27,3 +27,4 @@ mod simulation;
 mod spinning;
 mod terms;
 mod turning;
+mod yielding;
