@@ -34,7 +34,8 @@ fn a_tube_yields_from_within() {
         close(&format!("p at {time}"), pressure, exact, 2e-3 * exact);
     }
     let energy = run.last().energy;
-    assert!(energy.plastic_dissipation > 0.3 * energy.external_work && energy.damping_dissipation == 0.0);
+    assert!(energy.plastic_dissipation > 0.6 * energy.external_work);
+    close("damping", energy.damping_dissipation, 0.0, 1e-9 * energy.external_work);
     close("energy error", energy.error(), 0.0, 2e-3 * energy.external_work);
     assert_eq!(run.report.cutbacks, 0);
 }
