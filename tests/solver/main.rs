@@ -29,3 +29,4 @@ mod spinning;
 mod symmetry;
 mod terms;
 mod turning;
+mod yielding;
