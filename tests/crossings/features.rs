@@ -300,7 +300,15 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (
         &["flange"],
-        &["section:rings_on_end", "section:rings_around", "tractions", "stress", "heat", "dashpot", "scheme:quasi_dynamic"],
+        &[
+            "section:rings_on_end",
+            "section:rings_around",
+            "tractions",
+            "stress",
+            "heat",
+            "dashpot",
+            "scheme:quasi_dynamic",
+        ],
         "a body beside the block that is as it is",
     ),
     (

@@ -184,6 +184,7 @@ const ONCE_BROKEN: &[(u64, &str, &str)] = &[
          ground_law:neo_hookean inclined:normal method:mortar press:pressure shrink_fit:yes spring:ends \
          stress:components",
     ),
+    (33, "bystander", "master:plane press:plate tool:free"),
 ];
 
 #[test]

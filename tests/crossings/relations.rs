@@ -394,7 +394,7 @@ fn steps_in_two(base: &Base) -> Outcome {
 fn later(base: &Base) -> Outcome {
     let draft = base.draft;
     // What acts or moves from the start, or holds the block only once it is closed.
-    let acts = ["stress", "tractions", "heat", "velocity", "shrink_fit", "until", "rupture", "error_control"];
+    let acts = ["stress", "tractions", "heat", "fluid", "velocity", "shrink_fit", "until", "rupture", "error_control"];
     // The state of these laws lives from the start of the run: θ ages, and μ begins with the μ_s of then.
     let varies = draft.is("varying", "in_time") && draft.pick("which varies", &[0.0, 1.0]) == 1.0;
     let lives = draft.is("friction", "rate_and_state")
@@ -402,7 +402,6 @@ fn later(base: &Base) -> Outcome {
     let idle = lives
         || acts.iter().any(|slot| draft.has(slot))
         || !["displacement", "rotation"].contains(&draft.of("press"))
-        || draft.has("fluid") && !model::starts_apart(draft)
         || draft.is("spring", "driven")
         || draft.is("friction", "prescribed")
         || draft.is("scheme", "quasi_dynamic")
@@ -526,14 +525,18 @@ fn switched(base: &Base) -> Outcome {
     Outcome::Broken(Difference { share: finest.1, place, values: [coarse.0, finest.0] })
 }
 
-/// What is solved without dilatancy is solved with it.
+/// Dilatancy does not keep surfaces apart: what closes without it closes with it.
 fn dilating(base: &Base) -> Outcome {
     let Some(plainer) = base.draft.with("dilatancy", "no").filter(|_| base.draft.has("dilatancy")) else {
         return Outcome::Idle;
     };
+    if moves(base.draft) {
+        return Outcome::Idle;
+    }
     let Ended::Stopped(why) = &base.record.ended else { return Outcome::Holds };
-    if Base::new(&plainer).has_ended_well() {
-        let place = format!("ended {why}, and is solved without dilatancy");
+    let without = Base::new(&plainer);
+    if !base.record.closed && without.record.closed && without.has_ended_well() {
+        let place = format!("ended {why}, and closes without dilatancy");
         Outcome::Broken(Difference { share: f64::INFINITY, place, values: [0.0; 2] })
     } else {
         Outcome::Idle
