@@ -19,6 +19,8 @@ pub struct Frame {
     pub thick: bool,
     /// whether supports along axes are written as inclined ones
     pub inclined: bool,
+    /// when time 0 is, as written
+    pub later: f64,
 }
 
 /// What a number of a result is, which says how it is written in a frame.
@@ -35,6 +37,8 @@ pub enum Kind {
     Power,
     Momentum,
     AngularMomentum,
+    /// of waves: a velocity that others are not measured by
+    WaveSpeed,
     Share,
 }
 
@@ -45,7 +49,7 @@ impl Frame {
         let matrix = if turned { [[0.0, -1.0], [1.0, 0.0]] } else { [[1.0, 0.0], [0.0, 1.0]] };
         let offset = if section.starts_with("rings") { [radius, 0.0] } else { [0.0, 0.0] };
         let thick = section != "plane_strain";
-        Self { matrix, offset, length: 1.0, stress: 1.0, time: 1.0, thick, inclined: false }
+        Self { matrix, offset, length: 1.0, stress: 1.0, time: 1.0, thick, inclined: false, later: 0.0 }
     }
 
     pub fn moved(mut self, by: [f64; 2]) -> Self {
@@ -120,7 +124,7 @@ impl Frame {
             Kind::Number | Kind::Share => 1.0,
             Kind::Length => length,
             Kind::Area => area,
-            Kind::Velocity => length / time,
+            Kind::Velocity | Kind::WaveSpeed => length / time,
             Kind::Stress => stress,
             Kind::Force => force,
             Kind::Energy => force * length,
@@ -128,6 +132,11 @@ impl Frame {
             Kind::Momentum => force * time,
             Kind::AngularMomentum => force * time * length,
         }
+    }
+
+    /// A time as written.
+    pub fn at(&self, time: f64) -> f64 {
+        self.later + self.time * time
     }
 
     pub fn write(&self, kind: Kind, x: f64) -> f64 {
@@ -166,10 +175,11 @@ impl Frame {
 
     /// An expression in the canonical X, Y and T, in units of a kind; expressions of rings and planes alike.
     pub fn expression(&self, kind: Kind, text: &str, sign: f64) -> String {
-        let Self { matrix: m, offset: [bx, by], length, time, .. } = self;
+        let Self { matrix: m, offset: [bx, by], length, time, later, .. } = self;
         let l2 = length * length;
         let along = |k: usize| format!("(({})*(x-({bx}))+({})*(y-({by})))", m[0][k] / l2, m[1][k] / l2);
-        let text = text.replace('X', &along(0)).replace('Y', &along(1)).replace('T', &format!("(t/({time}))"));
+        let text =
+            text.replace('X', &along(0)).replace('Y', &along(1)).replace('T', &format!("((t-({later}))/({time}))"));
         format!("({})*({text})", sign * self.unit(kind))
     }
 

@@ -112,6 +112,21 @@ impl Sheet {
         self.elements.entry(name.into()).or_default().extend(elements);
     }
 
+    /// Make nodes at one place one, of those from a number on.
+    pub fn weld(&mut self, first: usize) {
+        let mut kept = self.nodes[..first].to_vec();
+        let mut number: Vec<usize> = (0..first).collect();
+        for place in &self.nodes[first..] {
+            let at = kept[first..].iter().position(|other| other == place).map(|at| first + at);
+            number.push(at.unwrap_or(kept.len()));
+            kept.extend(at.is_none().then_some(*place));
+        }
+        self.nodes = kept;
+        let groups = self.elements.values_mut().chain(self.edges.values_mut());
+        groups.flatten().flatten().for_each(|node| *node = number[*node]);
+        self.points.values_mut().flatten().for_each(|node| *node = number[*node]);
+    }
+
     /// Give the right half of a body's elements another name; the nodes between are shared.
     pub fn split(&mut self, body: &str, other: &str) {
         let elements = self.elements.remove(body).unwrap_or_default();

@@ -39,6 +39,8 @@ pub struct Ways {
     pub scheme: Option<&'static str>,
     /// slave and master swapped
     pub swapped: bool,
+    /// everything begins so many lengths of a stage later, after a step in which nothing happens
+    pub later: f64,
 }
 
 impl Ways {
@@ -67,7 +69,15 @@ impl Ways {
             normal: None,
             scheme: None,
             swapped: false,
+            later: 0.0,
         }
+    }
+
+    /// With everything later, by so many lengths of a stage.
+    pub fn later(mut self, stages: f64, draft: &Draft) -> Self {
+        self.frame.later = self.frame.time * stages * duration(draft);
+        self.later = stages;
+        self
     }
 }
 
@@ -94,10 +104,23 @@ pub const ASIDE: [&str; 2] = ["aaa", "zzz"];
 /// The rigid body that moves, if there is one.
 const TOOL: &str = "tool";
 
+/// A body that shares the nodes of the block's left side; with other names it comes before the block, not after it.
+const FLANGE: &str = "flange";
+
 const DYNAMIC: [&str; 5] = ["newmark", "hht", "generalized_alpha", "wilson", "explicit"];
 
 pub fn is_dynamic(scheme: &str) -> bool {
     DYNAMIC.contains(&scheme)
+}
+
+/// Whether one of its steps has inertia.
+pub fn moves(draft: &Draft) -> bool {
+    is_dynamic(draft.of("scheme")) || is_dynamic(draft.of("then"))
+}
+
+/// Whether one of its steps is explicit, or may become so.
+pub fn is_explicit(draft: &Draft) -> bool {
+    draft.is("scheme", "explicit") || draft.is("then", "explicit") || draft.has("rupture")
 }
 
 /// The case.
@@ -229,7 +252,11 @@ impl Writer<'_> {
         case.insert("mesh".into(), self.mesh());
         case.insert("bodies".into(), self.bodies());
         if self.has("tool") {
-            case.insert("rigid_bodies".into(), json!({TOOL: {"reference": self.frame.point([1.25, -0.375])}}));
+            let mut tool = json!({"reference": self.frame.point([1.25, -0.375])});
+            if self.turns_freely() {
+                tool["inertia"] = json!(3e-4 * self.mass_unit() * self.frame.length.powi(2));
+            }
+            case.insert("rigid_bodies".into(), json!({TOOL: tool}));
         }
         case.insert("contacts".into(), self.contacts());
         case.insert("steps".into(), self.steps().into());
@@ -258,12 +285,15 @@ impl Writer<'_> {
         if !velocities.is_empty() {
             case.insert("initial_velocity".into(), velocities.into());
         }
+        let mut masses = Map::new();
         if self.has("point_mass") {
-            let mass =
-                0.05 * self.ways.density * self.frame.stress * self.frame.unit(Kind::Area) * self.frame.time.powi(2)
-                    / self.frame.length
-                    * 1e-3;
-            case.insert("point_masses".into(), json!({self.group("block_corner"): {"mass": mass}}));
+            masses.insert(self.group("block_corner"), json!({"mass": 5e-5 * self.mass_unit()}));
+        }
+        if self.is("tool", "free") {
+            masses.insert(TOOL.into(), json!({"mass": 1e-3 * self.mass_unit()}));
+        }
+        if !masses.is_empty() {
+            case.insert("point_masses".into(), masses.into());
         }
         let mut watch = vec![self.group("block_top"), self.group("block_corner")];
         watch.extend((!self.is_rigid()).then(|| self.group("ground_bottom")));
@@ -273,16 +303,26 @@ impl Writer<'_> {
         let mut output = json!({"fields": false, "report": false, "checkpoint": null});
         let dt = self.dt();
         if self.has("times") {
-            output["times"] =
-                json!([self.write(Kind::Time, 0.61 * self.duration()), self.write(Kind::Time, 1.37 * self.duration())]);
+            output["times"] = json!([self.at(0.61 * self.duration()), self.at(1.37 * self.duration())]);
         }
         if self.has("interval") {
             output["interval"] = json!(self.write(Kind::Time, 2.0 * dt));
-        } else if self.scheme == "explicit" || self.has("rupture") {
+        } else if self.scheme == "explicit" || self.is("then", "explicit") || self.has("rupture") {
             output["interval"] = json!(self.write(Kind::Time, dt));
         }
         case.insert("output".into(), output);
         case.into()
+    }
+
+    /// What masses are counted in.
+    fn mass_unit(&self) -> f64 {
+        let Frame { length, stress, time, .. } = *self.frame;
+        self.ways.density * stress * self.frame.unit(Kind::Area) * time.powi(2) / length
+    }
+
+    /// Whether nothing but its inertia says how the tool turns.
+    fn turns_freely(&self) -> bool {
+        self.is("tool", "free") && is_dynamic(self.scheme) && !self.is("then", "static")
     }
 
     /// A group of the mesh by its canonical name.
@@ -298,6 +338,7 @@ impl Writer<'_> {
         let mut sheet = Sheet::default();
         let quadratic = |slot: &str| is_quadratic(self.draft.of(slot));
         let warp = |name: &str| self.pick(name, &[0.0, 0.03]);
+        let block_rows = if quadratic("block_element") { 1 } else { 2 };
         let [low, high] = self.span();
         if !self.is_rigid() {
             let right =
@@ -318,6 +359,7 @@ impl Writer<'_> {
                 warp: warp("ground warp"),
             });
         }
+        let first_of_block = sheet.nodes.len();
         let bottom = match () {
             () if self.has("shrink_fit") => -GAP,
             () if starts_apart(self.draft) => GAP,
@@ -332,10 +374,25 @@ impl Writer<'_> {
             } else {
                 self.draft.count("block columns", 2, if quadratic("block_element") { 2 } else { 4 })
             },
-            rows: if quadratic("block_element") { 1 } else { 2 },
+            rows: block_rows,
             element: self.draft.of("block_element"),
             warp: warp("block warp"),
         });
+        if self.has("flange") {
+            sheet.rectangle(&Rectangle {
+                name: FLANGE,
+                low: [low - 0.375, dyadic(bottom)],
+                high: [low, BLOCK_HEIGHT],
+                columns: 1,
+                rows: block_rows,
+                element: self.draft.of("block_element"),
+                warp: 0.0,
+            });
+            sheet.weld(first_of_block);
+            // No side of either any more.
+            sheet.edges.remove(&self.group("block_left"));
+            sheet.edges.remove(&format!("{FLANGE}_right"));
+        }
         if self.is("master", "itself") {
             let skin = ["ground_top", "block_bottom"].map(|name| sheet.edges[&self.group(name)].clone()).concat();
             sheet.edges.insert("skin".into(), skin);
@@ -377,6 +434,12 @@ impl Writer<'_> {
             bodies.insert("half".into(), block.clone());
         }
         bodies.insert(self.names.block.into(), block);
+        if self.has("flange") {
+            let law = if self.is("block_law", "linear") { "linear" } else { "neo_hookean" };
+            let mut material = self.material(law, 300.0, 0.2);
+            material["density"] = json!(4.0 * self.density());
+            bodies.insert(FLANGE.into(), json!({"material": material}));
+        }
         if !self.is_rigid() {
             bodies.insert(self.names.ground.into(), self.body("ground", 1500.0));
         }
@@ -482,7 +545,8 @@ impl Writer<'_> {
 
     fn velocities(&self) -> Map<String, Value> {
         let v = json!(self.frame.vector(Kind::Velocity, [0.02, -0.1]));
-        let bodies = [Some(self.names.block), self.ways.block_in_two.then_some("half")];
+        let flange = self.has("flange").then_some(FLANGE);
+        let bodies = [Some(self.names.block), self.ways.block_in_two.then_some("half"), flange];
         bodies.into_iter().flatten().map(|body| (body.into(), v.clone())).collect()
     }
 
@@ -587,7 +651,8 @@ impl Writer<'_> {
         let mut contacts = Map::new();
         contacts.insert(self.names.contact.into(), contact);
         if self.has("second_contact") {
-            let wall = dyadic(self.span()[1] + if self.scheme == "static" { 0.012 } else { 0.002 });
+            let wall =
+                dyadic(self.span()[1] + if self.scheme == "static" && !self.has("then") { 0.012 } else { 0.002 });
             let stop = json!({"plane": {"point": frame.point([wall, 0.0]), "normal": frame.direction([-1.0, 0.0])}});
             contacts.insert(self.names.second.into(), json!({"slave": self.group("block_right"), "master": stop, "method": "node_to_segment", "normal": {"alpha_n": 3e4 * stiffness}, "friction": {"law": "coulomb", "mu": 0.25, "alpha_t": 1e4 * stiffness}}));
         }
@@ -684,7 +749,12 @@ impl Writer<'_> {
     }
 
     fn dt(&self) -> f64 {
-        self.duration() / if is_dynamic(self.draft.of("scheme")) { 8.0 } else { 4.0 }
+        self.duration() / if moves(self.draft) { 8.0 } else { 4.0 }
+    }
+
+    /// A time of the run as written.
+    fn at(&self, time: f64) -> f64 {
+        self.frame.at(time)
     }
 
     fn target(&self, what: What, on: &str, to: [f64; 2]) -> Target {
@@ -693,7 +763,7 @@ impl Writer<'_> {
     }
 
     fn stages(&self) -> Vec<Stage> {
-        let dynamic = is_dynamic(self.draft.of("scheme"));
+        let dynamic = moves(self.draft);
         let press = self.draft.of("press");
         let target = |what, on, to| self.target(what, on, to);
         let on_end = self.is("section", "rings_on_end");
@@ -703,7 +773,10 @@ impl Writer<'_> {
         let drag = if self.is("friction", "prescribed") { 0.3 * drag } else { drag };
         let mut first = Vec::new();
         match press {
-            "displacement" => first.push(target(What::Support([!on_end, true]), "block_top", [0.0, -down])),
+            "displacement" => {
+                let slant = if self.has("approach") { 0.5 * drag } else { 0.0 };
+                first.push(target(What::Support([!on_end, true]), "block_top", [slant, -down]));
+            }
             "rotation" => first.push(target(What::Rotation, "block_top", [0.004, 0.0])),
             _ => {
                 let force = -PRESSURE * self.area();
@@ -747,13 +820,17 @@ impl Writer<'_> {
         if self.is("plate", "rigid") {
             second.push(target(What::Moment, "block_right", [0.3 * self.frame_moment(), 0.0]));
         }
-        let tool = |to: [f64; 2], angle: f64| {
+        // Where it is free, springs hold it against a force.
+        let tool = |to: [f64; 2], angle: f64, force: f64| {
             let on = |what, to| Target { on: TOOL.into(), ..target(what, "block", to) };
-            let path = [on(What::Support([true, true]), to), on(What::Angle, [angle, 0.0])];
+            let free = self.is("tool", "free");
+            let mut path = vec![on(What::Support([true, !free]), to)];
+            path.extend((!self.turns_freely()).then(|| on(What::Angle, [angle, 0.0])));
+            path.extend(free.then(|| on(What::Force, [0.0, force])));
             path.into_iter().filter(|_| self.has("tool"))
         };
-        first.extend(tool([0.0, 0.0], 0.0));
-        second.extend(tool([-0.4 * drag, -0.05 * down], 0.002));
+        first.extend(tool([0.0, 0.0], 0.0, 0.0));
+        second.extend(tool([-0.4 * drag, -0.05 * down], 0.002, 0.5 * PRESSURE * self.area()));
         let mut stages = vec![Stage { name: "press", targets: first }, Stage { name: "drag", targets: second }];
         if self.has("reversal") {
             let back = match press {
@@ -763,7 +840,7 @@ impl Writer<'_> {
                 _ => target(held, "block_top", [-0.5 * drag, 0.0]),
             };
             // A rate would go on where nothing is said of it.
-            let rests = tool([-0.4 * drag, -0.05 * down], 0.002);
+            let rests = tool([-0.4 * drag, -0.05 * down], 0.002, 0.3 * PRESSURE * self.area());
             stages.push(Stage { name: "back", targets: std::iter::once(back).chain(rests).collect() });
         }
         stages
@@ -793,13 +870,16 @@ impl Writer<'_> {
 
     /// Whether what stands aside flies.
     fn flies(&self) -> bool {
-        self.ways.flight && is_dynamic(self.scheme) && !self.rings()
+        self.ways.flight && is_dynamic(self.scheme) && !self.has("then") && !self.rings()
     }
 
     fn steps(&self) -> Vec<Value> {
         let stages = self.stages();
         let parts: usize = if self.ways.halves { 2 } else { 1 };
         let mut steps = Vec::new();
+        if self.ways.later > 0.0 {
+            steps.push(self.wait(&stages[0]));
+        }
         let mut reached: Vec<Target> = Vec::new();
         let initial = self.pick("reference", &[0.0, 2.0]);
         for (number, stage) in stages.iter().enumerate() {
@@ -826,7 +906,10 @@ impl Writer<'_> {
                 step.insert("duration".into(), json!(self.write(Kind::Time, duration)));
                 let (mut supports, mut loads) = (Vec::new(), Vec::new());
                 if number == 0 && part == 0 {
-                    self.first(&mut step, &mut supports, &mut loads);
+                    self.increments(&mut step);
+                    if self.ways.later == 0.0 {
+                        self.first(&mut supports, &mut loads);
+                    }
                 }
                 if part == 0 {
                     self.of_stage(number, &mut step, &mut loads);
@@ -854,6 +937,8 @@ impl Writer<'_> {
                         to: [share(0, part + 1), share(1, part + 1)],
                         start,
                         end: start + duration,
+                        // where it goes on from a stage before, and where another follows
+                        goes_on: [before.is_some() && number == 1, number == 0],
                     };
                     self.emit(target, &change, &mut step, &mut supports, &mut loads);
                 }
@@ -880,6 +965,29 @@ impl Writer<'_> {
         steps
     }
 
+    /// A step in which nothing happens, before the first.
+    fn wait(&self, first: &Stage) -> Value {
+        let mut step = Map::new();
+        let duration = self.ways.later * self.duration();
+        step.insert("name".into(), json!("wait"));
+        step.insert("duration".into(), json!(self.write(Kind::Time, duration)));
+        self.increments(&mut step);
+        if self.scheme != "explicit" {
+            step.insert("dt".into(), json!({"initial": self.write(Kind::Time, duration)}));
+        }
+        let (mut supports, mut loads) = (Vec::new(), Vec::new());
+        self.first(&mut supports, &mut loads);
+        let change = Change { from: [0.0; 2], to: [0.0; 2], start: -duration, end: 0.0, goes_on: [false; 2] };
+        for target in first.targets.iter().filter(|target| matches!(target.what, What::Support(_) | What::Angle)) {
+            self.emit(target, &change, &mut step, &mut supports, &mut loads);
+        }
+        step.insert("supports".into(), supports.into());
+        if !loads.is_empty() {
+            step.insert("loads".into(), loads.into());
+        }
+        step.into()
+    }
+
     /// Whether dashpots hold the block until contact does.
     fn stabilized(&self) -> bool {
         !matches!(self.draft.of("press"), "displacement" | "rotation")
@@ -887,29 +995,39 @@ impl Writer<'_> {
             && !self.has("spring")
     }
 
-    /// Scheme, increments and what does not change.
-    fn first(&self, step: &mut Map<String, Value>, supports: &mut Vec<Value>, loads: &mut Vec<Value>) {
-        let f = self.frame;
-        let dt = self.write(Kind::Time, self.dt() / self.ways.finer);
-        let scheme = match self.scheme {
+    /// Scheme and increments of the first stage.
+    fn increments(&self, step: &mut Map<String, Value>) {
+        self.of_scheme(self.scheme, step);
+        if self.has("error_control") {
+            let dt = self.write(Kind::Time, self.dt() / self.ways.finer);
+            let error = self.write(Kind::Length, 2e-3 / self.ways.finer);
+            let increments = json!({"initial": dt, "min": dt / 256.0, "max": 2.0 * dt, "error": error});
+            step.insert("dt".into(), increments);
+        }
+    }
+
+    /// A scheme and its increments.
+    fn of_scheme(&self, scheme: &str, step: &mut Map<String, Value>) {
+        let written = match scheme {
             "static" | "quasi_dynamic" => json!("static"),
             "hht" => json!({"hht": {"alpha": -0.1}}),
             "explicit" => json!({"explicit": {"safety": 0.9 / self.ways.finer}}),
             other => json!({other: {}}),
         };
-        step.insert("scheme".into(), scheme);
-        let mut increments = json!({"initial": dt, "min": dt / 8.0});
-        if self.has("error_control") {
-            increments["error"] = json!(self.write(Kind::Length, 2e-3 / self.ways.finer));
-            increments["max"] = json!(2.0 * dt);
-            increments["min"] = json!(dt / 256.0);
-        }
-        if self.scheme == "explicit" {
-            // Shorter than stability asks, which looks at one foot of a mortar point and so at the order of its segments.
-            let stable = self.write(Kind::Time, 2.5e-5 / self.ways.finer);
-            increments = json!({"initial": stable, "max": stable});
-        }
+        step.insert("scheme".into(), written);
+        let dt = self.write(Kind::Time, self.dt() / self.ways.finer);
+        // Shorter than stability asks, which looks at one foot of a mortar point and so at the order of its segments.
+        let stable = self.write(Kind::Time, 2.5e-5 / self.ways.finer);
+        let increments = match scheme {
+            "explicit" => json!({"initial": stable, "max": stable}),
+            _ => json!({"initial": dt, "min": dt / 8.0, "max": dt}),
+        };
         step.insert("dt".into(), increments);
+    }
+
+    /// What does not change.
+    fn first(&self, supports: &mut Vec<Value>, loads: &mut Vec<Value>) {
+        let f = self.frame;
         if !self.is_rigid() {
             let zero = |_: f64| json!(0.0);
             supports.extend(f.supports(&json!(self.group("ground_bottom")), [Some(&zero), Some(&zero)]));
@@ -935,6 +1053,10 @@ impl Writer<'_> {
                 }
                 loads.push(json!({"on": self.group(on), "spring": spring}));
             }
+        }
+        if self.is("tool", "free") {
+            let k = 400.0 * per_length;
+            loads.push(json!({"on": TOOL, "spring": {"kx": k, "ky": k}}));
         }
         if self.has("dashpot") {
             let c = 0.05 * per_length * f.time * self.duration();
@@ -983,6 +1105,9 @@ impl Writer<'_> {
                     bodies.into_iter().flatten().map(|body| (body.into(), self.damping(2.0))).collect();
                 step.insert("damping".into(), damping.into());
             }
+            if self.has("then") {
+                self.of_scheme(self.draft.of("then"), step);
+            }
             if self.scheme == "quasi_dynamic" {
                 step.insert("scheme".into(), json!({"quasi_dynamic": {"tolerance": 1e-6 / self.ways.finer.powi(3)}}));
                 step.insert("dt".into(), json!({"initial": self.write(Kind::Time, 1e-3 * self.duration())}));
@@ -992,8 +1117,8 @@ impl Writer<'_> {
 
     /// How a quantity is led over a step, written along an axis of the frame: `scale` is sign and unit.
     fn drive(&self, [from, to]: [f64; 2], change: &Change, scale: f64, may_rate: bool) -> Value {
-        let time = |t: f64| self.write(Kind::Time, t);
-        let span = change.end - change.start;
+        let time = |t: f64| self.at(t);
+        let span = self.write(Kind::Time, change.end - change.start);
         let mut drive = self.ways.drive.unwrap_or(self.draft.of("drive"));
         // Rates go on in the steps that follow, and a step that a reaction ends takes numbers alone where a support has them.
         let goes_on = self.is("section", "rings_on_end") || !may_rate;
@@ -1006,15 +1131,20 @@ impl Writer<'_> {
             "expression" => json!(format!(
                 "({})+({})*(min(t,{})-({}))",
                 from * scale,
-                (to - from) * scale / time(span),
+                (to - from) * scale / span,
                 time(change.end),
                 time(change.start)
             )),
-            "rate" => json!({"rate": (to - from) * scale / time(span)}),
-            // At rest at both ends.
-            "smooth" => {
-                let share = format!("max(0,min(1,(t-({}))/({})))", time(change.start), time(span));
-                json!(format!("({})+({})*{share}^2*(3-2*{share})", from * scale, (to - from) * scale))
+            "rate" => json!({"rate": (to - from) * scale / span}),
+            // At rest at both ends, or but where one stage follows another: there it goes on at one velocity.
+            "smooth" | "through" => {
+                let s = format!("max(0,min(1,(t-({}))/({span})))", time(change.start));
+                let goes_on = change.goes_on.map(|goes_on| goes_on && drive == "through");
+                let begins = if goes_on[0] { 1.5 * from * scale } else { 0.0 };
+                let ends = if goes_on[1] { 1.5 * (to - from) * scale } else { 0.0 };
+                let way = (to - from) * scale;
+                let slopes = format!("({begins})*{s}*(1-{s})^2-({ends})*{s}^2*(1-{s})");
+                json!(format!("({})+({way})*{s}^2*(3-2*{s})+{slopes}", from * scale))
             }
             _ => json!(to * scale),
         }
@@ -1069,7 +1199,7 @@ impl Writer<'_> {
             What::Temperature => {
                 let value = match self.draft.of("heat") {
                     "table" => {
-                        json!({"table": [[self.write(Kind::Time, change.start), change.from[0]], [self.write(Kind::Time, change.end), change.to[0]]]})
+                        json!({"table": [[self.at(change.start), change.from[0]], [self.at(change.end), change.to[0]]]})
                     }
                     "by_place" => {
                         let share = format!("(T-({}))/({})", change.start, change.end - change.start);
@@ -1100,12 +1230,14 @@ struct Change {
     to: [f64; 2],
     start: f64,
     end: f64,
+    /// whether it moves as the step begins and as it ends, where its drive is "through"
+    goes_on: [bool; 2],
 }
 
 /// Length of a stage.
 pub fn duration(draft: &Draft) -> f64 {
     // Of what may go on explicitly, as short as waves take some times across.
-    if is_dynamic(draft.of("scheme")) || draft.has("rupture") { 0.02 } else { 1.0 }
+    if moves(draft) || draft.has("rupture") { 0.02 } else { 1.0 }
 }
 
 /// Whether the surfaces lie apart at the start.

@@ -5,8 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fecontact::case;
+use fecontact::contact::pair::ContactPair;
 use fecontact::contact::surface::SlavePoint;
 use fecontact::model::Model;
+use fecontact::output::events::wave_speeds;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::probes::Probes;
@@ -115,6 +117,14 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
         || most("c.slip_fraction") > 0.0;
     if let (Some((_, last)), Ended::Complete) = (rows.last_mut(), &ended) {
         last.extend(point_entries(&simulation, ways));
+        // Those behind the first edge of the slave; of a surface that is its own master several bodies are.
+        let own = simulation.model().contacts.first().is_some_and(ContactPair::is_own);
+        let speeds = wave_speeds(simulation.model()).into_iter().filter(|_| !own);
+        last.extend(speeds.enumerate().map(|(k, speed)| Entry {
+            kind: Kind::WaveSpeed,
+            column: format!("wave speed {k}").into(),
+            value: speed / ways.frame.unit(Kind::WaveSpeed),
+        }));
     }
     let RunReport { increments, cutbacks, rejected, .. } = simulation.report();
     Record { ended, tables, closed, slipped, rows, increments, given_up: cutbacks + rejected }
@@ -263,8 +273,9 @@ fn form(column: &str, header: &[&str]) -> Form {
         .iter()
         .any(|other| *other == format!("{}.strain_xx", column.rsplit_once('.').map_or("", |(name, _)| name)));
     match last {
-        "time" | "dt" => Form::Scalar(Kind::Time),
-        "step" | "iterations" => Form::Skip,
+        "dt" => Form::Scalar(Kind::Time),
+        // Rows are compared with those of the same time.
+        "time" | "step" | "iterations" => Form::Skip,
         "kinetic"
         | "strain"
         | "contact_elastic"
@@ -313,12 +324,14 @@ fn rows(tables: &[String], ways: &Ways) -> Vec<(f64, Vec<Entry>)> {
             let values: Vec<f64> = line.split(',').map(|text| text.parse().unwrap_or(f64::NAN)).collect();
             let entries = entries(&header, &columns, &values, &ways.frame);
             if k == 0 {
-                rows.push((values[0] / ways.frame.time, entries));
+                rows.push(((values[0] - ways.frame.later) / ways.frame.time, entries));
             } else if let Some((_, row)) = rows.get_mut(number) {
-                row.extend(entries.into_iter().skip(1));
+                row.extend(entries);
             }
         }
     }
+    // What was before everything began.
+    rows.retain(|(time, _)| *time > 1e-12 || ways.later == 0.0);
     rows
 }
 
@@ -434,12 +447,16 @@ fn point_entries(simulation: &Simulation, ways: &Ways) -> Vec<Entry> {
 }
 
 impl Record {
-    /// Whether all increments are as long as the first, as they are where nothing made one shorter.
-    pub fn is_even(&self) -> bool {
-        let dts =
-            self.rows.iter().flat_map(|(_, row)| row).filter(|entry| &*entry.column == "dt").map(|entry| entry.value);
-        let (least, most) = dts.fold((f64::INFINITY, 0.0f64), |(least, most), dt| (least.min(dt), most.max(dt)));
-        most - least <= 1e-9 * most
+    /// Whether all increments of a stage are as long as its first, as they are where nothing made one shorter.
+    pub fn is_even(&self, stage: f64) -> bool {
+        let mut bounds: BTreeMap<u64, [f64; 2]> = BTreeMap::new();
+        for (time, row) in &self.rows {
+            for dt in row.iter().filter(|entry| &*entry.column == "dt").map(|entry| entry.value) {
+                let [least, most] = bounds.entry((time / stage - 1e-6).max(0.0) as u64).or_insert([dt, dt]);
+                (*least, *most) = (least.min(dt), most.max(dt));
+            }
+        }
+        bounds.values().all(|[least, most]| most - least <= 1e-9 * most)
     }
 }
 

@@ -1,9 +1,9 @@
 //! What must hold between two ways of writing the same problem, or between two problems that become the same.
 
-use crate::features::{Draft, hash, plain};
+use crate::features::{Draft, hash};
 use crate::frame::Kind;
 use crate::mesh::is_quadratic;
-use crate::model::{self, Ways, is_dynamic};
+use crate::model::{self, Ways, is_dynamic, is_explicit, moves};
 use crate::record::{Difference, Ended, Entry, Lead, Record, compare, is_aside, run};
 
 /// A relation: its name, and what breaks it, if anything does. Nothing where it does not apply.
@@ -74,9 +74,8 @@ impl<'a> Base<'a> {
             return Outcome::Idle;
         }
         let difference = compare(&self.record, record, skip);
-        let tolerance = if is_dynamic(self.draft.of("scheme")) { tolerance.max(SAME_IN_MOTION) } else { tolerance };
-        let is_explicit = self.draft.is("scheme", "explicit") || self.draft.has("rupture");
-        let tolerance = if is_explicit { tolerance.max(SAME_EXPLICIT) } else { tolerance };
+        let tolerance = if moves(self.draft) { tolerance.max(SAME_IN_MOTION) } else { tolerance };
+        let tolerance = if is_explicit(self.draft) { tolerance.max(SAME_EXPLICIT) } else { tolerance };
         let augmented = self.draft.is("normal", "augmented") || self.draft.has("stick");
         let tolerance = if augmented { tolerance.max(SAME_AUGMENTED) } else { tolerance };
         // The lengths of increments follow from estimates, and rates are differences over them.
@@ -150,8 +149,11 @@ pub const RELATIONS: &[Relation] = &[
     Relation { name: "shuffled", rarity: 5, check: shuffled },
     Relation { name: "driven", rarity: 5, check: driven },
     Relation { name: "steps in two", rarity: 3, check: steps_in_two },
+    Relation { name: "later", rarity: 4, check: later },
     Relation { name: "body in two", rarity: 5, check: body_in_two },
     Relation { name: "energies", rarity: 4, check: energies },
+    Relation { name: "switched", rarity: 2, check: switched },
+    Relation { name: "dilating", rarity: 1, check: dilating },
     Relation { name: "resultants", rarity: 1, check: resultants },
     Relation { name: "small and finite", rarity: 12, check: small_and_finite },
     Relation { name: "slow dynamics", rarity: 12, check: slow_dynamics },
@@ -252,6 +254,7 @@ fn bystander(base: &Base) -> Outcome {
 fn flight(base: &Base) -> Outcome {
     let draft = base.draft;
     if !is_dynamic(draft.of("scheme"))
+        || draft.has("then")
         || draft.of("section").starts_with("rings")
         || draft.has("rupture")
         || !base.has_ended_well()
@@ -376,7 +379,7 @@ fn is_stabilized(base: &Base) -> bool {
 fn steps_in_two(base: &Base) -> Outcome {
     let draft = base.draft;
     let idle = is_stabilized(base)
-        || !base.record.is_even()
+        || !base.record.is_even(model::duration(draft))
         || draft.has("until")
         || draft.has("error_control")
         || draft.has("shrink_fit")
@@ -389,11 +392,45 @@ fn steps_in_two(base: &Base) -> Outcome {
     }
     let record = base.run(&Ways { halves: true, ..base.ways.clone() });
     // A step begins with no motion to go on with: Newton's method may fail there where it does not within a step.
-    if !base.has_ended_well() || record.ended == Ended::Complete && !record.is_even() {
+    if !base.has_ended_well() || record.ended == Ended::Complete && !record.is_even(model::duration(draft)) {
         return Outcome::Idle;
     }
     base.as_before(&record, SAME, NOTHING)
 }
+
+/// Everything later, after a step in which nothing happens: what varies in time varies as much later.
+fn later(base: &Base) -> Outcome {
+    let draft = base.draft;
+    // What acts or moves from the start, or holds the block only once it is closed.
+    let acts = ["stress", "tractions", "heat", "fluid", "velocity", "shrink_fit", "until", "rupture", "error_control"];
+    // The state of these laws lives from the start of the run: θ ages, and μ begins with the μ_s of then.
+    let varies = draft.is("varying", "in_time") && draft.pick("which varies", &[0.0, 1.0]) == 1.0;
+    let lives = draft.is("friction", "rate_and_state")
+        || draft.is("friction", "super_subloading") && (varies || draft.has("further_parameters"));
+    let idle = lives
+        || acts.iter().any(|slot| draft.has(slot))
+        || !["displacement", "rotation"].contains(&draft.of("press"))
+        || draft.is("spring", "driven")
+        || draft.is("friction", "prescribed")
+        || draft.is("scheme", "quasi_dynamic")
+        || !base.has_ended_well();
+    if idle {
+        return Outcome::Idle;
+    }
+    let ways = base.ways.clone().later(LATER, draft);
+    let mut record = base.run(&ways);
+    // The step before takes one increment, explicit ones as many as there is room for.
+    let waiting = if draft.is("scheme", "explicit") { record.increments - base.record.increments } else { 1 };
+    record.increments -= waiting;
+    if record.given_up > 0 && base.record.given_up == 0 {
+        let place = format!("{} attempts given up, and none was", record.given_up);
+        return base.judged(Difference { share: f64::INFINITY, place, values: [0.0; 2] }, NOTHING);
+    }
+    base.as_before(&record, SAME, NOTHING)
+}
+
+/// So many lengths of a stage.
+const LATER: f64 = 2.0;
 
 /// The block as two bodies that share the nodes between them.
 fn body_in_two(base: &Base) -> Outcome {
@@ -412,12 +449,11 @@ fn energies(base: &Base) -> Outcome {
     // Implicit schemes damp what increments do not resolve, or create energy where contact chatters; the stress of F-bar has no
     // potential.
     let f_bar = ["ground_element", "block_element"].iter().any(|slot| draft.is(slot, "f_bar"));
-    if f_bar || is_dynamic(draft.of("scheme")) && !draft.is("scheme", "explicit") {
+    if f_bar || draft.has("then") || moves(draft) && !draft.is("scheme", "explicit") {
         return Outcome::Idle;
     }
     // What is out of balance at the beginning of a static step springs to equilibrium, and nothing says what it does on its way.
-    let springs =
-        !is_dynamic(draft.of("scheme")) && (draft.has("stress") || draft.has("tractions") || draft.has("spring"));
+    let springs = !moves(draft) && (draft.has("stress") || draft.has("tractions") || draft.has("spring"));
     if !base.has_ended_well() || draft.has("error_control") || draft.has("until") || springs {
         return Outcome::Idle;
     }
@@ -430,11 +466,11 @@ fn energies(base: &Base) -> Outcome {
     let length =
         |row: &[Entry]| row.iter().find(|entry| &*entry.column == "c.contact_length").map_or(0.0, |entry| entry.value);
     let lengths: Vec<f64> = base.record.rows.iter().map(|(_, row)| length(row)).collect();
-    if !is_dynamic(draft.of("scheme")) && lengths.windows(2).any(|pair| pair[1] < 0.95 * pair[0]) {
+    if !moves(draft) && lengths.windows(2).any(|pair| pair[1] < 0.95 * pair[0]) {
         return Outcome::Idle;
     }
     // A support that starts at a velocity strikes what it holds, and loses ½ m v² by it.
-    let drive = if is_dynamic(draft.of("scheme")) { Some("smooth") } else { base.ways.drive };
+    let drive = if moves(draft) { Some("smooth") } else { base.ways.drive };
     let audited = |finer| {
         let record = base.run(&Ways { finer, drive, ..base.ways.clone() });
         (record.ended == Ended::Complete).then(|| audit(&record))
@@ -459,6 +495,59 @@ fn energies(base: &Base) -> Outcome {
             place: format!("{}; {:.2e} {:.2e} {:.2e}", finest.place, coarse.share, fine.share, finest.share),
             ..finest
         })
+    }
+}
+
+/// Where one scheme follows another in motion no energy comes or goes but what the error of an increment explains: the error that the
+/// first increment of the new scheme adds falls with its length.
+fn switched(base: &Base) -> Outcome {
+    let draft = base.draft;
+    let f_bar = ["ground_element", "block_element"].iter().any(|slot| draft.is(slot, "f_bar"));
+    // Statics stops what moves; rings on end are not held along their radius, where a load sets in.
+    let idle = !draft.has("then")
+        || draft.is("then", "static")
+        || draft.is("scheme", "static")
+        || draft.is("section", "rings_on_end")
+        || f_bar
+        || !base.has_ended_well();
+    if idle {
+        return Outcome::Idle;
+    }
+    let stage = model::duration(draft);
+    let added = |finer| {
+        let record = base.run(&Ways { finer, drive: Some("through"), ..base.ways.clone() });
+        let error = |row: &[Entry]| row.iter().find(|entry| &*entry.column == "energy_error").map(|entry| entry.value);
+        let before = record.rows.iter().rfind(|(time, _)| *time <= stage * (1.0 + 1e-9)).and_then(|row| error(&row.1));
+        let after = record.rows.iter().find(|(time, _)| *time > stage * (1.0 + 1e-9)).and_then(|row| error(&row.1));
+        let [before, after] = [before?, after?];
+        let most = audit(&record).values[1];
+        (record.ended == Ended::Complete).then_some((after - before, (after - before).abs() / most))
+    };
+    let [Some(coarse), Some(fine), Some(finest)] = [1.0, 2.0, 4.0].map(added) else { return Outcome::Idle };
+    let falls = finest.1 <= 1e-6 || finest.1 <= 0.6 * fine.1 || finest.1 <= 0.6 * coarse.1;
+    if falls {
+        return Outcome::Holds;
+    }
+    let place =
+        format!("energy_error that the change of schemes adds; {:.2e} {:.2e} {:.2e}", coarse.1, fine.1, finest.1);
+    Outcome::Broken(Difference { share: finest.1, place, values: [coarse.0, finest.0] })
+}
+
+/// Dilatancy does not keep surfaces apart: what closes without it closes with it.
+fn dilating(base: &Base) -> Outcome {
+    let Some(plainer) = base.draft.with("dilatancy", "no").filter(|_| base.draft.has("dilatancy")) else {
+        return Outcome::Idle;
+    };
+    if moves(base.draft) {
+        return Outcome::Idle;
+    }
+    let Ended::Stopped(why) = &base.record.ended else { return Outcome::Holds };
+    let without = Base::new(&plainer);
+    if !base.record.closed && without.record.closed && without.has_ended_well() {
+        let place = format!("ended {why}, and closes without dilatancy");
+        Outcome::Broken(Difference { share: f64::INFINITY, place, values: [0.0; 2] })
+    } else {
+        Outcome::Idle
     }
 }
 
@@ -500,7 +589,7 @@ fn resultants(base: &Base) -> Outcome {
             ["normal_force", "tangential_force", "force_x", "force_y"].map(|name| of(&format!("c.{name}")).abs());
         let whole = normal.hypot(tangential);
         // A block that is not held may turn, and where one hits the ground again and again that is bent by half a right angle.
-        let compared = match draft.is("press", "displacement") && !is_dynamic(draft.of("scheme")) {
+        let compared = match draft.is("press", "displacement") && !moves(draft) {
             true => vec![("along", [tangential, x]), ("across", [normal, y])],
             false => vec![("as a whole", [whole, x.hypot(y)])],
         };
@@ -512,7 +601,7 @@ fn resultants(base: &Base) -> Outcome {
         }
     }
     // Points of a bent surface have directions of their own.
-    let bent = if is_dynamic(draft.of("scheme")) { 0.25 } else { 0.1 };
+    let bent = if moves(draft) { 0.25 } else { 0.1 };
     if worst.share <= bent { Outcome::Holds } else { Outcome::Broken(worst) }
 }
 
@@ -557,6 +646,10 @@ fn not_of_forces(column: &str) -> bool {
 fn simple(draft: &Draft) -> Option<Draft> {
     let without = [
         "scheme",
+        "then",
+        "approach",
+        "flange",
+        "tool",
         "error_control",
         "rupture",
         "until",
@@ -586,13 +679,9 @@ fn simple(draft: &Draft) -> Option<Draft> {
         "smooth",
         "normal",
     ];
-    let plainer = without.iter().try_fold(draft.clone(), |draft, slot| {
-        if draft.is("friction", "frictionless") && *slot == "friction" {
-            Some(draft)
-        } else {
-            draft.with(slot, plain(slot))
-        }
-    })?;
+    let slots: Vec<&str> =
+        without.into_iter().filter(|slot| *slot != "friction" || !draft.is("friction", "frictionless")).collect();
+    let plainer = draft.plainer(&slots)?;
     let elastic = ["linear", "neo_hookean", "saint_venant_kirchhoff", "hencky"];
     let remembers = ["ground_law", "block_law"].iter().any(|slot| !elastic.contains(&plainer.of(slot)));
     let apart = model::starts_apart(&plainer) || plainer.of("section").starts_with("rings");

@@ -19,7 +19,6 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "another way to write a mesh: tests/solver/blocks.rs",
     ),
     (&["node", "near"], "other ways to name a node: tests/solver/boundary.rs"),
-    (&["inertia"], "rigid bodies that move by themselves: tests/contact/rigid_bodies.rs"),
     (&["area"], "slaves that are points: tests/contact/contact.rs"),
     (&["tied"], "surfaces that are held together: tests/contact/tied.rs"),
     (&["hole"], "the rim of a hole: tests/contact/contact.rs"),

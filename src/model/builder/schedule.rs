@@ -4,7 +4,7 @@
 //!
 //! Reactions that end a step, and restrictions of such a step.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::body::{check_damping, in_force, temperatures};
 use super::error::{Checked, ModelError, check_positive};
@@ -18,6 +18,7 @@ use super::rigid;
 use super::section::hold_axis;
 use super::supports::{InForce, freed, supports};
 use crate::contact::pair::ContactPair;
+use crate::mesh::rigid::RigidBody;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::scheme::Scheme;
 use crate::model::step::{ForceComponent, Until};
@@ -212,14 +213,23 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
         // A node of two bodies has the sum of both.
         dofs.for_each(|dof| coefficients[dof] += coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
     }
-    // The dashpots of a rigid body are those of the softest body.
-    let softest = model.bodies.iter().map(|body| body.material.p_wave_modulus()).reduce(f64::min).unwrap_or_default();
-    let depth = model.solids.iter().map(|solid| solid.mean_weight()).reduce(f64::min).unwrap_or_default();
-    for body in &model.mesh.rigid_bodies {
-        let dofs = body.nodes().into_iter().flat_map(|node| [2 * node, 2 * node + 1]);
-        dofs.for_each(|dof| coefficients[dof] = share * softest * depth * given.duration);
+    for rigid in &model.mesh.rigid_bodies {
+        let dofs = rigid.nodes().into_iter().flat_map(|node| [2 * node, 2 * node + 1]);
+        dofs.for_each(|dof| coefficients[dof] = share * softest(model, rigid) * given.duration);
     }
     Ok(coefficients)
+}
+
+/// (λ + 2G) × depth of the softest body that may touch a rigid body: others have no say in how it moves [F/L].
+fn softest(model: &Model, rigid: &RigidBody) -> f64 {
+    let own = |pair: &&ContactPair| pair.master.rigid_body().is_some_and(|body| body.name == rigid.name);
+    let touched: BTreeSet<usize> = model.contacts.iter().filter(own).flat_map(ContactPair::slave_nodes).collect();
+    let mut softest = f64::INFINITY;
+    for body in model.bodies.iter().filter(|body| body.nodes.iter().any(|node| touched.contains(node))) {
+        let depths = body.elements.iter().map(|&e| model.solids[e].mean_weight());
+        softest = softest.min(body.material.p_wave_modulus() * depths.fold(f64::INFINITY, f64::min));
+    }
+    if softest.is_finite() { softest } else { 0.0 }
 }
 
 /// Returns the criteria of the switch to explicit integration.
