@@ -142,8 +142,8 @@ impl Boxes {
         halves.for_each(|half| self.collect(other, (level - 1, half), found));
     }
 
-    /// First of the segments by their distance from a point, which most points need, without a heap. Boxes and segments (level
-    /// 0) excluded by `counts` are skipped. The search starts from a segment that may be near, upwards in the tree, or else
+    /// First of the segments by their distance from a point, which most points need, without a heap. Boxes and segments
+    /// (level 0) excluded by `counts` are skipped. The search starts from a segment that may be near, upwards in the tree, or else
     /// from the root; the result is the same.
     pub(super) fn nearest_one(
         &self,

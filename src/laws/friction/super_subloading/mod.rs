@@ -38,8 +38,8 @@ pub use peak::{Integration, Onset, Rise};
 /// cannot be guaranteed ([`Description::uniqueness_limit`]), bounds of the slope of G isolate the first root.
 ///
 /// [`Integration`] determines μ of (4). *Backward Euler* takes one step of (3) and of (4) per increment. The *controlled*
-/// integration solves (3) for slip and time proportional to each other, which is exact where μ only weakens or only recovers (m
-/// = n = 1). The effect of the order of weakening and recovery is bounded for short increments, which need one step
+/// integration solves (3) for slip and time proportional to each other, which is exact where μ only weakens or only recovers
+/// (m = n = 1). The effect of the order of weakening and recovery is bounded for short increments, which need one step
 /// (`path.rs`), and otherwise found by repeated halving of the increment, until q, μ p and the mean of q are accurate to the
 /// tolerance (same file). The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or for
 /// decreasing |q| with |q| linear in λ; the work of the increment, ∫ q du, is this plus the energy stored in the contact. The
