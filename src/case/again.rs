@@ -284,7 +284,7 @@ fn same_defaults(before: &Value, now: &Value) -> Checked<()> {
 /// Friction parameters that affect only the start of a run, or stored states.
 const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
 
-/// Differences listed in one message.
+/// Maximum number of differences listed in one message.
 const MOST_LISTED: usize = 5;
 
 /// A place where two cases differ.
@@ -306,7 +306,7 @@ impl Difference {
     }
 }
 
-/// Refuse differences, if there are any.
+/// Returns an error with the differences, if there are any.
 pub fn refuse(differences: Vec<Difference>, what: &str) -> Checked<()> {
     if differences.is_empty() {
         return Ok(());

@@ -192,7 +192,7 @@ fn tracked<T: DeserializeOwned>(document: &Value) -> Result<T, serde_path_to_err
     serde_path_to_error::deserialize(Strict(document))
 }
 
-/// The place of a key as messages show it: `steps[0].dt.min`.
+/// Place of a key in messages: `steps[0].dt.min`.
 fn place(path: &KeyPath, key: Option<&str>) -> String {
     let path = path.to_string();
     let known = if path == "." { "" } else { path.as_str() };
@@ -244,7 +244,7 @@ fn unexpected(value: &Value) -> Unexpected<'_> {
     }
 }
 
-/// A value whose lists are taken for lists only.
+/// A value whose lists are accepted as lists only.
 #[derive(Clone, Copy)]
 pub struct Strict<'de>(pub &'de Value);
 

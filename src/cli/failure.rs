@@ -17,7 +17,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The exit code, and the text for stderr.
+    /// Returns the exit code, and the text for stderr.
     pub fn code_and_message(&self) -> (u8, String) {
         match self {
             Self::Stopped(message) => (1, format!("stopped: {message}")),

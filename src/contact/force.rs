@@ -331,7 +331,11 @@ pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactSta
     let clearance = gap - old.friction.opening;
     let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
     let presume = increment.presumption.presume;
-    pair.tied && old.foot.is_some() || kept || pressure > 0.0 || touches(pair, clearance, old, presume) || may_ride(pair, slave, old)
+    pair.tied && old.foot.is_some()
+        || kept
+        || pressure > 0.0
+        || touches(pair, clearance, old, presume)
+        || may_ride(pair, slave, old)
 }
 
 /// Whether slip may keep a point closed or open it, whatever its gap; this is known once its slip is.

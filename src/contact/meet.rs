@@ -122,7 +122,10 @@ impl ContactPair {
     pub fn tie(&mut self, small: bool, x: &Configuration) {
         self.keep_feet(!small, x);
         let met = self.meetings(x, false);
-        self.points.iter_mut().zip(&met).for_each(|(slave, met)| slave.touch = met.as_ref().map_or(0.0, |met| met.0.gap));
+        self.points
+            .iter_mut()
+            .zip(&met)
+            .for_each(|(slave, met)| slave.touch = met.as_ref().map_or(0.0, |met| met.0.gap));
         self.initial = Some(vec![InitialTraction::default(); met.len()]);
     }
 

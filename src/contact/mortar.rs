@@ -167,8 +167,8 @@ pub struct Facing<'a> {
 }
 
 impl Facing<'_> {
-    /// Projection of a mortar point on the master and its kinematics; `None` without a projection. `old` are its
-    /// weights in the committed configuration.
+    /// Projection of a mortar point on the master and its kinematics; `None` without a projection. `old` are its weights in the
+    /// committed configuration.
     pub fn meet(
         &self,
         point: usize,
@@ -225,7 +225,7 @@ impl Facing<'_> {
         Some(met)
     }
 
-    /// Write the weights of r_j in a configuration over `found`; none where no master faces the point.
+    /// Computes the weights of r_j in a configuration in place of `found`; empty without a projection on the master.
     pub fn weigh(&self, point: usize, x: &Configuration, room: &mut Room, found: &mut Weights) {
         let Averaging { frame, averages, .. } = &mut room.values;
         self.list(point, &mut frame.nodes);
@@ -236,7 +236,7 @@ impl Facing<'_> {
         }
     }
 
-    /// The facing segment nearest to a point along its edges.
+    /// Overlapping segment nearest to a point along its edges.
     fn foot(&self, point: usize) -> Option<MasterPoint> {
         let of_edge = |&(e, a): &(usize, usize)| self.overlaps.0[e].overlaps.iter().map(move |o| (o, NODE_AT[a]));
         let all = self.mortar.at[point].iter().flat_map(of_edge);
@@ -248,7 +248,7 @@ impl Facing<'_> {
         Some(MasterPoint { segment: nearest.segment, xi })
     }
 
-    /// Write all nodes that take part in the average at a point over `nodes`.
+    /// Lists all nodes that participate in the average at a point.
     fn list(&self, point: usize, nodes: &mut Vec<usize>) {
         nodes.clear();
         let Mortar { edges, at, .. } = self.mortar;
@@ -264,7 +264,7 @@ impl Facing<'_> {
         }
     }
 
-    /// Write the average at a point over `averages`; whether a master faces enough of its edges.
+    /// Computes the average at a point in `averages`; returns whether the master overlaps enough of its edges.
     fn average<N: Number>(&self, point: usize, frame: &Frame<N>, averages: &mut Averages<N>) -> bool {
         averages.clear(frame.nodes.len());
         let mut whole = 0.0;
@@ -437,8 +437,8 @@ impl Mortar {
         sum.normalized()
     }
 
-    /// Projection of a mortar point on a rigid body and its kinematics; `None` where no Gauss point has a projection.
-    /// The configurations are the committed one and that of the trial.
+    /// Projection of a mortar point on a rigid body and its kinematics; `None` if no Gauss point has a projection. The
+    /// configurations are the committed and the trial one.
     pub fn meet_rigid(
         &self,
         point: usize,

@@ -64,7 +64,7 @@ pub struct ContactPair {
     pub penetration: Option<f64>,
     /// Largest elastic slip left where the law knows none; plain penalty if not given [L]
     pub stick: Option<f64>,
-    /// η: radiation damping in static steps, 0 for none [F T/L³]
+    /// η: radiation damping in static steps, 0 if not used [F T/L³]
     pub radiation: f64,
     /// Fluid that acts on the surfaces in addition to the contact pressure
     pub fluid: Option<Fluid>,
@@ -139,7 +139,7 @@ impl ContactPair {
         self.small.is_some() && self.laws.iter().all(smooth)
     }
 
-    /// Friction of a slave point at the start of the run.
+    /// Friction law of a slave point at the start of the run.
     pub fn law(&self, slave: &SlavePoint) -> &ContactLaw {
         &self.laws[slave.law]
     }

@@ -185,7 +185,7 @@ pub struct ContactState {
     pub multiplier: f64,
     /// e: elastic slip that the multiplier of the traction leaves, lowered until it is small enough; 0 for the plain penalty [L]
     pub elastic_slip: f64,
-    /// p_w: pressure of the fluid where the master faces the point [F/L²]
+    /// p_w: pressure of the fluid if the point has a projection [F/L²]
     pub fluid: f64,
 }
 

@@ -88,7 +88,7 @@ impl PairResponse {
     }
 }
 
-/// Input of one evaluation for every point.
+/// Input of one evaluation, common to all points.
 struct Question<'a, P> {
     pair: &'a ContactPair,
     /// Laws of the increment

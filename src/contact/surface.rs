@@ -154,7 +154,7 @@ pub struct PathPart {
     pub end: f64,
 }
 
-/// The way along a surface from one material point to another.
+/// Path along a surface from one material point to another.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {
     surface: &'a Surface,

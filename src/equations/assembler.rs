@@ -46,7 +46,7 @@ pub struct Assembler {
     responses: Vec<PairResponse>,
     /// What the laws of each contact answered last
     answered: Vec<LastAnswers>,
-    /// What was found at the last evaluated displacement
+    /// Results at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
     pub seconds: Seconds,

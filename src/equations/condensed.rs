@@ -207,8 +207,8 @@ fn reach(column: &[f64]) -> Range<usize> {
     first..column.iter().rposition(|value| *value != 0.0).map_or(0, |last| last + 1)
 }
 
-/// The nodes at contacts: those of the slaves, and all that they may slide to unless the slaves are counted from these. Copies
-/// come with the nodes they move with.
+/// Nodes at contacts: those of the slaves, and all that they may slide to unless the slave nodes are jumps. Copies are
+/// represented by their originals.
 pub struct ContactNodes {
     /// The nodes, ascending
     pub nodes: Vec<usize>,

@@ -76,7 +76,7 @@ pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut 
     }
 }
 
-/// Stored in the springs of a contact: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of its closed points.
+/// Energy stored in the springs of a contact: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of its closed points.
 ///
 /// What penalties give way by in a contact that starts closed under tractions p₀ and q₀ is what these have changed by.
 #[derive(Clone, Copy, Debug, Default)]

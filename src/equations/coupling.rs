@@ -46,7 +46,7 @@ pub(super) struct Skew {
     pub around: Vec<usize>,
 }
 
-/// The pattern of a model's tangent, and where each element is in it.
+/// Pattern of a model's tangent, and the position of each element in it.
 pub(super) struct Layout {
     model: Arc<Model>,
     /// current coupling
@@ -66,7 +66,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The nodes of every element, load and pair of tied nodes.
+    /// Creates the layout of all elements, loads and pairs of tied nodes.
     pub fn new(model: &Arc<Model>, skew: Skew) -> Self {
         let starts = std::iter::once(0).chain(model.mesh.elements.iter().scan(0, |sum, element| {
             *sum += element.nodes.len().pow(2);
@@ -145,7 +145,7 @@ impl Layout {
         new
     }
 
-    /// The groups that have copies in them, as the nodes that those move with, and every copy with its own.
+    /// Groups with copies, expressed by their originals, and every copy with its original.
     fn tied<'a>(&self, groups: impl Iterator<Item = &'a [usize]> + Clone) -> Vec<Vec<usize>> {
         let ties = &self.model.ties;
         let mut linked = self.linked(groups.clone());

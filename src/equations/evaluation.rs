@@ -49,7 +49,7 @@ pub struct Evaluation {
     pub dissipated: f64,
     /// What they dissipated by yielding [F·L]
     pub plastic: f64,
-    /// Work of the temperatures that changed in the increment [F·L]
+    /// Work of the temperature change in the increment [F·L]
     pub heating: f64,
 }
 

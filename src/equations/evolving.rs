@@ -83,7 +83,7 @@ pub struct Evolved {
     pub dissipated: f64,
     /// Dissipation of those that do
     pub plastic: f64,
-    /// Work of their temperatures
+    /// Work of the temperature change
     pub heating: f64,
 }
 

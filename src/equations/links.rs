@@ -119,7 +119,7 @@ pub(super) fn skew(model: &Model) -> Vec<usize> {
     model.linkage.nodes()
 }
 
-/// Before supports replace equations: those of leaders sum up what their followers have.
+/// Adds the equations of followers to those of their leaders, before supports replace equations.
 pub fn gather_rows(model: &Model, matrix: &mut SparseMatrix) {
     for follower in &model.linkage.followers {
         for (i, _) in follower.dofs() {

@@ -24,7 +24,7 @@ pub(super) fn skew(step: &Step) -> Vec<usize> {
     step.loads.pressures.iter().flat_map(|load| load.edges.iter().flatten().copied()).collect()
 }
 
-/// Whether a step has any.
+/// Whether a step has any loads.
 fn any(model: &Model, step: &Step) -> bool {
     let loads = &step.loads;
     !(model.prestress.is_empty()

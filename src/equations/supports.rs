@@ -37,7 +37,7 @@ pub(super) fn skew(step: &Step) -> Vec<usize> {
     step.supports.iter().filter(|support| support.at.inclined.is_some()).map(|support| support.at.node()).collect()
 }
 
-/// The residual of the equations of forces, 0 at all other dofs.
+/// Residual of the equations of forces, 0 at all other dofs.
 pub fn free(model: &Model, step: &Step, residual: &[f64]) -> Vec<f64> {
     residual.iter().zip(fixed(model, step)).map(|(&residual, fixed)| if fixed { 0.0 } else { residual }).collect()
 }

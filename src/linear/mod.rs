@@ -62,8 +62,8 @@ pub trait LinearSolver: Send {
         None
     }
 
-    /// Pivots of the last factorization that vanished and were replaced: what [`solve`](Self::solve) gives needs
-    /// refinement then, and may not satisfy the equations even so.
+    /// Number of pivots of the last factorization that vanished and were replaced; a result of [`solve`](Self::solve) then
+    /// needs refinement, and may not satisfy the equations even so.
     fn perturbed_pivots(&self) -> usize {
         0
     }
@@ -81,7 +81,7 @@ pub struct Solution {
     pub perturbed_pivots: usize,
     /// Negative eigenvalues of A, if all of it was factorized as symmetric
     pub negative_pivots: Option<usize>,
-    /// Whether [`SparseLu`] took over because refinement stalled
+    /// Whether [`SparseLu`] was used because refinement stalled
     pub fallback: bool,
 }
 

@@ -227,7 +227,7 @@ impl SparseMatrix {
     pub fn replace_row(&mut self, dof: usize, diagonal: f64) {
         let (node, d) = (dof / 2, dof % 2);
         self.held[dof] = false;
-        // The pattern is symmetric: the columns that meet this row are the neighbours of its node.
+        // The pattern is symmetric: the columns with an entry in this row are the neighbours of its node.
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
             if let Some(block) = self.pattern.block(node, column) {

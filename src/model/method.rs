@@ -95,7 +95,7 @@ pub struct Asked {
     pub bent: bool,
 }
 
-/// The method of a contact of two groups of edges, the second none for a rigid master.
+/// Chooses the method of a contact of two edge groups, the second `None` for a rigid master.
 pub fn choose(groups: [Option<&str>; 2], asked: Asked, mesh: &Mesh) -> Chosen {
     let [slave, master] = groups.map(|group| group.map(|group| looks(mesh, group)));
     let slave = slave.unwrap_or(Looks::STRAIGHT);
@@ -133,7 +133,8 @@ fn straight(
     chosen: impl Fn(Method, &'static str, Option<&'static str>) -> Chosen,
 ) -> Chosen {
     if groups[1].is_none() && (slave.corner || asked.bent) {
-        let because = if asked.bent { "chosen because the master is bent" } else { "chosen because the slave has a corner" };
+        let because =
+            if asked.bent { "chosen because the master is bent" } else { "chosen because the slave has a corner" };
         return chosen(Method::NodeToSegment, because, None);
     }
     let [Some(slave), Some(master)] = groups else {

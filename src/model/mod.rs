@@ -92,7 +92,7 @@ impl Default for NewtonSettings {
     }
 }
 
-/// The model; it does not change while it is solved.
+/// The model; constant during a run.
 #[derive(Debug)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Model {
@@ -144,7 +144,7 @@ pub struct Model {
     /// what is recorded, and when
     #[doc(hidden)]
     pub requests: OutputRequests,
-    /// when Newton's method stops
+    /// stopping criteria of Newton's method
     pub newton: NewtonSettings,
     /// convergence aids, all active unless switched off for an experiment
     #[doc(hidden)]
@@ -236,7 +236,7 @@ impl Model {
         self.solids.iter().zip(&self.body_of_element).map(of).fold(0.0, f64::max)
     }
 
-    /// The state at rest before the first increment.
+    /// The initial state before the first increment.
     pub fn initial_state(&self) -> State {
         let zero = vec![0.0; self.dofs()];
         State {

@@ -271,7 +271,7 @@ impl Coefficients {
         (v + dt * ((1.0 - self.gamma) * a + self.gamma * a1), a1)
     }
 
-    /// Δu of one dof from (v₀, a₀) and a₁: equation (2) the other way round.
+    /// Δu of one dof from (v₀, a₀) and a₁: the inverse of equation (2).
     pub fn increment(&self, v: f64, a: f64, a1: f64, dt: f64) -> f64 {
         dt * v + dt * dt * ((0.5 - self.beta) * a + self.beta * a1)
     }

@@ -97,7 +97,7 @@ impl State {
         }
     }
 
-    /// Whether an explicit increment led to it: its accelerations are those of lumped masses.
+    /// Whether it was reached by an explicit increment, with accelerations of lumped masses.
     pub fn is_of_explicit(&self) -> bool {
         self.last_increment.is_none() && self.dt > 0.0
     }
@@ -148,7 +148,7 @@ pub struct Energy {
     pub damping_dissipation: f64,
     /// plastic work of the bodies that yield, less what back stresses store
     pub plastic_dissipation: f64,
-    /// ∫ η v² ds dt: what slip radiates where contacts have a radiation damping
+    /// ∫ η v² ds dt: radiated by slip in contacts with radiation damping
     pub radiated: f64,
     /// ∫ c v² dt of stabilizing dashpots, a part of the damping dissipation
     pub stabilization: f64,

@@ -110,7 +110,8 @@ fn sheared_beside_faults(model: &Model) -> Option<String> {
     let sharp = model.mesh.elements.iter().filter(|element| element.kind == ElementKind::Q4);
     // A margin for what rounds the angle.
     let mut sharp = sharp.filter(|element| sharpest(element) < SHARP * (1.0 - 1e-6));
-    let (element, pair) = sharp.find_map(|element| Some((element, element.nodes.iter().find_map(|node| beside.get(node))?)))?;
+    let (element, pair) =
+        sharp.find_map(|element| Some((element, element.nodes.iter().find_map(|node| beside.get(node))?)))?;
     let degrees = sharpest(&element).to_degrees();
     Some(format!(
         "contact `{}`: bilinear elements beside it have corners of {degrees:.0}°, and are too stiff against its slip at every \

@@ -128,7 +128,10 @@ impl Give {
         let of = |(pair, states): (&ContactPair, &Vec<ContactState>)| Penalties {
             contact: pair.name.clone(),
             energy: Springs::of(pair, states).numerical,
-            stiffness: [pair.alpha_n, pair.laws.iter().map(|law| law.description.stiffness).fold(f64::INFINITY, f64::min)],
+            stiffness: [
+                pair.alpha_n,
+                pair.laws.iter().map(|law| law.description.stiffness).fold(f64::INFINITY, f64::min),
+            ],
             on_bodies: pair.compliance > 0.0,
             by_steps: solved,
         };
@@ -148,7 +151,11 @@ impl Give {
         bodies.flat_map(|of| [0, 1].into_iter().filter_map(|way| self.concern(of, way))).collect()
     }
 
-    fn concern(&self, Penalties { contact, energy, stiffness, by_steps, .. }: &Penalties, way: usize) -> Option<String> {
+    fn concern(
+        &self,
+        Penalties { contact, energy, stiffness, by_steps, .. }: &Penalties,
+        way: usize,
+    ) -> Option<String> {
         let share = energy[way] / self.elastic;
         let advised = rounded_up(stiffness[way] * share / ADVISED);
         let key = [format!("\"alpha_n\": {advised}"), format!("\"alpha_t\": {advised}")];

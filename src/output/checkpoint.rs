@@ -26,7 +26,7 @@ pub const NEWEST: &str = "checkpoint.bin";
 pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
-/// Version of the file's content; every change of it gets a new number.
+/// Version of the file content; every change of the layout requires a new number.
 pub const VERSION: u32 = 9;
 const HEAD: usize = MAGIC.len() + 16;
 

@@ -30,7 +30,7 @@ impl Shown {
     }
 }
 
-/// Fills the grid of the bodies. Rigid bodies have no cells, and what their nodes carry is no field.
+/// Fills the grid of the bodies. Rigid bodies have no cells and no fields.
 pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, derived: bool, grid: &mut Grid) {
     let fields = nodal_fields(model, state);
     let nodes = model.mesh.own_nodes();
@@ -65,7 +65,7 @@ fn contact_forces(model: &Model, state: &State) -> Vec<f64> {
     forces
 }
 
-/// The integration points of the bodies, with their stresses and what the materials remember there.
+/// Fills the grid of the integration points of the bodies, with stresses and internal variables.
 pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, grid: &mut Grid) {
     let elements = &model.mesh.elements;
     let mut names: Vec<&str> = Vec::new();
@@ -82,7 +82,7 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
     for (e, element) in elements.iter().enumerate() {
         let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
-        // An element without an answer never occurs in an accepted state.
+        // Accepted states contain no element whose material law fails.
         let count = model.solids[e].quadrature_points();
         let stresses = model.solids[e].stresses(material, memory, &u);
         let stresses = stresses.unwrap_or_else(|_| (0..count).map(|_| CauchyStress::default()).collect());

@@ -34,7 +34,7 @@ pub struct FrictionHistory {
 }
 
 impl FrictionHistory {
-    /// Record the forces [F] and the slipping fraction of the closed length [-].
+    /// Records the forces [F] and the slipping fraction of the closed length [-].
     pub fn note(&mut self, time: f64, normal: f64, tangential: f64, slipping: f64) {
         let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
         let borne = Borne { time, tangential_force: tangential, ratio };

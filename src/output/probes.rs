@@ -29,7 +29,8 @@ impl Rows for ProbeRows {
     const NAME: &'static str = "probes";
 
     fn new(model: &Model) -> (Self, Vec<String>) {
-        let columns = model.requests.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
+        let columns =
+            model.requests.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
         let stencils = stencils(model, &model.requests.probes);
         (Self(stencils), std::iter::once("time".into()).chain(columns).collect())
     }

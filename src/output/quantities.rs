@@ -324,7 +324,7 @@ pub const NEWTON: [Quantity; 15] = [
     q("pass", NONE, "number of the augmentation (augmented Lagrangian)"),
 ];
 
-/// ... which are these.
+/// Last columns of `newton.csv`.
 pub const VERDICT: [Quantity; 3] = [
     q("verdict", NONE, "outcome of the attempt (below)"),
     q("reason", NONE, "why it was rejected; empty where accepted, commas as semicolons"),

@@ -31,7 +31,7 @@ pub struct Frame {
     pub file: String,
 }
 
-/// Points and cells with what is known there.
+/// Points and cells with their values.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Grid {

@@ -51,7 +51,7 @@ pub enum CellType {
     BiquadraticQuad = 28,
 }
 
-/// VTK's name of an element.
+/// VTK cell type of an element.
 pub fn cell_type(kind: ElementKind) -> CellType {
     match kind {
         ElementKind::T3 => CellType::Triangle,
@@ -170,7 +170,7 @@ struct Head<'a> {
     components: usize,
 }
 
-/// Append an array.
+/// Appends an array.
 fn array<const N: usize>(text: &mut String, is: Head, values: impl Iterator<Item = [u8; N]>) {
     let Head { kind, name, components } = is;
     let bytes: Vec<u8> = values.flatten().collect();

@@ -27,7 +27,7 @@ pub enum Error {
         min: f64,
         /// that it may be a limit point, with the loads reached, before a semicolon; empty unless there is a sign of one
         limit: String,
-        /// why it failed
+        /// cause of the failure
         cause: Box<IncrementFailure>,
         /// suspected reason, preceded by a semicolon; empty if there is none
         suspicion: String,

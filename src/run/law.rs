@@ -62,7 +62,7 @@ impl LawTest {
     /// The first row is the start: the response to zero slip in zero time.
     ///
     /// # Errors
-    /// [`Error`] when the law cannot answer, or a row cannot be written.
+    /// Returns [`Error`] if the law fails or a row cannot be written.
     pub fn run(&self, mut record: impl FnMut(&LawRow) -> Result<(), Error>) -> (LawReport, Result<(), Error>) {
         let mut report = LawReport::default();
         let result = self.follow(|row| {
@@ -380,12 +380,12 @@ pub struct PathPoint {
     pub slip: f64,
     /// |q|/p: apparent friction coefficient [-]
     pub coefficient: f64,
-    /// μ: what the interface could carry over p [-]
+    /// μ: frictional strength divided by p [-]
     pub mu: f64,
 }
 
 impl PathPoint {
-    /// A point of the path from the numbers of a row; the coefficient is 0 without pressure.
+    /// Creates a point from the numbers of a row; the coefficient is 0 without pressure.
     pub fn new(time: f64, slip: f64, pressure: f64, traction: f64, mu: f64) -> Self {
         let coefficient = if pressure > 0.0 { traction.abs() / pressure } else { 0.0 };
         Self { time, slip, coefficient, mu }

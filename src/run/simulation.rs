@@ -143,7 +143,7 @@ impl Simulation {
         self.report.wall_s.output += seconds;
     }
 
-    /// The attempt that observers receive for a candidate.
+    /// Returns the attempt that observers receive for a candidate.
     pub fn attempt_of<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
         let mut attempt = Attempt {
             step: self.step_now(),

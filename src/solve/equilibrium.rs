@@ -258,7 +258,7 @@ impl Watch {
     }
 }
 
-/// The solution, or why there is none: bodies that move freely say more than the equations.
+/// Returns the solution, or the reason why there is none: unconstrained bodies explain more than the equations.
 fn explained(
     model: &Model,
     old: &State,

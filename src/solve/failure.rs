@@ -46,7 +46,7 @@ pub enum IncrementFailure {
         /// number of augmentations
         passes: usize,
     },
-    /// The velocities of an explicit run are not finite any more.
+    /// The velocities of an explicit run are no longer finite.
     #[error("the motion grows without bound: lower the safety of the explicit scheme, or check loads and supports")]
     Unbounded,
     /// An element collapsed in explicit increments of any allowed length.

@@ -74,7 +74,7 @@ pub struct Iteration {
     pub perturbed_pivots: usize,
     /// Negative eigenvalues of K, where all of it was factorized as symmetric
     pub negative_pivots: Option<usize>,
-    /// Whether the fronts of K were not exact enough, and another solver took over
+    /// Whether the factors of K were too inaccurate, and another solver was used
     pub fallback: bool,
     /// Whether a line search was made along the correction
     pub searched: bool,

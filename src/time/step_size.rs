@@ -79,8 +79,8 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// Step control after an increment that was shortened only to end at an output time: the next one is not shortened
-    /// for it.
+    /// Adjusts the decision after an increment that was shortened only to end at an output time: the next one is not shortened
+    /// for that reason.
     pub fn after_output(self, attempt: usize, dt: f64, wanted: f64) -> Self {
         let shortened = attempt == 1 && self.accepted && dt < wanted && self.next >= dt;
         Self { next: if shortened { self.next.max(wanted) } else { self.next }, ..self }

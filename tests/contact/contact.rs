@@ -215,7 +215,18 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
 /// A committed state that has not slipped.
 fn committed(friction: FrictionState, foot: MasterPoint, gap: f64) -> ContactState {
     let (foot, slip, radiation, radiated) = (Some(foot), 0.0, 0.0, 0.0);
-    ContactState { friction, foot, length: 1.0, gap, slip, radiation, radiated, multiplier: 0.0, elastic_slip: 0.0, fluid: 0.0 }
+    ContactState {
+        friction,
+        foot,
+        length: 1.0,
+        gap,
+        slip,
+        radiation,
+        radiated,
+        multiplier: 0.0,
+        elastic_slip: 0.0,
+        fluid: 0.0,
+    }
 }
 
 #[test]

@@ -15,7 +15,12 @@ fn body() -> Value {
 
 /// Two rings in r and z of one element through the wall, the inner one under pressure.
 fn rings(n: [usize; 2]) -> Value {
-    let mesh = Blocks::default().rectangle("inner", [n[0], 1], [1.0, 0.0], [2.0, 1.0]).rectangle("outer", [n[1], 1], [2.0, 0.0], [3.0, 1.0]);
+    let mesh = Blocks::default().rectangle("inner", [n[0], 1], [1.0, 0.0], [2.0, 1.0]).rectangle(
+        "outer",
+        [n[1], 1],
+        [2.0, 0.0],
+        [3.0, 1.0],
+    );
     let ends = ["inner_bottom", "inner_top", "outer_bottom", "outer_top"];
     json!({
         "section": "axisymmetric", "mesh": mesh.json(), "bodies": {"inner": body(), "outer": body()},
@@ -28,7 +33,12 @@ fn rings(n: [usize; 2]) -> Value {
 
 /// Two flat rings on each other, one element each, pressed along the axis.
 fn stacked() -> Value {
-    let mesh = Blocks::default().rectangle("lower", [3, 1], [1.0, 0.0], [2.0, 0.5]).rectangle("upper", [4, 1], [1.0, 0.5], [2.0, 1.0]);
+    let mesh = Blocks::default().rectangle("lower", [3, 1], [1.0, 0.0], [2.0, 0.5]).rectangle(
+        "upper",
+        [4, 1],
+        [1.0, 0.5],
+        [2.0, 1.0],
+    );
     json!({
         "section": "axisymmetric", "mesh": mesh.json(), "bodies": {"lower": body(), "upper": body()},
         "contacts": {"fit": {"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "frictionless"}}},
@@ -61,7 +71,9 @@ fn press_fit() -> Value {
 /// augmented Lagrangian on the same mesh), even between bodies of one element each; with those of explicit steps some are off by percents.
 #[test]
 fn defaults_are_as_good_as_hard() {
-    for (name, case) in [("rings", rings([1, 1])), ("rings", rings([3, 4])), ("stacked", stacked()), ("press fit", press_fit())] {
+    for (name, case) in
+        [("rings", rings([1, 1])), ("rings", rings([3, 4])), ("stacked", stacked()), ("press fit", press_fit())]
+    {
         let with = |normal: Value| {
             let mut case = case.clone();
             case["contacts"]["fit"]["normal"] = normal;
@@ -71,15 +83,27 @@ fn defaults_are_as_good_as_hard() {
         let soft = with(json!({"alpha_n": default.model.contacts[0].alpha_n / 30.0}));
         let size = hard.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
         let off = |run: &Finished| common::distance(&run.last().displacement, &hard.last().displacement) / size;
-        let force = |run: &Finished| (run.contact_force(run.last())[0] / hard.contact_force(hard.last())[0] - 1.0).abs();
-        println!("{name}: displacements {:.1e} ({:.1e}), force {:.1e} ({:.1e})", off(&default), off(&soft), force(&default), force(&soft));
+        let force =
+            |run: &Finished| (run.contact_force(run.last())[0] / hard.contact_force(hard.last())[0] - 1.0).abs();
+        println!(
+            "{name}: displacements {:.1e} ({:.1e}), force {:.1e} ({:.1e})",
+            off(&default),
+            off(&soft),
+            force(&default),
+            force(&soft)
+        );
         assert!(off(&default) < 2e-3 && force(&default) < 2e-3, "{name}");
     }
 }
 
 /// A block that is pressed and pushed below μ p: what sticks moves as what is tied.
 fn pushed(contact: &Value) -> Finished {
-    let mesh = Blocks::default().rectangle("ground", [5, 1], [0.0, -1.0], [2.0, 0.0]).rectangle("block", [3, 1], [0.5, 0.0], [1.5, 1.0]);
+    let mesh = Blocks::default().rectangle("ground", [5, 1], [0.0, -1.0], [2.0, 0.0]).rectangle(
+        "block",
+        [3, 1],
+        [0.5, 0.0],
+        [1.5, 1.0],
+    );
     let mut contact = contact.clone();
     (contact["slave"], contact["master"]) = (json!("block_bottom"), json!("ground_top"));
     finish(&json!({
@@ -99,12 +123,15 @@ fn what_sticks_does_not_creep() {
     let tied = pushed(&json!({"tied": true, "sliding": "small"}));
     let top = |run: &Finished| {
         let nodes = run.nodes("block_top");
-        let mean = |state: &fecontact::model::state::State| nodes.iter().map(|node| state.displacement[2 * node]).sum::<f64>() / nodes.len() as f64;
+        let mean = |state: &fecontact::model::state::State| {
+            nodes.iter().map(|node| state.displacement[2 * node]).sum::<f64>() / nodes.len() as f64
+        };
         mean(run.last()) - mean(run.at(1.0))
     };
     let normal = json!({"penetration": 1e-8});
     let soft = pushed(&json!({"normal": normal, "sliding": "small", "friction": friction(Some(20.0))}));
-    let stuck = pushed(&json!({"normal": normal, "sliding": "small", "friction": friction(Some(2000.0)), "stick": 1e-7}));
+    let stuck =
+        pushed(&json!({"normal": normal, "sliding": "small", "friction": friction(Some(2000.0)), "stick": 1e-7}));
     let default = pushed(&json!({"sliding": "small", "friction": friction(None)}));
     let expected = top(&tied);
     println!("tied {expected:.6e}, stick {:.6e}, default {:.6e}, soft {:.6e}", top(&stuck), top(&default), top(&soft));
@@ -145,7 +172,12 @@ fn what_slides_is_as_before() {
 }
 
 fn method(slave: &str, master: Value, n: [usize; 2], explicit: bool) -> Method {
-    let mesh = Blocks::default().rectangle("lower", [n[0], 1], [0.0, -1.0], [1.0, 0.0]).rectangle("upper", [n[1], 2], [0.0, 0.0], [1.0, 1.0]);
+    let mesh = Blocks::default().rectangle("lower", [n[0], 1], [0.0, -1.0], [1.0, 0.0]).rectangle(
+        "upper",
+        [n[1], 2],
+        [0.0, 0.0],
+        [1.0, 1.0],
+    );
     let mut mesh = mesh.json();
     let edges = |side: &str| mesh["edges"][format!("upper_{side}")].as_array().expect("edges").clone();
     mesh["edges"]["skin"] = json!([edges("bottom"), edges("right")].concat());
@@ -189,7 +221,10 @@ fn contacts_that_give_way_are_told() {
         warnings.list
     };
     let soft = told(50.0);
-    assert!(soft.len() == 1 && soft[0].contains("contact `base`: at t = 1 50.0 % of the elastic energy is in its penalty"), "{soft:?}");
+    assert!(
+        soft.len() == 1 && soft[0].contains("contact `base`: at t = 1 50.0 % of the elastic energy is in its penalty"),
+        "{soft:?}"
+    );
     let number = soft[0].split("\"alpha_n\": ").nth(1).and_then(|rest| rest.split(',').next()).expect("a number");
     assert_eq!(told(number.parse().expect("a number")), Vec::<String>::new());
 }

@@ -52,7 +52,9 @@ fn error_of_stress(run: &Finished, angle: f64, sigma: f64) -> f64 {
 #[test]
 fn uniform_tension_passes() {
     for (n, refined) in [([5, 7], false), ([7, 5], false), ([3, 4], true)] {
-        for (model, sliding, sigma) in [("linear", "small", 1.0), ("linear", "finite", 1e-3), ("neo_hookean", "finite", 100.0)] {
+        for (model, sliding, sigma) in
+            [("linear", "small", 1.0), ("linear", "finite", 1e-3), ("neo_hookean", "finite", 100.0)]
+        {
             let steps = json!([{"name": "pull", "duration": 1, "dt": {"initial": 0.5},
                                 "supports": [{"on": "lower_bottom", "uy": 0}, {"on": "lower_left", "ux": 0}, {"on": "upper_left", "ux": 0}],
                                 "loads": [{"on": "upper_top", "pressure": -sigma}]}]);
@@ -61,7 +63,10 @@ fn uniform_tension_passes() {
             // Of `linear`, in finite sliding, tractions are those of the surface as it is.
             let allowed = if model == "linear" && sliding == "finite" { 1e-5 } else { 1e-10 };
             close(&what, error_of_stress(&run, 0.0, sigma), 0.0, allowed);
-            assert!(run.last().contacts[0].iter().all(|state| state.friction.pressure < 0.0 && state.is_closed()), "{what}");
+            assert!(
+                run.last().contacts[0].iter().all(|state| state.friction.pressure < 0.0 && state.is_closed()),
+                "{what}"
+            );
         }
     }
 }
@@ -70,7 +75,8 @@ fn uniform_tension_passes() {
 /// have turned with them.
 #[test]
 fn what_is_tied_turns_as_one() {
-    let turn = |group: &str| json!({"on": group, "rotation": {"about": [0.5, 1.0], "angle": std::f64::consts::FRAC_PI_2}});
+    let turn =
+        |group: &str| json!({"on": group, "rotation": {"about": [0.5, 1.0], "angle": std::f64::consts::FRAC_PI_2}});
     let steps = json!([{"name": "turn", "duration": 1, "dt": {"initial": 0.125}, "supports": [turn("lower_bottom"), turn("upper_top")]}]);
     let run = finish(&tied(&column([5, 7], false), "neo_hookean", &json!({}), steps));
     close("turned", error_of_stress(&run, 0.0, 1000.0), 0.0, 1e-9);
@@ -84,8 +90,10 @@ fn what_is_tied_turns_as_one() {
 fn a_beam_of_two_layers_bends_as_one() {
     let material = json!({"material": {"model": "linear", "E": 1000, "nu": 0.3}});
     let bent = |mesh: Value, bodies: &[&str], contacts: Value| {
-        let bodies: serde_json::Map<String, Value> = bodies.iter().map(|body| ((*body).to_string(), material.clone())).collect();
-        let held: Vec<Value> = bodies.keys().map(|body| json!({"on": format!("{body}_left"), "ux": 0, "uy": 0})).collect();
+        let bodies: serde_json::Map<String, Value> =
+            bodies.iter().map(|body| ((*body).to_string(), material.clone())).collect();
+        let held: Vec<Value> =
+            bodies.keys().map(|body| json!({"on": format!("{body}_left"), "ux": 0, "uy": 0})).collect();
         let loads: Vec<Value> =
             bodies.keys().map(|body| json!({"on": format!("{body}_right"), "traction": {"y": -1e-3}})).collect();
         let ends: Vec<String> = bodies.keys().map(|body| format!("{body}_right")).collect();
@@ -95,7 +103,12 @@ fn a_beam_of_two_layers_bends_as_one() {
         nodes.iter().map(|node| run.last().displacement[2 * node + 1]).sum::<f64>() / nodes.len() as f64
     };
     let whole = quadratic(&Blocks::default().rectangle("beam", [20, 4], [0.0, 0.0], [10.0, 1.0]).json(), half_way);
-    let layers = Blocks::default().rectangle("lower", [17, 2], [0.0, 0.0], [10.0, 0.5]).rectangle("upper", [24, 2], [0.0, 0.5], [10.0, 1.0]);
+    let layers = Blocks::default().rectangle("lower", [17, 2], [0.0, 0.0], [10.0, 0.5]).rectangle(
+        "upper",
+        [24, 2],
+        [0.0, 0.5],
+        [10.0, 1.0],
+    );
     let tie = json!({"tie": {"slave": "upper_bottom", "master": "lower_top", "tied": true}});
     let one = bent(whole, &["beam"], json!({}));
     let two = bent(quadratic(&layers.json(), half_way), &["lower", "upper"], tie);
@@ -108,7 +121,8 @@ fn a_beam_of_two_layers_bends_as_one() {
 fn tangent_of_a_tie_equals_differences() {
     let steps = json!([{"name": "pull", "duration": 1, "supports": [{"on": "lower_bottom", "ux": 0, "uy": 0}]}]);
     for method in ["mortar", "node_to_segment", "gauss_to_segment"] {
-        let model = common::model(&tied(&column([2, 3], false), "neo_hookean", &json!({"method": method}), steps.clone()));
+        let model =
+            common::model(&tied(&column([2, 3], false), "neo_hookean", &json!({"method": method}), steps.clone()));
         let (pair, x) = (&model.contacts[0], &model.mesh.nodes);
         let rest = pair.initial_states(&Configuration::undeformed(x));
         let motion = |size: f64| -> Vec<f64> {
@@ -119,7 +133,9 @@ fn tangent_of_a_tie_equals_differences() {
         let (before, u) = (motion(0.1), motion(0.4));
         let old = answer(pair, x, &rest, [&vec![0.0; 2 * x.len()], &before]).2;
         let (_, tangent, states) = answer(pair, x, &old, [&before, &u]);
-        assert!(states.iter().any(|state: &ContactState| state.friction.pressure < 0.0 && state.regime() == Regime::Tied));
+        assert!(
+            states.iter().any(|state: &ContactState| state.friction.pressure < 0.0 && state.regime() == Regime::Tied)
+        );
         let scale = tangent.iter().flatten().fold(0.0f64, |most, k| most.max(k.abs()));
         let h = 1e-6;
         for column in 0..u.len() {

@@ -40,7 +40,7 @@ fn payload_text(payload: &(dyn std::any::Any + Send)) -> &str {
     text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("it does not say why")
 }
 
-/// Text for the user.
+/// Returns the text for the user.
 pub fn message(what: &str) -> String {
     format!(
         "defect: {what}\nThis is a defect of fecontact {}, not of your input. Please report it with this text, the command, the \

@@ -101,14 +101,16 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
             (false, Some(_)) => "alpha_n/2",
             (false, None) => "5 (λ + 2G)/h",
         };
-        let what = if penalty { "a penalty that holds what sticks" } else { "of the law, whose slip is elastic at first" };
+        let what =
+            if penalty { "a penalty that holds what sticks" } else { "of the law, whose slip is elastic at first" };
         let alpha_t = range(pair.laws.iter().map(|law| law.description.stiffness));
         lines.push(format!("alpha_t {alpha_t} ({chosen}): {what}"));
     }
     if pair.tied {
         let held = pair.points.iter().zip(pair.small.iter().flat_map(|small| &small.points));
         let free = held.filter(|(_, point)| point.is_none()).count();
-        let free = if free > 0 { format!("; {} without a projection stay free", count(free, "point")) } else { String::new() };
+        let free =
+            if free > 0 { format!("; {} without a projection stay free", count(free, "point")) } else { String::new() };
         lines.push(format!("tied: the surfaces neither part nor slide{free}"));
         return lines;
     }

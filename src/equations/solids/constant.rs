@@ -397,8 +397,8 @@ fn all(motion: &[f64]) -> &[[f64; 2]] {
 }
 
 impl Block {
-    /// Write what the elements put on the nodes, and what the pass asks for besides, over `sums`; returns what the first of
-    /// its motions stores.
+    /// Computes the nodal forces, and the second result of the pass, in `sums`; returns the energy stored by the first of its
+    /// motions.
     pub fn evaluate(&self, stiffness: &[f64], ring: bool, tau: f64, pass: Pass, sums: [&mut [Vector2<f64>]; 2]) -> f64 {
         match ring {
             false => self.of_section::<false>(stiffness, tau, pass, sums),

@@ -34,7 +34,7 @@ pub(super) fn skew(model: &Model) -> Vec<usize> {
     (0..model.solids.len()).filter(is_skew).flat_map(|e| model.mesh.elements[e].nodes.iter().copied()).collect()
 }
 
-/// The elements of a model, and what each puts on its nodes.
+/// Elements of a model and their nodal forces.
 pub(super) struct Solids {
     model: Arc<Model>,
     constant: Constant,

@@ -298,7 +298,7 @@ impl Sliding {
         bits(self) == bits(other)
     }
 
-    /// The increment Δu_t under the pressure p at its end, in the time Δt.
+    /// Creates the increment Δu_t under the pressure p at its end, in the time Δt.
     pub const fn new(slip: f64, pressure: f64, dt: f64) -> Self {
         Self { slip, pressure, dt }
     }

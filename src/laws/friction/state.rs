@@ -107,7 +107,7 @@ impl FrictionState {
         bits(self) == bits(other) && own(self) == own(other) && self.regime == other.regime
     }
 
-    /// Whether all of it are numbers.
+    /// Whether all its numbers are finite.
     pub(super) fn is_finite(&self) -> bool {
         let Self { traction, pressure, plastic_slip, plastic_increment, dissipation, opening, wear, variables, .. } =
             self;

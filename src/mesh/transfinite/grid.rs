@@ -62,7 +62,7 @@ impl Grid {
         let [n, _] = self.count;
         let local = match self.kind {
             BlockKind::Q4 | BlockKind::T6 => j * (n + 1) + i,
-            // Rows through corners are full, those between have every other node.
+            // Rows through corners are full, those in between have every other node.
             BlockKind::Q8 if j % 2 == 0 => j / 2 * (n + 1 + n / 2 + 1) + i,
             BlockKind::Q8 => j / 2 * (n + 1 + n / 2 + 1) + n + 1 + i / 2,
         };
@@ -117,7 +117,7 @@ impl Grid {
         [[i, j], [i + order, j], [i + order, j + order], [i, j + order]]
     }
 
-    /// Elements, row by row: corners in turn, then the middles of their sides.
+    /// Elements, row by row: corners in order, then the middle nodes of their sides.
     pub fn elements(&self) -> Vec<Vec<usize>> {
         let element = |corners: &[[usize; 2]]| {
             let next = corners.iter().cycle().skip(1);

@@ -58,7 +58,7 @@ impl From<MaterialParameters> for BulkLaw {
     }
 }
 
-/// A mass at every node of a group.
+/// A point mass at every node of a group.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMassInput {

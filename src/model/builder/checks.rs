@@ -100,7 +100,11 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
         return refused(&contact.name, "massless", message);
     }
     let Some((name, key, stiffness)) = augmented else { return Ok(()) };
-    refused(name, key, format!("the explicit step `{step}` takes the plain penalty: leave it out, and raise {stiffness}"))
+    refused(
+        name,
+        key,
+        format!("the explicit step `{step}` takes the plain penalty: leave it out, and raise {stiffness}"),
+    )
 }
 
 /// Checks the requirements of quasi-dynamic steps: linear bodies, small sliding with matching nodes, laws that define a slip

@@ -253,7 +253,7 @@ impl Contact {
         Self { tied: true, ..Self::new(name, slave, master, Friction::tie()) }
     }
 
-    /// With this normal penalty α_n [F/L³].
+    /// Sets the normal penalty α_n [F/L³].
     pub fn alpha_n(mut self, alpha_n: f64) -> Self {
         self.normal.alpha_n = Some(alpha_n);
         self
@@ -305,7 +305,7 @@ impl Contact {
         Self { stick: Some(largest), ..self }
     }
 
-    /// In small sliding: every point keeps its foot, the weights of both sides, its normal and its length
+    /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length
     /// ([`crate::contact::small_sliding`]).
     pub fn small_sliding(self) -> Self {
         Self { sliding: SlidingRange::Small, ..self }

@@ -32,7 +32,7 @@ pub struct Friction {
     law: Arc<LawAt>,
     /// Whether no law was given: the surfaces are tied
     tie: bool,
-    /// Other friction where a profile is positive, the first that is, with what stands before the profile in messages
+    /// Other friction where a profile is positive, the first one that applies, with its name in messages
     elsewhere: Vec<(String, Profile, Self)>,
 }
 
@@ -56,7 +56,14 @@ impl Friction {
         law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync + 'static,
     ) -> Self {
         let varying = profiles.into_iter().map(|(name, profile)| (name.into(), profile)).collect();
-        Self { parameters: None, name: "friction".into(), varying, law: Arc::new(law), tie: false, elsewhere: Vec::new() }
+        Self {
+            parameters: None,
+            name: "friction".into(),
+            varying,
+            law: Arc::new(law),
+            tie: false,
+            elsewhere: Vec::new(),
+        }
     }
 
     /// Of surfaces that are tied.

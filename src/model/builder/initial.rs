@@ -219,7 +219,7 @@ pub fn check_stresses(model: &Model) -> Checked<()> {
     Ok(())
 }
 
-/// Nodal forces with which the initial stress of the bodies meets the initial tractions of balanced contacts; empty if
+/// Nodal forces of the initial stress of the bodies that balance the initial tractions of contacts with `balanced`; empty if
 /// there are none [F].
 pub fn prestress(contacts: &[Contact], model: &Model) -> Vec<f64> {
     let balanced = |contact: &Contact| contact.initial.as_ref().is_some_and(|initial| initial.balanced);

@@ -65,8 +65,8 @@ pub use loads::LoadsInForce;
 pub use pair::default_alpha_t;
 pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
 pub use probes::Gauge;
-pub use schedule::is_explicit;
 pub use rigid::RigidBodyInput;
+pub use schedule::is_explicit;
 
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
@@ -143,7 +143,7 @@ impl Builder {
         self.change(body, |body| body.element = Formulation::Reduced)
     }
 
-    /// Damping of a body in dynamic steps.
+    /// Sets the damping of a body in dynamic steps.
     pub fn damping(self, body: impl Into<String>, damping: Damping) -> Self {
         self.change(body, |body| body.damping = damping)
     }
@@ -298,8 +298,7 @@ impl Builder {
         model.linkage = plates::linkage(&self.plates, &self.steps, &model)?;
         let explicit = schedule::is_explicit(&self.steps);
         model.contacts = pair::pairs(&self.contacts, &model, explicit)?;
-        model.methods =
-            self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, explicit)).collect();
+        model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, explicit)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
         section::check_velocities(

@@ -60,7 +60,7 @@ pub fn pairs(contacts: &[Contact], model: &Model, explicit: bool) -> Checked<Vec
     Ok(pairs)
 }
 
-/// The pair of a contact, but for what its points do not see.
+/// Builds the pair of a contact, except for the data of the bodies.
 fn pair(contact: &Contact, model: &Model, explicit: bool) -> Checked<ContactPair> {
     let place = format!("contacts.{}", contact.name);
     let (mut points, mortar) = slave_points(&place, contact, &model.mesh, explicit)?;
@@ -194,7 +194,7 @@ fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
     Err(ModelError::new(format!("{place}.stick"), message))
 }
 
-/// Where a contact of edges is evaluated; that of a group of points is at the points.
+/// Method of a contact of edges; `None` for a point group.
 pub fn evaluation(contact: &Contact, mesh: &Mesh, explicit: bool) -> Option<Chosen> {
     let master = match &contact.master {
         MasterSide::Group(group) => Some(group.as_str()),
@@ -238,7 +238,7 @@ fn reverse(contact: &Contact, mesh: &Mesh) -> Option<Reverse> {
     seen.then(|| Reverse { nodes: nodal_points(&master), slave: Master::Mesh(Surface::new(&slave)) })
 }
 
-/// Points of the edges, or the points themselves, each with the given area; and the edges if contact is averaged over them.
+/// Slave points of edges, or the points of a point group with the given area; and the edges for mortar averages.
 fn slave_points(
     place: &str,
     contact: &Contact,
@@ -440,7 +440,7 @@ pub fn default_alpha_t(contact: &Contact, model: &Model, steps: &[LoadStep]) -> 
     penalty("", contact, model, is_explicit(steps)).ok()?.alpha_t
 }
 
-/// (λ + 2G)/h of (1); none where the slave has no edges [F/L³].
+/// (λ + 2G)/h of (1); `None` if the slave has no edges [F/L³].
 fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<Option<f64>> {
     if contact.area.is_some() {
         return Ok(None);

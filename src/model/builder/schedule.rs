@@ -32,7 +32,7 @@ pub fn is_explicit(steps: &[LoadStep]) -> bool {
     steps.iter().any(|step| step.rupture.is_some() || step.scheme.is_some_and(explicit))
 }
 
-/// The steps of a run.
+/// Builds the steps of a run.
 pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
     if given.is_empty() {
         return Err(ModelError::new("steps", "is empty: give at least one step"));

@@ -25,7 +25,10 @@ pub fn check_feet(pair: &ContactPair, place: &str) -> Checked<()> {
 pub fn check(contact: &Contact, place: &str) -> Checked<()> {
     let refused = |key: &str, why: &str| Err(ModelError::new(format!("{place}.{key}"), why));
     if !matches!(contact.master, MasterSide::Group(_)) || contact.is_own() {
-        return refused("master", "is no other group of edges, to which a surface can be tied: hold it by supports instead");
+        return refused(
+            "master",
+            "is no other group of edges, to which a surface can be tied: hold it by supports instead",
+        );
     }
     let beside = [
         ("area", contact.area.is_some()),

@@ -65,7 +65,7 @@ impl Formulation {
     }
 }
 
-/// An element that cannot be built on its nodes.
+/// Reason why an element is invalid on its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ElementError {
     /// det(∂X/∂ξ) ≤ 0 at a quadrature point

@@ -209,7 +209,7 @@ fn principal(array: &Array) -> Vec<[[f64; 2]; 2]> {
     (0..3).map(|i| [range(of(i)), most(of(i))]).collect()
 }
 
-/// A packed frame for the page.
+/// Page data of a packed frame.
 fn shown(frame: &PackedFrame, pack: &mut Pack) -> Value {
     let mut fields = serde_json::Map::new();
     for Field { name, components, longest, principal } in &frame.fields {

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::source::ReportError;
 use crate::output::store::codec::{rounded, shuffled};
 
-/// Columns of words; their values are the numbers of the words.
+/// Columns of words; their values are indices of the words.
 const WORDS: [&str; 5] = ["step", "contact", "verdict", "reason", "negative_pivots"];
 
 /// Columns in which single precision would not distinguish rows.

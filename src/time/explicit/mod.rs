@@ -65,11 +65,11 @@ const ROUND_OFF: f64 = 1e-9;
 pub struct Explicit {
     model: Arc<Model>,
     step: Arc<Step>,
-    /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
+    /// Mass of every node; that of tied copies is both with their nodes and with the copies [M]
     mass: Arc<[f64]>,
-    /// Plates with one equal component, and rigid ones
+    /// Platens with one equal component, and rigid platens
     plates: Plates,
-    /// Dashpots, absorbing sides and damping by the masses, one entry a node
+    /// Dashpots, absorbing sides and mass-proportional damping, one entry per node
     dampers: Arc<[Absorber]>,
     /// Their forces [F]
     pulls: Vec<Vector2<f64>>,
@@ -110,7 +110,7 @@ impl Explicit {
         Self { displacement, mean_velocity, ..self.clone() }
     }
 
-    /// Whether increments are as short as it makes sense.
+    /// Whether increments have reached their lower bound.
     pub fn is_most_careful(&self) -> bool {
         self.care <= MOST_CAREFUL
     }

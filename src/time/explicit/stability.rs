@@ -51,14 +51,14 @@ pub(super) struct Stability {
     pub(super) model: Arc<Model>,
     retardation: Vec<f64>,
     pub(super) elements: Arc<Vec<Element>>,
-    /// Nodes of the elements, `stride` places an element, filled up with the first one
+    /// Nodes of the elements, `stride` entries per element, padded with the first node
     nodes: Arc<[usize]>,
-    /// Their displacements against the first one when the element was looked at [L]
+    /// Their displacements relative to the first node at the last evaluation of the element [L]
     seen: Arc<Vec<Vector2<f64>>>,
     stride: usize,
     /// k/m of (3) at every node [1/T²]
     softness: Arc<Vec<f64>>,
-    /// Segment that every contact point met
+    /// Segment of the projection of every contact point
     segments: Vec<Option<usize>>,
     /// Increments since the contacts were evaluated
     since: usize,
@@ -342,7 +342,7 @@ fn bounds(
     if retardation == 0.0 {
         return Ok([elastic, 0.0]);
     }
-    // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
+    // The viscous tangent at zero displacement increment is the derivative with respect to the velocities.
     let still = vec![Vector2::zeros(); local.len()];
     model.solids[e].viscous_tangent(law, retardation, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
     Ok([elastic, largest_eigenvalue(&tangent, &mass)])

@@ -51,7 +51,7 @@ impl Coefficients {
 /// Relative accuracy of G with respect to |q_tr|.
 const PRECISION: f64 = 1e-14;
 
-/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be told apart.
+/// Width of a piece of the bracket of ln Δλ below which two roots cannot be distinguished.
 const LEAST_PIECE: f64 = 1e-13;
 
 /// Exponent above which the exponential would overflow.

@@ -326,7 +326,7 @@ const LAST_STEP_OF_FIRST_ORDER: f64 = 1e-8;
 /// y below which Chebyshev's method from the start is a poor guess, as U is too large.
 const SMALL_Y: f64 = 0.05;
 
-/// Pieces of the bracket narrower than this hold roots that cannot be told apart.
+/// Width of a piece of the bracket below which two roots cannot be distinguished.
 const LEAST_PIECE: f64 = 1e-12;
 
 impl SlipEquation<'_> {
@@ -441,7 +441,7 @@ impl SlipEquation<'_> {
         })
     }
 
-    /// Least and greatest D between two points, from the monotony of U, R, μ and ∂μ/∂Δλ.
+    /// Smallest and largest D between two points, from the monotonicity of U, R, μ and ∂μ/∂Δλ.
     fn slope_bounds(&self, left: &Point, right: &Point) -> [f64; 2] {
         let least = right.curve_point.rate * right.peak.mu + right.curve_point.ratio * left.peak.slope;
         let most = left.curve_point.rate * left.peak.mu + left.curve_point.ratio * right.peak.slope;

@@ -45,7 +45,7 @@ impl SolidElement {
     /// Logarithmic strain xx, yy, zz, xy at each quadrature point, as the law sees it (F̄ of F-bar); of a linear law sym F − 1.
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn log_strains(
         &self,
         material: &dyn Material,
@@ -90,7 +90,7 @@ impl SolidElement {
     /// What a material [shows](Material::shown) at each quadrature point, one behind the other.
     ///
     /// # Errors
-    /// [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
     pub fn shown(
         &self,
         material: &dyn Material,
@@ -193,7 +193,7 @@ impl SolidElement {
         self.formulation
     }
 
-    /// Whether it has the volume change of its centre everywhere.
+    /// Whether it has the volume change of its centre everywhere (F-bar).
     pub fn is_f_bar(&self) -> bool {
         self.centre.is_some()
     }
