@@ -88,6 +88,9 @@ impl PairResponse {
     }
 }
 
+/// Points that one thread evaluates, what their laws answered, and their states.
+type Part<'a> = ((&'a mut Chunk, &'a mut [Together]), &'a mut [ContactState]);
+
 /// Kinematics of a point to be filled in, and memory for averages.
 type At<'a> = (&'a mut Kinematics, &'a mut Room);
 
@@ -183,11 +186,10 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
         states.extend_from_slice(old);
         answered.resize_with(points.len().div_ceil(TOGETHER), Together::default);
         parts.resize_with(points.len().div_ceil(PART), Chunk::default);
-        let one =
-            |(number, ((part, answered), states)): (usize, ((&mut Chunk, &mut [Together]), &mut [ContactState]))| {
-                let numbers = PART * number..PART * number + states.len();
-                part.evaluate(self, numbers, old, (states, answered), &place);
-            };
+        let one = |(number, ((part, answered), states)): (usize, Part)| {
+            let numbers = PART * number..PART * number + states.len();
+            part.evaluate(self, numbers, old, (states, answered), &place);
+        };
         const ANSWERED: usize = PART / TOGETHER;
         match parts.len() {
             0 | 1 => {
