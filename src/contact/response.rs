@@ -88,6 +88,9 @@ impl PairResponse {
     }
 }
 
+/// Points that one thread evaluates, what their laws answered, and their states.
+type Part<'a> = ((&'a mut Chunk, &'a mut [Together]), &'a mut [ContactState]);
+
 /// Input of one evaluation, common to all points.
 struct Question<'a, P> {
     pair: &'a ContactPair,
@@ -181,11 +184,10 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
         states.extend_from_slice(old);
         answered.resize_with(points.len().div_ceil(TOGETHER), Together::default);
         parts.resize_with(points.len().div_ceil(PART), Chunk::default);
-        let one =
-            |(number, ((part, answered), states)): (usize, ((&mut Chunk, &mut [Together]), &mut [ContactState]))| {
-                let numbers = PART * number..PART * number + states.len();
-                part.evaluate(self, numbers, old, (states, answered), &place);
-            };
+        let one = |(number, ((part, answered), states)): (usize, Part)| {
+            let numbers = PART * number..PART * number + states.len();
+            part.evaluate(self, numbers, old, (states, answered), &place);
+        };
         const ANSWERED: usize = PART / TOGETHER;
         match parts.len() {
             0 | 1 => {

@@ -228,7 +228,7 @@ fn read(text: &str) -> Result<Array, String> {
 
 /// The bytes that [`encode`] has packed, if they are undamaged.
 fn decode(text: &str) -> Option<Vec<u8>> {
-    let number = |bytes: &[u8]| Some(usize::try_from(u64::from_le_bytes(bytes.try_into().ok()?)).ok()?);
+    let number = |bytes: &[u8]| usize::try_from(u64::from_le_bytes(bytes.try_into().ok()?)).ok();
     // Three bytes are four letters: twelve of these have the number of blocks.
     let count = number(STANDARD.decode(text.get(..12)?).ok()?.get(..8)?)?;
     let letters = count.checked_add(3)?.checked_mul(8)?.div_ceil(3).checked_mul(4)?;
