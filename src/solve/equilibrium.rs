@@ -289,7 +289,6 @@ fn settings(model: &Model, trial: Trial) -> newton::Settings {
         max_iterations: model.newton.max_iterations,
         old_tangents: model.aids.old_tangents,
         downhill: model.aids.downhill,
-        by_residual: model.bodies.iter().any(|body| body.material.flow().is_some() && !body.material.is_symmetric()),
     }
 }
 

@@ -20,14 +20,6 @@
 //! is 1 where a line search was made.
 //! Source: Matthies & Strang (1979), The solution of nonlinear finite element equations, doi:10.1002/nme.1620141104.
 //!
-//! Soil whose flow is not associated has no such potential. There the search is for less ‖r‖, along which a correction of a
-//! consistent tangent starts downhill whatever its symmetry:
-//!
-//! ```text
-//! ‖r(u_k + α Δu)‖ ≤ (1 − 10⁻⁴ α) ‖r(u_k)‖,   α from 1 on by parabolas through ‖r‖²
-//! ```
-//! Source: Dennis & Schnabel (1983), Numerical Methods for Unconstrained Optimization and Nonlinear Equations, ch. 6.3.
-//!
 //! Near the solution the tangent of the previous iterate is nearly as good as a new one, and its factors are available. A
 //! correction with them is made if the last reductions predict the solution within three of them; it counts as a linear solve
 //! (`factorized` is 0 in `newton.csv`) and saves a tangent and its factors. Switch `old_tangents`. Source: the modified Newton
@@ -54,8 +46,6 @@ pub struct Settings {
     pub old_tangents: bool,
     /// Whether a line search is made where the residual stalls
     pub downhill: bool,
-    /// Whether downhill is less ‖r‖, and not work against the forces out of balance: the equations have no potential
-    pub by_residual: bool,
 }
 
 /// Record of one linear solve and its result.
@@ -150,14 +140,10 @@ pub fn solve<E>(
             let mut solution = correction(plan.factorized, solver, system)?;
             if plan.searched {
                 let along = |residual: &[f64]| work(&u, residual, &solution.x);
-                let mut at = |share: f64, measure: &dyn Fn(&[f64]) -> f64| {
+                let share = downhill(along(&here), |share| {
                     let there: Vec<f64> = u.iter().zip(&solution.x).map(|(u, x)| u + share * x).collect();
-                    evaluate(&there, Request::Between, system).map_or(f64::NAN, |()| measure(&system.residual))
-                };
-                let share = match settings.by_residual {
-                    true => backtracked(norm(&here), |share| at(share, &|residual| norm(residual))),
-                    false => downhill(along(&here), |share| at(share, &along)),
-                };
+                    evaluate(&there, Request::Between, system).map_or(f64::NAN, |()| along(&system.residual))
+                });
                 solution.x.iter_mut().for_each(|x| *x *= share);
             }
             u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u += x);
@@ -291,28 +277,6 @@ fn gain(size: f64, residual: f64, before: [f64; 2]) -> f64 {
 /// Number of corrections from a residual `size` to `allowed`, if each leaves the fraction `left` of it.
 fn corrections_left(size: f64, left: f64, allowed: f64) -> f64 {
     if left < 1.0 { (allowed / size).ln() / left.ln() } else { f64::INFINITY }
-}
-
-/// Share of the fall that the slope promises that a search for less ‖r‖ asks for.
-const FALL: f64 = 1e-4;
-
-/// Line search for less ‖r‖: the whole correction if it falls there, or less of it. `size` is not a number where the equations
-/// cannot be evaluated. If it falls nowhere, where it is least.
-fn backtracked(start: f64, mut size: impl FnMut(f64) -> f64) -> f64 {
-    let (mut share, mut least) = (1.0, (1.0, f64::INFINITY));
-    for _ in 0..LONGEST_SEARCH {
-        let there = size(share);
-        if there < least.1 {
-            least = (share, there);
-        }
-        if there <= (1.0 - FALL * share) * start {
-            break;
-        }
-        // ‖r‖² over that at the start is 1 − 2 α + c α², with c from here.
-        let parabola = share * share / ((there / start).powi(2) - 1.0 + 2.0 * share);
-        share = if parabola.is_finite() { parabola.clamp(0.1 * share, 0.5 * share) } else { 0.5 * share };
-    }
-    least.0
 }
 
 /// |s(α)|/|s(0)| at which a line search ends.
