@@ -995,7 +995,7 @@ fn default_penalty_is_that_of_the_softer_side() {
     write(folder.path(), "case.json", case.to_string());
     let output = fecontact(folder.path(), &["check", "case.json"]);
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("alpha_n 1346.15 "), "a tenth of 10 (λ + 2G)/h = 13461.5 is not in:\n{text}");
+    assert!(text.contains("alpha_n 40384.6 "), "a tenth of 300 (λ + 2G)/h = 403846 is not in:\n{text}");
 }
 
 /// Parameters of a law with a peak are told in the numbers of a test, in a line: the peak from rest 25.0175/98.1 and its plastic slip
@@ -1032,10 +1032,10 @@ fn check_tells_what_the_numbers_of_a_law_mean() {
 #[test]
 fn the_method_follows_from_the_surfaces() {
     let bent = |by: f64| ("/mesh/nodes/6/1", json!(-by));
-    let pointwise = "gauss_to_segment, 2 points per edge (chosen because surfaces are straight and linear)";
+    let straight = "mortar, averaged around each node (chosen because nodes do not face nodes)";
     for by in [0.0, 1e-12, 1e-6] {
         let [told, _] = outcome("check", &[bent(by)]);
-        assert!(told.contains(pointwise), "bent by {by}:\n{told}");
+        assert!(told.contains(straight), "bent by {by}:\n{told}");
     }
     let [told, _] = outcome("check", &[bent(0.05)]);
     assert!(told.contains("mortar, averaged around each node (chosen because surfaces are curved)"), "{told}");
@@ -1097,9 +1097,9 @@ fn check_tells_what_was_understood() {
         "block_bottom   3 edges, x from 0.5 to 3.5, y from -0.01 to 0",
         "ground_bottom  2 edges, x from 0 to 4, y = -1",
         "neo_hookean: E 1000",
-        "gauss_to_segment, 2 points per edge (chosen because surfaces are straight and linear): 6 contact points",
-        "alpha_n 13439.4 (10 (λ + 2G)/h of the softer body, h the depth of the slave's elements)",
-        "alpha_t 6719.72 (alpha_n/2)",
+        "mortar, averaged around each node (chosen because nodes do not face nodes): 4 contact points",
+        "alpha_n 4.03183e5 (300 (λ + 2G)/h of the softer body, h the depth of the slave's elements)",
+        "alpha_t 6719.72 (5 (λ + 2G)/h): of the law, whose slip is elastic at first",
         "surfaces overlap by up to 0.007",
         "dt: initial 0.5, min 0.01, max 0.5",
         "support block_top: uy = -0.001",
@@ -1132,7 +1132,7 @@ fn warnings_of_check_reach_the_run() {
     let folder = TempDir::new().unwrap();
     write(folder.path(), "case.json", with(&[("/mesh/nodes/6/1", json!(-0.01))]).to_string());
     let check = fecontact(folder.path(), &["check", "case.json"]);
-    let told = "surfaces overlap by up to 0.00788675 at the start, at (0.711325, -0.00788675)";
+    let told = "surfaces overlap by up to 0.006667 at the start, at (0.5, -0.01)";
     assert!(String::from_utf8_lossy(&check.stdout).contains(told), "{}", String::from_utf8_lossy(&check.stdout));
     let run = fecontact(folder.path(), &["run", "case.json"]);
     assert_eq!(stderr(&run).matches(told).count(), 1, "{}", stderr(&run));
@@ -1164,7 +1164,7 @@ fn overlap_is_told_where_it_means_something() {
     assert!(text.contains("warnings  none"), "one digit of 1e5:\n{text}");
     let text = checked(&with(&[("/mesh/nodes/6/1", json!(-0.01)), ("/contacts/base/shrink_fit", json!(true))]));
     let told =
-        "shrink fit: the surfaces overlap by up to 0.00788675, at (0.711325, -0.00788675), brought in over the first";
+        "shrink fit: the surfaces overlap by up to 0.006667, at (0.5, -0.01), brought in over the first";
     assert!(text.contains(told) && text.contains("warnings  none"), "{text}");
 }
 

@@ -634,13 +634,13 @@ fn a_requeued_job_begins_anew_where_there_is_no_checkpoint_yet() {
 #[test]
 fn a_users_files_stay() {
     let folder = TempDir::new().expect("a folder");
-    written(folder.path(), &dragged(json!("static"), 8));
+    written(folder.path(), &dragged(json!("static"), 40));
     let out = folder.path().join("out");
     done(&run(folder.path(), "out", &[]));
     let frames = named_frames(&out, "solid.pvd");
     let mine = ["law.csv", "solid/mine.vtu", "friction.svg", "notes.txt"].map(|name| out.join(name));
     mine.iter().for_each(|path| fs::write(path, "mine").expect("a file"));
-    written(folder.path(), &dragged(json!("static"), 4));
+    written(folder.path(), &dragged(json!("static"), 8));
     done(&run(folder.path(), "out", &[]));
     mine.iter().for_each(|path| assert_eq!(fs::read_to_string(path).expect("it is there"), "mine"));
     assert!(named_frames(&out, "solid.pvd") < frames);
