@@ -203,7 +203,7 @@ impl Assembler {
         let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
         let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, heating, .. } =
             evaluation;
-        [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
+        [&mut *force, &mut *loads, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
         if let Some(tangent) = &mut tangent {
             match solids.constant_stiffness(layout).filter(|_| terms.contains(&Term::Solids)) {
