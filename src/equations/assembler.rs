@@ -225,7 +225,7 @@ impl Assembler {
             heating,
             ..
         } = evaluation;
-        [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
+        [&mut *force, &mut *loads, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
         if let Some(tangent) = &mut tangent {
             match solids.constant_stiffness(layout).filter(|_| terms.contains(&Term::Solids)) {
