@@ -518,7 +518,7 @@ fn what_cannot_be_answered_is_told() {
     let old = vec![0.0; law.variables().len()];
     let far = stretched(&*law, &Vector5::new(1.0, 0.0, 2.0, 1.0, 1.0), &old).expect_err("too far");
     assert!(matches!(far, MaterialFailure::OutOfRange { law: "von_mises", .. }), "{far}");
-    assert!(far.to_string().contains("plastic strain of an increment"), "{far}");
+    assert!(far.to_string().contains("plastic strain of the increment"), "{far}");
     let inverted = stretched(&*law, &Vector5::new(-1.0, 0.0, 0.0, 1.0, 1.0), &old).expect_err("inverted");
     assert!(matches!(inverted, MaterialFailure::Inverted { .. }));
     let soil = with_elasticity(json!({"model": "mohr_coulomb", "c": 0.1, "phi": 30, "psi": 0}));

@@ -184,17 +184,13 @@ pub enum MaterialFailure {
         /// the stress that it is to be compared with [F/L²]
         stress: f64,
     },
-    /// The increment leads out of the range in which the law is accurate.
-    #[error("`{law}`: {quantity} is {value:.3e}, more than {limit}")]
+    /// The increment strains the material further than the law is accurate.
+    #[error("`{law}`: the plastic strain of the increment is {strain:.3e}, too much for one")]
     OutOfRange {
         /// the law
         law: &'static str,
-        /// what is out of range
-        quantity: &'static str,
-        /// its value
-        value: f64,
-        /// the most that it may be
-        limit: f64,
+        /// its largest component [-]
+        strain: f64,
     },
 }
 
