@@ -153,6 +153,141 @@ class Viscoelastic(dict[str, Any]):
         super().__init__({"model": "viscoelastic", **_given({"E": E, "nu": nu, "E_1": E_1, "tau": tau, "density": density})})
 
 
+class BackStress(dict[str, Any]):
+    """A back stress: kinematic hardening, dα = ⅔ C dε_p − γ α dε̄.
+
+    Args:
+        C: C: its modulus in tension at the start, C > 0 [F/L²]
+        gamma: γ: how it forgets, γ ≥ 0: it saturates at C/γ, and grows without end (Prager) where γ = 0 [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        C: float,
+        gamma: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"C": C, "gamma": gamma}))
+
+
+class VonMises(dict[str, Any]):
+    """Von Mises: metals, and clay that is sheared undrained; isotropic and kinematic hardening, large strains.
+
+    Args:
+        E: E: Young's modulus, E > 0 [F/L²]
+        nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
+        sigma_y: σ_y: stress in tension at which it begins to yield, σ_y > 0; of clay that is sheared undrained
+            √3 s_u in plane strain [F/L²]
+        H: H: linear isotropic hardening, H ≥ 0: Y = σ_y + H ε̄ + Q (1 − exp(−b ε̄)) [F/L²]
+        Q: Q: isotropic hardening that saturates (Voce); below 0 the material softens, Q > −σ_y and −Q b < 3 G
+            [F/L²]
+        b: b: how fast it saturates, b > 0 where Q is not 0 [-]
+        back_stresses: Back stresses by Armstrong and Frederick, at most 4; none unless given
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+        viscosity: τ_v: relaxation time of the viscosity by Duvaut and Lions, τ_v ≥ 0; 0 for none [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        sigma_y: float,
+        H: float | Given = NOT_GIVEN,
+        Q: float | Given = NOT_GIVEN,
+        b: float | Given = NOT_GIVEN,
+        back_stresses: Sequence[BackStress] | Given = NOT_GIVEN,
+        density: float | Given = NOT_GIVEN,
+        viscosity: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "von_mises", **_given({"E": E, "nu": nu, "sigma_y": sigma_y, "H": H, "Q": Q, "b": b, "back_stresses": back_stresses, "density": density, "viscosity": viscosity})})
+
+
+class DruckerPrager(dict[str, Any]):
+    """Drucker–Prager: a cone that stands for friction and cohesion of soil, perfectly plastic, large strains.
+
+    Args:
+        E: E: Young's modulus, E > 0 [F/L²]
+        nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
+        c: c: cohesion, c ≥ 0, above 0 where phi is 0 [F/L²]
+        phi: φ: angle of friction, 0 ≤ φ < 90 [degrees]
+        psi: ψ: angle of dilation, 0 ≤ ψ ≤ φ [degrees]
+        matching: Which tests c and φ are those of
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+        tension: Largest mean stress tr τ/3, tension positive; that of the tip of the cone, c cot φ, unless
+            given [F/L²]
+        viscosity: τ_v: relaxation time of the viscosity by Duvaut and Lions, τ_v ≥ 0; 0 for none [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        c: float,
+        phi: float,
+        psi: float,
+        matching: Matching,
+        density: float | Given = NOT_GIVEN,
+        tension: float | None | Given = NOT_GIVEN,
+        viscosity: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "drucker_prager", **_given({"E": E, "nu": nu, "c": c, "phi": phi, "psi": psi, "matching": matching, "density": density, "tension": tension, "viscosity": viscosity})})
+
+
+class Softening(dict[str, Any]):
+    """Softening: c, φ and ψ fall linearly with the plastic shear strain to what is left of them.
+
+    Args:
+        c: c that is left, 0 to c [F/L²]
+        phi: φ that is left, 0 to phi [degrees]
+        psi: ψ that is left, 0 to the smaller of psi and the phi that is left [degrees]
+        strain: Plastic shear strain γ_p = ∫ Σ |dε_p,i| at which nothing else is left, above 0 [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        c: float,
+        phi: float,
+        psi: float,
+        strain: float,
+    ) -> None:
+        super().__init__(_given({"c": c, "phi": phi, "psi": psi, "strain": strain}))
+
+
+class MohrCoulomb(dict[str, Any]):
+    """Mohr–Coulomb: friction, cohesion, dilation and tension cut-off of soil and rock, which may soften; large
+    strains.
+
+    Args:
+        E: E: Young's modulus, E > 0 [F/L²]
+        nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
+        c: c: cohesion, c ≥ 0, above 0 where phi is 0 (Tresca, c = s_u) [F/L²]
+        phi: φ: angle of friction, 0 ≤ φ < 90 [degrees]
+        psi: ψ: angle of dilation, 0 ≤ ψ ≤ φ [degrees]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+        softening: How it softens; c, phi and psi stay as they are unless given
+        tension: Largest principal stress, tension positive; that of the tip, c cot φ, unless given [F/L²]
+        viscosity: τ_v: relaxation time of the viscosity by Duvaut and Lions, τ_v ≥ 0; 0 for none [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        c: float,
+        phi: float,
+        psi: float,
+        density: float | Given = NOT_GIVEN,
+        softening: Softening | None | Given = NOT_GIVEN,
+        tension: float | None | Given = NOT_GIVEN,
+        viscosity: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "mohr_coulomb", **_given({"E": E, "nu": nu, "c": c, "phi": phi, "psi": psi, "density": density, "softening": softening, "tension": tension, "viscosity": viscosity})})
+
+
 class Damping(dict[str, Any]):
     """Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
 
@@ -1263,7 +1398,10 @@ class Until(dict[str, Any]):
 
 
 # A bulk material: its law and its constants.
-Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic]
+Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic, VonMises, DruckerPrager, MohrCoulomb]
+
+# How the cone is fitted to Mohr and Coulomb's hexagon.
+Matching = Union[Literal["plane_strain"], Literal["compression"]]
 
 # How the elements of a body are integrated.
 Formulation = Union[Literal["displacement"], Literal["f_bar"], Literal["reduced"]]

@@ -40,7 +40,7 @@ pub enum Error {
         /// time reached
         time: f64,
         /// why
-        cause: IncrementFailure,
+        cause: Box<IncrementFailure>,
     },
     /// The reaction that ends a step did not reach its value.
     #[error(
@@ -99,8 +99,7 @@ impl Error {
     /// Why the last increment failed, if the run stopped for that.
     pub fn cause(&self) -> Option<&IncrementFailure> {
         match self {
-            Self::IncrementTooSmall { cause, .. } => Some(cause),
-            Self::Unsolvable { cause, .. } => Some(cause),
+            Self::IncrementTooSmall { cause, .. } | Self::Unsolvable { cause, .. } => Some(cause),
             _ => None,
         }
     }

@@ -260,7 +260,7 @@ impl Simulation {
     }
 
     pub(super) fn unsolvable(&self, cause: IncrementFailure) -> Error {
-        Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause }
+        Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause: Box::new(cause) }
     }
 
     /// The present step: explicit while a contact slips fast.

@@ -174,6 +174,8 @@ fn cases() -> Vec<(&'static str, Value)> {
     ring["section"] = json!("axisymmetric");
     ring["bodies"]["block"]["material"] =
         json!({"model": "viscoelastic", "E": 1000, "nu": 0.3, "E_1": 500, "tau": 1, "density": 1e-9});
+    ring["bodies"]["ground"]["material"] =
+        json!({"model": "von_mises", "E": 1000, "nu": 0.3, "sigma_y": 1, "back_stresses": [{"C": 100, "gamma": 20}]});
     let mut wet = plain.clone();
     let contact = &mut wet["contacts"]["base"];
     contact["friction"] = json!({"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-6, "a": 0.01, "b": 0.015, "D_c": 1e-3});

@@ -207,8 +207,8 @@ fn isochoric_flow_keeps_the_volume() {
             let Some(old) = followed(&*law, &walk(&mut random, 6, 0.04)) else { continue };
             let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| old[k]);
             let volume = ((1.0 + xx) * (1.0 + yy) - xy * xy) * (1.0 + zz) - 1.0;
-            (most, flowed) = (most.max(volume.abs()), flowed.max(old[5]));
-            close(name, old[6], -0.5 * volume.ln_1p(), 1e-12);
+            (most, flowed) = (most.max(volume.abs()), flowed.max(old[9]));
+            close(name, old[10], -0.5 * volume.ln_1p(), 1e-12);
         }
         assert!(flowed > 0.02, "{name}");
         assert_eq!(isochoric, most < 1e-13, "{name}: {most}");
@@ -254,12 +254,12 @@ fn increments_converge_at_first_order() {
 #[test]
 fn energy_is_balanced() {
     for (name, law) in laws().into_iter().filter(|(name, _)| !name.starts_with("viscous")) {
-        let [coarse, fine] = [1000, 10_000].map(|parts| {
+        let [coarse, fine] = [100, 1000].map(|parts| {
             let (_, [stored, dissipated, work]) = driven(&*law, winding, parts);
             assert!(dissipated > 0.01 * work, "{name}: {dissipated} of {work}");
             (work - stored - dissipated).abs() / work
         });
-        assert!(coarse < 1e-3 && fine < 0.15 * coarse + 1e-9, "{name}: {coarse} {fine}");
+        assert!(coarse < 3e-3 && fine < 0.02 * coarse + 1e-9, "{name}: {coarse} {fine}");
     }
 }
 
@@ -312,7 +312,7 @@ fn a_bar_hardens_as_its_curve_says() {
         let strength = SIGMA_Y + 3.0 * equivalent + 0.2 * (1.0 - (-30.0 * equivalent).exp());
         let mut bar = Bar::new(&*law);
         close("τ", bar.pull(strength / E + equivalent), strength, 1e-12);
-        close("ε̄", bar.old[5], equivalent, 1e-13);
+        close("ε̄", bar.old[9], equivalent, 1e-13);
     }
 }
 

@@ -28,3 +28,4 @@ mod simulation;
 mod spinning;
 mod terms;
 mod turning;
+mod yielding;

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::table::{Pack, Packed};
 use crate::laws::bulk::principal_values;
+use crate::output::quantities::OF_YIELDING;
 use crate::output::results::{Array, Frame, Grid, frames};
 use crate::output::store::STORE;
 use crate::output::store::read::StoredContact;
@@ -233,7 +234,8 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
 /// What of a grid is no number. A further field that some laws do not have is none there, and nothing is wrong.
 fn not_numbers(grid: &Grid) -> impl Iterator<Item = String> {
     let bad = |array: &&Array| array.values.iter().filter(|value| !value.is_finite()).count();
-    let arrays = grid.at_points.iter().map(move |array| (array, bad(&array)));
+    let of_all = |array: &&Array| OF_YIELDING.iter().all(|quantity| quantity.name != array.name);
+    let arrays = grid.at_points.iter().filter(of_all).map(move |array| (array, bad(&array)));
     let some = arrays.filter(|(array, bad)| *bad > 0 && (*bad < array.values.len() || array.name == DISPLACEMENT));
     some.map(|(array, bad)| format!("{bad} values of {} are not numbers", array.name))
 }

@@ -1,4 +1,4 @@
-//! From F to principal trial strains, and from what a law answers there back to P, ∂P/∂F and C_p⁻¹: (1), (3) and (5) of
+//! From F to principal trial strains, and from what a law answers there back to P, ∂P/∂F and C_p⁻¹: (1), (3) and (6) of
 //! [`Elastoplastic`](super::Elastoplastic).
 
 use nalgebra::{Matrix2, Matrix4, Matrix5, Vector3, Vector4, Vector5};
@@ -76,7 +76,7 @@ impl Axes {
         state[3] += b.z * (-2.0 * plastic[2]).exp_m1() / (stretch * stretch);
     }
 
-    /// P and ∂P/∂F of a stress and tangent in the axes, see (5); with the spin of tensors of the history.
+    /// P and ∂P/∂F of a stress and tangent in the axes, see (6); with the spin of tensors of the history.
     pub fn first_piola_kirchhoff(&self, found: &Returned, spins: bool) -> (Vector5<f64>, Matrix5<f64>) {
         let [t11, t22, t33, t12]: [f64; 4] = found.stress.into();
         let to_plane = self.to_plane();

@@ -177,7 +177,6 @@ impl ReturnMap for DruckerPrager {
         };
         answer.stress = left * s + mean * ONE;
         answer.plastic = in_axes(trial) - elastic.strain(&answer.stress);
-        answer.dissipation = double_dot(&answer.stress, &answer.plastic);
         Ok(answer)
     }
 

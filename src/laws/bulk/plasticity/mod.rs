@@ -39,19 +39,12 @@ pub struct Returned {
     pub tangent: Matrix4<f64>,
     /// Δε_p: plastic strain of the increment [-]
     pub plastic: Vector4<f64>,
-    /// Energy dissipated in the increment per reference volume [F/L²]
-    pub dissipation: f64,
 }
 
 impl Returned {
     /// No yielding: τ = C:ε.
     pub fn elastic(elastic: Lame, trial: &Vector3<f64>) -> Self {
-        Self {
-            stress: elastic.kirchhoff(&in_axes(trial)),
-            tangent: elastic.stiffness(),
-            plastic: Vector4::zeros(),
-            dissipation: 0.0,
-        }
+        Self { stress: elastic.kirchhoff(&in_axes(trial)), tangent: elastic.stiffness(), plastic: Vector4::zeros() }
     }
 }
 
@@ -106,7 +99,7 @@ impl Lame {
 /// A law that yields, at small strains: a pure function of trial strains and history.
 ///
 /// ```text
-/// (τ, D, Δε_p, history₁, dissipation) = law(ε_trial; history₀)
+/// (τ, D, Δε_p, history₁) = law(ε_trial; history₀)
 /// ```
 /// The trial strains are principal ones, so the law is isotropic. Its history begins with the equivalent plastic strain ε̄_p and the
 /// plastic volume strain, which [`Elastoplastic`] adds up, then come its own numbers, then [`tensors`](Self::tensors) in the axes of the
@@ -170,12 +163,14 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
 /// τ, D, Δε_p = law(ε_i; history),   ε_e = ε − Δε_p                                                                  (2)
 /// C_p⁻¹ ← F⁻¹ exp(2 ε_e) F⁻ᵀ,   P = τ F⁻ᵀ                               the exponential map                         (3)
 /// W = λ/2 (tr ε_e)² + G ε_e:ε_e + what the history stores, less that at the start                                   (4)
+/// dissipation = ½ (τ_y + τ₁):Δε_p − Δ(what the history stores)                                                      (5)
 /// ```
-/// with F_p of C_p⁻¹ = F_p⁻¹ F_p⁻ᵀ, so that F at the end of the increment alone is needed. Plastic volume is exact: tr Δε_p = 0 keeps
+/// τ_y is where the way from the committed stress to the trial stress meets the yield surface, so (5) is of second order in the increment,
+/// as the audit of energies is./// with F_p of C_p⁻¹ = F_p⁻¹ F_p⁻ᵀ, so that F at the end of the increment alone is needed. Plastic volume is exact: tr Δε_p = 0 keeps
 /// det C_p. The tangent is that of (1) to (3), l = dF F⁻¹ in the axes m:
 ///
 /// ```text
-/// dε_ii = l_ii,   dε₁₂ = (ε₁ − ε₂)/(b₁ − b₂) (b₂ l₁₂ + b₁ l₂₁),   dτ = D:dε,   dP = (dτ − τ lᵀ) F⁻ᵀ                  (5)
+/// dε_ii = l_ii,   dε₁₂ = (ε₁ − ε₂)/(b₁ − b₂) (b₂ l₁₂ + b₁ l₂₁),   dτ = D:dε,   dP = (dτ − τ lᵀ) F⁻ᵀ                  (6)
 /// ```
 /// Tensors of the history do not share the axes of b. They are kept unrotated, α = R α̂ Rᵀ with F = R U, which is objective and does
 /// not oscillate in large shear; dτ then follows the spin of R, dτ − [Ω, τ] = D:(dε − [Ω, ε]), Ω = dR Rᵀ.
@@ -199,13 +194,17 @@ pub struct Elastoplastic<L> {
     names: Vec<&'static str>,
 }
 
-/// C_p⁻¹ − 1, what was stored at the start, and what every law has in its history.
-const STATE: [&str; 7] = [
+/// C_p⁻¹ − 1, what was stored at the start, the unrotated stress, and what every law has in its history.
+const STATE: [&str; 11] = [
     "plastic_xx",
     "plastic_yy",
     "plastic_xy",
     "plastic_zz",
     "energy_at_start",
+    "tau_xx",
+    "tau_yy",
+    "tau_zz",
+    "tau_xy",
     "equivalent_plastic_strain",
     "plastic_volume_strain",
 ];
@@ -213,8 +212,11 @@ const STATE: [&str; 7] = [
 /// Place of W at the start among the variables.
 const AT_START: usize = 4;
 
+/// Place of the unrotated stress.
+const STRESS: usize = 5;
+
 /// Place of the law's history.
-const HISTORY: usize = 5;
+const HISTORY: usize = 9;
 
 /// What every law shows.
 const SHOWN: [&str; 3] = ["equivalent_plastic_strain", "plastic_volume_strain", "yield_indicator"];
@@ -240,31 +242,63 @@ impl<L: ReturnMap> Elastoplastic<L> {
         Ok(Self { law, density, viscosity, names })
     }
 
-    /// Trial strains in the axes of b, the law's answer at the end of the increment and its history there, unrotated.
-    fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned), MaterialFailure> {
+    /// The axes of b, the law's answer there at the end of the increment, and what was dissipated.
+    fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned, f64), MaterialFailure> {
         let Straining { deformation, stretch, dt, old } = *straining;
         positive_stretch(straining)?;
         positive_jacobian(&deformation)?;
         let axes = Axes::of(&deformation, stretch, old)?;
         new.copy_from_slice(old);
         let history = &mut new[HISTORY..];
-        let first = history.len() - 4 * self.law.tensors();
-        history[first..].chunks_exact_mut(4).for_each(|tensor| axes.enter(tensor));
+        self.tensors(history).for_each(|tensor| axes.enter(tensor));
         let mut found = self.law.returned(&axes.strains, history)?;
         let largest = found.plastic.amax();
-        if !(largest <= LARGEST) {
+        if largest.is_nan() || largest > LARGEST {
             let (law, quantity) = (self.law.name(), "plastic strain of an increment");
             return Err(MaterialFailure::OutOfRange { law, quantity, value: largest, limit: LARGEST });
         }
-        history[first..].chunks_exact_mut(4).for_each(|tensor| axes.leave(tensor));
+        self.tensors(history).for_each(|tensor| axes.leave(tensor));
         if self.viscosity > 0.0 {
             self.lag(dt, &axes, &old[HISTORY..], history, &mut found);
         }
         let (deviator, volume) = deviator(&found.plastic);
         history[0] = old[HISTORY] + (2.0 / 3.0 * double_dot(&deviator, &deviator)).sqrt();
         history[1] = old[HISTORY + 1] + volume;
+        let dissipated = self.dissipated(&axes, old, &found, &new[HISTORY..]);
+        let unrotated = &mut new[STRESS..HISTORY];
+        unrotated.copy_from_slice(found.stress.as_slice());
+        axes.leave(unrotated);
         axes.flow(&found.plastic, stretch, new);
-        Ok((axes, found))
+        Ok((axes, found, dissipated))
+    }
+
+    /// The tensors of a history.
+    fn tensors<'a>(&self, history: &'a mut [f64]) -> impl Iterator<Item = &'a mut [f64]> + use<'a, L> {
+        let first = history.len() - 4 * self.law.tensors();
+        history[first..].chunks_exact_mut(4)
+    }
+
+    /// A committed history in the axes.
+    fn history_in(&self, axes: &Axes, variables: &[f64]) -> Vec<f64> {
+        let mut history = variables[HISTORY..].to_vec();
+        self.tensors(&mut history).for_each(|tensor| axes.enter(tensor));
+        history
+    }
+
+    /// (5), with the history at the end of the increment.
+    fn dissipated(&self, axes: &Axes, old: &[f64], found: &Returned, history: &[f64]) -> f64 {
+        if found.plastic == Vector4::zeros() {
+            return 0.0;
+        }
+        let mut before = [0, 1, 2, 3].map(|k| old[STRESS + k]);
+        axes.enter(&mut before);
+        let (before, committed) = (Vector4::from(before), self.history_in(axes, old));
+        let trial = self.law.elastic().kirchhoff(&in_axes(&axes.strains));
+        let [from, to] = [&before, &trial].map(|stress| self.law.yield_indicator(stress, &committed));
+        let share = if to > from { (-from / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+        let met = before + share * (trial - before);
+        let stored = self.law.stored(history) - self.law.stored(&old[HISTORY..]);
+        0.5 * double_dot(&(met + found.stress), &found.plastic) - stored
     }
 
     /// Let an answer lag behind, by the law of Duvaut and Lions.
@@ -277,8 +311,6 @@ impl<L: ReturnMap> Elastoplastic<L> {
         found.plastic *= share;
         found.stress = elastic.kirchhoff(&(in_axes(&axes.strains) - found.plastic));
         found.tangent = (1.0 - share) * elastic.stiffness() + share * found.tangent;
-        let stored = self.law.stored(history) - self.law.stored(old);
-        found.dissipation = double_dot(&found.stress, &found.plastic) - stored;
     }
 
     /// Elastic energy and that of the history.
@@ -289,19 +321,17 @@ impl<L: ReturnMap> Elastoplastic<L> {
     /// f where the law remembers `straining.old`.
     fn indicator(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
         let axes = Axes::of(&straining.deformation, straining.stretch, straining.old)?;
-        let mut history = straining.old[HISTORY..].to_vec();
-        let first = history.len() - 4 * self.law.tensors();
-        history[first..].chunks_exact_mut(4).for_each(|tensor| axes.enter(tensor));
+        let history = self.history_in(&axes, straining.old);
         Ok(self.law.yield_indicator(&self.law.elastic().kirchhoff(&in_axes(&axes.strains)), &history))
     }
 }
 
 impl<L: ReturnMap> Spatial for Elastoplastic<L> {
     fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
-        let (axes, found) = self.answer(straining, new)?;
+        let (axes, found, dissipation) = self.answer(straining, new)?;
         let (stress, tangent) = axes.first_piola_kirchhoff(&found, self.law.tensors() > 0);
         let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - straining.old[AT_START];
-        Ok(Stretched { stress, tangent, energy, dissipation: found.dissipation })
+        Ok(Stretched { stress, tangent, energy, dissipation })
     }
 
     /// That which leaves a plate without out-of-plane stress if it does not yield in the increment.
@@ -377,6 +407,8 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
         let [xx, yy, zz, xy] = axes::exponential_less_one(&(2.0 * strain)).into();
         variables[..AT_START].copy_from_slice(&[xx, yy, xy, zz]);
         variables[AT_START] = self.stored(&strain, variables);
+        let CauchyStress { xx, yy, zz, xy } = *stress;
+        variables[STRESS..HISTORY].copy_from_slice(&[xx, yy, zz, xy]);
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {

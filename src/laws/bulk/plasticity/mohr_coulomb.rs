@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::drucker_prager::{FLOOR, check_strength};
-use super::{Elastoplastic, ROUND_OFF, ReturnMap, Returned, double_dot, in_axes};
+use super::{Elastoplastic, ROUND_OFF, ReturnMap, Returned, in_axes};
 use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
@@ -436,7 +436,6 @@ impl ReturnMap for MohrCoulomb {
         };
         answer.tangent = tangent;
         answer.plastic = in_axes(trial) - self.elastic.strain(&answer.stress);
-        answer.dissipation = double_dot(&answer.stress, &answer.plastic);
         if let Some(own) = history.get_mut(OWN) {
             *own = slip;
         }

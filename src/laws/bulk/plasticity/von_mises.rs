@@ -66,7 +66,7 @@ impl VonMisesParameters {
 /// f = q − Y(ε̄) ≤ 0,   q = √(3/2) ‖s − α‖,   Y = σ_y + H ε̄ + Q (1 − e^(−b ε̄))                                (1)
 /// dε_p = N dε̄,   N = (3/2)(s − α)/q                                                associated, isochoric     (2)
 /// α = Σ α_k,   dα_k = ⅔ C_k dε_p − γ_k α_k dε̄                                      Armstrong & Frederick     (3)
-/// dissipation = Y dε̄ + Σ 3γ_k/(2C_k) α_k:α_k dε̄,   stored Σ 3/(4C_k) α_k:α_k                                (4)
+/// stored Σ 3/(4C_k) α_k:α_k,   dissipation = Y dε̄ + Σ 3γ_k/(2C_k) α_k:α_k dε̄                                (4)
 /// ```
 /// s is the deviator of τ. What isotropic hardening takes counts as dissipated.
 ///
@@ -154,15 +154,6 @@ impl VonMises {
             self.strength + self.hardening * equivalent + self.saturation * rest,
             self.hardening + self.saturation * self.b * decay,
         ]
-    }
-
-    /// ∫ Y dε̄ over an increment.
-    fn work(&self, before: f64, slip: f64) -> f64 {
-        let linear = (self.strength + self.saturation) * slip + self.hardening * slip * (before + 0.5 * slip);
-        match self.saturation == 0.0 {
-            true => linear,
-            false => linear + self.saturation * (-self.b * before).exp() * (-self.b * slip).exp_m1() / self.b,
-        }
     }
 
     /// ζ and its change with Δε̄, Σ θ_k C_k and its derivative of Δε̄ Σ θ_k C_k.
@@ -278,12 +269,9 @@ impl ReturnMap for VonMises {
             + 2.0 * shear * left * deviatoric()
             + 2.0 * shear * slip / q * normal * along.transpose()
             - 2.0 * shear * of_slip * rate.transpose();
-        answer.dissipation = self.work(before, slip);
         for (own, back) in self.back.iter().zip(history[TENSORS..].chunks_exact_mut(4)) {
             let old = Vector4::from_column_slice(back);
             let new = (old + 2.0 / 3.0 * own.modulus * slip * normal) / (1.0 + own.gamma * slip);
-            let squares = double_dot(&old, &old) + double_dot(&new, &new);
-            answer.dissipation += 0.75 * own.gamma / own.modulus * squares * slip;
             back.copy_from_slice(new.as_slice());
         }
         Ok(answer)
