@@ -39,8 +39,8 @@ pub enum Error {
         step: String,
         /// time reached
         time: f64,
-        /// cause of the failure
-        cause: IncrementFailure,
+        /// why
+        cause: Box<IncrementFailure>,
     },
     /// The reaction that ends a step did not reach its target value.
     #[error(
@@ -99,8 +99,7 @@ impl Error {
     /// Cause of the failure of the last increment, if it stopped the run.
     pub fn cause(&self) -> Option<&IncrementFailure> {
         match self {
-            Self::IncrementTooSmall { cause, .. } => Some(cause),
-            Self::Unsolvable { cause, .. } => Some(cause),
+            Self::IncrementTooSmall { cause, .. } | Self::Unsolvable { cause, .. } => Some(cause),
             _ => None,
         }
     }

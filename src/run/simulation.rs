@@ -264,7 +264,7 @@ impl Simulation {
     }
 
     pub(super) fn unsolvable(&self, cause: IncrementFailure) -> Error {
-        Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause }
+        Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause: Box::new(cause) }
     }
 
     /// Step of the current phase: explicit while a contact slips fast.
