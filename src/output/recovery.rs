@@ -13,7 +13,8 @@
 //!
 //! A linear field is met exactly, a smooth one at a surface to the third order in the size of the elements. Where the samples do not tell
 //! a term, it is left out, the shorter direction of the patch first: σ(X₀) is a weighted sum of samples, and the magnitudes of these
-//! weights may add up to [`AMPLIFIED`] at most. A body of one layer has its values at all quadrature points fitted by a linear field instead: bending
+//! weights may add up to [`AMPLIFIED`] at most. A patch that extends alike in all directions has no shorter one, and takes or leaves all terms of a
+//! degree: which of them round-off would leave depends on how the body lies. A body of one layer has its values at all quadrature points fitted by a linear field instead: bending
 //! is seen.
 //!
 //! Nodes that bodies share have the mean of the values of the bodies.
@@ -298,7 +299,8 @@ impl Fit {
         if size == 0.0 {
             return Self { weights: vec![1.0 / arms.len() as f64; arms.len()], terms: 0, amplified: 1.0 };
         }
-        let turned = long_axis(&arms).inverse();
+        let (turned, is_long) = long_axis(&arms);
+        let turned = turned.inverse();
         let own: Vec<Vector2<f64>> = arms.iter().map(|arm| turned * arm / size).collect();
         let near = |x: &Vector2<f64>| match nearness {
             Nearness::Counts => 1.0 / x.norm_squared().max(NEAREST * NEAREST),
@@ -325,6 +327,10 @@ impl Fit {
             let share = -dot(&column, &rest);
             combine(&mut rest, share, &column);
             directions.push(column);
+            // Degrees end with the second and the fifth term.
+            if !is_long && ![1, 4].contains(&k) {
+                continue;
+            }
             let weights = projection(&near, &rest);
             let amplified: f64 = weights.iter().map(|weight| weight.abs()).sum();
             if amplified.is_nan() || amplified > AMPLIFIED {
@@ -342,8 +348,11 @@ fn projection(near: &[f64], rest: &[f64]) -> Vec<f64> {
     near.iter().zip(rest).map(|(near, rest)| near * rest / square).collect()
 }
 
-/// The rotation from the x axis to the direction in which places extend farthest.
-fn long_axis(arms: &[Vector2<f64>]) -> Rotation2<f64> {
+/// Difference of the two extents of a patch, as a share of their sum, below which round-off would choose between them.
+const ALIKE: f64 = 1e-6;
+
+/// The rotation from the x axis to the direction in which places extend farthest, and whether there is one.
+fn long_axis(arms: &[Vector2<f64>]) -> (Rotation2<f64>, bool) {
     let mean = arms.iter().sum::<Vector2<f64>>() / arms.len() as f64;
     let [mut xx, mut yy, mut xy] = [0.0; 3];
     for arm in arms {
@@ -352,7 +361,8 @@ fn long_axis(arms: &[Vector2<f64>]) -> Rotation2<f64> {
         yy += from_mean.y * from_mean.y;
         xy += from_mean.x * from_mean.y;
     }
-    Rotation2::new(0.5 * f64::atan2(2.0 * xy, xx - yy))
+    let is_long = f64::hypot(xx - yy, 2.0 * xy) > ALIKE * (xx + yy);
+    (Rotation2::new(0.5 * f64::atan2(2.0 * xy, xx - yy)), is_long)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -11,7 +11,20 @@ use crate::model::{Ways, case as written};
 /// Keys that no drawn model has, and why.
 const ELSEWHERE: &[(&[&str], &str)] = &[
     (
-        &["title", "units", "every", "exact", "derived", "fields", "report", "checkpoint", "points", "fronts", "arrival", "R"],
+        &[
+            "title",
+            "units",
+            "every",
+            "exact",
+            "derived",
+            "fields",
+            "report",
+            "checkpoint",
+            "points",
+            "fronts",
+            "arrival",
+            "R",
+        ],
         "what is written, not what is computed: tests/command",
     ),
     (
