@@ -34,7 +34,7 @@ fn block(soft: bool, contact: Contact) -> Builder {
 }
 
 fn on(master: MasterSide) -> Contact {
-    Contact::new("base", "block_bottom", master, CoulombParameters::new(MU))
+    Contact::new("base", "block_bottom", master, CoulombParameters::new(MU).alpha_t(1.5e3))
 }
 
 /// An indenter from below, its top at the origin.

@@ -74,7 +74,8 @@ fn uniform_pressure_passes_through_rings_and_plates() {
         ] {
             let run = cylinders(&section, n, &json!({"method": method, "sliding": sliding}), sigma, "linear", refined);
             let [force, stress] = errors_of_patch(&run, sigma, area);
-            if force > 1e-9 || stress > 1e-10 {
+            // The force by the tolerance of Newton's method, the stress by round-off.
+            if force > 1e-8 || stress > 1e-10 {
                 failed.push(format!("{section} {n:?} {method} {sliding}: force {force:.1e}, stress {stress:.1e}"));
             }
         }

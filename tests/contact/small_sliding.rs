@@ -35,6 +35,7 @@ fn blocks(n: [usize; 2], slope: f64, contact: &Value, steps: Value) -> Value {
     let mut contact = contact.clone();
     contact["slave"] = json!("upper_bottom");
     contact["master"] = json!("lower_top");
+    contact["normal"] = json!({"alpha_n": 1e5});
     json!({
         "mesh": Blocks::default()
             .block("lower", [n[0], 4], |s, t| [s, t * interface(s)])
@@ -421,9 +422,9 @@ fn a_circle_is_its_tangent() {
 ///
 /// | bottom, method | slip/edge | pressures | force | displacements |
 /// |---|---|---|---|---|
-/// | flat, mortar | 0.10 | 3.9 % | 0.4 % | 0.6 % |
-/// | flat, at nodes | 0.10 | 3.9 % | 1.0 % | 0.8 % |
-/// | round, mortar | 0.12 | 13 % | 0.3 % | 0.6 % |
+/// | flat, mortar | 0.10 | 4.1 % | 0.4 % | 0.6 % |
+/// | flat, at nodes | 0.10 | 4.0 % | 1.0 % | 0.8 % |
+/// | round, mortar | 0.12 | 14 % | 0.3 % | 0.6 % |
 /// | round, at nodes | 0.13 | 2.3 % | 0.0 % | 0.6 % |
 #[test]
 fn a_tenth_of_an_edge_is_little() {
@@ -464,6 +465,6 @@ fn a_tenth_of_an_edge_is_little() {
         ];
         println!("{round} {method}: slip/edge {slip:.3}, {found:.4?}");
         assert!((0.09..0.14).contains(&slip), "{slip}");
-        assert!(found[0] < 0.14 && found[1] < 0.011 && found[2] < 0.009, "{found:?}");
+        assert!(found[0] < 0.15 && found[1] < 0.011 && found[2] < 0.009, "{found:?}");
     }
 }

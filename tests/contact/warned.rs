@@ -23,7 +23,7 @@ fn moved(master: &Value, [x, y]: [f64; 2]) -> Value {
         "mesh": {"blocks": [{"body": "block", "corners": [[0, 0], [4, 0], [4, 2], [0, 2]], "elements": [8, 4],
                              "sides": ["bottom", "right", "top", "left"]}]},
         "bodies": {"block": {"material": {"model": "linear", "E": E, "nu": NU}}},
-        "contacts": {"base": {"slave": "bottom", "master": master, "normal": {"alpha_n": 1e4}, "friction": {"law": "coulomb", "mu": 0.3}}},
+        "contacts": {"base": {"slave": "bottom", "master": master, "normal": {"alpha_n": 1e6}, "friction": {"law": "coulomb", "mu": 0.3}}},
         "steps": [{"name": "move", "duration": 1, "scheme": "static", "dt": {"initial": 0.1},
                    "supports": [{"on": "top", "ux": x, "uy": y}]}]
     })
@@ -78,4 +78,39 @@ fn edges_longer_than_the_process_zone_are_told() {
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].contains("the edge of 5.00") && told[0].contains("= 4.900e-1"), "{told:?}");
     assert_eq!(sheared(1.02 * critical), Vec::<String>::new());
+}
+
+/// Bilinear elements with corners of 30° beside the fault of a cycle are told, those of 60° are not, nor quadratic ones, nor the same in
+/// a static step.
+#[test]
+fn sheared_linear_elements_beside_a_fault_are_told() {
+    let told = |degrees: f64, refined: bool, scheme: Value| {
+        let lean = 1.0 / f64::to_radians(degrees).tan();
+        let mesh = common::Blocks::default()
+            .block("lower", [6, 2], |s, t| [6.0 * s + lean * (t - 1.0), t - 1.0])
+            .block("upper", [6, 2], |s, t| [6.0 * s + lean * t, t])
+            .json();
+        let mesh = if refined { common::quadratic(&mesh, common::half_way) } else { mesh };
+        let body = json!({"material": {"model": "linear", "E": 200, "nu": 0.25, "density": 1e-6}});
+        let model = common::model(&json!({
+            "mesh": mesh, "bodies": {"lower": body, "upper": body},
+            "contacts": {"fault": {
+                "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small", "radiation_damping": 0.02,
+                "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.01, "b": 0.016, "D_c": 2e-3, "theta": 20},
+                "initial": {"pressure": 2, "traction": 1.1, "balanced": true}}},
+            "steps": [{"name": "shear", "duration": 1, "scheme": scheme, "dt": {"initial": 1e-3}, "supports": [
+                {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": {"rate": 1e-3}, "uy": 0}]}],
+        }));
+        model.warnings()
+    };
+    let cycles = || json!({"quasi_dynamic": {}});
+    let sharp = told(30.0, false, cycles());
+    assert!(
+        sharp.len() == 1 && sharp[0].contains("contact `fault`: bilinear elements beside it have corners of 30°"),
+        "{sharp:?}"
+    );
+    for (degrees, refined, scheme) in [(60.0, false, cycles()), (30.0, true, cycles()), (30.0, false, json!("static"))]
+    {
+        assert_eq!(told(degrees, refined, scheme), Vec::<String>::new(), "{degrees}");
+    }
 }

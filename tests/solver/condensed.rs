@@ -127,7 +127,7 @@ fn dragged(contact: Value, step: Value) -> Value {
     );
     let material = json!({"model": "linear", "E": 100, "nu": 0.3, "density": 1e-2});
     let mut base = json!({
-        "slave": "block_bottom", "master": "ground_top",
+        "slave": "block_bottom", "master": "ground_top", "method": "gauss_to_segment", "normal": {"alpha_n": 13462},
         "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e3, "r": 100, "kappa": 10, "xi": 0.002,
             "m": 1, "n": 1, "structure": 2.0},
     });

@@ -25,7 +25,7 @@ fn dragged(method: &str, dt: f64, max_iterations: usize) -> Value {
             "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
             "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
         },
-        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "friction":
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "normal": {"alpha_n": 67308}, "friction":
             {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 200, "kappa": 5, "xi": 0.02, "structure": 1.5}}},
         "newton": {"max_iterations": max_iterations},
         "steps": [

@@ -84,6 +84,7 @@ fn foam(steel: Option<f64>, tolerance: f64, scale: f64) -> Finished {
     let settings = IncrementSettings { max: Some(0.1), ..IncrementSettings::from(0.1) };
     let drag = LoadStep::new("drag", 1.0).dt(settings).support(Support::on("foam_top").ux(2e-2 * scale));
     let contact = Contact::new("base", "foam_bottom", "ground_top", CoulombParameters::new(0.3));
+    let contact = contact.method(Method::GaussToSegment).alpha_n(4.487);
     run_through(model.contact(contact).newton(solved_to(tolerance)).step(press).step(drag))
 }
 
