@@ -471,7 +471,7 @@ fn what_fails_before_a_solve_is_told_as_well() {
             "edges": {"bottom": [[0, 1]], "top": [[2, 3]]}},
         "bodies": {"sled": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}},
         "contacts": {"base": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
-            "friction": {"law": "coulomb", "mu": 0.4}}},
+            "normal": {"alpha_n": 13462}, "friction": {"law": "coulomb", "mu": 0.4}}},
         "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1, "min": 0.01},
             "supports": [{"on": "top", "ux": 0, "uy": -1.5}]}],
         "output": {"fields": false}

@@ -155,7 +155,7 @@ fn what_slides_is_as_before() {
                                   "friction": {"law": "coulomb", "mu": 0.3}}},
             "newton": {"tolerance": 1e-11},
             "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "block_top", "ux": 0, "uy": -0.01}]},
-                      {"name": "there", "duration": 1, "dt": {"initial": 0.25}, "supports": [{"on": "block_top", "ux": 0.1}]},
+                      {"name": "there", "duration": 1, "dt": {"initial": 0.02}, "supports": [{"on": "block_top", "ux": 0.1}]},
                       {"name": "back", "duration": 1, "supports": [{"on": "block_top", "ux": 0}]}]
         }))
     };

@@ -149,7 +149,7 @@ fn a_tool_that_turns_is_a_block_that_turns() {
         let what = format!("{:?}, {method:?}", shape());
         // Both begin with a press, and turn then.
         let press = || LoadStep::new("press", 1.0).dt(0.25);
-        let turn = || LoadStep::new("turn", 1.0).dt(0.0625);
+        let turn = || LoadStep::new("turn", 1.0).dt(0.03125);
         let down = || Support::on("block_top").ux(0.0).uy(-0.03);
         let resting = run_through(
             block(true, contact())

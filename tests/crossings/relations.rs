@@ -437,8 +437,9 @@ fn body_in_two(base: &Base) -> Outcome {
     if is_stabilized(base) || base.draft.is("tractions", "of_bodies") {
         return Outcome::Idle;
     }
-    // Stresses are recovered body by body, each from its own elements.
-    let recovered = |column: &str| column.starts_with("in_block.") && column.contains("stress");
+    // Stresses and strains are recovered body by body, each from its own elements.
+    let recovered =
+        |column: &str| column.starts_with("in_block.") && (column.contains("stress") || column.contains("strain"));
     let of_block = |column: &str| column.starts_with("block.") || column.starts_with("half.") || recovered(column);
     base.same(Ways { block_in_two: true, ..base.ways.clone() }, SAME, &of_block)
 }
