@@ -141,7 +141,7 @@ fn contributions_say_whether_they_are_symmetric() {
         block().plate_moving("upper_top", Plate::Rigid).step(step().load(Load::spring("upper_right", [5.0, 5.0])));
     check("rigid plate", Term::Solids, rigid, false);
     check("periodic", Term::Solids, block().periodic("lower_left", "lower_right").step(held()), false);
-    let moving = block().periodic("upper_left", "upper_right").step(dynamic().fix("upper_top"));
+    let moving = block().periodic("lower_left", "lower_right").step(dynamic().fix("upper_top"));
     check("periodic in motion", Term::Inertia, moving, false);
 }
 
