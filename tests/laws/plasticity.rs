@@ -324,7 +324,7 @@ fn a_back_stress_saturates_and_loops() {
         with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y, "back_stresses": [{"C": c, "gamma": gamma}]}));
     let (mut bar, parts) = (Bar::new(&*law), 400);
     let plastic = 0.03;
-    let closed = c / gamma * (1.0 - (-gamma * plastic as f64).exp());
+    let closed = c / gamma * (1.0 - f64::exp(-gamma * plastic));
     let strain = (SIGMA_Y + closed) / E + plastic;
     let mut stress = 0.0;
     (1..=parts).for_each(|k| stress = bar.pull(strain * f64::from(k) / f64::from(parts)));
