@@ -324,7 +324,7 @@ fn a_back_stress_saturates_and_loops() {
         with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y, "back_stresses": [{"C": c, "gamma": gamma}]}));
     let (mut bar, parts) = (Bar::new(&*law), 400);
     let plastic = 0.03;
-    let closed = c / gamma * (1.0 - (-gamma * plastic as f64).exp());
+    let closed = c / gamma * (1.0 - f64::exp(-gamma * plastic));
     let strain = (SIGMA_Y + closed) / E + plastic;
     let mut stress = 0.0;
     (1..=parts).for_each(|k| stress = bar.pull(strain * f64::from(k) / f64::from(parts)));
@@ -518,7 +518,7 @@ fn what_cannot_be_answered_is_told() {
     let old = vec![0.0; law.variables().len()];
     let far = stretched(&*law, &Vector5::new(1.0, 0.0, 2.0, 1.0, 1.0), &old).expect_err("too far");
     assert!(matches!(far, MaterialFailure::OutOfRange { law: "von_mises", .. }), "{far}");
-    assert!(far.to_string().contains("plastic strain of an increment"), "{far}");
+    assert!(far.to_string().contains("plastic strain of the increment"), "{far}");
     let inverted = stretched(&*law, &Vector5::new(-1.0, 0.0, 0.0, 1.0, 1.0), &old).expect_err("inverted");
     assert!(matches!(inverted, MaterialFailure::Inverted { .. }));
     let soil = with_elasticity(json!({"model": "mohr_coulomb", "c": 0.1, "phi": 30, "psi": 0}));

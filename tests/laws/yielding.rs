@@ -64,7 +64,7 @@ impl Material for VonMises {
         let slope = 3.0 * shear + self.hardening;
         let slip = excess.max(0.0) / slope;
         if slip > LONGEST {
-            return Err(MaterialFailure::NotConverged { law: "mine", rest: excess, stress: q });
+            return Err(MaterialFailure::NotConverged { law: "mine", residual: excess / q });
         }
         let left = if slip > 0.0 { 1.0 - 3.0 * shear * slip / q } else { 1.0 };
         let direction = if norm > 0.0 { trial / norm } else { trial };

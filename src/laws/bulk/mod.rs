@@ -175,26 +175,20 @@ pub enum MaterialFailure {
         jacobian: f64,
     },
     /// The equations of the law were not solved, such as those of a return to its yield surface.
-    #[error("`{law}` did not converge: residual {rest:.3e} of the stress {stress:.3e}")]
+    #[error("`{law}` did not converge: {residual:.3e} of the stress is left out of balance")]
     NotConverged {
         /// the law
         law: &'static str,
-        /// what is left out of balance [F/L²]
-        rest: f64,
-        /// the stress that it is to be compared with [F/L²]
-        stress: f64,
+        /// what is left out of balance, as a share of the stress [-]
+        residual: f64,
     },
-    /// The increment leads out of the range in which the law is accurate.
-    #[error("`{law}`: {quantity} is {value:.3e}, more than {limit}")]
+    /// The increment strains the material further than the law is accurate.
+    #[error("`{law}`: the plastic strain of the increment is {strain:.3e}, too much for one")]
     OutOfRange {
         /// the law
         law: &'static str,
-        /// what is out of range
-        quantity: &'static str,
-        /// its value
-        value: f64,
-        /// the most that it may be
-        limit: f64,
+        /// its largest component [-]
+        strain: f64,
     },
 }
 

@@ -174,7 +174,7 @@ impl<L: Spatial> PlaneStress<L> {
             let stress = h * answer.stress[4];
             let slope = stress + h * h * answer.tangent[(4, 4)];
             if !(slope > 0.0 && slope.is_finite() && answer.tangent[(4, 4)] > 0.0) {
-                return Err(MaterialFailure::NotConverged { law: PLATE, rest: stress, stress: modulus });
+                return Err(MaterialFailure::NotConverged { law: PLATE, residual: stress / modulus });
             }
             let change = -stress / slope;
             if change.abs() <= KNOWN {
@@ -182,7 +182,7 @@ impl<L: Spatial> PlaneStress<L> {
             }
             (ln_h, rest) = (ln_h + change.clamp(-1.0, 1.0), stress);
         }
-        Err(MaterialFailure::NotConverged { law: PLATE, rest, stress: modulus })
+        Err(MaterialFailure::NotConverged { law: PLATE, residual: rest / modulus })
     }
 }
 

@@ -79,9 +79,9 @@ impl Axes {
     /// P and ∂P/∂F of a stress and tangent in the axes, see (6); with the spin of tensors of the history.
     pub fn first_piola_kirchhoff(&self, found: &Returned, spins: bool) -> (Vector5<f64>, Matrix5<f64>) {
         let [t11, t22, t33, t12]: [f64; 4] = found.stress.into();
-        let to_plane = self.to_plane();
+        let pull = self.pull();
         let mut stress = Vector5::zeros();
-        stress.fixed_rows_mut::<4>(0).copy_from(&(to_plane * Vector4::new(t11, t12, t12, t22)));
+        stress.fixed_rows_mut::<4>(0).copy_from(&(pull * Vector4::new(t11, t12, t12, t22)));
         stress[4] = t33 / self.stretch;
 
         // dτ by l₁₁, l₂₁, l₁₂, l₂₂, l₃₃
@@ -102,7 +102,7 @@ impl Axes {
         moduli[(4, 4)] -= t33;
 
         let mut whole = Matrix5::zeros();
-        whole.fixed_view_mut::<4, 4>(0, 0).copy_from(&to_plane);
+        whole.fixed_view_mut::<4, 4>(0, 0).copy_from(&pull);
         whole[(4, 4)] = 1.0 / self.stretch;
         let mut tangent = whole * moduli * whole.transpose();
         if spins {
@@ -121,7 +121,7 @@ impl Axes {
     }
 
     /// Matrix that takes X (11, 21, 12, 22 in the axes) to Q X Qᵀ F⁻ᵀ.
-    fn to_plane(&self) -> Matrix4<f64> {
+    fn pull(&self) -> Matrix4<f64> {
         let (q, g) = (&self.turn, &self.pulled);
         Matrix4::from_fn(|row, column| q[(row % 2, column % 2)] * g[(row / 2, column / 2)])
     }

@@ -91,7 +91,6 @@ impl DruckerPrager {
     ///
     /// # Errors
     /// [`InvalidParameter`] when a constant is out of its range.
-    #[expect(clippy::new_ret_no_self, reason = "a return map is a material in its frame alone")]
     pub fn new(given: &DruckerPragerParameters) -> Result<Elastoplastic<Self>, InvalidParameter> {
         let DruckerPragerParameters { young, poisson, density, c, phi, psi, matching, tension, viscosity } = *given;
         let elastic = ElasticConstants { young, poisson, density }.lame()?;

@@ -254,8 +254,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
         let mut found = self.law.returned(&axes.strains, history)?;
         let largest = found.plastic.amax();
         if largest.is_nan() || largest > LARGEST {
-            let (law, quantity) = (self.law.name(), "plastic strain of an increment");
-            return Err(MaterialFailure::OutOfRange { law, quantity, value: largest, limit: LARGEST });
+            return Err(MaterialFailure::OutOfRange { law: self.law.name(), strain: largest });
         }
         self.tensors(history).for_each(|tensor| axes.leave(tensor));
         if self.viscosity > 0.0 {

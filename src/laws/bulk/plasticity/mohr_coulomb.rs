@@ -181,7 +181,6 @@ impl MohrCoulomb {
     ///
     /// # Errors
     /// [`InvalidParameter`] when a constant is out of its range.
-    #[expect(clippy::new_ret_no_self, reason = "a return map is a material in its frame alone")]
     pub fn new(given: &MohrCoulombParameters) -> Result<Elastoplastic<Self>, InvalidParameter> {
         let MohrCoulombParameters { young, poisson, density, c, phi, psi, tension, softening, viscosity } = *given;
         let elastic = ElasticConstants { young, poisson, density }.lame()?;
@@ -327,8 +326,7 @@ impl MohrCoulomb {
     fn sorted(&self, trial: &Vector3<f64>, before: f64) -> Result<(OnPlanes, f64), MaterialFailure> {
         let none = || MaterialFailure::NotConverged {
             law: self.name(),
-            rest: self.excess(&self.strength(before).0, trial),
-            stress: trial.amax(),
+            residual: self.excess(&self.strength(before).0, trial) / trial.amax(),
         };
         let compliance = self.stiffness().try_inverse().ok_or_else(none)?;
         let at = |slip: f64| {

@@ -126,7 +126,6 @@ impl VonMises {
     ///
     /// # Errors
     /// [`InvalidParameter`] when a constant is out of its range.
-    #[expect(clippy::new_ret_no_self, reason = "a return map is a material in its frame alone")]
     pub fn new(given: &VonMisesParameters) -> Result<Elastoplastic<Self>, InvalidParameter> {
         let VonMisesParameters { young, poisson, density, sigma_y, hardening, saturation, b, .. } = *given;
         let elastic = ElasticConstants { young, poisson, density }.lame()?;
@@ -197,7 +196,7 @@ impl VonMises {
             }
             slip = next;
         }
-        Err(MaterialFailure::NotConverged { law: self.name(), rest, stress: largest })
+        Err(MaterialFailure::NotConverged { law: self.name(), residual: rest / largest })
     }
 }
 
