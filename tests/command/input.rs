@@ -1163,8 +1163,7 @@ fn overlap_is_told_where_it_means_something() {
     let text = checked(&far);
     assert!(text.contains("warnings  none"), "one digit of 1e5:\n{text}");
     let text = checked(&with(&[("/mesh/nodes/6/1", json!(-0.01)), ("/contacts/base/shrink_fit", json!(true))]));
-    let told =
-        "shrink fit: the surfaces overlap by up to 0.006667, at (0.5, -0.01), brought in over the first";
+    let told = "shrink fit: the surfaces overlap by up to 0.006667, at (0.5, -0.01), brought in over the first";
     assert!(text.contains(told) && text.contains("warnings  none"), "{text}");
 }
 
