@@ -127,7 +127,9 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
         }));
     }
     let RunReport { increments, cutbacks, rejected, .. } = simulation.report();
-    Record { ended, tables, closed, slipped, rows, increments, given_up: cutbacks + rejected }
+    let [before, given_up] = outputs.before;
+    let given_up = given_up + cutbacks + rejected;
+    Record { ended, tables, closed, slipped, rows, increments: before + increments, given_up }
 }
 
 fn built(document: &Value) -> Result<Arc<Model>, String> {
@@ -142,6 +144,8 @@ struct Outputs {
     probes: Probes,
     newton: NewtonLog,
     warnings: Warnings,
+    /// increments of a run that this one began with, and attempts given up in it
+    before: [usize; 2],
 }
 
 impl Outputs {
@@ -151,6 +155,7 @@ impl Outputs {
             probes: Probes::create(folder, model).expect("probes.csv"),
             newton: NewtonLog::create(folder, model).expect("newton.csv"),
             warnings: Warnings::default(),
+            before: [0; 2],
         }
     }
 
@@ -160,6 +165,7 @@ impl Outputs {
             probes: Probes::reopen(folder, model).expect("probes.csv"),
             newton: NewtonLog::reopen(folder, model).expect("newton.csv"),
             warnings: Warnings::default(),
+            before: [0; 2],
         }
     }
 
@@ -246,7 +252,8 @@ fn begun(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Outp
     }
     let saved = SavedRun::new(&first, &mut []).and_then(SavedRun::bytes).map_err(|error| error.to_string())?;
     let saved = SavedRun::from_bytes(saved, model).map_err(|error| error.to_string())?.begin();
-    *outputs = Outputs::create(folder, model);
+    let RunReport { increments, cutbacks, rejected, .. } = first.report();
+    *outputs = Outputs { before: [increments, cutbacks + rejected], ..Outputs::create(folder, model) };
     let simulation = saved.resume(model, &mut []).map_err(|error| error.to_string())?;
     led(simulation, outputs)
 }

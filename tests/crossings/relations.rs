@@ -398,30 +398,39 @@ fn steps_in_two(base: &Base) -> Outcome {
     base.as_before(&record, SAME, NOTHING)
 }
 
+/// What acts or moves from the start, or says by itself when something happens.
+const SUDDEN: [&str; 12] = [
+    "stress",
+    "tractions",
+    "heat",
+    "fluid",
+    "velocity",
+    "shrink_fit",
+    "until",
+    "rupture",
+    "error_control",
+    "press",
+    "spring",
+    "further_parameters",
+];
+
 /// Everything later, after a step in which nothing happens: what varies in time varies as much later.
 fn later(base: &Base) -> Outcome {
-    let draft = base.draft;
-    // What acts or moves from the start, or holds the block only once it is closed.
-    let acts = ["stress", "tractions", "heat", "fluid", "velocity", "shrink_fit", "until", "rupture", "error_control"];
+    let Some(draft) = base.draft.plainer(&SUDDEN) else { return Outcome::Idle };
     // The state of these laws lives from the start of the run: θ ages, and μ begins with the μ_s of then.
     let varies = draft.is("varying", "in_time") && draft.pick("which varies", &[0.0, 1.0]) == 1.0;
-    let lives = draft.is("friction", "rate_and_state")
-        || draft.is("friction", "super_subloading") && (varies || draft.has("further_parameters"));
-    let idle = lives
-        || acts.iter().any(|slot| draft.has(slot))
-        || !["displacement", "rotation"].contains(&draft.of("press"))
-        || draft.is("spring", "driven")
-        || draft.is("friction", "prescribed")
-        || draft.is("scheme", "quasi_dynamic")
-        || !base.has_ended_well();
-    if idle {
+    let lives = draft.is("friction", "rate_and_state") || draft.is("friction", "super_subloading") && varies;
+    if lives || draft.is("friction", "prescribed") || draft.is("scheme", "quasi_dynamic") {
         return Outcome::Idle;
     }
-    let ways = base.ways.clone().later(LATER, draft);
-    let mut record = base.run(&ways);
+    let base = Base::new(&draft);
+    if !base.has_ended_well() {
+        return Outcome::Idle;
+    }
+    let mut record = base.run(&base.ways.clone().later(LATER, &draft));
     // The step before takes one increment, explicit ones as many as there is room for.
-    let waiting = if draft.is("scheme", "explicit") { record.increments - base.record.increments } else { 1 };
-    record.increments -= waiting;
+    let explicit = record.increments.saturating_sub(base.record.increments);
+    record.increments -= if draft.is("scheme", "explicit") { explicit } else { 1.min(record.increments) };
     if record.given_up > 0 && base.record.given_up == 0 {
         let place = format!("{} attempts given up, and none was", record.given_up);
         return base.judged(Difference { share: f64::INFINITY, place, values: [0.0; 2] }, NOTHING);
@@ -504,37 +513,42 @@ fn energies(base: &Base) -> Outcome {
 /// Where one scheme follows another in motion no energy comes or goes but what the error of an increment explains: the error that the
 /// first increment of the new scheme adds falls with its length.
 fn switched(base: &Base) -> Outcome {
-    let draft = base.draft;
+    // What sets in at once shakes at frequencies that implicit increments do not resolve, but damp.
+    let Some(draft) = base.draft.plainer(&SUDDEN) else { return Outcome::Idle };
     let f_bar = ["ground_element", "block_element"].iter().any(|slot| draft.is(slot, "f_bar"));
     // Statics stops what moves; rings on end are not held along their radius, where a load sets in.
     let idle = !draft.has("then")
         || draft.is("then", "static")
         || draft.is("scheme", "static")
         || draft.is("section", "rings_on_end")
-        || f_bar
-        || !base.has_ended_well();
+        || f_bar;
     if idle {
         return Outcome::Idle;
     }
-    let stage = model::duration(draft);
+    let stage = model::duration(&draft);
+    let plain = Ways::plain(&draft);
     let added = |finer| {
-        let record = base.run(&Ways { finer, drive: Some("through"), ..base.ways.clone() });
+        let ways = Ways { finer, drive: Some("through"), ..plain.clone() };
+        let record = run(&model::case(&draft, &ways), &ways, Lead::Through);
         let error = |row: &[Entry]| row.iter().find(|entry| &*entry.column == "energy_error").map(|entry| entry.value);
         let before = record.rows.iter().rfind(|(time, _)| *time <= stage * (1.0 + 1e-9)).and_then(|row| error(&row.1));
         let after = record.rows.iter().find(|(time, _)| *time > stage * (1.0 + 1e-9)).and_then(|row| error(&row.1));
-        let [before, after] = [before?, after?];
-        let most = audit(&record).values[1];
-        (record.ended == Ended::Complete).then_some((after - before, (after - before).abs() / most))
+        let added = after? - before?;
+        (record.ended == Ended::Complete).then(|| (added, added.abs() / audit(&record).values[1]))
     };
     let [Some(coarse), Some(fine), Some(finest)] = [1.0, 2.0, 4.0].map(added) else { return Outcome::Idle };
-    let falls = finest.1 <= 1e-6 || finest.1 <= 0.6 * fine.1 || finest.1 <= 0.6 * coarse.1;
-    if falls {
+    let falls = |finer: (f64, f64)| finer.1 <= SWITCHED || finer.1 <= 0.6 * fine.1 || finer.1 <= 0.6 * coarse.1;
+    // Contact that chatters just then does so for less in much shorter increments.
+    if falls(finest) || added(16.0).is_some_and(falls) {
         return Outcome::Holds;
     }
-    let place =
-        format!("energy_error that the change of schemes adds; {:.2e} {:.2e} {:.2e}", coarse.1, fine.1, finest.1);
+    let shares = [coarse, fine, finest].map(|(_, share)| format!("{share:.2e}")).join(" ");
+    let place = format!("energy_error that the change of schemes adds; {shares}");
     Outcome::Broken(Difference { share: finest.1, place, values: [coarse.0, finest.0] })
 }
+
+/// Energies that a change of schemes may add, as a share of the largest: ten times what balances.
+const SWITCHED: f64 = 1e-6;
 
 /// Dilatancy does not keep surfaces apart: what closes without it closes with it.
 fn dilating(base: &Base) -> Outcome {
