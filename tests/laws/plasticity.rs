@@ -59,6 +59,14 @@ fn laws() -> Vec<(&'static str, Box<dyn Material>)> {
     given.into_iter().map(|(name, given)| (name, with_elasticity(given))).collect()
 }
 
+/// Those, and all others for large deformations.
+fn all_laws() -> Vec<(&'static str, Box<dyn Material>)> {
+    let others = ["saint_venant_kirchhoff", "neo_hookean", "hencky"].map(|name| (name, json!({"model": name})));
+    let viscoelastic = ("viscoelastic", json!({"model": "viscoelastic", "E_1": 50.0, "tau": 3.0}));
+    let others = others.into_iter().chain([viscoelastic]);
+    laws().into_iter().chain(others.map(|(name, given)| (name, with_elasticity(given)))).collect()
+}
+
 fn plane(f: &Vector5<f64>) -> Matrix2<f64> {
     Matrix2::from_column_slice(&f.as_slice()[..4])
 }
@@ -146,7 +154,7 @@ fn the_tangent_equals_differences_over_random_histories() {
 /// Nothing in the history turns with the body: P(QF) = Q P(F), and the variables are the same.
 #[test]
 fn stress_turns_with_the_body() {
-    for (name, law) in laws() {
+    for (name, law) in all_laws() {
         let mut random = Random(5);
         for _ in 0..100 {
             let path = walk(&mut random, 3, 0.04);
@@ -175,7 +183,7 @@ fn stress_turns_with_the_body() {
 /// but that of a viscous law.
 #[test]
 fn a_committed_state_stays_and_is_within_the_yield_surface() {
-    for (name, law) in laws() {
+    for (name, law) in all_laws() {
         let mut random = Random(7);
         for _ in 0..200 {
             let path = walk(&mut random, 3, 0.04);
@@ -190,8 +198,10 @@ fn a_committed_state_stays_and_is_within_the_yield_surface() {
             for (a, b) in new.iter().zip(&committed) {
                 assert!((a - b).abs() < 1e-12, "{name}: {new:?} {committed:?}");
             }
-            let indicator = shown(&*law, &f, &committed)[2];
-            assert!(name.starts_with("viscous") || indicator < 1e-11 * E, "{name}: f = {indicator}");
+            if law.flow().is_some() && !name.starts_with("viscous") {
+                let indicator = shown(&*law, &f, &committed)[2];
+                assert!(indicator < 1e-11 * E, "{name}: f = {indicator}");
+            }
         }
     }
 }
@@ -253,10 +263,10 @@ fn increments_converge_at_first_order() {
 /// Work is stored or dissipated, all of it as increments become short.
 #[test]
 fn energy_is_balanced() {
-    for (name, law) in laws().into_iter().filter(|(name, _)| !name.starts_with("viscous")) {
+    for (name, law) in all_laws().into_iter().filter(|(name, _)| !name.starts_with("viscous")) {
         let [coarse, fine] = [100, 1000].map(|parts| {
             let (_, [stored, dissipated, work]) = driven(&*law, winding, parts);
-            assert!(dissipated > 0.01 * work, "{name}: {dissipated} of {work}");
+            assert_eq!(dissipated > 0.01 * work, !law.variables().is_empty(), "{name}: {dissipated} of {work}");
             (work - stored - dissipated).abs() / work
         });
         assert!(coarse < 3e-3 && fine < 0.02 * coarse + 1e-9, "{name}: {coarse} {fine}");
@@ -518,7 +528,7 @@ fn what_cannot_be_answered_is_told() {
     let old = vec![0.0; law.variables().len()];
     let far = stretched(&*law, &Vector5::new(1.0, 0.0, 2.0, 1.0, 1.0), &old).expect_err("too far");
     assert!(matches!(far, MaterialFailure::OutOfRange { law: "von_mises", .. }), "{far}");
-    assert!(far.to_string().contains("plastic strain of the increment"), "{far}");
+    assert!(far.to_string().contains("in one increment"), "{far}");
     let inverted = stretched(&*law, &Vector5::new(-1.0, 0.0, 0.0, 1.0, 1.0), &old).expect_err("inverted");
     assert!(matches!(inverted, MaterialFailure::Inverted { .. }));
     let soil = with_elasticity(json!({"model": "mohr_coulomb", "c": 0.1, "phi": 30, "psi": 0}));

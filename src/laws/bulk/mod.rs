@@ -183,7 +183,7 @@ pub enum MaterialFailure {
         residual: f64,
     },
     /// The increment strains the material further than the law is accurate.
-    #[error("`{law}`: the plastic strain of the increment is {strain:.3e}, too much for one")]
+    #[error("`{law}`: a plastic strain of {strain:.3e} in one increment is too much")]
     OutOfRange {
         /// the law
         law: &'static str,

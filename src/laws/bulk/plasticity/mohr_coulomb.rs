@@ -466,12 +466,12 @@ impl ReturnMap for MohrCoulomb {
         let sorted = principal(&Vector4::new(xx, yy, zz, xy));
         let sin = self.virgin.phi.sin();
         format!(
-            "its principal stresses reach from {:.6} to {:.6}, and with c = {} and phi = {} degrees the ratio of pressures is at least \
-             (1 - sin phi)/(1 + sin phi) = {:.4} where c is 0; raise K0, c or phi",
+            "its principal stresses reach from {:.6} to {:.6}; with phi = {} degrees and c = {} a ratio of pressures such as K0 is at \
+             least (1 - sin phi)/(1 + sin phi) = {:.4}, somewhat less for the cohesion; raise K0, c or phi",
             sorted[2],
             sorted[0],
+            (self.virgin.phi.to_degrees() * 1e9).round() / 1e9,
             self.virgin.c,
-            self.virgin.phi.to_degrees(),
             (1.0 - sin) / (1.0 + sin)
         )
     }
