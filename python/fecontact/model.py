@@ -390,7 +390,6 @@ class Contact(dict[str, Any]):
             each point with the `area`
         master: Edge group, or a rigid body. The slave's group again: self-contact of the surface; each point
             then has half its tributary length, because every contact is evaluated from both sides
-        friction: Friction law
         along: Friction parameters that vary along the slave and in time
         area: Tributary area of each point of a point group as slave, including the thickness or the full turn;
             it is constant. Edges have lengths of their own [L for thickness 1, or L²]
@@ -400,6 +399,7 @@ class Contact(dict[str, Any]):
             the slave projects onto the master, closed or open, in addition to the contact pressure p; friction,
             `initial.pressure` and all outputs called pressure use this effective p only. The pressure is
             prescribed: there is no flow. Not for quasi_dynamic steps [F/L²]
+        friction: Friction law; only surfaces that are tied have none
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
             point is then measured, throughout the run, relative to the gap at which this pressure acts in its
             initial position
@@ -407,8 +407,10 @@ class Contact(dict[str, Any]):
             elements, so that impact does not excite spurious oscillation of these nodes and of the contact
             force
         method: Contact method. By default mortar where an edge of either side is quadratic or a side curved
-            (its direction turns by more than 1° between two corners of more than 45°); gauss_to_segment between
-            straight linear edges, with a `smooth` master, and where `points` are given
+            (its direction turns by more than 1° between two corners of more than 45°), and where nodes do not
+            face nodes unless a step is explicit; node_to_segment where a slave of straight linear edges meets a
+            rigid circle or polyline, or a slave with a corner a rigid plane; gauss_to_segment otherwise, with a
+            `smooth` master, and where `points` are given
         normal: Normal contact
         points: Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
         radiation_damping: Static steps: radiation damping, a traction η × slip rate that resists slip in
@@ -424,6 +426,13 @@ class Contact(dict[str, Any]):
         smooth: Whether the master's straight edges are replaced by a smooth curve through their nodes (not with
             mortar), so that forces do not jump where a slave slides from one edge to the next. Corners of more
             than 45° remain
+        stick: Largest elastic slip allowed where surfaces stick [L], for laws that know none, whose alpha_t is
+            a penalty (coulomb, slip_weakening): the traction is adjusted until no elastic slip is larger, as
+            `penetration` does it along the normal; default: penalty only
+        tied: Whether the surfaces are tied: they neither part nor slide, whatever pulls at them, however large
+            the motion. Every slave point keeps the place on the master that it faces in the mesh, across a gap
+            as well (the finer side is the slave, by mortar where nodes do not face nodes); points that face
+            nothing stay free. Pressure and traction count per initial length. Without `friction`
         wear: k of Archard's law: the surfaces wear by dw = k p × plastic slip, in either direction of slip; k
             is the wear coefficient divided by the hardness. The wear depth w is `wear` in tables and frames
             [L²/F]
@@ -434,11 +443,11 @@ class Contact(dict[str, Any]):
         *,
         slave: str,
         master: Master,
-        friction: Friction,
         along: Mapping[str, Any] | Given = NOT_GIVEN,
         area: float | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
         fluid_pressure: Profile | None | Given = NOT_GIVEN,
+        friction: Friction | Given = NOT_GIVEN,
         initial: Initial | None | Given = NOT_GIVEN,
         massless: bool | Given = NOT_GIVEN,
         method: Method | None | Given = NOT_GIVEN,
@@ -449,9 +458,11 @@ class Contact(dict[str, Any]):
         shrink_fit: bool | Given = NOT_GIVEN,
         sliding: Sliding | Given = NOT_GIVEN,
         smooth: bool | Given = NOT_GIVEN,
+        stick: float | None | Given = NOT_GIVEN,
+        tied: bool | Given = NOT_GIVEN,
         wear: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slave": slave, "master": master, "friction": friction, "along": along, "area": area, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "wear": wear}))
+        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
 
 
 class Plane(dict[str, Any]):
@@ -504,6 +515,25 @@ class Polyline(dict[str, Any]):
         points: Pairs,
     ) -> None:
         super().__init__({"polyline": _given({"points": points})})
+
+
+class LawChoice(dict[str, Any]):
+    """A law on a part of the slave.
+
+    Args:
+        where: The law applies where this expression is positive
+        friction: Friction law
+        along: Parameters that vary along the slave and in time, by name
+    """
+
+    def __init__(
+        self,
+        *,
+        where: Profile,
+        friction: Friction,
+        along: Mapping[str, Profile] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"where": where, "friction": friction, "along": along}))
 
 
 class Frictionless(dict[str, Any]):
@@ -665,25 +695,6 @@ class Registered(dict[str, Any]):
         super().__init__({"law": "registered", **_given({"name": name, "alpha_t": alpha_t, "parameters": parameters})})
 
 
-class LawChoice(dict[str, Any]):
-    """A law on a part of the slave.
-
-    Args:
-        where: The law applies where this expression is positive
-        friction: Friction law
-        along: Parameters that vary along the slave and in time, by name
-    """
-
-    def __init__(
-        self,
-        *,
-        where: Profile,
-        friction: Friction,
-        along: Mapping[str, Profile] | Given = NOT_GIVEN,
-    ) -> None:
-        super().__init__(_given({"where": where, "friction": friction, "along": along}))
-
-
 class Dilatancy(dict[str, Any]):
     """Dilatancy of a contact, with any friction law: asperities override each other as the surfaces slip, until the
     interface has its largest opening.
@@ -735,8 +746,9 @@ class Normal(dict[str, Any]):
     """Normal contact.
 
     Args:
-        alpha_n: α_n: pressure per penetration [F/L³]; default 10 (λ + 2G)/h, with λ + 2G of the softer body and
-            the depth h of the slave's elements. Required for a point group as slave, which has no elements
+        alpha_n: α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body
+            and the depth h of the slave's elements; 10 (λ + 2G)/h where a step is explicit, quasi_dynamic or
+            has `rupture`. A slave group of points has no elements and needs a number
         penetration: Largest penetration allowed [L]: the pressure is increased until no penetration is larger
             (augmented Lagrangian by Uzawa's method), so that the solution does not depend on alpha_n; default:
             penalty only
@@ -1452,7 +1464,7 @@ Amount = Union[float, str]
 # Grading of the element sizes along a side.
 Grading = Union[float, str, Middle]
 
-# Elements of a block.
+# Element kind of a block.
 BlockKind = Union[Literal["Q4"], Literal["Q8"], Literal["T6"]]
 
 # Criterion for the arrival of a front at a point.

@@ -13,7 +13,7 @@
 //!
 //! A linear field is met exactly, a smooth one at a surface to the third order in the size of the elements. Where the samples do not tell
 //! a term, it is left out, the shorter direction of the patch first: σ(X₀) is a weighted sum of samples, and the magnitudes of these
-//! weights may add up to [`AMPLIFIED`] at most. A patch that extends alike in all directions has no shorter one, and takes or leaves all terms of a
+//! weights may add up to `AMPLIFIED` at most. A patch that extends alike in all directions has no shorter one, and takes or leaves all terms of a
 //! degree: which of them round-off would leave depends on how the body lies. A body of one layer has its values at all quadrature points fitted by a linear field instead: bending
 //! is seen.
 //!

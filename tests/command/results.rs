@@ -269,6 +269,28 @@ fn a_dynamic_run_ends_with_its_energy_audit() {
     assert!(of("external_work") > 1.0 && error.abs() < 0.01 * of("external_work"), "{error} of {energy}");
 }
 
+/// Multipliers on a surface that has mass gain energy in short increments; the advice that the run then gives is right.
+#[test]
+fn energy_from_multipliers_is_told_with_a_remedy_that_helps() {
+    let pressed = |massless: bool| {
+        let folder = TempDir::new().unwrap();
+        let mut case = json!({
+            "mesh": Blocks::default().rectangle("block", [3, 2], [0.0, 0.0015], [1.0, 0.75]).json(),
+            "bodies": {"block": {"material": {"model": "linear", "E": 800, "nu": 0.3, "density": 1e-3}}},
+            "contacts": {"c": {"slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                               "massless": massless, "normal": {"alpha_n": 2e4, "penetration": 1e-9},
+                               "friction": {"law": "frictionless"}}},
+            "steps": [{"name": "press", "duration": 0.02, "dt": {"initial": 4e-5}, "scheme": {"newmark": {}},
+                       "supports": [{"on": "block_top", "ux": 0, "uy": "-0.004*(t/0.02)^2*(3 - 2*t/0.02)"}]}]
+        });
+        case["output"]["fields"] = json!(false);
+        String::from_utf8_lossy(&run(folder.path(), &case).stderr).into_owned()
+    };
+    let [struck, massless] = [false, true].map(pressed);
+    assert!(struck.contains("multipliers on surfaces that have mass gain energy") && struck.contains("`massless`"), "{struck}");
+    assert!(!massless.contains("from nowhere") && !massless.contains("gain energy"), "{massless}");
+}
+
 /// Frames of an explicit step come with every n-th row of the history, not with every n-th of its many increments, and with
 /// the last.
 #[test]

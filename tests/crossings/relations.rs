@@ -525,6 +525,10 @@ fn switched(base: &Base) -> Outcome {
     if idle {
         return Outcome::Idle;
     }
+    // Multipliers on a surface that has mass gain energy from impacts, the more the shorter the increments.
+    if draft.is("normal", "augmented") && !draft.has("massless") {
+        return Outcome::Idle;
+    }
     let stage = model::duration(&draft);
     let plain = Ways::plain(&draft);
     let added = |finer| {
@@ -555,7 +559,8 @@ fn dilating(base: &Base) -> Outcome {
     let Some(plainer) = base.draft.with("dilatancy", "no").filter(|_| base.draft.has("dilatancy")) else {
         return Outcome::Idle;
     };
-    if moves(base.draft) {
+    // A law that jumps at a threshold of the pressure may leave no equilibrium at it.
+    if moves(base.draft) || base.draft.is("friction", "registered") {
         return Outcome::Idle;
     }
     let Ended::Stopped(why) = &base.record.ended else { return Outcome::Holds };
