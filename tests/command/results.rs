@@ -287,7 +287,10 @@ fn energy_from_multipliers_is_told_with_a_remedy_that_helps() {
         String::from_utf8_lossy(&run(folder.path(), &case).stderr).into_owned()
     };
     let [struck, massless] = [false, true].map(pressed);
-    assert!(struck.contains("multipliers on surfaces that have mass gain energy") && struck.contains("`massless`"), "{struck}");
+    assert!(
+        struck.contains("multipliers on surfaces that have mass gain energy") && struck.contains("`massless`"),
+        "{struck}"
+    );
     assert!(!massless.contains("from nowhere") && !massless.contains("gain energy"), "{massless}");
 }
 

@@ -23,7 +23,7 @@
 //!     .watch("block_top")
 //!     .build()?;
 //! assert!(model.warnings().is_empty());
-//! assert_eq!(Simulation::new(model).contact_positions("base")?.len(), 10);
+//! assert_eq!(Simulation::new(model).contact_positions("base")?.len(), 6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
