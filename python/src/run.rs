@@ -57,12 +57,16 @@ pub fn run<'py>(
     let news = Arc::new(Mutex::new(News::default()));
     let warn = teller(&news);
     let case = case.get();
-    let job = pool.short(py, || open(case, &out, resume, report, &*warn))?;
-    let mut job = job.map_err(|error| refused(py, &error))?;
+    // Whatever computes does so on the threads of the pool: a forked process has no others.
+    let opened = pool.short(py, || {
+        let job = open(case, &out, resume, report, &*warn)?;
+        let fresh = !job.opened.resumes();
+        let warnings = if fresh { job.model.warnings() } else { Vec::new() };
+        Ok::<_, Refused>((job, warnings))
+    })?;
+    let (mut job, warnings) = opened.map_err(|error| refused(py, &error))?;
+    warnings.iter().for_each(|warning| warn(warning));
     let page_of = report.then_some(out);
-    if !job.opened.resumes() {
-        job.model.warnings().iter().for_each(|warning| warn(warning));
-    }
     let tell = |py: Python| {
         let News { warnings, place } = std::mem::take(&mut *news.lock().unwrap_or_else(PoisonError::into_inner));
         poll.call1((warnings, place)).map(drop)?;

@@ -77,7 +77,7 @@ def test_tables_and_interface(result: fc.Result) -> None:
     assert len(result.events) >= 1 and set(result.events["contact"]) == {"base"} and len(result.fronts) >= 1
     base = result.interface["base"]
     assert base["slip"].dims == ("time", "point") and base["position"].dims == ("point",)
-    assert base.sizes == {"time": len(history), "point": 10}
+    assert base.sizes == {"time": len(history), "point": 6}
     np.testing.assert_array_equal(base["time"], history["time"])
     assert base["slip"].attrs["units"] == "mm"
     with pytest.raises(KeyError, match="there are base"):

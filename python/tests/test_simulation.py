@@ -45,7 +45,7 @@ def test_contact_fields(document: dict[str, Any]) -> None:
     for _ in simulation:
         pass
     base = simulation.contacts["base"]
-    assert base.position.shape == (10, 2) and base["pressure"].shape == (10,)
+    assert base.position.shape == (6, 2) and base["pressure"].shape == (6,)
     assert (np.diff(base.position[:, 0]) > 0).all() and set(base["state"]) <= {0.0, 1.0, 2.0}
     assert (base["traction"] <= 0.4 * base["pressure"] * (1 + 1e-9)).all()
     with pytest.raises(LookupError, match="contacts have no field `pres`; they have gap, pressure"):
