@@ -203,7 +203,7 @@ def cut_back(program):
     case = next(json.loads(block) for block in re.findall(r"```json\n(.*?)```", text, re.S) if '"blocks"' in block)
     case["contacts"]["base"].update(friction={"law": "coulomb", "mu": 0.8}, normal={"alpha_n": 1.5e7})
     case["steps"] = case["steps"][:2]
-    case["steps"][1].update(dt={"initial": 5}, supports=[{"on": "block_top", "ux": {"rate": 0.5}}])
+    case["steps"][1].update(dt={"initial": 5}, supports=[{"on": "block_top", "ux": {"rate": 0.6}}])
     run = Run(program, case)
     solves = table(run.folder / "newton.csv")
     rows = [["attempt", "to time", "linear solves", "last residuals", "open, stick, slip; flips", "verdict", "reason"]]
