@@ -18,7 +18,7 @@ use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::model::builder::{Checked, Contact, ModelError, is_explicit};
+use crate::model::builder::{Checked, Contact, ModelError, Regime, regime};
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::run::{Saved, SavedRun};
@@ -267,17 +267,19 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
     same_defaults(&before, &now)
 }
 
-/// Penalties and methods that a case leaves open are other ones with an explicit step than without: the gaps of the run so far
-/// would be other pressures.
+/// Penalties and methods that a case leaves open are other ones where a step has inertia, or is explicit: the gaps of the run so
+/// far would be other pressures.
 fn same_defaults(before: &Value, now: &Value) -> Checked<()> {
     let [Ok(before), Ok(now)] = [before, now].map(read::input::<Case>) else { return Ok(()) };
-    if is_explicit(&before.steps) == is_explicit(&now.steps) {
+    if regime(&before.steps) == regime(&now.steps) {
         return Ok(());
     }
-    let open = |contact: &&Contact| contact.area.is_none() && contact.normal.alpha_n.is_none();
+    let explicit = [&before, &now].iter().any(|case| regime(&case.steps) == Regime::Explicit);
+    let open =
+        |contact: &&Contact| contact.area.is_none() && contact.normal.alpha_n.is_none() && (explicit || !contact.tied);
     let Some(open) = now.contacts.iter().find(|(_, contact)| open(contact)) else { return Ok(()) };
-    let message = "is left open, and is another one in a run with explicit steps than in one without, as the run before was \
-                   (or the other way round): give it in both cases; `fecontact check --resolved` prints what it was";
+    let message = "is left open, and is another one where all steps are static, where one has inertia and where one is explicit, and \
+                   in this the runs differ: give it in both cases; `fecontact check --resolved` prints what it was";
     Err(ModelError::new(format!("contacts.{}.normal.alpha_n", open.0), message))
 }
 

@@ -4,7 +4,8 @@
 //! error = initial + external work − (kinetic + strain + contact) − dissipation                  0 if all is resolved
 //! ```
 //!
-//! The error is measured relative to the energy available for storage or dissipation: initial energy and external work.
+//! The error is measured relative to the energy available for storage or dissipation: initial energy and external work. A motion
+//! that gains more than all of it is an instability of the increments.
 //!
 //! # Energy in contact penalties
 //!
@@ -18,6 +19,7 @@ use crate::equations::contacts::Springs;
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::{Model, Step};
+use crate::run::error::Error;
 use serde::{Deserialize, Serialize};
 
 /// Energy error that causes a warning, as a fraction of the energy supplied.
@@ -35,12 +37,23 @@ pub struct Audit {
     error: f64,
     /// Largest error, and its time [F·L, T]
     worst: (f64, f64),
-    /// Error contributed by every step, and its remedy
-    steps: Vec<(String, f64, String)>,
+    /// What every step contributed to the error
+    steps: Vec<StepError>,
     /// Possible work of round-off in the forces [F·L]
     noise: f64,
     /// Energy in the contact penalties
     pub give: Give,
+}
+
+/// Energy error of a step.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct StepError {
+    step: String,
+    /// Error that arose in its increments [F·L]
+    error: f64,
+    /// Whether masses have inertia in it
+    dynamic: bool,
+    remedy: String,
 }
 
 /// Fraction of the elastic energy of bodies and contacts that was stored in contact penalties when that energy was largest.
@@ -66,6 +79,8 @@ struct Penalties {
     on_bodies: bool,
     /// Whether a largest penetration may be asked for
     by_steps: bool,
+    /// Whether its slave has mass in implicit steps, which a stiffer penalty would make ring
+    rings: bool,
 }
 
 /// Share of the elastic energy in penalties that is worth a warning [-]
@@ -79,11 +94,11 @@ impl Audit {
     pub fn record(&mut self, model: &Model, step: &Step, old: &State, new: &State) {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
-        if self.steps.last().is_none_or(|(name, ..)| *name != step.name) {
-            self.steps.push((step.name.clone(), 0.0, remedy(model, step).into()));
+        if self.steps.last().is_none_or(|last| last.step != step.name) {
+            let (dynamic, remedy) = (step.scheme.is_dynamic(), remedy(model, step).into());
+            self.steps.push(StepError { step: step.name.clone(), error: 0.0, dynamic, remedy });
         }
-        let increments = self.steps.last_mut().map(|(_, sum, _)| sum);
-        increments.into_iter().for_each(|sum| *sum += error - self.error);
+        self.steps.last_mut().into_iter().for_each(|last| last.error += error - self.error);
         self.error = error;
         if error.abs() > self.worst.0.abs() || error.is_nan() {
             self.worst = (error, new.time);
@@ -95,7 +110,21 @@ impl Audit {
 
     /// Warnings at the end of a run: that the energies do not balance, or contacts give way.
     pub fn concerns(&self) -> Vec<String> {
-        self.unbalanced().into_iter().chain(self.give.concerns()).collect()
+        let unbalanced = self.unbalanced().filter(|_| !self.is_unstable());
+        unbalanced.into_iter().chain(self.give.concerns()).collect()
+    }
+
+    /// Checks at the end of a run that no motion gained more energy than was supplied.
+    ///
+    /// # Errors
+    /// Returns [`Error::Unstable`] with the energies, the step and a remedy.
+    pub fn check(&self) -> Result<(), Error> {
+        self.unbalanced().filter(|_| self.is_unstable()).map_or(Ok(()), |unbalanced| Err(Error::Unstable(unbalanced)))
+    }
+
+    fn is_unstable(&self) -> bool {
+        let gained = |step: &StepError| step.dynamic && step.error < -self.supplied;
+        self.worst.0 < -self.supplied && self.steps.iter().any(gained)
     }
 
     fn unbalanced(&self) -> Option<String> {
@@ -103,8 +132,8 @@ impl Audit {
         if worst.abs() <= (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise) {
             return None;
         }
-        let largest = self.steps.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let (name, _, remedy) = largest?;
+        let largest = self.steps.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
+        let StepError { step: name, remedy, .. } = largest?;
         let percent = 100.0 * worst.abs() / self.supplied;
         let fate = if worst < 0.0 { "gain" } else { "loss" };
         Some(format!(
@@ -125,6 +154,10 @@ impl Give {
         }
         let explicit = |step: &Step| matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. });
         let solved = !model.steps.iter().any(|step| step.rupture.is_some() || explicit(step));
+        let has_mass = |pair: &ContactPair| {
+            pair.points.iter().any(|point| point.position.iter().any(|&(node, _)| !model.massless[node]))
+        };
+        let moves = solved && model.steps.iter().any(|step| step.scheme.is_dynamic());
         let of = |(pair, states): (&ContactPair, &Vec<ContactState>)| Penalties {
             contact: pair.name.clone(),
             energy: Springs::of(pair, states).numerical,
@@ -134,6 +167,7 @@ impl Give {
             ],
             on_bodies: pair.compliance > 0.0,
             by_steps: solved,
+            rings: moves && !pair.tied && has_mass(pair),
         };
         self.penalties = model.contacts.iter().zip(&state.contacts).map(of).collect();
         (self.elastic, self.time) = (elastic, state.time);
@@ -153,12 +187,13 @@ impl Give {
 
     fn concern(
         &self,
-        Penalties { contact, energy, stiffness, by_steps, .. }: &Penalties,
+        Penalties { contact, energy, stiffness, by_steps, rings, .. }: &Penalties,
         way: usize,
     ) -> Option<String> {
         let share = energy[way] / self.elastic;
         let advised = rounded_up(stiffness[way] * share / ADVISED);
-        let key = [format!("\"alpha_n\": {advised}"), format!("\"alpha_t\": {advised}")];
+        let massless = if *rings { "\"massless\": true, for a stiff penalty rings on mass, and " } else { "" };
+        let key = [format!("{massless}\"alpha_n\": {advised}"), format!("\"alpha_t\": {advised}")];
         let or = ["penetration", "stick"].map(|key| if *by_steps { format!(", or `{key}`") } else { String::new() });
         let what = ["lets the surfaces penetrate", "lets surfaces slip that should stick"];
         (share > GIVES_WAY).then(|| {
@@ -233,15 +268,15 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
     match (keeps_all, rings) {
         (true, true) => {
             "impact excites oscillations that the increments do not resolve: make the contact `massless`, take a \
-             scheme that damps (hht), or shorter increments (dt.error)"
+             scheme that damps (hht), a smaller alpha_n, or shorter increments (dt.error)"
         }
         (true, false) => {
             "take a scheme that damps frequencies that the increments do not resolve (hht), or shorter increments \
              (dt.error)"
         }
         (false, true) => {
-            "frequencies that the increments do not resolve are damped, or excited by impact: take shorter increments \
-             (dt.error), or make the contact `massless`"
+            "frequencies that the increments do not resolve are damped, or excited by impact: make the contact `massless`, \
+             or take shorter increments (dt.error)"
         }
         (false, false) => {
             "the scheme damps frequencies that the increments do not resolve: take shorter increments (dt.error)"

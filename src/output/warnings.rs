@@ -117,7 +117,7 @@ impl Observer for Warnings {
         }
         self.list.extend(self.audit.concerns());
         self.report();
-        Ok(())
+        self.audit.check()
     }
 }
 

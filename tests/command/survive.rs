@@ -963,9 +963,24 @@ fn columns(path: &Path, start: &str) -> Vec<Vec<String>> {
 #[test]
 fn a_case_begins_where_another_has_ended() {
     let folder = TempDir::new().expect("a folder");
-    let whole = dragged(json!({"newmark": {}}), 12);
-    let mut pressed = whole.clone();
-    pressed["steps"].as_array_mut().expect("steps").pop();
+    let mut whole = dragged(json!({"newmark": {}}), 12);
+    let first = |whole: &Value| {
+        let mut pressed = whole.clone();
+        pressed["steps"].as_array_mut().expect("steps").pop();
+        pressed
+    };
+    // The penalty that is left open is another one where a step has inertia.
+    written(folder.path(), &first(&whole));
+    done(&run(folder.path(), "open", &[]));
+    let mut open = whole.clone();
+    open["steps"].as_array_mut().expect("steps").remove(0);
+    open["begin_with"] = json!("open");
+    written(folder.path(), &open);
+    let text = told(&run(folder.path(), "refused", &[]), 2);
+    assert!(text.contains("contacts.base.normal.alpha_n: is left open") && text.contains("has inertia"), "{text}");
+
+    whole["contacts"]["base"]["normal"] = json!({"alpha_n": 1e4});
+    let pressed = first(&whole);
     written(folder.path(), &pressed);
     done(&run(folder.path(), "pressed", &[]));
     written(folder.path(), &whole);

@@ -37,7 +37,7 @@ pub const SLOTS: &[Slot] = &[
     ("gauss_points", &[("2", 3), ("3", 1), ("4", 1)]),
     ("smooth", OPTION),
     ("sliding", &[("finite", 2), ("small", 1)]),
-    ("normal", &[("alpha_n", 3), ("default", 1), ("augmented", 1)]),
+    ("normal", &[("alpha_n", 2), ("default", 2), ("augmented", 1)]),
     (
         "friction",
         &[

@@ -66,7 +66,7 @@ pub use pair::default_alpha_t;
 pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
 pub use probes::Gauge;
 pub use rigid::RigidBodyInput;
-pub use schedule::is_explicit;
+pub use schedule::{Regime, regime};
 
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
@@ -296,9 +296,9 @@ impl Builder {
         model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
         model.linkage = plates::linkage(&self.plates, &self.steps, &model)?;
-        let explicit = schedule::is_explicit(&self.steps);
-        model.contacts = pair::pairs(&self.contacts, &model, explicit)?;
-        model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, explicit)).collect();
+        let regime = schedule::regime(&self.steps);
+        model.contacts = pair::pairs(&self.contacts, &model, regime)?;
+        model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, regime)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
         section::check_velocities(

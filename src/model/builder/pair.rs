@@ -18,12 +18,16 @@
 //! Default penalties are stiff compared with the adjacent elements, but soft enough for the iterations.
 //!
 //! ```text
-//! α_n = 300 (λ + 2G)/h,   α_t = 5 (λ + 2G)/h           all steps are solved                                         (1)
-//! α_n =  10 (λ + 2G)/h,   α_t = 5 (λ + 2G)/h           a step is explicit: its increments are as long as α_n allows (2)
+//! α_n = 300 (λ + 2G)/h,   α_t = 5 (λ + 2G)/h           all steps are static                                         (1)
+//! α_n =  10 (λ + 2G)/h,   α_t = 5 (λ + 2G)/h           a step has inertia, or explicit increments                   (2)
 //! ```
+//! Explicit increments are as long as α_n allows. Implicit ones that do not resolve the oscillation of a surface node on α_n gain
+//! energy where surfaces part and meet: with (1) more than all that was supplied, with (2) less than a hundredth of it
+//! (`energy_from_nowhere_ends_with_a_remedy_that_helps`).
+//!
 //! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, h the depth of the element
 //! behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges. Where α_n is given, α_t = α_n/2. Surfaces that are tied
-//! take α_n = α_t = 10⁴ (λ + 2G)/h in (1): nothing opens or slides there, so that no iteration has to find out. Where surfaces roll or
+//! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find out. Where surfaces roll or
 //! slide with a stiff α_t, iterates pass over the narrow range of sticking to and fro: 30 times of it doubles the linear solves of a
 //! rolling disk, and only the elastic slip gains.
 //!
@@ -37,7 +41,7 @@ use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
-use super::schedule::is_explicit;
+use super::schedule::{Regime, regime};
 use super::{along, contact, initial, rigid, tied};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Mortar, mortar_points};
@@ -52,23 +56,23 @@ use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
 use crate::model::method::{Asked, Chosen, Method, choose};
 
-/// The pairs of contacts, in a run with explicit steps or without.
-pub fn pairs(contacts: &[Contact], model: &Model, explicit: bool) -> Checked<Vec<ContactPair>> {
+/// The pairs of contacts, in a run of this regime.
+pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
     check_allowed(contacts, &model.mesh)?;
-    let mut pairs = contacts.iter().map(|contact| pair(contact, model, explicit)).collect::<Checked<Vec<_>>>()?;
+    let mut pairs = contacts.iter().map(|contact| pair(contact, model, regime)).collect::<Checked<Vec<_>>>()?;
     unseen(contacts, &mut pairs, model);
     Ok(pairs)
 }
 
 /// Builds the pair of a contact, except for the data of the bodies.
-fn pair(contact: &Contact, model: &Model, explicit: bool) -> Checked<ContactPair> {
+fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair> {
     let place = format!("contacts.{}", contact.name);
-    let (mut points, mortar) = slave_points(&place, contact, &model.mesh, explicit)?;
+    let (mut points, mortar) = slave_points(&place, contact, &model.mesh, regime)?;
     let master = master(&place, contact, &points, model)?;
     if let Master::Mesh(surface) = &master {
         points.iter_mut().flat_map(|point| &mut point.length).for_each(|length| length.factor *= surface.share());
     }
-    let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model, explicit)?;
+    let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model, regime)?;
     let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
     let structure = contact.initial.as_ref().and_then(|initial| initial.structure.as_ref());
     tied::check_friction(contact, &place)?;
@@ -195,7 +199,7 @@ fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
 }
 
 /// Method of a contact of edges; `None` for a point group.
-pub fn evaluation(contact: &Contact, mesh: &Mesh, explicit: bool) -> Option<Chosen> {
+pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chosen> {
     let master = match &contact.master {
         MasterSide::Group(group) => Some(group.as_str()),
         _ => None,
@@ -205,7 +209,7 @@ pub fn evaluation(contact: &Contact, mesh: &Mesh, explicit: bool) -> Option<Chos
         method: *method,
         points: *points,
         smooth: *smooth,
-        explicit: explicit && !contact.tied,
+        explicit: regime == Regime::Explicit && !contact.tied,
         small: contact.tied || contact.sliding == SlidingRange::Small,
         bent: matches!(contact.master, MasterSide::Circle { .. } | MasterSide::Polyline { .. }),
     };
@@ -243,7 +247,7 @@ fn slave_points(
     place: &str,
     contact: &Contact,
     mesh: &Mesh,
-    explicit: bool,
+    regime: Regime,
 ) -> Checked<(Vec<SlavePoint>, Option<Mortar>)> {
     let name = &contact.slave;
     let slave = format!("{place}.slave");
@@ -251,7 +255,7 @@ fn slave_points(
         return Ok((lone_points(place, contact, nodes)?, None));
     }
     let edges = in_order(&node_lists(edges(mesh, name, &slave)?));
-    let Some(Chosen { method, points, .. }) = evaluation(contact, mesh, explicit) else {
+    let Some(Chosen { method, points, .. }) = evaluation(contact, mesh, regime) else {
         let message = format!("`{name}` is a group of edges, which have lengths of their own: leave the area out");
         return Err(ModelError::new(format!("{place}.area"), message));
     };
@@ -379,13 +383,13 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
     Ok(slave * master / (slave + master))
 }
 
-/// α_n over (λ + 2G)/h where all steps are solved, by (1) [-]
-const SOLVED: f64 = 300.0;
+/// α_n over (λ + 2G)/h where all steps are static, by (1) [-]
+const STATIC: f64 = 300.0;
 
-/// The same where a step is explicit, by (2) [-]
-const EXPLICIT: f64 = 10.0;
+/// The same where a step has inertia, or explicit increments, by (2) [-]
+const MOVING: f64 = 10.0;
 
-/// The same of surfaces that are tied, in (1) [-]
+/// The same of surfaces that are tied, without explicit increments [-]
 const TIED: f64 = 1e4;
 
 /// α_t over (λ + 2G)/h, by (1) and (2) [-]
@@ -402,28 +406,28 @@ pub struct Penalty {
 }
 
 /// α_n over (λ + 2G)/h unless given [-]
-fn default_over(contact: &Contact, explicit: bool) -> f64 {
-    match (explicit, contact.tied) {
-        (true, _) => EXPLICIT,
-        (false, true) => TIED,
-        (false, false) => SOLVED,
+fn default_over(contact: &Contact, regime: Regime) -> f64 {
+    match regime {
+        Regime::Static | Regime::Dynamic if contact.tied => TIED,
+        Regime::Static => STATIC,
+        Regime::Dynamic | Regime::Explicit => MOVING,
     }
 }
 
-/// The penalties of a contact, those given checked, in a run with explicit steps or without.
-pub fn penalty(place: &str, contact: &Contact, model: &Model, explicit: bool) -> Checked<Penalty> {
+/// The penalties of a contact, those given checked, in a run of this regime.
+pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) -> Checked<Penalty> {
     let elastic = elastic_stiffness(place, contact, model)?;
     let at = format!("{place}.normal.alpha_n");
     let alpha_n = match (contact.normal.alpha_n, elastic) {
         (Some(alpha_n), _) => alpha_n,
-        (None, Some(elastic)) => elastic * default_over(contact, explicit),
+        (None, Some(elastic)) => elastic * default_over(contact, regime),
         (None, None) => {
             let message =
                 format!("is missing: there are no elements behind the points of `{}` to choose it by", contact.slave);
             return Err(ModelError::new(at, message));
         }
     };
-    check_positive(&at, alpha_n, " (leave it out for 300 (λ + 2G)/h)")?;
+    check_positive(&at, alpha_n, " (leave it out for the default)")?;
     check_size(&format!("{place}.normal"), "alpha_n", alpha_n)?;
     let alpha_t = match (contact.tied, contact.normal.alpha_n, elastic) {
         (true, ..) => alpha_n,
@@ -437,7 +441,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, explicit: bool) ->
 /// α_t of a law of a contact that gives none, in a run of these steps; none for a slave group of points.
 #[doc(hidden)]
 pub fn default_alpha_t(contact: &Contact, model: &Model, steps: &[LoadStep]) -> Option<f64> {
-    penalty("", contact, model, is_explicit(steps)).ok()?.alpha_t
+    penalty("", contact, model, regime(steps)).ok()?.alpha_t
 }
 
 /// (λ + 2G)/h of (1); `None` if the slave has no edges [F/L³].

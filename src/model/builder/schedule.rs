@@ -25,11 +25,28 @@ use crate::model::step::{ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
-/// Whether some step takes explicit increments, or may: the defaults of penalties and methods are other ones then.
+/// What the steps of a run are, as far as the defaults of penalties and methods depend on it.
 #[doc(hidden)]
-pub fn is_explicit(steps: &[LoadStep]) -> bool {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regime {
+    /// All are static
+    Static,
+    /// One has inertia, and none takes explicit increments
+    Dynamic,
+    /// One takes explicit increments, or may
+    Explicit,
+}
+
+/// The regime of a run of these steps.
+#[doc(hidden)]
+pub fn regime(steps: &[LoadStep]) -> Regime {
     let explicit = |scheme: Scheme| matches!(scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. });
-    steps.iter().any(|step| step.rupture.is_some() || step.scheme.is_some_and(explicit))
+    let any = |is: &dyn Fn(Scheme) -> bool| steps.iter().any(|step| step.scheme.is_some_and(is));
+    match () {
+        () if any(&explicit) || steps.iter().any(|step| step.rupture.is_some()) => Regime::Explicit,
+        () if any(&Scheme::is_dynamic) => Regime::Dynamic,
+        () => Regime::Static,
+    }
 }
 
 /// Builds the steps of a run.
