@@ -253,10 +253,13 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
         Scheme::Explicit { .. } => {
             return "lower the safety of the explicit scheme, or give the bodies viscosity (damping.stiffness)";
         }
+        Scheme::Wilson { .. } => {
+            return "wilson overshoots sudden changes that the increments do not resolve, and damps the rest of such motions: take \
+                    another scheme (generalized_alpha), or shorter increments (dt.max)";
+        }
         Scheme::Newmark { gamma, .. } => gamma == 0.5,
         Scheme::Hht { alpha } => alpha == 0.0,
         Scheme::GeneralizedAlpha { rho_infinity } => rho_infinity == 1.0,
-        Scheme::Wilson { .. } => false,
     };
     let explicit = |step: &Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
     let may_be_massless = model.contacts.iter().any(|pair| pair.compliance > 0.0 && !pair.tied);
