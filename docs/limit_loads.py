@@ -82,10 +82,10 @@ def footing_on_soil(program):
     phi = radians(20)
     exact = (exp(pi * tan(phi)) * tan(pi / 4 + phi / 2) ** 2 - 1) / tan(phi)
     rows = [["flow", *HEAD]]
-    for psi, viscosity in ((20, 0), (5, 1e-4)):
+    for psi, viscosity, kind, element in ((20, 0, "Q8", "reduced"), (20, 0, "Q4", "f_bar"), (5, 1e-4, "Q8", "reduced"), (5, 1e-4, "Q4", "f_bar")):
         soil = {"model": "mohr_coulomb", "E": 1e4, "nu": NU, "c": 1, "phi": 20, "psi": psi, "viscosity": viscosity}
-        run = footing(program, soil, "reduced", "Q8", *FINE["Q8"], 4, 0.01)
-        name = f"ψ = {psi}°" + (f", viscosity {viscosity:g} of the duration" if viscosity else "")
+        run = footing(program, soil, element, kind, *FINE[kind], 4, 0.01)
+        name = f"ψ = {psi}°, {kind} {element.replace('f_bar', 'F-bar')}" + (f", viscosity {viscosity:g} of the duration" if viscosity else "")
         rows.append([name, *row("N_c", exact, -run.last("footing.fy") / 0.5, 4)])
     return rows
 

@@ -747,7 +747,7 @@ class Normal(dict[str, Any]):
 
     Args:
         alpha_n: α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body
-            and the depth h of the slave's elements; 10 (λ + 2G)/h where a step is explicit, quasi_dynamic or
+            and the depth h of the slave's elements; 10 (λ + 2G)/h where a step has inertia, is quasi_dynamic or
             has `rupture`. A slave group of points has no elements and needs a number
         penetration: Largest penetration allowed [L]: the pressure is increased until no penetration is larger
             (augmented Lagrangian by Uzawa's method), so that the solution does not depend on alpha_n; default:

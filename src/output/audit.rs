@@ -39,6 +39,9 @@ pub struct Audit {
     worst: (f64, f64),
     /// What every step contributed to the error
     steps: Vec<StepError>,
+    /// Error that arose in all increments in which masses have inertia, and its largest gain [F·L]
+    moving: f64,
+    gained: f64,
     /// Possible work of round-off in the forces [F·L]
     noise: f64,
     /// Energy in the contact penalties
@@ -51,8 +54,6 @@ struct StepError {
     step: String,
     /// Error that arose in its increments [F·L]
     error: f64,
-    /// Whether masses have inertia in it
-    dynamic: bool,
     remedy: String,
 }
 
@@ -95,10 +96,13 @@ impl Audit {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
         if self.steps.last().is_none_or(|last| last.step != step.name) {
-            let (dynamic, remedy) = (step.scheme.is_dynamic(), remedy(model, step).into());
-            self.steps.push(StepError { step: step.name.clone(), error: 0.0, dynamic, remedy });
+            self.steps.push(StepError { step: step.name.clone(), error: 0.0, remedy: remedy(model, step).into() });
         }
         self.steps.last_mut().into_iter().for_each(|last| last.error += error - self.error);
+        if step.scheme.is_dynamic() {
+            self.moving += error - self.error;
+            self.gained = self.gained.max(-self.moving);
+        }
         self.error = error;
         if error.abs() > self.worst.0.abs() || error.is_nan() {
             self.worst = (error, new.time);
@@ -123,8 +127,7 @@ impl Audit {
     }
 
     fn is_unstable(&self) -> bool {
-        let gained = |step: &StepError| step.dynamic && step.error < -self.supplied;
-        self.worst.0 < -self.supplied && self.steps.iter().any(gained)
+        self.gained > self.supplied
     }
 
     fn unbalanced(&self) -> Option<String> {

@@ -25,12 +25,9 @@ pub(super) fn dependence(model: &Model) -> Dependence {
     if all { Dependence::Nothing } else { Dependence::Displacement }
 }
 
-/// Nodes of the elements whose tangent is not symmetric: of a law that is not, or with F-bar.
+/// Nodes of the elements whose tangent is not symmetric, as their law's is not.
 pub(super) fn skew(model: &Model) -> Vec<usize> {
-    let is_skew = |e: &usize| {
-        let material = &model.bodies[model.body_of_element[*e]].material;
-        !material.is_symmetric() || model.solids[*e].is_f_bar()
-    };
+    let is_skew = |e: &usize| !model.bodies[model.body_of_element[*e]].material.is_symmetric();
     (0..model.solids.len()).filter(is_skew).flat_map(|e| model.mesh.elements[e].nodes.iter().copied()).collect()
 }
 

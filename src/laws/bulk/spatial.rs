@@ -11,7 +11,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
 use super::{CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, Straining};
 
 /// Response of a law at F with an out-of-plane stretch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stretched {
     /// P [F/L²]
     pub stress: Vector5<f64>,
@@ -36,6 +36,13 @@ impl Stretched {
         whole.fixed_view_mut::<1, 4>(4, 0).copy_from(&coupling.transpose());
         whole[(4, 4)] = stiffness;
         Self { stress: components(&stress, stress_33), tangent: whole, energy, dissipation: 0.0 }
+    }
+}
+
+/// In plane strain, without the out-of-plane parts, which do no work.
+impl From<MaterialResponse> for Stretched {
+    fn from(MaterialResponse { stress, tangent, energy, dissipation, .. }: MaterialResponse) -> Self {
+        Self { dissipation, ..Self::new((stress, tangent), (0.0, Vector4::zeros(), 0.0), energy) }
     }
 }
 

@@ -39,7 +39,7 @@ pub enum Formulation {
     /// Displacements only, full integration
     #[default]
     Displacement,
-    /// Q4 with the mean dilatation of the centre (F-bar): does not lock for ν → 1/2
+    /// Q4 with its mean volume change and mean pressure (F-bar): does not lock for ν → 1/2, nor where a body yields
     FBar,
     /// Q8 with 2 × 2 integration points instead of 3 × 3: does not lock for ν → 1/2, nor where a body yields. An element that shares
     /// no edge with another of its body can bend into an hourglass without forces

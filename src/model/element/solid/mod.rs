@@ -1,17 +1,20 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4 and reduced integration for Q8.
 //!
-//! This file contains F-bar, (4) to (6) of [`SolidElement`], the viscous stress of a damped body, and elements with internal
-//! variables or an unsymmetric tangent; `stress.rs` contains their stress and reference geometry, `ring.rs` axisymmetry.
+//! This file contains the viscous stress of a damped body as well, and elements with internal variables or an unsymmetric tangent;
+//! `f_bar.rs` contains F-bar, `ring.rs` axisymmetry, `stress.rs` the stress and the reference geometry of elements.
 
+mod f_bar;
 mod ring;
 mod stress;
 
-use nalgebra::{Matrix2, Matrix4, Vector2};
+use std::array;
+
+use nalgebra::{Matrix2, Matrix4, Vector2, Vector5};
 
 use super::Formulation;
-use crate::laws::bulk::{Material, MaterialFailure, MaterialResponse, Straining, cofactor, positive_jacobian};
+use crate::laws::bulk::spatial::{components, plane};
+use crate::laws::bulk::{Material, MaterialFailure, Straining, Stretched};
 use crate::mesh::shape::ElementKind;
-use ring::Hoop;
 
 /// A solid element: its reference geometry at the quadrature points.
 ///
@@ -21,21 +24,9 @@ use ring::Hoop;
 /// K_ai,bk = ∫ N_a,J A_iJkL N_b,L dV,   A = ∂P/∂F         tangent ∂f_ai/∂u_bk               (3)
 /// ```
 ///
-/// F-bar (Q4 only) gives every point the volume change of the centre, so that nearly incompressible materials do
-/// not lock. The law is evaluated at F̄, and its Cauchy stress acts on the actual geometry:
-///
-/// ```text
-/// F̄ = r F,   r = √(J₀/J),   J₀ = det F₀ at the centre                                      (4)
-/// P = P(F̄) / r                                                                             (5)
-/// dP = A:dF + ½ (F₀⁻ᵀ:dF₀ − F⁻ᵀ:dF) (A:F − P),   A = A(F̄)                                  (6)
-/// ```
-///
-/// These forces have no potential: the tangent is not symmetric, and the stored energy ∫ W(F̄) dV is the work of the
-/// forces only where J = J₀. [`Linear`](crate::laws::bulk::Linear) with F-bar is linear only in the limit of small
+/// F-bar (Q4 only) gives every point the mean volume change and the mean pressure, so that nearly incompressible materials, and bodies
+/// that yield, do not lock; see `f_bar.rs`. [`Linear`](crate::laws::bulk::Linear) with F-bar is linear only in the limit of small
 /// strains.
-///
-/// Source: de Souza Neto, Perić, Dutko & Owen (1996), Int. J. Solids Struct. 33, 3277,
-/// doi:10.1016/0020-7683(95)00259-6.
 ///
 /// Reduced integration takes 2 × 2 points for Q8. One element alone then has a motion besides the three rigid ones that costs
 /// nothing; two that share an edge have none. The mass keeps its 3 × 3 points.
@@ -51,10 +42,8 @@ pub struct SolidElement {
     volumes: Vec<f64>,
     /// Mean of w over the element
     mean_weight: f64,
-    /// ∂N_a/∂X at the centre, for F-bar [1/L]
-    centre: Option<Vec<Vector2<f64>>>,
-    /// Hoop terms of axisymmetric elements
-    hoop: Option<Hoop>,
+    /// N_a/R of all nodes at the first quadrature point, then at the second, … of axisymmetric elements [1/L]
+    hoop: Option<Vec<f64>>,
 }
 
 impl SolidElement {
@@ -118,19 +107,15 @@ impl SolidElement {
             *deformation = deformation_gradient(gradients, u);
         }
         let (deformations, mut stresses) = (&mut deformations[..points], [Matrix2::zeros(); M]);
-        let energy = match self.centre(u)? {
-            None => material.stresses(deformations, &self.volumes, &mut stresses[..points])?,
-            Some(centre) => {
-                let mut stretches = [1.0; M];
-                for (stretch, deformation) in stretches.iter_mut().zip(&mut *deformations) {
-                    *stretch = centre.stretch(deformation)?;
-                    *deformation *= *stretch;
-                }
-                let energy = material.stresses(deformations, &self.volumes, &mut stresses[..points])?;
-                stresses.iter_mut().zip(&stretches).for_each(|(stress, stretch)| *stress /= *stretch);
-                energy
-            }
-        };
+        let mean = self.mean(u)?;
+        if let Some(mean) = &mean {
+            deformations.iter_mut().zip(mean.seen()).for_each(|(deformation, seen)| *deformation = plane(&seen));
+        }
+        let energy = material.stresses(deformations, &self.volumes, &mut stresses[..points])?;
+        if let Some(mean) = &mean {
+            let given = array::from_fn(|k| components(&stresses[k], 0.0));
+            stresses.iter_mut().zip(mean.stresses(&given)).for_each(|(stress, own)| *stress = plane(&own));
+        }
         let mut sums = [Vector2::zeros(); N];
         for (stress, gradients) in stresses.iter().zip(gradients) {
             for (sum, gradient) in sums.iter_mut().zip(gradients) {
@@ -173,23 +158,19 @@ impl SolidElement {
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, MaterialFailure> {
+        if let Some(mean) = self.mean(u)? {
+            let answer = |_, seen: &Vector5<f64>| material.at_once(&plane(seen)).map(Stretched::from);
+            return mean.respond(answer, force, Some(tangent)).map(|[energy, _]| energy);
+        }
         force.fill(0.0);
         tangent.fill(0.0);
-        let centre = self.centre(u)?;
         let mut energy = 0.0;
         let mut blocks = [[[[0.0; 2]; 2]; N]; N];
         for (gradients, &volume) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes) {
-            let deformation = deformation_gradient(gradients, u);
-            let response = match &centre {
-                Some(centre) => centre.respond(material, &deformation)?,
-                None => material.at_once(&deformation)?,
-            };
+            let response = material.at_once(&deformation_gradient(gradients, u))?;
             energy += volume * response.energy;
             add_force(gradients, &(volume * response.stress), force);
             add_tangent(gradients, &(volume * response.tangent), &mut blocks);
-            if let Some(centre) = &centre {
-                centre.add_tangent(gradients, &deformation, volume, &response, tangent);
-            }
         }
         add_blocks(&blocks, tangent);
         Ok(energy)
@@ -245,62 +226,6 @@ fn add_blocks<const N: usize>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f
                         tangent[(2 * a + i) * 2 * N + 2 * b + k] += value;
                     }
                 }
-            }
-        }
-    }
-}
-
-/// The centre of an F-bar element at the current displacements.
-struct Centre<'a> {
-    gradients: &'a [Vector2<f64>],
-    jacobian: f64,
-    /// F₀⁻ᵀ
-    inverse_transpose: Matrix2<f64>,
-}
-
-impl SolidElement {
-    fn centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, MaterialFailure> {
-        let Some(gradients) = &self.centre else { return Ok(None) };
-        let deformation = deformation_gradient(gradients, u);
-        let jacobian = positive_jacobian(&deformation)?;
-        Ok(Some(Centre { gradients, jacobian, inverse_transpose: cofactor(&deformation) / jacobian }))
-    }
-}
-
-impl Centre<'_> {
-    /// r = √(J₀/J) of (4)
-    fn stretch(&self, deformation: &Matrix2<f64>) -> Result<f64, MaterialFailure> {
-        Ok((self.jacobian / positive_jacobian(deformation)?).sqrt())
-    }
-
-    /// The law at F̄, with the stress (5).
-    fn respond(
-        &self,
-        material: &dyn Material,
-        deformation: &Matrix2<f64>,
-    ) -> Result<MaterialResponse, MaterialFailure> {
-        let stretch = self.stretch(deformation)?;
-        let mut response = material.at_once(&(stretch * deformation))?;
-        response.stress /= stretch;
-        Ok(response)
-    }
-
-    /// Adds the second term of (6), a dyad of a nodal force and a nodal volume change.
-    fn add_tangent(
-        &self,
-        gradients: &[Vector2<f64>],
-        deformation: &Matrix2<f64>,
-        volume: f64,
-        response: &MaterialResponse,
-        tangent: &mut [f64],
-    ) {
-        let inverse_transpose = cofactor(deformation) / deformation.determinant();
-        let stress = 0.5 * volume * (contract(&response.tangent, deformation) - response.stress);
-        let columns = tangent.chunks_exact_mut(4 * gradients.len());
-        for ((columns, at_centre), here) in columns.zip(self.gradients).zip(gradients) {
-            let volume_change = self.inverse_transpose * at_centre - inverse_transpose * here;
-            for (column, change) in columns.chunks_exact_mut(2 * gradients.len()).zip(&volume_change) {
-                add_force(gradients, &(*change * stress), column);
             }
         }
     }
@@ -395,19 +320,25 @@ impl SolidElement {
             return self.ring(material, memory, u, force, tangent);
         }
         let Memory { dt, old, new } = memory;
+        let count = material.variables().len();
+        if let Some(mean) = self.mean(u)? {
+            let answer = |k: usize, seen: &Vector5<f64>| {
+                let own = k * count..(k + 1) * count;
+                let straining = Straining { deformation: plane(seen), stretch: 1.0, dt, old: &old[own.clone()] };
+                material.respond(&straining, &mut new[own]).map(Stretched::from)
+            };
+            return mean.respond(answer, force, tangent);
+        }
         force.fill(0.0);
         if let Some(tangent) = tangent.as_deref_mut() {
             tangent.fill(0.0);
         }
-        let (centre, count) = (self.centre(u)?, material.variables().len());
         let [mut energy, mut dissipated] = [0.0; 2];
         for (k, (gradients, volume)) in self.points().enumerate() {
-            let deformation = deformation_gradient(gradients, u);
-            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
             let own = k * count..(k + 1) * count;
-            let straining = Straining { deformation: r * deformation, stretch: 1.0, dt, old: &old[own.clone()] };
-            let mut response = material.respond(&straining, &mut new[own])?;
-            response.stress /= r;
+            let deformation = deformation_gradient(gradients, u);
+            let straining = Straining { deformation, stretch: 1.0, dt, old: &old[own.clone()] };
+            let response = material.respond(&straining, &mut new[own])?;
             energy += volume * response.energy;
             dissipated += volume * response.dissipation;
             add_force(gradients, &(volume * response.stress), force);
@@ -415,9 +346,6 @@ impl SolidElement {
             for (dof, column) in tangent.chunks_exact_mut(2 * u.len()).enumerate() {
                 let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
                 add_force(gradients, &(volume * contract(&response.tangent, &varied)), column);
-            }
-            if let Some(centre) = &centre {
-                centre.add_tangent(gradients, &deformation, volume, &response, tangent);
             }
         }
         Ok([energy, dissipated])

@@ -4,10 +4,11 @@
 
 use std::sync::OnceLock;
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector5};
 
-use super::ring::Hoop;
+use super::ring::{spatial, straining};
 use super::{SolidElement, deformation_gradient};
+use crate::laws::bulk::spatial::plane;
 use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, Straining, log_strain};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
@@ -25,21 +26,23 @@ impl SolidElement {
         memory: &[f64],
         u: &[Vector2<f64>],
     ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
-        if self.hoop.is_some() {
-            return self.ring_stresses(material, memory, u);
-        }
-        let (centre, count) = (self.centre(u)?, material.variables().len());
-        self.points()
-            .enumerate()
-            .map(|(k, (gradients, _))| {
-                let deformation = deformation_gradient(gradients, u);
-                let seen = match &centre {
-                    Some(centre) => centre.stretch(&deformation)? * deformation,
-                    None => deformation,
-                };
-                material.cauchy_stress(&seen, &memory[k * count..(k + 1) * count])
-            })
-            .collect()
+        let count = material.variables().len();
+        let of = |(k, seen): (usize, &Vector5<f64>)| {
+            let old = &memory[k * count..(k + 1) * count];
+            match self.hoop {
+                Some(_) => spatial(material).cauchy(&straining(seen, 0.0, old)),
+                None => material.cauchy_stress(&plane(seen), old),
+            }
+        };
+        self.seen(u)?.iter().enumerate().map(of).collect()
+    }
+
+    /// F at each quadrature point as the law sees it: F̄ of F-bar.
+    fn seen(&self, u: &[Vector2<f64>]) -> Result<Few<Vector5<f64>, 9>, MaterialFailure> {
+        Ok(match self.mean(u)? {
+            Some(mean) => mean.seen().into(),
+            None => self.everywhere().map(|(at, _)| at.deformation(u)).collect(),
+        })
     }
 
     /// Logarithmic strain xx, yy, zz, xy at each quadrature point, as the law sees it (F̄ of F-bar); of a linear law sym F − 1.
@@ -56,19 +59,15 @@ impl SolidElement {
             true => [f.m11 - 1.0, f.m22 - 1.0, across - 1.0, 0.5 * (f.m12 + f.m21)],
             false => log_strain(f, across),
         };
-        if self.hoop.is_some() {
-            return Ok(self.ring_deformations(u)?.iter().map(|(f, hoop)| strain(f, *hoop)).collect());
-        }
-        let (centre, count) = (self.centre(u)?, material.variables().len());
-        self.points()
-            .enumerate()
-            .map(|(k, (gradients, _))| {
-                let deformation = deformation_gradient(gradients, u);
-                let seen = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))? * deformation;
-                let across = material.stretch_across(&seen, &memory[k * count..(k + 1) * count])?;
-                Ok(strain(&seen, across))
-            })
-            .collect()
+        let count = material.variables().len();
+        let of = |(k, seen): (usize, &Vector5<f64>)| {
+            let across = match self.hoop {
+                Some(_) => seen[4],
+                None => material.stretch_across(&plane(seen), &memory[k * count..(k + 1) * count])?,
+            };
+            Ok(strain(&plane(seen), across))
+        };
+        self.seen(u)?.iter().enumerate().map(of).collect()
     }
 
     /// F at each quadrature point.
@@ -99,15 +98,13 @@ impl SolidElement {
     ) -> Result<Vec<f64>, MaterialFailure> {
         let (count, own) = (material.variables().len(), material.shown().len());
         let mut values = vec![0.0; own * self.quadrature_points()];
-        if self.hoop.is_some() {
-            self.ring_shown(material, memory, u, &mut values)?;
-            return Ok(values);
-        }
-        let centre = self.centre(u)?;
-        for (k, ((gradients, _), values)) in self.points().zip(values.chunks_exact_mut(own.max(1))).enumerate() {
-            let deformation = deformation_gradient(gradients, u);
-            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
-            material.show(&Straining::new(r * deformation, &memory[k * count..(k + 1) * count]), values)?;
+        for ((k, seen), values) in self.seen(u)?.iter().enumerate().zip(values.chunks_exact_mut(own.max(1))) {
+            let old = &memory[k * count..(k + 1) * count];
+            let now = match self.hoop {
+                Some(_) => straining(seen, 0.0, old),
+                None => Straining::new(plane(seen), old),
+            };
+            material.show(&now, values)?;
         }
         Ok(values)
     }
@@ -159,8 +156,7 @@ impl SolidElement {
             gradients: Vec::new(),
             volumes: Vec::new(),
             mean_weight: 1.0,
-            centre: None,
-            hoop: section.is_axisymmetric().then(|| Hoop { values: Vec::new(), centre: Vec::new() }),
+            hoop: section.is_axisymmetric().then(Vec::new),
         };
         let over_radius = |at: [f64; 2]| {
             let values = kind.values(at);
@@ -175,16 +171,10 @@ impl SolidElement {
             element.volumes.push(point.weight * jacobian * section.weight(place));
             area += point.weight * jacobian;
             if let Some(hoop) = &mut element.hoop {
-                hoop.values.extend(over_radius(point.at));
+                hoop.extend(over_radius(point.at));
             }
         }
         element.mean_weight = element.volume() / area;
-        if formulation == Formulation::FBar {
-            element.centre = Some(gradients(kind, kind.centre(), positions)?.0);
-            if let Some(hoop) = &mut element.hoop {
-                hoop.centre = over_radius(kind.centre());
-            }
-        }
         Ok(element)
     }
 
@@ -193,9 +183,9 @@ impl SolidElement {
         self.formulation
     }
 
-    /// Whether it has the volume change of its centre everywhere (F-bar).
+    /// Whether it has its mean volume change everywhere (F-bar).
     pub fn is_f_bar(&self) -> bool {
-        self.centre.is_some()
+        self.formulation == Formulation::FBar
     }
 
     /// Its quadrature points.

@@ -1,0 +1,169 @@
+//! F-bar: every point of an element has the mean volume change, and the mean pressure.
+//!
+//! ```text
+//! ln J̄ = ⟨ln J⟩,   F̄ = r F,   r = (J̄/J)^m,   ⟨·⟩ = ∫ · dV/∫ dV,   m = ½ in plane, ⅓ in rings                (4)
+//! Π = ∫ W(F̄) dV,   f = ∂Π/∂u
+//! δF̄ = r δF + h F̄,   h = m (⟨n⟩ − n),   n = F⁻ᵀ:δF                                          h: variation of ln r
+//! f·δu = ∫ P*:δF dV,   P* = r P̄ + m (⟨w⟩ − w) F⁻ᵀ,   P̄ = P(F̄),   w = P̄:F̄                                   (5)
+//! δu·K·du = ∫ [δF̄:Ā:dF̄ + P̄:δF̄ dh + δh P̄:dF̄ − w δh dh + m (w − ⟨w⟩) tr(F⁻¹δF F⁻¹dF)] dV,   Ā = A(F̄)       (6)
+//! ```
+//! In plane strain a trace is that in the plane. By (5) the trace of each point's Kirchhoff stress P* Fᵀ is the mean one.
+//! (P̄ is the law's answer to F̄, with its memory, whether it has a potential or not.)
+//!
+//! The forces have a potential where the law has one: the tangent is symmetric then, and the stored energy is their work. With the stress
+//! of each point for itself on the actual geometry (de Souza Neto et al. 1996) the forces have none, and where a body dilates
+//! as it yields, that is, where the pressures of an element's points differ, work comes from nowhere.
+//!
+//! Sources: Nagtegaal, Parks & Rice (1974), Comput. Methods Appl. Mech. Eng. 4, 153, doi:10.1016/0045-7825(74)90032-2; Simo, Taylor &
+//! Pister (1985), Comput. Methods Appl. Mech. Eng. 51, 177, doi:10.1016/0045-7825(85)90033-7 (mean dilatation and pressure at
+//! large deformations); (5) and (6) are derived from (4).
+
+use std::array;
+
+use nalgebra::{Vector2, Vector5};
+
+use super::SolidElement;
+use super::ring::{At, inverse_transpose, jacobian};
+use crate::laws::bulk::spatial::{components, plane};
+use crate::laws::bulk::{MaterialFailure, Stretched};
+use crate::model::element::Formulation;
+
+/// Quadrature points and dofs of the element, a Q4.
+const POINTS: usize = 4;
+const DOFS: usize = 8;
+
+/// An F-bar element at the current displacements.
+pub(super) struct Mean<'a> {
+    points: [Now<'a>; POINTS],
+    /// m of (4)
+    exponent: f64,
+    volume: f64,
+}
+
+/// A quadrature point of it.
+#[derive(Clone, Copy)]
+struct Now<'a> {
+    at: At<'a>,
+    volume: f64,
+    /// F⁻ᵀ
+    inverse_transpose: Vector5<f64>,
+    /// r of (4)
+    stretch: f64,
+    /// F̄, whose out-of-plane part is of no account in plane strain
+    seen: Vector5<f64>,
+}
+
+impl SolidElement {
+    /// The element at displacements `u` by (4); `None` unless it is an F-bar element.
+    pub(super) fn mean(&self, u: &[Vector2<f64>]) -> Result<Option<Mean<'_>>, MaterialFailure> {
+        if self.formulation != Formulation::FBar {
+            return Ok(None);
+        }
+        let none = Now {
+            at: At::default(),
+            volume: 0.0,
+            inverse_transpose: Vector5::zeros(),
+            stretch: 1.0,
+            seen: Vector5::zeros(),
+        };
+        let (mut points, mut ln_jacobians) = ([none; POINTS], [0.0; POINTS]);
+        for ((now, ln_jacobian), (at, volume)) in points.iter_mut().zip(&mut ln_jacobians).zip(self.everywhere()) {
+            let seen = at.deformation(u);
+            *ln_jacobian = jacobian(&seen)?.ln();
+            *now = Now { at, volume, inverse_transpose: inverse_transpose(&seen), stretch: 1.0, seen };
+        }
+        let exponent = if self.hoop.is_some() { 1.0 / 3.0 } else { 0.5 };
+        let volume: f64 = points.iter().map(|now| now.volume).sum();
+        let mean = points.iter().zip(&ln_jacobians).map(|(now, ln)| now.volume * ln).sum::<f64>() / volume;
+        for (now, ln_jacobian) in points.iter_mut().zip(ln_jacobians) {
+            now.stretch = (exponent * (mean - ln_jacobian)).exp();
+            now.seen *= now.stretch;
+        }
+        Ok(Some(Mean { points, exponent, volume }))
+    }
+}
+
+impl Mean<'_> {
+    /// F̄ at each quadrature point.
+    pub fn seen(&self) -> [Vector5<f64>; POINTS] {
+        self.points.map(|now| now.seen)
+    }
+
+    /// P* of (5) times the volume at each point, given the same of P̄.
+    pub fn stresses(&self, given: &[Vector5<f64>; POINTS]) -> [Vector5<f64>; POINTS] {
+        let works: [f64; POINTS] = array::from_fn(|k| given[k].dot(&self.points[k].seen));
+        let mean = works.iter().sum::<f64>() / self.volume;
+        array::from_fn(|k| {
+            let now = &self.points[k];
+            now.stretch * given[k] + self.exponent * (now.volume * mean - works[k]) * now.inverse_transpose
+        })
+    }
+
+    /// Force and, on request, tangent by (5) and (6) of a law's answers to F̄, which have no out-of-plane parts in plane strain; returns
+    /// the stored and the dissipated energy.
+    pub fn respond(
+        &self,
+        mut law: impl FnMut(usize, &Vector5<f64>) -> Result<Stretched, MaterialFailure>,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<[f64; 2], MaterialFailure> {
+        let mut answers = [Stretched::default(); POINTS];
+        for ((k, now), answer) in self.points.iter().enumerate().zip(&mut answers) {
+            *answer = law(k, &now.seen)?;
+        }
+        let [mut energy, mut dissipated] = [0.0; 2];
+        for (now, answer) in self.points.iter().zip(&answers) {
+            energy += now.volume * answer.energy;
+            dissipated += now.volume * answer.dissipation;
+        }
+        let stresses = self.stresses(&array::from_fn(|k| self.points[k].volume * answers[k].stress));
+        force.fill(0.0);
+        self.points.iter().zip(&stresses).for_each(|(now, stress)| now.at.add_force(stress, force));
+        if let Some(tangent) = tangent {
+            tangent.fill(0.0);
+            self.add_tangent(&answers, tangent);
+        }
+        Ok([energy, dissipated])
+    }
+
+    /// Tangent (6), column by column.
+    fn add_tangent(&self, answers: &[Stretched; POINTS], tangent: &mut [f64]) {
+        let varied = self.points.map(|now| array::from_fn::<_, DOFS, _>(|dof| now.at.variation(dof)));
+        let share = self.points.map(|now| now.volume / self.volume);
+        // n, and ⟨n⟩, of each dof
+        let change: [[f64; DOFS]; POINTS] =
+            array::from_fn(|k| varied[k].map(|varied| self.points[k].inverse_transpose.dot(&varied)));
+        let mean: [f64; DOFS] = array::from_fn(|dof| (0..POINTS).map(|k| share[k] * change[k][dof]).sum());
+        let works: [f64; POINTS] = array::from_fn(|k| answers[k].stress.dot(&self.points[k].seen));
+        let mean_work: f64 = (0..POINTS).map(|k| share[k] * works[k]).sum();
+        for (k, (now, answer)) in self.points.iter().zip(answers).enumerate() {
+            let h: [f64; DOFS] = array::from_fn(|dof| self.exponent * (mean[dof] - change[k][dof]));
+            // δF̄ of each dof
+            let seen: [Vector5<f64>; DOFS] = array::from_fn(|dof| now.stretch * varied[k][dof] + h[dof] * now.seen);
+            let stress = seen.map(|seen| answer.stress.dot(&seen));
+            let turned = varied[k].map(|varied| now.pulled_back(&varied));
+            let geometric = self.exponent * (works[k] - mean_work);
+            for (j, column) in tangent.chunks_exact_mut(DOFS).enumerate() {
+                let dstress = answer.tangent * seen[j];
+                for (i, entry) in column.iter_mut().enumerate() {
+                    *entry += now.volume
+                        * (seen[i].dot(&dstress) + stress[i] * h[j] + h[i] * stress[j] - works[k] * h[i] * h[j]
+                            + geometric * trace_of_product(&turned[i], &turned[j]));
+                }
+            }
+        }
+    }
+}
+
+impl Now<'_> {
+    /// F⁻¹δF
+    fn pulled_back(&self, varied: &Vector5<f64>) -> Vector5<f64> {
+        let t = &self.inverse_transpose;
+        components(&(plane(t).transpose() * plane(varied)), t[4] * varied[4])
+    }
+}
+
+/// tr(X Y)
+fn trace_of_product(x: &Vector5<f64>, y: &Vector5<f64>) -> f64 {
+    x[0] * y[0] + x[2] * y[1] + x[1] * y[2] + x[3] * y[3] + x[4] * y[4]
+}
