@@ -1,7 +1,6 @@
 //! Loads: dead loads, follower pressures, springs, initial stress, and the reactions of released supports. Their work is part
 //! of that of all external forces, see [`super::evaluation`].
 
-use nalgebra::Vector2;
 
 use super::links;
 use super::sums::{Dependence, Sums};
@@ -76,8 +75,7 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
         let x = model.configuration(u);
         for load in &step.loads.pressures {
             for edge in &load.edges {
-                let middle = edge.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
-                let pressure = follower_pressure(edge, load.amplitude.value(middle, at), &x);
+                let pressure = follower_pressure(edge, |position| load.amplitude.value(position, at), &x);
                 for (a, &node) in edge.iter().enumerate() {
                     (0..2).for_each(|i| loads[2 * node + i] -= pressure.force[2 * a + i]);
                 }

@@ -114,8 +114,7 @@ fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
     }
     let x = model.mesh.undeformed();
     for (load, edge) in loads.pressures.iter().flat_map(|load| load.edges.iter().map(move |edge| (load, edge))) {
-        let middle = edge.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
-        let pressure = follower_pressure(edge, load.amplitude.value(middle, time), &x);
+        let pressure = follower_pressure(edge, |position| load.amplitude.value(position, time), &x);
         for (a, &node) in edge.iter().enumerate() {
             forces.add(node, vector(pressure.force.as_slice(), a));
         }

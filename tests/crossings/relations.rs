@@ -216,10 +216,15 @@ fn threads(base: &Base) -> Outcome {
 
 /// The steps after the first as a case that begins with the first.
 fn begun_with(base: &Base) -> Outcome {
-    if !base.has_ended_well() || base.draft.has("times") {
+    // The default penalty of the first step is another one where a later one has inertia; the command refuses to go on there.
+    let other_penalty = base.draft.is("normal", "default") && base.draft.has("then");
+    if !base.has_ended_well() || base.draft.has("times") || other_penalty {
         return Outcome::Idle;
     }
     let record = run(&model::case(base.draft, &base.ways), &base.ways, Lead::Begun);
+    if is_judged_by_energies(&record.ended) {
+        return Outcome::Idle;
+    }
     // It counts its own energies; the turns of bodies begin anew as well.
     let counted = |column: &str| {
         let totals = [
@@ -235,6 +240,11 @@ fn begun_with(base: &Base) -> Outcome {
     base.as_before(&record, SAME, &counted)
 }
 
+/// Whether a run ended as one whose motion gained more energy than was supplied in it, and to all of its bodies.
+fn is_judged_by_energies(ended: &Ended) -> bool {
+    matches!(ended, Ended::Stopped(why) if why.contains("energy balance violated"))
+}
+
 /// Something that touches nothing.
 fn bystander(base: &Base) -> Outcome {
     // The error of an increment is that of all bodies.
@@ -244,8 +254,7 @@ fn bystander(base: &Base) -> Outcome {
     let energies = |column: &str| !column.contains('.') && column != "dt" && column != "time" || is_aside(column);
     let record = base.run(&Ways { bystander: true, flight: true, ..base.ways.clone() });
     // When Newton's method gives up hangs on the norm of all forces, and the judgement at the end on the energies of all bodies.
-    let of_all = matches!(&record.ended, Ended::Stopped(why) if why.contains("energy balance violated"));
-    if record.increments != base.record.increments || of_all {
+    if record.increments != base.record.increments || is_judged_by_energies(&record.ended) {
         return Outcome::Idle;
     }
     if !base.has_ended_well() { Outcome::Idle } else { base.as_before(&record, SAME, &energies) }

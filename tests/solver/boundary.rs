@@ -181,13 +181,13 @@ fn follower_pressure_is_closed_and_has_an_exact_tangent() {
     for edges in [linear, quadratic] {
         let mut total = Vector2::zeros();
         for edge in &edges {
-            let result = follower_pressure(edge, 3.0, &Configuration::undeformed(&contour));
+            let result = follower_pressure(edge, |_| 3.0, &Configuration::undeformed(&contour));
             total += result.force.as_slice().chunks(2).map(|f| Vector2::new(f[0], f[1])).sum::<Vector2<f64>>();
             for column in 0..2 * edge.len() {
                 let moved = |h: f64| {
                     let mut x = contour.clone();
                     x[edge[column / 2]][column % 2] += h;
-                    follower_pressure(edge, 3.0, &Configuration::undeformed(&x)).force
+                    follower_pressure(edge, |_| 3.0, &Configuration::undeformed(&x)).force
                 };
                 let difference = (moved(0.5) - moved(-0.5)) - result.tangent.column(column);
                 close("tangent", difference.amax(), 0.0, 1e-13);

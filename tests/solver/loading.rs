@@ -636,3 +636,45 @@ fn damping_of_a_step_is_that_of_the_body() {
         assert!(of_body.last().map(|s| &s.velocity) != none.last().map(|s| &s.velocity), "damping shows");
     }
 }
+
+/// A cylinder is pressed between platens that are given by normal displacements: uniform stress E ε, on quadratic sides too, whose
+/// corners on the axis have no area (∫ N r dr = 0).
+#[test]
+fn normals_of_rings_are_right_on_the_axis() {
+    for kind in ["Q4", "Q8", "T6"] {
+        let run = finish(&json!({
+            "section": "axisymmetric",
+            "mesh": {"blocks": [{"body": "rod", "corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "elements": [3, 3], "kind": kind,
+                                 "sides": ["bottom", null, "top", null]}]},
+            "bodies": {"rod": {"material": {"model": "linear", "E": 1000, "nu": 0.3}}},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1},
+                       "supports": [{"on": "bottom", "un": 0}, {"on": "top", "un": -0.01}]}]
+        }));
+        for node in run.nodes("top") {
+            close(&format!("{kind}: u_y"), run.last().displacement[2 * node + 1], -0.01, 1e-12);
+        }
+        let force = 1000.0 * 0.01 * std::f64::consts::PI;
+        close(&format!("{kind}: force"), run.reaction("top", run.last())[1], -force, 1e-9 * force);
+    }
+}
+
+/// A pressure that varies along an edge pulls on its nodes as the same dead pressure does, whatever the mesh: p = x on one edge of length 2
+/// makes the moment ∫ x² dx = 8/3 about its end.
+#[test]
+fn a_pressure_varies_along_an_edge() {
+    let moment = |kind: &str, load: &str| {
+        let run = finish(&json!({
+            "mesh": {"blocks": [{"body": "block", "corners": [[0, 0], [2, 0], [2, 1], [0, 1]], "elements": [1, 1], "kind": kind,
+                                 "sides": ["bottom", null, "top", null]}]},
+            "bodies": {"block": {"material": {"model": "linear", "E": 1e9, "nu": 0}}},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1},
+                       "supports": [{"on": "bottom", "ux": 0, "uy": 0}], "loads": [{"on": "top", load: "x"}]}]
+        }));
+        run.nodes("bottom").into_iter().map(|a| run.model.mesh.nodes[a].x * run.last().reaction[2 * a + 1]).sum::<f64>()
+    };
+    for kind in ["Q4", "Q8", "T6"] {
+        for load in ["pressure", "dead_pressure"] {
+            close(&format!("{kind}, {load}"), moment(kind, load), 8.0 / 3.0, 1e-6);
+        }
+    }
+}

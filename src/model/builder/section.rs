@@ -57,11 +57,15 @@ pub fn material(given: Arc<dyn Material>, f_bar: bool, section: Section, place: 
     }
 }
 
+/// Radius up to which a node of axisymmetric bodies is on the axis; `None` in other sections.
+pub fn axis(mesh: &Mesh) -> Option<f64> {
+    mesh.section.is_axisymmetric().then(|| ON_AXIS * mesh.diagonal())
+}
+
 /// Nodes of axisymmetric bodies on the axis, which they cannot leave.
 fn on_axis(model: &Model) -> impl Iterator<Item = usize> {
-    let mesh = &model.mesh;
-    let near = ON_AXIS * mesh.diagonal();
-    (0..mesh.nodes.len()).filter(move |&node| mesh.section.is_axisymmetric() && mesh.nodes[node].x <= near)
+    let (mesh, axis) = (&model.mesh, axis(&model.mesh));
+    (0..mesh.nodes.len()).filter(move |&node| axis.is_some_and(|near| mesh.nodes[node].x <= near))
 }
 
 /// Constrains nodes on the axis and platens, whose radii are constant, and refuses prescribed radial motion and rotation of

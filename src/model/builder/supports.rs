@@ -20,7 +20,8 @@
 //! n_a = ∫ N_a n dS / |∫ N_a n dS|
 //! ```
 //!
-//! so that u·n_a = 0 at all nodes conserves the volume. Where edges meet at a corner, a node has the normals of both.
+//! so that u·n_a = 0 at all nodes conserves the volume. A node on the axis of rings has no area (a corner of a quadratic edge exactly
+//! none); its normal is that of the plane section. Where edges meet at a corner, a node has the normals of both.
 //!
 //! Source: Engelman, Sani & Gresho (1982), Int. J. Numer. Meth. Fluids 2, 225.
 
@@ -34,6 +35,7 @@ use super::load::Change;
 use super::load_step::{Rotation, Support};
 use super::plates::check_support;
 use super::rigid;
+use super::section;
 use super::shares::pressure_shares;
 use crate::mesh::Edge;
 use crate::model::Model;
@@ -449,9 +451,10 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
         ));
     };
     let edges = edges(&model.mesh, name, place)?;
+    let axis = section::axis(&model.mesh);
     let mut at_node: BTreeMap<(usize, usize), Vec<Vector2<f64>>> = BTreeMap::new();
     for edge in edges {
-        for (node, area) in areas(model, edge) {
+        for (node, area) in areas(model, edge, axis) {
             // Nodes of a platen have separate normals.
             let on_plate = model.plates.iter().any(|plate| plate.binary_search(&node).is_ok());
             let original = model.ties.original(node);
@@ -462,14 +465,16 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
     Ok(at_node.into_iter().flat_map(of_node))
 }
 
-/// ∫ N_a n dS of an edge, node by node; at the axis, where the area is zero, the value next to it is used.
-fn areas(model: &Model, edge: &Edge) -> Vec<(usize, Vector2<f64>)> {
+/// ∫ N_a n dS of an edge, node by node; at nodes on the axis in the plane section.
+fn areas(model: &Model, edge: &Edge, axis: Option<f64>) -> Vec<(usize, Vector2<f64>)> {
     let [x, y] = pressure_shares(&model.mesh, std::slice::from_ref(edge));
     edge.nodes
         .iter()
         .map(|&node| {
+            let on_axis = axis.is_some_and(|near| model.mesh.nodes[node].x <= near);
+            let weight = |at: Vector2<f64>| if on_axis { model.mesh.section.weight(at) } else { 1.0 };
             let sum = |shares: &[(usize, f64, Vector2<f64>)]| -> f64 {
-                shares.iter().filter(|share| share.0 == node).map(|share| -share.1).sum()
+                shares.iter().filter(|share| share.0 == node).map(|(_, share, at)| -share / weight(*at)).sum()
             };
             (node, Vector2::new(sum(&x), sum(&y)))
         })

@@ -188,14 +188,16 @@ pub fn redistributed(mass: DMatrix<f64>, massless: impl Fn(usize) -> bool) -> DM
     motion.transpose() * mass * motion
 }
 
-/// Internal force and tangent of pressure `p` (positive toward the body) on one edge at the nodal positions `x`.
-pub fn follower_pressure(edge: &[usize], p: f64, x: &Configuration) -> Contribution {
+/// Internal force and tangent of a `pressure` (positive toward the body), a function of the reference position, on one edge at the
+/// nodal positions `x`.
+pub fn follower_pressure(edge: &[usize], pressure: impl Fn(Vector2<f64>) -> f64, x: &Configuration) -> Contribution {
     let mut result = Contribution::zero(edge.to_vec());
     for (xi, weight) in shape::gauss(edge.len()) {
         let values = shape::edge_values(edge.len(), xi);
         let slopes = shape::edge_derivatives(edge.len(), xi);
         let along = x.combine(&edge.iter().copied().zip(slopes.iter().copied()).collect::<Vec<_>>());
         let place: Vec<(usize, f64)> = edge.iter().copied().zip(values.iter().copied()).collect();
+        let p = pressure(place.iter().map(|&(node, n)| x.reference(node) * n).sum());
         let (depth, slope) = (x.weight(&place), x.weight_slope(&place));
         for (a, n) in values.iter().enumerate() {
             let factor = p * n * weight * depth;
