@@ -63,14 +63,14 @@ def footing(program, material, element, kind, columns, rows, width, settlement):
 
 
 # Elements beside the middle and beside the corner, and the ratio of the last size to the first.
-FINE = {"Q4": ([[20, 0.2], [30, 30]], [32, 0.05]), "Q8": ([[12, 0.1], [18, 40]], [18, 0.02]), "T6": ([[10, 0.2], [15, 20]], [16, 0.05])}
+FINE = {"Q4": ([[20, 0.2], [30, 30]], [32, 0.05]), "Q8": ([[12, 0.1], [18, 40]], [18, 0.02]), "T6": ([[10, 0.1], [15, 40]], [16, 0.02])}
 
 
 def strip_footing(program):
     """Clay that is sheared undrained, s_u = 1, under a rough strip footing: 2 + π (Prandtl 1920)."""
     rows = [["elements, corner", *HEAD]]
     clay = {**von_mises(3**0.5), "E": 1e4}
-    for name, kind, element in (("Q4 F-bar, B/100", "Q4", "f_bar"), ("Q8 reduced, B/100", "Q8", "reduced"), ("T6, B/50", "T6", "displacement"),
+    for name, kind, element in (("Q4 F-bar, B/100", "Q4", "f_bar"), ("Q8 reduced, B/100", "Q8", "reduced"), ("T6, B/80", "T6", "displacement"),
                                 ("Q4 in full, B/100", "Q4", "displacement")):
         run = footing(program, clay, element, kind, *FINE[kind], 2.5, 0.004)
         rows.append([name, *row("N_c", 2 + pi, -run.last("footing.fy") / 0.5, 4)])
