@@ -1,7 +1,6 @@
 //! Loads: dead loads, follower pressures, springs, initial stress, and the reactions of released supports. Their work is part
 //! of that of all external forces, see [`super::evaluation`].
 
-
 use super::links;
 use super::sums::{Dependence, Sums};
 use super::trial::Trial;
