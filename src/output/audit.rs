@@ -197,7 +197,9 @@ impl Give {
         let advised = rounded_up(stiffness[way] * share / ADVISED);
         let massless = if *rings { "\"massless\": true, for a stiff penalty rings on mass, and " } else { "" };
         let key = [format!("{massless}\"alpha_n\": {advised}"), format!("\"alpha_t\": {advised}")];
-        let or = ["penetration", "stick"].map(|key| if *by_steps { format!(", or `{key}`") } else { String::new() });
+        // Multipliers on surfaces that have mass gain energy.
+        let or = [("penetration", *by_steps && !rings), ("stick", *by_steps)]
+            .map(|(key, helps)| if helps { format!(", or `{key}`") } else { String::new() });
         let what = ["lets the surfaces penetrate", "lets surfaces slip that should stick"];
         (share > GIVES_WAY).then(|| {
             format!(

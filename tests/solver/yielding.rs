@@ -119,6 +119,29 @@ fn viscosity_makes_softening_one_of_the_body() {
     close("force", fine, coarse, 0.015 * coarse);
 }
 
+/// Ground at rest under its weight on a skewed mesh does not move with F-bar either, whose pressure is otherwise an element's mean.
+#[test]
+fn ground_rests_on_f_bar_elements_of_any_shape() {
+    let mesh = Blocks::default().block("ground", [4, 4], |s, t| {
+        let bump = 16.0 * s * (1.0 - s) * t * (1.0 - t);
+        [s + 0.06 * bump * (9.0 * t).sin(), t - 1.0 + 0.06 * bump * (7.0 * s).cos()]
+    });
+    for material in [
+        json!({"model": "linear", "E": 1e4, "nu": 0.3, "density": 2}),
+        json!({"model": "neo_hookean", "E": 1e4, "nu": 0.3, "density": 2}),
+        json!({"model": "mohr_coulomb", "E": 1e4, "nu": 0.3, "c": 5, "phi": 30, "psi": 5, "density": 2}),
+    ] {
+        let run = finish(&json!({
+            "mesh": mesh.json(),
+            "bodies": {"ground": {"material": material, "element": "f_bar",
+                                  "initial_stress": {"geostatic": {"surface": 0, "weight": 20, "K0": 0.5}}}},
+            "steps": [{"name": "rest", "duration": 1, "dt": {"initial": 1}, "loads": [{"on": "ground", "gravity": {"y": "-10"}}],
+                       "supports": [{"on": "ground_left", "ux": 0}, {"on": "ground_right", "ux": 0}, {"on": "ground_bottom", "uy": 0}]}]
+        }));
+        assert!(run.last().displacement.iter().all(|u| u.abs() < 1e-14), "{material}");
+    }
+}
+
 /// Ground at rest under its weight: the stress is the law's own, nothing moves or flows; what it cannot have is refused with its place.
 #[test]
 fn an_initial_stress_counts_for_yielding() {

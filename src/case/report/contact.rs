@@ -13,7 +13,7 @@ use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::{Dilatancy, Onset};
 use crate::model::Model;
 use crate::model::boundary::Profile;
-use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, regime};
+use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, default_over, regime};
 use crate::model::method::{Chosen, Method};
 use crate::model::text::{count, number};
 use crate::model::warnings::{farthest, gaps};
@@ -74,17 +74,16 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> String {
 fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chosen>) -> Vec<String> {
     let input = &case.contacts[&pair.name];
     let regime = regime(&case.steps);
-    let alpha_n = match (input.normal.alpha_n, regime) {
-        (Some(_), _) => "given",
-        (None, Regime::Static | Regime::Dynamic) if pair.tied => {
-            "1e4 (λ + 2G)/h of the softer body, h the depth of the slave's elements"
-        }
-        (None, Regime::Static) => "300 (λ + 2G)/h of the softer body, h the depth of the slave's elements",
-        (None, Regime::Dynamic) => {
-            "10 (λ + 2G)/h of the softer body, h the depth of the slave's elements: a step has inertia"
-        }
-        (None, Regime::Explicit) => {
-            "10 (λ + 2G)/h of the softer body, h the depth of the slave's elements: a step is explicit"
+    let alpha_n = match input.normal.alpha_n {
+        Some(_) => "given".into(),
+        None => {
+            let over = default_over(input, regime);
+            let because = match regime {
+                Regime::Explicit => ": a step is explicit",
+                Regime::Dynamic if !pair.tied => ": a step has inertia",
+                Regime::Dynamic | Regime::Static => "",
+            };
+            format!("{} (λ + 2G)/h of the softer body, h the depth of the slave's elements{because}", number(over))
         }
     };
     let mut lines = vec![

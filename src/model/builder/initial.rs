@@ -203,18 +203,22 @@ fn of_bodies(
     Ok(initial)
 }
 
-/// An initial stress must be one that its law can have.
-pub fn check_stresses(model: &Model) -> Checked<()> {
+/// Lets the elements start under the initial stress of their bodies, which must be one that their laws can have.
+pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
     for e in 0..model.solids.len() {
         let body = &model.bodies[model.body_of_element[e]];
         let Some(stress) = &body.initial_stress else { continue };
+        let mut stresses = Vec::new();
         for at in model.quadrature_positions(e) {
             let [xx, yy, xy, zz] = stress.at(at, model.mesh.section.is_plate());
-            body.material.admits(&CauchyStress { xx, yy, zz, xy }).map_err(|why| {
+            let stress = CauchyStress { xx, yy, zz, xy };
+            body.material.admits(&stress).map_err(|why| {
                 let [x, y] = [at.x, at.y].map(number);
                 ModelError::new(format!("bodies.{}.initial_stress", body.name), format!("at ({x}, {y}) it {why}"))
             })?;
+            stresses.push(stress);
         }
+        model.solids[e].start_under(stresses.into_iter());
     }
     Ok(())
 }

@@ -62,7 +62,7 @@ pub use groups::Place;
 pub use load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
 pub use loads::LoadsInForce;
-pub use pair::default_alpha_t;
+pub use pair::{default_alpha_t, default_over};
 pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
 pub use probes::Gauge;
 pub use rigid::RigidBodyInput;
@@ -290,7 +290,7 @@ impl Builder {
             prestress: Vec::new(),
             requests: OutputRequests { interval: checks::checked_interval(self.interval)?, ..Default::default() },
         };
-        initial::check_stresses(&model)?;
+        initial::start_under_stresses(&mut model)?;
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.plates = plates::plates(&self.plates, &model.mesh)?;
         model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;

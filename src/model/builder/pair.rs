@@ -27,8 +27,8 @@
 //!
 //! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, h the depth of the element
 //! behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges. Where α_n is given, α_t = α_n/2. Surfaces that are tied
-//! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find out. Where surfaces roll or
-//! slide with a stiff α_t, iterates pass over the narrow range of sticking to and fro: 30 times of it doubles the linear solves of a
+//! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find
+//! out. Where surfaces roll or slide with a stiff α_t, iterates pass over the narrow range of sticking to and fro: 30 times of it doubles the linear solves of a
 //! rolling disk, and only the elastic slip gains.
 //!
 //! # Data of the bodies
@@ -406,7 +406,8 @@ pub struct Penalty {
 }
 
 /// α_n over (λ + 2G)/h unless given [-]
-fn default_over(contact: &Contact, regime: Regime) -> f64 {
+#[doc(hidden)]
+pub fn default_over(contact: &Contact, regime: Regime) -> f64 {
     match regime {
         Regime::Static | Regime::Dynamic if contact.tied => TIED,
         Regime::Static => STATIC,

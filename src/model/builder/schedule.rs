@@ -42,10 +42,12 @@ pub enum Regime {
 pub fn regime(steps: &[LoadStep]) -> Regime {
     let explicit = |scheme: Scheme| matches!(scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. });
     let any = |is: &dyn Fn(Scheme) -> bool| steps.iter().any(|step| step.scheme.is_some_and(is));
-    match () {
-        () if any(&explicit) || steps.iter().any(|step| step.rupture.is_some()) => Regime::Explicit,
-        () if any(&Scheme::is_dynamic) => Regime::Dynamic,
-        () => Regime::Static,
+    if any(&explicit) || steps.iter().any(|step| step.rupture.is_some()) {
+        Regime::Explicit
+    } else if any(&Scheme::is_dynamic) {
+        Regime::Dynamic
+    } else {
+        Regime::Static
     }
 }
 

@@ -2,13 +2,14 @@
 //!
 //! ```text
 //! ln J̄ = ⟨ln J⟩,   F̄ = r F,   r = (J̄/J)^m,   ⟨·⟩ = ∫ · dV/∫ dV,   m = ½ in plane, ⅓ in rings                (4)
-//! Π = ∫ W(F̄) dV,   f = ∂Π/∂u
+//! Π = ∫ [W(F̄) − w₀ ln r] dV,   f = ∂Π/∂u                                               w₀: trace of the initial stress
 //! δF̄ = r δF + h F̄,   h = m (⟨n⟩ − n),   n = F⁻ᵀ:δF                                          h: variation of ln r
-//! f·δu = ∫ P*:δF dV,   P* = r P̄ + m (⟨w⟩ − w) F⁻ᵀ,   P̄ = P(F̄),   w = P̄:F̄                                   (5)
-//! δu·K·du = ∫ [δF̄:Ā:dF̄ + P̄:δF̄ dh + δh P̄:dF̄ − w δh dh + m (w − ⟨w⟩) tr(F⁻¹δF F⁻¹dF)] dV,   Ā = A(F̄)       (6)
+//! f·δu = ∫ P*:δF dV,   P* = r P̄ + m (⟨v⟩ − v) F⁻ᵀ,   P̄ = P(F̄),   w = P̄:F̄,   v = w − w₀                      (5)
+//! δu·K·du = ∫ [δF̄:Ā:dF̄ + P̄:δF̄ dh + δh P̄:dF̄ − w δh dh + m (v − ⟨v⟩) tr(F⁻¹δF F⁻¹dF)] dV,   Ā = A(F̄)       (6)
 //! ```
-//! In plane strain a trace is that in the plane. By (5) the trace of each point's Kirchhoff stress P* Fᵀ is the mean one.
-//! (P̄ is the law's answer to F̄, with its memory, whether it has a potential or not.)
+//! In plane strain a trace is that in the plane. By (5) the trace of each point's Kirchhoff stress P* Fᵀ is the mean one, but for that
+//! of its initial stress, which acts on the point's own volume change: ground at rest under its weight is in equilibrium
+//! on any mesh. (P̄ is the law's answer to F̄, with its memory, whether it has a potential or not.)
 //!
 //! The forces have a potential where the law has one: the tangent is symmetric then, and the stored energy is their work. With the stress
 //! of each point for itself on the actual geometry (de Souza Neto et al. 1996) the forces have none, and where a body dilates
@@ -25,7 +26,7 @@ use nalgebra::{Vector2, Vector5};
 use super::SolidElement;
 use super::ring::{At, inverse_transpose, jacobian};
 use crate::laws::bulk::spatial::{components, plane};
-use crate::laws::bulk::{MaterialFailure, Stretched};
+use crate::laws::bulk::{CauchyStress, MaterialFailure, Stretched};
 use crate::model::element::Formulation;
 
 /// Quadrature points and dofs of the element, a Q4.
@@ -49,6 +50,8 @@ struct Now<'a> {
     inverse_transpose: Vector5<f64>,
     /// r of (4)
     stretch: f64,
+    /// w₀ [F/L²]
+    initial: f64,
     /// F̄, whose out-of-plane part is of no account in plane strain
     seen: Vector5<f64>,
 }
@@ -64,13 +67,15 @@ impl SolidElement {
             volume: 0.0,
             inverse_transpose: Vector5::zeros(),
             stretch: 1.0,
+            initial: 0.0,
             seen: Vector5::zeros(),
         };
         let (mut points, mut ln_jacobians) = ([none; POINTS], [0.0; POINTS]);
-        for ((now, ln_jacobian), (at, volume)) in points.iter_mut().zip(&mut ln_jacobians).zip(self.everywhere()) {
+        for (k, (at, volume)) in self.everywhere().enumerate() {
             let seen = at.deformation(u);
-            *ln_jacobian = jacobian(&seen)?.ln();
-            *now = Now { at, volume, inverse_transpose: inverse_transpose(&seen), stretch: 1.0, seen };
+            ln_jacobians[k] = jacobian(&seen)?.ln();
+            let initial = self.initial.get(k).copied().unwrap_or_default();
+            points[k] = Now { at, volume, inverse_transpose: inverse_transpose(&seen), stretch: 1.0, initial, seen };
         }
         let exponent = if self.hoop.is_some() { 1.0 / 3.0 } else { 0.5 };
         let volume: f64 = points.iter().map(|now| now.volume).sum();
@@ -83,7 +88,22 @@ impl SolidElement {
     }
 }
 
+impl SolidElement {
+    /// Sets the initial stress at each quadrature point; only F-bar has to know.
+    pub fn start_under(&mut self, stresses: impl Iterator<Item = CauchyStress>) {
+        if self.formulation == Formulation::FBar {
+            let hoop = if self.hoop.is_some() { 1.0 } else { 0.0 };
+            self.initial = stresses.map(|stress| stress.xx + stress.yy + hoop * stress.zz).collect();
+        }
+    }
+}
+
 impl Mean<'_> {
+    /// −∫ w₀ ln r dV
+    pub fn initial_energy(&self) -> f64 {
+        self.points.iter().map(|now| -now.volume * now.initial * now.stretch.ln()).sum()
+    }
+
     /// F̄ at each quadrature point.
     pub fn seen(&self) -> [Vector5<f64>; POINTS] {
         self.points.map(|now| now.seen)
@@ -91,7 +111,10 @@ impl Mean<'_> {
 
     /// P* of (5) times the volume at each point, given the same of P̄.
     pub fn stresses(&self, given: &[Vector5<f64>; POINTS]) -> [Vector5<f64>; POINTS] {
-        let works: [f64; POINTS] = array::from_fn(|k| given[k].dot(&self.points[k].seen));
+        let works: [f64; POINTS] = array::from_fn(|k| {
+            let now = &self.points[k];
+            given[k].dot(&now.seen) - now.volume * now.initial
+        });
         let mean = works.iter().sum::<f64>() / self.volume;
         array::from_fn(|k| {
             let now = &self.points[k];
@@ -111,7 +134,7 @@ impl Mean<'_> {
         for ((k, now), answer) in self.points.iter().enumerate().zip(&mut answers) {
             *answer = law(k, &now.seen)?;
         }
-        let [mut energy, mut dissipated] = [0.0; 2];
+        let [mut energy, mut dissipated] = [self.initial_energy(), 0.0];
         for (now, answer) in self.points.iter().zip(&answers) {
             energy += now.volume * answer.energy;
             dissipated += now.volume * answer.dissipation;
@@ -135,14 +158,15 @@ impl Mean<'_> {
             array::from_fn(|k| varied[k].map(|varied| self.points[k].inverse_transpose.dot(&varied)));
         let mean: [f64; DOFS] = array::from_fn(|dof| (0..POINTS).map(|k| share[k] * change[k][dof]).sum());
         let works: [f64; POINTS] = array::from_fn(|k| answers[k].stress.dot(&self.points[k].seen));
-        let mean_work: f64 = (0..POINTS).map(|k| share[k] * works[k]).sum();
+        let beyond: [f64; POINTS] = array::from_fn(|k| works[k] - self.points[k].initial);
+        let mean_beyond: f64 = (0..POINTS).map(|k| share[k] * beyond[k]).sum();
         for (k, (now, answer)) in self.points.iter().zip(answers).enumerate() {
             let h: [f64; DOFS] = array::from_fn(|dof| self.exponent * (mean[dof] - change[k][dof]));
             // δF̄ of each dof
             let seen: [Vector5<f64>; DOFS] = array::from_fn(|dof| now.stretch * varied[k][dof] + h[dof] * now.seen);
             let stress = seen.map(|seen| answer.stress.dot(&seen));
             let turned = varied[k].map(|varied| now.pulled_back(&varied));
-            let geometric = self.exponent * (works[k] - mean_work);
+            let geometric = self.exponent * (beyond[k] - mean_beyond);
             for (j, column) in tangent.chunks_exact_mut(DOFS).enumerate() {
                 let dstress = answer.tangent * seen[j];
                 for (i, entry) in column.iter_mut().enumerate() {

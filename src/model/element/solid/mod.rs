@@ -44,6 +44,8 @@ pub struct SolidElement {
     mean_weight: f64,
     /// N_a/R of all nodes at the first quadrature point, then at the second, … of axisymmetric elements [1/L]
     hoop: Option<Vec<f64>>,
+    /// Trace of the initial stress at the quadrature points of an F-bar element; empty without one [F/L²]
+    initial: Vec<f64>,
 }
 
 impl SolidElement {
@@ -111,8 +113,9 @@ impl SolidElement {
         if let Some(mean) = &mean {
             deformations.iter_mut().zip(mean.seen()).for_each(|(deformation, seen)| *deformation = plane(&seen));
         }
-        let energy = material.stresses(deformations, &self.volumes, &mut stresses[..points])?;
+        let mut energy = material.stresses(deformations, &self.volumes, &mut stresses[..points])?;
         if let Some(mean) = &mean {
+            energy += mean.initial_energy();
             let given = array::from_fn(|k| components(&stresses[k], 0.0));
             stresses.iter_mut().zip(mean.stresses(&given)).for_each(|(stress, own)| *stress = plane(&own));
         }

@@ -157,6 +157,7 @@ impl SolidElement {
             volumes: Vec::new(),
             mean_weight: 1.0,
             hoop: section.is_axisymmetric().then(Vec::new),
+            initial: Vec::new(),
         };
         let over_radius = |at: [f64; 2]| {
             let values = kind.values(at);
