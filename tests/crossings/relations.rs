@@ -541,13 +541,22 @@ fn switched(base: &Base) -> Outcome {
     }
     let stage = model::duration(&draft);
     let plain = Ways::plain(&draft);
+    let error_of = |row: &[Entry]| row.iter().find(|entry| &*entry.column == "energy_error").map(|entry| entry.value);
     let added = |finer| {
         let ways = Ways { finer, drive: Some("through"), ..plain.clone() };
-        let record = run(&model::case(&draft, &ways), &ways, Lead::Through);
-        let error = |row: &[Entry]| row.iter().find(|entry| &*entry.column == "energy_error").map(|entry| entry.value);
-        let before = record.rows.iter().rfind(|(time, _)| *time <= stage * (1.0 + 1e-9)).and_then(|row| error(&row.1));
-        let after = record.rows.iter().find(|(time, _)| *time > stage * (1.0 + 1e-9)).and_then(|row| error(&row.1));
-        let added = after? - before?;
+        let mut case = model::case(&draft, &ways);
+        // Rows as close as they come by themselves.
+        case["output"]["interval"] = serde_json::Value::Null;
+        let record = run(&case, &ways, Lead::Through);
+        let errors: Vec<(f64, f64)> =
+            record.rows.iter().filter_map(|(time, row)| Some((*time, error_of(row)?))).collect();
+        let change = errors.iter().position(|&(time, _)| time > stage * (1.0 + 1e-9))?;
+        let &[(then, before), (first, after), (second, further)] = errors.get(change.checked_sub(1)?..change + 2)?
+        else {
+            return None;
+        };
+        // Tractions that go by the length of now add to the error all the while: what comes at the change is beyond that.
+        let added = after - before - (further - after) * (first - then) / (second - first);
         (record.ended == Ended::Complete).then(|| (added, added.abs() / audit(&record).values[1]))
     };
     let [Some(coarse), Some(fine), Some(finest)] = [1.0, 2.0, 4.0].map(added) else { return Outcome::Idle };
