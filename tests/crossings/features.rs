@@ -19,6 +19,7 @@ const LAWS: &[(&str, u64)] = &[
     ("von_mises", 1),
     ("drucker_prager", 1),
     ("mohr_coulomb", 1),
+    ("cam_clay", 1),
 ];
 const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("reduced", 1), ("q9", 1)];
 const OPTION: &[(&str, u64)] = &[("no", 5), ("yes", 1)];
@@ -62,6 +63,7 @@ pub const SLOTS: &[Slot] = &[
     ("flange", OPTION),
     ("tractions", &[("no", 8), ("given", 1), ("balanced", 1), ("of_bodies", 1)]),
     ("stress", &[("no", 5), ("components", 2), ("geostatic", 1)]),
+    ("pores", &[("no", 6), ("full", 1), ("cavitating", 1)]),
     ("heat", &[("no", 6), ("number", 1), ("table", 1), ("by_place", 1)]),
     (
         "scheme",
@@ -117,9 +119,23 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["section:plane_stress"], &["ground_element:f_bar", "block_element:f_bar"], "a plate does not lock"),
     (
         &["section:plane_stress"],
-        &["ground_law:drucker_prager", "block_law:drucker_prager", "ground_law:mohr_coulomb", "block_law:mohr_coulomb"],
+        &[
+            "ground_law:drucker_prager",
+            "block_law:drucker_prager",
+            "ground_law:mohr_coulomb",
+            "block_law:mohr_coulomb",
+            "ground_law:cam_clay",
+            "block_law:cam_clay",
+            "pores",
+        ],
         "soil is no plate",
     ),
+    (
+        &["ground_law:cam_clay", "block_law:cam_clay"],
+        &["stress:no", "stress:geostatic", "scheme:quasi_dynamic"],
+        "it lives of pressure, near the surface too",
+    ),
+    (&["pores:cavitating"], &["ground_law:linear", "block_law:linear"], "that is not linear"),
     (&["ground_law:linear"], &["ground_element:f_bar"], "F-bar is for large strains"),
     (&["block_law:linear"], &["block_element:f_bar"], "F-bar is for large strains"),
     (
@@ -225,7 +241,8 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (&["tractions"], &["master:circle"], "an even pressure on a bent surface"),
     (&["stress:components"], &["tractions:given"], "the stress would count twice"),
-    (&["heat", "stress"], &["scheme:quasi_dynamic"], "tractions serve there"),
+    (&["heat", "stress", "pores"], &["scheme:quasi_dynamic"], "tractions serve there"),
+    (&["pores"], &["tractions"], "the pressure of the pores would be a part of them"),
     (
         &["error_control"],
         &["scheme:wilson", "scheme:explicit", "scheme:quasi_dynamic", "rupture"],
@@ -340,6 +357,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "section:rings_around",
             "tractions",
             "stress",
+            "pores",
             "heat",
             "dashpot",
             "scheme:quasi_dynamic",

@@ -17,6 +17,7 @@ mod common;
 #[path = "../common/strokes.rs"]
 mod strokes;
 
+mod cam_clay;
 mod comparison_laws;
 mod controlled;
 mod friction;
@@ -26,4 +27,5 @@ mod materials;
 mod offset;
 mod plasticity;
 mod random;
+mod undrained;
 mod yielding;
