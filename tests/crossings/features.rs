@@ -43,6 +43,7 @@ pub const SLOTS: &[Slot] = &[
         "friction",
         &[
             ("coulomb", 2),
+            ("adhesion", 1),
             ("super_subloading", 3),
             ("slip_weakening", 2),
             ("rate_and_state", 2),
@@ -187,7 +188,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         "nothing to vary",
     ),
     (&["friction:frictionless", "friction:prescribed"], &["dilatancy", "wear"], "no slip that friction resists"),
-    (&["friction:coulomb"], &["further_parameters"], "it has one parameter"),
+    (&["friction:coulomb", "friction:adhesion"], &["further_parameters"], "they have one parameter"),
     (
         &["stick"],
         &[
@@ -211,6 +212,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &["scheme:explicit", "then:explicit", "rupture"],
         "increments are far shorter than its creep",
     ),
+    (&["friction:adhesion"], &["dilatancy"], "adhesion is nothing beside a high pressure"),
     (&["dilatancy", "wear"], &["shrink_fit"], "an overlap that wears away while it is brought in"),
     (
         &["massless"],
@@ -305,6 +307,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "method:gauss_to_segment",
             "method:chosen",
             "friction:coulomb",
+            "friction:adhesion",
             "friction:super_subloading",
             "friction:slip_weakening",
             "friction:frictionless",

@@ -700,6 +700,7 @@ impl Writer<'_> {
         let duration = self.duration();
         let mut friction = match law {
             "coulomb" => json!({"mu": self.pick("mu", &[0.2, 0.4, 0.7])}),
+            "adhesion" => json!({"strength": self.write(Kind::Stress, 1.5)}),
             "super_subloading" => {
                 let mut law = json!({"mu_s": self.pick("mu_s", &[0.4, 0.6]), "mu_k": 0.25, "r": self.pick("r", &[200.0, 1000.0]) / f.length, "kappa": self.pick("kappa", &[20.0, 100.0]) / f.length, "xi": self.pick("xi", &[0.0, 0.5]) / f.time / duration});
                 if further {
@@ -751,6 +752,7 @@ impl Writer<'_> {
         let parameter = |law: &str, time: bool| -> (&'static str, String) {
             match law {
                 "coulomb" => ("mu", growing(Kind::Number, 0.3, time)),
+                "adhesion" => ("strength", growing(Kind::Stress, 1.0, time)),
                 // A rate, whose mean counts, or a strength, whose last value does.
                 "super_subloading" if self.pick("which varies", &[0.0, 1.0]) == 0.0 => {
                     ("kappa", format!("({})/({})", growing(Kind::Number, 30.0, time), f.length))

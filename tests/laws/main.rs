@@ -17,6 +17,7 @@ mod common;
 #[path = "../common/strokes.rs"]
 mod strokes;
 
+mod adhesion;
 mod cam_clay;
 mod comparison_laws;
 mod controlled;
