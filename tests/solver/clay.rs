@@ -144,8 +144,8 @@ fn an_undrained_footing_carries_the_strength_of_the_critical_state() {
     let mesh = Blocks::default().block("soil", [n + beside, below], |s, t| {
         let share = n as f64 / (n + beside) as f64;
         let x =
-            if s <= share { 0.5 * near(s / share, 0.15) } else { 0.5 + 2.5 * near((s - share) / (1.0 - share), 40.0) };
-        [x, -1.5 + 1.5 * near(t, 0.05)]
+            if s <= share { 0.5 * near(s / share, 0.1) } else { 0.5 + 2.5 * near((s - share) / (1.0 - share), 30.0) };
+        [x, -1.5 + 1.5 * near(t, 0.1)]
     });
     let mut mesh = mesh.json();
     let top = mesh["edges"]["soil_top"].as_array().expect("edges").clone();
@@ -153,12 +153,12 @@ fn an_undrained_footing_carries_the_strength_of_the_critical_state() {
     let [p_0, over] = [100.0, 1.5f64];
     let run = finish(&json!({
         "mesh": mesh,
-        "bodies": {"soil": {"material": clay(json!({"G": 6000, "p_c": over * p_0})), "element": "f_bar",
-            "initial_stress": isotropic(p_0), "pore_fluid": {"bulk_modulus": 1e6, "porosity": 0.5}}},
-        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.01, "max": 0.02, "min": 1e-4},
+        "bodies": {"soil": {"material": clay(json!({"G": 30000, "p_c": over * p_0})), "element": "f_bar",
+            "initial_stress": isotropic(p_0), "pore_fluid": {"bulk_modulus": 5e6, "porosity": 0.5}}},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.02, "max": 0.02, "min": 1e-4},
             "loads": [{"on": "soil_top", "dead_pressure": p_0.to_string()}],
             "supports": [{"on": "soil_bottom", "ux": 0, "uy": 0}, {"on": "soil_right", "ux": 0}, {"on": "soil_left", "ux": 0},
-                {"on": "foot", "ux": 0, "uy": -0.1}]}]
+                {"on": "foot", "ux": 0, "uy": -0.012}]}]
     }));
     let strength = 1.2 / 3f64.sqrt() * p_0 * (0.5 * over).powf(1.0 - 0.02 / 0.10);
     let factor = |state| -2.0 * run.reaction("foot", state)[1] / strength;
