@@ -142,7 +142,7 @@ def pipe(program, alpha, kind, element, around, rings, bonded):
     else:
         # It stays closed all round under 20 s_u.
         body["initial_stress"] = {"components": {"xx": -20, "yy": -20, "zz": -20}}
-        friction = {"law": "slip_weakening", "cohesion": alpha, "mu_s": 1e-9, "mu_d": 1e-9, "D_c": 1} if alpha else {"law": "frictionless"}
+        friction = {"law": "adhesion", "strength": alpha} if alpha else {"law": "frictionless"}
         case["rigid_bodies"] = {"tool": {"reference": [0, 0]}}
         case["contacts"] = {"wall": {"slave": "pipe", "master": {"circle": {"centre": [0, 0], "radius": 0.5}}, "rigid_body": "tool",
                                      "friction": friction, "initial": {"of_bodies": True}}}

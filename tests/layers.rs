@@ -125,7 +125,8 @@ fn no_files_import_each_other_in_a_circle() {
 /// Who needs a property of a friction law asks it: no other room knows the laws by name.
 #[test]
 fn only_the_laws_know_each_other_by_name() {
-    let laws = ["SuperSubloading", "SlipWeakening", "RateAndState", "Coulomb", "Frictionless", "PrescribedSlip"];
+    let laws =
+        ["Adhesion", "SuperSubloading", "SlipWeakening", "RateAndState", "Coulomb", "Frictionless", "PrescribedSlip"];
     for (module, text) in modules().iter().filter(|(module, _)| module[0] != "laws") {
         let named = text.split(|c: char| !c.is_alphanumeric()).find(|word| laws.contains(word));
         assert_eq!(named, None, "in {}", module.join("::"));

@@ -39,6 +39,7 @@ class Body(dict[str, Any]):
         damping: Damping of the body in dynamic steps; default: none
         element: Element formulation
         initial_stress: Stress of the undeformed body at the start; default: none
+        pore_fluid: Fluid in the pores that has no time to flow: an undrained body; default: none
         thermal: Thermal expansion; default: none
     """
 
@@ -49,9 +50,10 @@ class Body(dict[str, Any]):
         damping: Damping | Given = NOT_GIVEN,
         element: Formulation | Given = NOT_GIVEN,
         initial_stress: InitialStress | None | Given = NOT_GIVEN,
+        pore_fluid: PoreFluid | None | Given = NOT_GIVEN,
         thermal: Thermal | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"material": material, "damping": damping, "element": element, "initial_stress": initial_stress, "thermal": thermal}))
+        super().__init__(_given({"material": material, "damping": damping, "element": element, "initial_stress": initial_stress, "pore_fluid": pore_fluid, "thermal": thermal}))
 
 
 class Linear(dict[str, Any]):
@@ -288,6 +290,51 @@ class MohrCoulomb(dict[str, Any]):
         super().__init__({"model": "mohr_coulomb", **_given({"E": E, "nu": nu, "c": c, "phi": phi, "psi": psi, "density": density, "softening": softening, "tension": tension, "viscosity": viscosity})})
 
 
+class CamClay(dict[str, Any]):
+    """Modified Cam-clay: clay, whose stiffness and strength grow with its pressure, and which hardens and softens with
+    its volume; needs an initial_stress, large strains.
+
+    Args:
+        lambda_: λ: slope of the line of normal compression, ln v over ln p, or e over ln p where a void ratio e
+            is given, λ > κ [-]
+        kappa: κ: slope of the lines of swelling, as λ, κ > 0 [-]
+        p_min: p_min: pressure below which the stiffness does not fall any more, p_min > 0: far below the
+            pressures of interest [F/L²]
+        G: G: shear modulus, constant; G or nu, G > 0 [F/L²]
+        M: M: q/p at critical state; M or phi, M > 0 [-]
+        OCR: Overconsolidation ratio at the start: p_c over p + q²/(M² p), that of a yield surface through the
+            initial stress; p_c or OCR, OCR ≥ 1 [-]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+        e: e: void ratio in the middle of the path, which makes slopes of ln v of slopes of e: λ/(1 + e), the
+            specific volume v being 1 + e; default: λ and κ are slopes of ln v [-]
+        nu: ν: Poisson's ratio under the initial stress, which gives every point its constant G there; G or nu,
+            −1 < ν < 0.5 [-]
+        p_c: p_c at the start: pressure of isotropic compression at which it yields; p_c or OCR, p_c ≥ p_min
+            [F/L²]
+        phi: φ: angle of friction at critical state in triaxial compression, M = 6 sin φ/(3 − sin φ), in
+            degrees; M or phi
+        viscosity: τ_v: relaxation time of the viscosity by Duvaut and Lions, τ_v ≥ 0; 0 for none [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        lambda_: float,
+        kappa: float,
+        p_min: float,
+        G: float | None | Given = NOT_GIVEN,
+        M: float | None | Given = NOT_GIVEN,
+        OCR: float | None | Given = NOT_GIVEN,
+        density: float | Given = NOT_GIVEN,
+        e: float | None | Given = NOT_GIVEN,
+        nu: float | None | Given = NOT_GIVEN,
+        p_c: float | None | Given = NOT_GIVEN,
+        phi: float | None | Given = NOT_GIVEN,
+        viscosity: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "cam_clay", **_given({"lambda_": lambda_, "kappa": kappa, "p_min": p_min, "G": G, "M": M, "OCR": OCR, "density": density, "e": e, "nu": nu, "p_c": p_c, "phi": phi, "viscosity": viscosity})})
+
+
 class Damping(dict[str, Any]):
     """Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
 
@@ -364,6 +411,31 @@ class Components(dict[str, Any]):
         super().__init__({"components": _given({"xx": xx, "yy": yy, "xy": xy, "zz": zz})})
 
 
+class PoreFluid(dict[str, Any]):
+    """A fluid in the pores of a body that has no time to flow. The material, and the initial stress, are those of the
+    effective stress; stresses and what contacts feel are total. Elements are nearly incompressible from the start:
+    take f_bar, reduced Q8 or T6.
+
+    Args:
+        bulk_modulus: K_w: bulk modulus of the fluid, 2.2 GPa of water, K_w > 0; K_w/n of 100 times the
+            stiffness of the material is enough [F/L²]
+        porosity: n: volume of the pores per volume, 0 < n < 1 [-]
+        cavitation: Pressure below which the fluid cavitates and p_w does not fall; −100 kPa of water below the
+            atmosphere. No limit unless given [F/L²]
+        pressure: p_w at the start, by place; 0 for pressures that count from the start [F/L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        bulk_modulus: float,
+        porosity: float,
+        cavitation: float | None | Given = NOT_GIVEN,
+        pressure: Profile | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"bulk_modulus": bulk_modulus, "porosity": porosity, "cavitation": cavitation, "pressure": pressure}))
+
+
 class Thermal(dict[str, Any]):
     """Thermal expansion of a body, whose `temperature` is given by the steps. With F = (1 + α (T − T₀)) F_e the
     material is evaluated at F_e; a `linear` one at the strain minus α (T − T₀).
@@ -427,8 +499,8 @@ class Contact(dict[str, Any]):
             mortar), so that forces do not jump where a slave slides from one edge to the next. Corners of more
             than 45° remain
         stick: Largest elastic slip allowed where surfaces stick [L], for laws that know none, whose alpha_t is
-            a penalty (coulomb, slip_weakening): the traction is adjusted until no elastic slip is larger, as
-            `penetration` does it along the normal; default: penalty only
+            a penalty (coulomb, adhesion, slip_weakening): the traction is adjusted until no elastic slip is
+            larger, as `penetration` does it along the normal; default: penalty only
         tied: Whether the surfaces are tied: they neither part nor slide, whatever pulls at them, however large
             the motion. Every slave point keeps the place on the master that it faces in the mesh, across a gap
             as well (the finer side is the slave, by mortar where nodes do not face nodes); points that face
@@ -559,6 +631,24 @@ class Coulomb(dict[str, Any]):
         alpha_t: float | None | Given = NOT_GIVEN,
     ) -> None:
         super().__init__({"law": "coulomb", **_given({"mu": mu, "alpha_t": alpha_t})})
+
+
+class Adhesion(dict[str, Any]):
+    """Elastic until |q| = τ_a, then sliding at it whatever the pressure: undrained clay by total stress.
+
+    Args:
+        strength: τ_a: strength, α s_u of an undrained clay, τ_a > 0 [F/L²]
+        alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
+            [F/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        strength: float,
+        alpha_t: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"law": "adhesion", **_given({"strength": strength, "alpha_t": alpha_t})})
 
 
 class SuperSubloading(dict[str, Any]):
@@ -1410,7 +1500,7 @@ class Until(dict[str, Any]):
 
 
 # A bulk material: its law and its constants.
-Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic, VonMises, DruckerPrager, MohrCoulomb]
+Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic, VonMises, DruckerPrager, MohrCoulomb, CamClay]
 
 # How the cone is fitted to Mohr and Coulomb's hexagon.
 Matching = Union[Literal["plane_strain"], Literal["compression"]]
@@ -1432,7 +1522,7 @@ Profile = Union[AlongX, AlongY, float, str]
 Master = Union[Plane, Circle, Polyline, str]
 
 # A friction law and its parameters.
-Friction = Union[Frictionless, Coulomb, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]
+Friction = Union[Frictionless, Coulomb, Adhesion, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]
 
 # U(R): rate of approach of the normal-sliding ratio to 1 with plastic slip. ```text dR/dλ = U(R), y = (R − R_e)/(1 −
 # R_e) U = −r ln y logarithmic (the authors' choice) U = r cot(π y/2) cotangent (their earlier subloading-friction

@@ -43,7 +43,7 @@ struct Imbalance {
 
 /// Warnings about bodies whose initial stress is not in equilibrium.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
-    let stressed = || model.bodies.iter().filter(|body| body.initial_stress.is_some());
+    let stressed = || model.bodies.iter().filter(|body| body.is_stressed());
     let Some(step) = model.steps.first().filter(|_| stressed().next().is_some()) else { return Vec::new() };
     let [start, end] = [step.span.start, step.span.end].map(|time| forces(model, step, time));
     let concern = |body: &Body| {
@@ -80,7 +80,7 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
     let initial = model.initial_memory();
     for e in 0..model.solids.len() {
         let body = &model.bodies[model.body_of_element[e]];
-        if body.initial_stress.is_none() {
+        if !body.is_stressed() {
             continue;
         }
         let (old, nodes) = (model.memories.of(e, &initial), &model.mesh.elements[e].nodes);

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::element::SolidElement;
-use super::imposed::{InitialStress, Thermal};
+use super::imposed::{InitialStress, PoreFluid, Thermal};
 use crate::laws::bulk::Material;
 
 /// A body: a material on a group of elements.
@@ -21,6 +21,8 @@ pub struct Body {
     pub damping: Damping,
     /// initial stress, if any
     pub initial_stress: Option<InitialStress>,
+    /// fluid in its pores, if any
+    pub pore_fluid: Option<PoreFluid>,
     /// thermal expansion, if any
     pub thermal: Option<Thermal>,
     /// elements
@@ -30,9 +32,14 @@ pub struct Body {
 }
 
 impl Body {
-    /// Whether it has an initial stress or thermal expansion.
+    /// Whether it has an initial stress, a pore fluid or thermal expansion.
     pub fn is_imposed(&self) -> bool {
-        self.initial_stress.is_some() || self.thermal.is_some()
+        self.is_stressed() || self.thermal.is_some()
+    }
+
+    /// Whether it has an initial stress or a pore fluid, whose pressure is one.
+    pub fn is_stressed(&self) -> bool {
+        self.initial_stress.is_some() || self.pore_fluid.is_some()
     }
 }
 

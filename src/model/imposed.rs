@@ -1,11 +1,11 @@
-//! Initial stress and temperatures of bodies and their elements, and the work of temperature changes.
+//! Initial stress, pore fluid and temperatures of bodies and their elements, and the work of temperature changes.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::boundary::{Amplitude, Moment, Profile};
-use super::{Model, Step};
+use super::{Body, Model, Step};
 use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
 /// Initial stress of a body. Displacements and strains are measured from the initial state; stresses are total. The run
@@ -56,6 +56,59 @@ impl InitialStress {
     }
 }
 
+/// A fluid in the pores of a body that has no time to flow. The material, and the initial stress, are those of the effective stress; stresses
+/// and what contacts feel are total. Elements are nearly incompressible from the start: take f_bar, reduced Q8 or T6
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
+pub struct PoreFluid {
+    /// K_w: bulk modulus of the fluid, 2.2 GPa of water, K_w > 0; K_w/n of 100 times the stiffness of the material is enough [F/L²]
+    pub bulk_modulus: f64,
+    /// n: volume of the pores per volume, 0 < n < 1 [-]
+    pub porosity: f64,
+    /// p_w at the start, by place; 0 for pressures that count from the start [F/L²]
+    #[serde(default)]
+    pub pressure: Profile,
+    /// Pressure below which the fluid cavitates and p_w does not fall; −100 kPa of water below the atmosphere. No limit unless given [F/L²]
+    pub cavitation: Option<f64>,
+}
+
+impl PoreFluid {
+    /// Without pressure at the start, and without cavitation.
+    pub fn new(bulk_modulus: f64, porosity: f64) -> Self {
+        Self { bulk_modulus, porosity, pressure: Profile::default(), cavitation: None }
+    }
+
+    /// Sets the pressure at the start [F/L²].
+    pub fn pressure(self, pressure: impl Into<Profile>) -> Self {
+        Self { pressure: pressure.into(), ..self }
+    }
+
+    /// Sets the pressure at which it cavitates [F/L²].
+    pub fn cavitation(self, cavitation: f64) -> Self {
+        Self { cavitation: Some(cavitation), ..self }
+    }
+
+    /// K_w/n [F/L²]
+    pub fn modulus(&self) -> f64 {
+        self.bulk_modulus / self.porosity
+    }
+}
+
+impl Body {
+    /// Total stress at the start at a reference position, effective stress less p_w; `None` if there is none.
+    pub fn total_stress(&self, position: Vector2<f64>, in_plate: bool) -> Option<CauchyStress> {
+        let effective = self.initial_stress.as_ref().map(|stress| stress.at(position, in_plate));
+        let fluid = self.pore_fluid.as_ref().map(|fluid| fluid.pressure.value(position));
+        if effective.is_none() && fluid.is_none() {
+            return None;
+        }
+        let ([xx, yy, xy, zz], p_w) = (effective.unwrap_or_default(), fluid.unwrap_or_default());
+        Some(CauchyStress { xx: xx - p_w, yy: yy - p_w, zz: zz - p_w, xy })
+    }
+}
+
 /// Thermal expansion of a body, whose `temperature` is given by the steps. With F = (1 + α (T − T₀)) F_e the material is
 /// evaluated at F_e; a `linear` one at the strain minus α (T − T₀).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -103,6 +156,9 @@ impl Model {
             for (point, at) in own.chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
                 let [xx, yy, xy, zz] = stress_at(at).unwrap_or_default();
                 body.material.initial_state(at, &CauchyStress { xx, yy, zz, xy }, point);
+                if let Some(fluid) = &body.pore_fluid {
+                    point[0] = fluid.pressure.value(at);
+                }
             }
         }
         memory

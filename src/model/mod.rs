@@ -51,7 +51,7 @@ use aids::Aids;
 pub use body::{Body, Damping, Memories, PointMass};
 use boundary::Loads;
 use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
-pub use imposed::{InitialStress, Thermal};
+pub use imposed::{InitialStress, PoreFluid, Thermal};
 use linkage::Linkage;
 use method::Chosen;
 pub use method::Method;
@@ -185,8 +185,7 @@ impl Model {
 
     /// Whether forces act in the initial state: bodies with initial stress, or closed contacts.
     pub fn starts_loaded(&self) -> bool {
-        self.contacts.iter().any(|pair| pair.initial.is_some())
-            || self.bodies.iter().any(|body| body.initial_stress.is_some())
+        self.contacts.iter().any(|pair| pair.initial.is_some()) || self.bodies.iter().any(Body::is_stressed)
     }
 
     /// Whether dashpots, absorbing sides or viscous bodies act in a step.

@@ -19,7 +19,9 @@ pub fn concerns(model: &Model) -> Vec<String> {
 ///
 /// Source: Nagtegaal, Parks & Rice (1974), Comput. Methods Appl. Mech. Eng. 4, 153, doi:10.1016/0045-7825(74)90032-2.
 fn locks(model: &Model, body: &Body) -> Option<String> {
-    let flow = body.material.flow().filter(|_| !model.mesh.section.is_plate())?;
+    let undrained = body.pore_fluid.is_some();
+    let flow = if undrained { Some(Flow::Isochoric) } else { body.material.flow() };
+    let flow = flow.filter(|_| !model.mesh.section.is_plate())?;
     let is_unfit = |e: &&usize| match (model.mesh.elements[**e].kind, model.solids[**e].formulation(), flow) {
         (ElementKind::T6, ..) | (_, Formulation::Reduced, _) => false,
         (_, Formulation::FBar, flow) => flow != Flow::Isochoric,
@@ -31,6 +33,12 @@ fn locks(model: &Model, body: &Body) -> Option<String> {
     kinds.sort_unstable();
     kinds.dedup();
     let (kinds, name) = (kinds.join(", "), &body.name);
+    if undrained {
+        return Some(format!(
+            "body `{name}`: its elements ({kinds}) lock, as the fluid in its pores keeps its volume from the start: take Q4 with \"element\": \
+             \"f_bar\", Q8 with \"element\": \"reduced\", or T6"
+        ));
+    }
     Some(match (model.solids[first].formulation(), flow) {
         (Formulation::FBar, _) => format!(
             "body `{name}`: it dilates where it yields, which f_bar cures in part only: limit loads come out some 10 % too high; take Q8 with \

@@ -353,8 +353,8 @@ const SOLID: [Quantity; 14] = [
     q("stretch_zz", NONE, "stretch across the plane, exp(ln V_zz): thickness of a plate, hoops of rings; as above"),
 ];
 
-/// What bodies that yield show, in frames.
-pub const OF_YIELDING: [Quantity; 3] = [
+/// What bodies that yield, or whose pores hold a fluid, show in frames.
+pub const OF_YIELDING: [Quantity; 7] = [
     q(
         "equivalent_plastic_strain",
         NONE,
@@ -362,6 +362,14 @@ pub const OF_YIELDING: [Quantity; 3] = [
     ),
     q("plastic_volume_strain", NONE, "∫ tr dε_p, positive where a body dilates"),
     q("yield_indicator", STRESS, "f: 0 where it yields, less where it does not"),
+    q(
+        "effective_pressure",
+        STRESS,
+        "p = −tr τ/3 of the Kirchhoff stress of cam_clay, without a pore fluid; NaN elsewhere",
+    ),
+    q("deviator_stress", STRESS, "q = √(3/2) ‖dev τ‖ of cam_clay"),
+    q("p_c", STRESS, "pressure of isotropic compression at which cam_clay yields"),
+    q("pore_pressure", STRESS, "p_w of bodies with a pore_fluid"),
 ];
 
 /// Arrays of the frames of integration points; internal variables of materials follow, by their names.

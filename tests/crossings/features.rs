@@ -19,6 +19,7 @@ const LAWS: &[(&str, u64)] = &[
     ("von_mises", 1),
     ("drucker_prager", 1),
     ("mohr_coulomb", 1),
+    ("cam_clay", 1),
 ];
 const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("reduced", 1), ("q9", 1)];
 const OPTION: &[(&str, u64)] = &[("no", 5), ("yes", 1)];
@@ -42,6 +43,7 @@ pub const SLOTS: &[Slot] = &[
         "friction",
         &[
             ("coulomb", 2),
+            ("adhesion", 1),
             ("super_subloading", 3),
             ("slip_weakening", 2),
             ("rate_and_state", 2),
@@ -62,6 +64,7 @@ pub const SLOTS: &[Slot] = &[
     ("flange", OPTION),
     ("tractions", &[("no", 8), ("given", 1), ("balanced", 1), ("of_bodies", 1)]),
     ("stress", &[("no", 5), ("components", 2), ("geostatic", 1)]),
+    ("pores", &[("no", 6), ("full", 1), ("cavitating", 1)]),
     ("heat", &[("no", 6), ("number", 1), ("table", 1), ("by_place", 1)]),
     (
         "scheme",
@@ -117,9 +120,23 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["section:plane_stress"], &["ground_element:f_bar", "block_element:f_bar"], "a plate does not lock"),
     (
         &["section:plane_stress"],
-        &["ground_law:drucker_prager", "block_law:drucker_prager", "ground_law:mohr_coulomb", "block_law:mohr_coulomb"],
+        &[
+            "ground_law:drucker_prager",
+            "block_law:drucker_prager",
+            "ground_law:mohr_coulomb",
+            "block_law:mohr_coulomb",
+            "ground_law:cam_clay",
+            "block_law:cam_clay",
+            "pores",
+        ],
         "soil is no plate",
     ),
+    (
+        &["ground_law:cam_clay", "block_law:cam_clay"],
+        &["stress:no", "stress:geostatic", "scheme:quasi_dynamic"],
+        "it lives of pressure, near the surface too",
+    ),
+    (&["pores:cavitating"], &["ground_law:linear", "block_law:linear"], "that is not linear"),
     (&["ground_law:linear"], &["ground_element:f_bar"], "F-bar is for large strains"),
     (&["block_law:linear"], &["block_element:f_bar"], "F-bar is for large strains"),
     (
@@ -171,7 +188,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         "nothing to vary",
     ),
     (&["friction:frictionless", "friction:prescribed"], &["dilatancy", "wear"], "no slip that friction resists"),
-    (&["friction:coulomb"], &["further_parameters"], "it has one parameter"),
+    (&["friction:coulomb", "friction:adhesion"], &["further_parameters"], "they have one parameter"),
     (
         &["stick"],
         &[
@@ -195,6 +212,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &["scheme:explicit", "then:explicit", "rupture"],
         "increments are far shorter than its creep",
     ),
+    (&["friction:adhesion"], &["dilatancy"], "adhesion is nothing beside a high pressure"),
     (&["dilatancy", "wear"], &["shrink_fit"], "an overlap that wears away while it is brought in"),
     (
         &["massless"],
@@ -225,7 +243,8 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (&["tractions"], &["master:circle"], "an even pressure on a bent surface"),
     (&["stress:components"], &["tractions:given"], "the stress would count twice"),
-    (&["heat", "stress"], &["scheme:quasi_dynamic"], "tractions serve there"),
+    (&["heat", "stress", "pores"], &["scheme:quasi_dynamic"], "tractions serve there"),
+    (&["pores"], &["tractions"], "the pressure of the pores would be a part of them"),
     (
         &["error_control"],
         &["scheme:wilson", "scheme:explicit", "scheme:quasi_dynamic", "rupture"],
@@ -288,6 +307,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "method:gauss_to_segment",
             "method:chosen",
             "friction:coulomb",
+            "friction:adhesion",
             "friction:super_subloading",
             "friction:slip_weakening",
             "friction:frictionless",
@@ -340,6 +360,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "section:rings_around",
             "tractions",
             "stress",
+            "pores",
             "heat",
             "dashpot",
             "scheme:quasi_dynamic",

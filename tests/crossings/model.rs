@@ -468,12 +468,40 @@ impl Writer<'_> {
 
     fn material(&self, law: &str, young: f64, poisson: f64) -> Value {
         let young = self.write(Kind::Stress, self.noisy(young, law));
+        if law == "cam_clay" {
+            return self.clay(young);
+        }
         let mut material = json!({"model": law, "E": young, "nu": poisson, "density": self.density()});
         if law == "viscoelastic" {
             material["E_1"] = json!(0.5 * young);
             material["tau"] = json!(self.write(Kind::Time, 0.7 * self.duration()));
         }
         self.strengths(law, &mut material);
+        material
+    }
+
+    /// Clay whose stiffness under the least pressure is that of other laws.
+    fn clay(&self, young: f64) -> Value {
+        let stress = |value: f64| json!(self.write(Kind::Stress, value));
+        let [kappa, lambda] = [0.005, 0.1];
+        let mut material = json!({
+            "model": "cam_clay", "lambda": lambda, "kappa": kappa, "p_min": stress(3.0), "density": self.density(),
+        });
+        match self.draft.count("slopes", 0, 1) {
+            0 => material["M"] = json!(1.2),
+            _ => (material["phi"], material["e"]) = (json!(28), json!(0.8)),
+        }
+        match self.draft.count("shear of clay", 0, 1) {
+            0 => material["G"] = json!(0.4 * young),
+            _ => material["nu"] = json!(0.25),
+        }
+        match self.draft.count("consolidation", 0, 1) {
+            0 => material["p_c"] = stress(9.0),
+            _ => material["OCR"] = json!(2.0),
+        }
+        if self.draft.count("slow yielding", 0, 1) == 1 {
+            material["viscosity"] = json!(self.write(Kind::Time, 0.02 * self.duration()));
+        }
         material
     }
 
@@ -520,6 +548,13 @@ impl Writer<'_> {
                 body["initial_stress"] = json!({"geostatic": {"surface": surface, "weight": 2.0 * weight, "K0": 0.6}});
             }
             _ => {}
+        }
+        if self.has("pores") {
+            let stress = |value: f64| json!(self.write(Kind::Stress, value));
+            body["pore_fluid"] = json!({"bulk_modulus": stress(900.0), "porosity": 0.4});
+            if self.is("pores", "cavitating") {
+                (body["pore_fluid"]["pressure"], body["pore_fluid"]["cavitation"]) = (stress(0.5), stress(-1.0));
+            }
         }
         if self.has("heat") {
             body["thermal"] = json!({"expansion": 1e-3, "reference": self.pick("reference", &[0.0, 2.0])});
@@ -665,6 +700,7 @@ impl Writer<'_> {
         let duration = self.duration();
         let mut friction = match law {
             "coulomb" => json!({"mu": self.pick("mu", &[0.2, 0.4, 0.7])}),
+            "adhesion" => json!({"strength": self.write(Kind::Stress, 1.5)}),
             "super_subloading" => {
                 let mut law = json!({"mu_s": self.pick("mu_s", &[0.4, 0.6]), "mu_k": 0.25, "r": self.pick("r", &[200.0, 1000.0]) / f.length, "kappa": self.pick("kappa", &[20.0, 100.0]) / f.length, "xi": self.pick("xi", &[0.0, 0.5]) / f.time / duration});
                 if further {
@@ -716,6 +752,7 @@ impl Writer<'_> {
         let parameter = |law: &str, time: bool| -> (&'static str, String) {
             match law {
                 "coulomb" => ("mu", growing(Kind::Number, 0.3, time)),
+                "adhesion" => ("strength", growing(Kind::Stress, 1.0, time)),
                 // A rate, whose mean counts, or a strength, whose last value does.
                 "super_subloading" if self.pick("which varies", &[0.0, 1.0]) == 0.0 => {
                     ("kappa", format!("({})/({})", growing(Kind::Number, 30.0, time), f.length))

@@ -409,8 +409,9 @@ fn steps_in_two(base: &Base) -> Outcome {
 }
 
 /// What acts or moves from the start, or says by itself when something happens.
-const SUDDEN: [&str; 12] = [
+const SUDDEN: [&str; 13] = [
     "stress",
+    "pores",
     "tractions",
     "heat",
     "fluid",
@@ -475,7 +476,8 @@ fn energies(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     // What is out of balance at the beginning of a static step springs to equilibrium, and nothing says what it does on its way.
-    let springs = !moves(draft) && (draft.has("stress") || draft.has("tractions") || draft.has("spring"));
+    let springs =
+        !moves(draft) && (draft.has("stress") || draft.has("pores") || draft.has("tractions") || draft.has("spring"));
     if !base.has_ended_well() || draft.has("error_control") || draft.has("until") || springs {
         return Outcome::Idle;
     }
@@ -703,6 +705,7 @@ fn simple(draft: &Draft) -> Option<Draft> {
         "massless",
         "tractions",
         "stress",
+        "pores",
         "heat",
         "plate",
         "spring",

@@ -17,6 +17,8 @@ mod common;
 #[path = "../common/strokes.rs"]
 mod strokes;
 
+mod adhesion;
+mod cam_clay;
 mod comparison_laws;
 mod controlled;
 mod friction;
@@ -26,4 +28,5 @@ mod materials;
 mod offset;
 mod plasticity;
 mod random;
+mod undrained;
 mod yielding;

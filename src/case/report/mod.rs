@@ -9,10 +9,11 @@ use contact::{contacts, parameters, pressed_too_hard};
 use steps::{steps, watched};
 
 use super::file::{Case, MeshSource};
+use crate::laws::bulk::MaterialParameters;
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
-use crate::model::builder::{BodyInput, Formulation, LoadingPlateInput, Plate, RigidBodyInput};
-use crate::model::imposed::{InitialStress, Thermal};
+use crate::model::builder::{BodyInput, BulkLaw, Formulation, LoadingPlateInput, Plate, RigidBodyInput};
+use crate::model::imposed::{InitialStress, PoreFluid, Thermal};
 use crate::model::text::{count, number};
 use crate::model::{Damping, Model, PointMass};
 use crate::output::fields::Selection;
@@ -141,7 +142,8 @@ fn bodies(case: &Case) -> Vec<String> {
             false => String::new(),
         };
         let imposed = imposed(input);
-        [name.clone(), format!("{}{element}{damping}{imposed}", parameters(&input.material, "model", &[]))]
+        let slopes = slopes(&input.material);
+        [name.clone(), format!("{}{slopes}{element}{damping}{imposed}", parameters(&input.material, "model", &[]))]
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
     for (name, [vx, vy]) in &case.initial_velocity {
@@ -150,7 +152,14 @@ fn bodies(case: &Case) -> Vec<String> {
     lines
 }
 
-/// Initial stress and thermal expansion.
+/// Slopes of cam_clay as its law takes them.
+fn slopes(material: &BulkLaw) -> String {
+    let BulkLaw::Parameters(MaterialParameters::CamClay(given)) = material else { return String::new() };
+    let [lambda, kappa] = given.slopes().map(number);
+    format!(", slopes of ln J over ln p of the Kirchhoff stress {lambda}, {kappa}")
+}
+
+/// Initial stress, pore fluid and thermal expansion.
 fn imposed(input: &BodyInput) -> String {
     let stress = match &input.initial_stress {
         Some(InitialStress::Geostatic { surface, weight, k0 }) => {
@@ -162,7 +171,17 @@ fn imposed(input: &BodyInput) -> String {
     let thermal = input.thermal.map_or_else(String::new, |Thermal { expansion, reference }| {
         format!(", thermal expansion {}, reference temperature {}", number(expansion), number(reference))
     });
-    stress + &thermal
+    let fluid = input.pore_fluid.as_ref().map_or_else(String::new, |fluid| {
+        let PoreFluid { bulk_modulus, porosity, cavitation, .. } = fluid;
+        let least = cavitation.map_or_else(String::new, |least| format!(", cavitation at {}", number(least)));
+        format!(
+            ", undrained: bulk modulus {}, porosity {}, K_w/n {}{least}",
+            number(*bulk_modulus),
+            number(*porosity),
+            number(fluid.modulus())
+        )
+    });
+    stress + &fluid + &thermal
 }
 
 fn periodic(case: &Case, model: &Model) -> Vec<String> {

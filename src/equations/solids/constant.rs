@@ -341,7 +341,7 @@ fn find_places(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
 
 /// Computes the nodal forces of the initial stress of bodies.
 fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
-    let stressed = |block: &Block| model.bodies[block.body].initial_stress.is_some();
+    let stressed = |block: &Block| model.bodies[block.body].is_stressed();
     if !blocks.iter().any(stressed) {
         return;
     }

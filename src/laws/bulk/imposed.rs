@@ -247,6 +247,10 @@ impl Material for Imposed {
         self.law.concern()
     }
 
+    fn at_pressure(&self, pressure: f64) -> Option<Arc<dyn Material>> {
+        Some(Arc::new(Self { law: self.law.at_pressure(pressure)?, ..self.clone() }))
+    }
+
     fn holds_initial_stress(&self) -> bool {
         self.law.holds_initial_stress()
     }
@@ -255,7 +259,7 @@ impl Material for Imposed {
         self.law.admits(stress)
     }
 
-    fn shown(&self) -> &'static [&'static str] {
+    fn shown(&self) -> &[&'static str] {
         self.law.shown()
     }
 

@@ -11,8 +11,8 @@
 //! beside a Maxwell arm that relaxes. Laws that yield stand in [`plasticity`].
 //!
 //! Laws are written in plane strain, F₃₃ = 1. One that also covers an out-of-plane stretch is [`Spatial`], and can be
-//! that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
-//! temperature.
+//! that of a ring; [`PlaneStress`] is such a law in a plate, [`Imposed`] one in a body with an initial stress or a
+//! temperature, and [`Undrained`] one whose pores hold a fluid.
 //!
 //! A law may remember some numbers of its own at every quadrature point. They are handled like the state of friction: the
 //! answer to an increment is a pure function of what was committed, and what it leaves is a second value.
@@ -27,6 +27,7 @@
 //! of strain: the stiffness-proportional part of Rayleigh's damping.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use nalgebra::{Matrix2, Matrix4, Vector2};
 use thiserror::Error;
@@ -40,6 +41,7 @@ mod parameters;
 pub mod plasticity;
 mod saint_venant_kirchhoff;
 pub(crate) mod spatial;
+mod undrained;
 mod viscoelastic;
 
 pub use hencky::Hencky;
@@ -48,11 +50,13 @@ pub use linear::Linear;
 pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
 pub use plasticity::{
-    BackStress, DruckerPrager, DruckerPragerParameters, Elastoplastic, Matching, MohrCoulomb, MohrCoulombParameters,
-    ReturnMap, Returned, Softening, VonMises, VonMisesParameters,
+    BackStress, CamClay, CamClayParameters, DruckerPrager, DruckerPragerParameters, Elasticity, Elastoplastic,
+    LogarithmicBulk, Matching, MohrCoulomb, MohrCoulombParameters, ReturnMap, Returned, Softening, VonMises,
+    VonMisesParameters,
 };
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use spatial::{PlaneStress, Spatial, Stretched};
+pub use undrained::{PORE_PRESSURE, Undrained};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
 /// Response of a law at the end of an increment; it writes its new variables itself.
@@ -225,7 +229,7 @@ pub trait Material: Debug + Send + Sync {
     /// ρ₀: mass per reference volume [M/L³]
     fn density(&self) -> f64;
 
-    /// λ + 2G: P-wave modulus of the undeformed material at once, the scale of its stiffness [F/L²]
+    /// λ + 2G: P-wave modulus of the undeformed material at once, the scale of its stiffness: of waves, penalties and steps [F/L²]
     fn p_wave_modulus(&self) -> f64;
 
     /// G: shear modulus of the undeformed material [F/L²]
@@ -295,6 +299,12 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
+    /// The law with the moduli that it has under a mean pressure p at the start, p being positive in compression; none where they do not
+    /// depend on it [F/L²]
+    fn at_pressure(&self, _pressure: f64) -> Option<Arc<dyn Material>> {
+        None
+    }
+
     /// Whether an initial stress is the law's own, which [`initial_state`](Self::initial_state) makes it remember; it stands beside
     /// the law ([`Imposed`]) otherwise.
     fn holds_initial_stress(&self) -> bool {
@@ -310,7 +320,7 @@ pub trait Material: Debug + Send + Sync {
     }
 
     /// Names of what the law shows besides stress, at a point in any state.
-    fn shown(&self) -> &'static [&'static str] {
+    fn shown(&self) -> &[&'static str] {
         &[]
     }
 

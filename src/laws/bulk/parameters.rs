@@ -4,8 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DruckerPrager, DruckerPragerParameters, Hencky, Linear, Material, MohrCoulomb, MohrCoulombParameters, NeoHookean,
-    SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants, VonMises, VonMisesParameters,
+    CamClay, CamClayParameters, DruckerPrager, DruckerPragerParameters, Hencky, Linear, Material, MohrCoulomb,
+    MohrCoulombParameters, NeoHookean, SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants, VonMises,
+    VonMisesParameters,
 };
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
@@ -30,6 +31,9 @@ pub enum MaterialParameters {
     DruckerPrager(DruckerPragerParameters),
     /// Mohr–Coulomb: friction, cohesion, dilation and tension cut-off of soil and rock, which may soften; large strains
     MohrCoulomb(MohrCoulombParameters),
+    /// Modified Cam-clay: clay, whose stiffness and strength grow with its pressure, and which hardens and softens with its volume; needs an
+    /// initial_stress, large strains
+    CamClay(CamClayParameters),
 }
 
 /// Constants of an isotropic elastic material.
@@ -73,6 +77,7 @@ impl MaterialParameters {
             Self::VonMises(parameters) => Box::new(VonMises::new(parameters)?),
             Self::DruckerPrager(parameters) => Box::new(DruckerPrager::new(parameters)?),
             Self::MohrCoulomb(parameters) => Box::new(MohrCoulomb::new(parameters)?),
+            Self::CamClay(parameters) => Box::new(CamClay::new(parameters)?),
         })
     }
 }

@@ -239,7 +239,7 @@ impl<L: Spatial> Material for PlaneStress<L> {
         self.law.admits(stress)
     }
 
-    fn shown(&self) -> &'static [&'static str] {
+    fn shown(&self) -> &[&'static str] {
         self.law.shown()
     }
 

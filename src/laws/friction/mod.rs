@@ -5,13 +5,14 @@
 //!
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
 //!
-//! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`], [`PrescribedSlip`].
+//! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Adhesion`], [`Frictionless`], [`PrescribedSlip`].
 //! [`FrictionParameters`] reads any of them from a case, and [registered](register) laws from other programs;
 //! [`ContactLaw`] combines any of them with dilatancy and wear at the points of a contact.
 //!
 //! The input of a law is [`Sliding`], the increment of one point; its failure is a [`LawFailure`]. Laws whose slip rate follows
 //! from traction and state also implement [`RateLaw`].
 
+mod adhesion;
 mod contact_law;
 mod coulomb;
 mod frictionless;
@@ -30,6 +31,7 @@ use std::fmt::Debug;
 
 use thiserror::Error;
 
+pub use adhesion::{Adhesion, AdhesionParameters};
 pub use contact_law::{ContactLaw, Dilatancy, Offsets};
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;

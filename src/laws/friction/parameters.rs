@@ -9,8 +9,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Coulomb, CoulombParameters, FrictionLaw, Frictionless, PrescribedSlip, PrescribedSlipParameters, RateAndState,
-    RateAndStateParameters, SlipWeakening, SlipWeakeningParameters, SuperSubloading, SuperSubloadingParameters,
+    Adhesion, AdhesionParameters, Coulomb, CoulombParameters, FrictionLaw, Frictionless, PrescribedSlip,
+    PrescribedSlipParameters, RateAndState, RateAndStateParameters, SlipWeakening, SlipWeakeningParameters,
+    SuperSubloading, SuperSubloadingParameters,
 };
 use crate::laws::parameter::{InvalidParameter, Numbers, UnknownParameter, require_positive};
 
@@ -24,6 +25,8 @@ pub enum FrictionParameters {
     Frictionless {},
     /// Elastic until |q| = μ p, then sliding at constant μ
     Coulomb(CoulombParameters),
+    /// Elastic until |q| = τ_a, then sliding at it whatever the pressure: undrained clay by total stress
+    Adhesion(AdhesionParameters),
     /// Time-dependent super/subloading-surface friction: slip weakens the interface, stationary contact heals it
     SuperSubloading(SuperSubloadingParameters),
     /// Friction that decreases linearly with slip from static to dynamic, and does not heal
@@ -45,6 +48,7 @@ impl FrictionParameters {
         Ok(match self {
             Self::Frictionless {} => Box::new(Frictionless),
             Self::Coulomb(parameters) => Box::new(Coulomb::new(parameters, default_alpha_t)?),
+            Self::Adhesion(parameters) => Box::new(Adhesion::new(parameters, default_alpha_t)?),
             Self::SuperSubloading(parameters) => Box::new(SuperSubloading::new(parameters, default_alpha_t)?),
             Self::SlipWeakening(parameters) => Box::new(SlipWeakening::new(parameters, default_alpha_t)?),
             Self::RateAndState(parameters) => Box::new(RateAndState::new(parameters, default_alpha_t)?),
@@ -61,6 +65,7 @@ impl FrictionParameters {
         let numbers: &mut dyn Numbers = match &mut self {
             Self::Frictionless {} => return Err(UnknownParameter { name: name.into(), known: Vec::new() }),
             Self::Coulomb(parameters) => parameters,
+            Self::Adhesion(parameters) => parameters,
             Self::SuperSubloading(parameters) => parameters,
             Self::SlipWeakening(parameters) => parameters,
             Self::RateAndState(parameters) => parameters,
@@ -94,6 +99,7 @@ impl FrictionParameters {
             Self::SuperSubloading(law) => vec![("μ_s", law.mu_s), ("μ_k", law.mu_k)],
             Self::SlipWeakening(law) if law.cohesion == 0.0 => vec![("μ_s", law.mu_s), ("μ_d", law.mu_d)],
             Self::Frictionless {}
+            | Self::Adhesion(_)
             | Self::SlipWeakening(_)
             | Self::RateAndState(_)
             | Self::Prescribed(_)
@@ -113,6 +119,7 @@ macro_rules! parameters_of {
 }
 
 parameters_of!(
+    Adhesion AdhesionParameters,
     Coulomb CoulombParameters,
     SuperSubloading SuperSubloadingParameters,
     SlipWeakening SlipWeakeningParameters,

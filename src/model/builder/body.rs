@@ -14,11 +14,11 @@ use super::groups;
 use super::groups::{group, kind};
 use super::load_step::LoadStep;
 use super::section;
-use crate::laws::bulk::{Imposed, Material, MaterialParameters};
+use crate::laws::bulk::{Imposed, Material, MaterialParameters, Undrained};
 use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{Formulation, SolidElement, consistent_mass};
-use crate::model::imposed::{InitialStress, Temperature, Thermal};
+use crate::model::imposed::{InitialStress, PoreFluid, Temperature, Thermal};
 use crate::model::text::number;
 use crate::model::{Body, Damping, Model, PointMass};
 
@@ -37,6 +37,8 @@ pub struct BodyInput {
     pub damping: Damping,
     /// Stress of the undeformed body at the start; default: none
     pub initial_stress: Option<InitialStress>,
+    /// Fluid in the pores that has no time to flow: an undrained body; default: none
+    pub pore_fluid: Option<PoreFluid>,
     /// Thermal expansion; default: none
     pub thermal: Option<Thermal>,
 }
@@ -72,7 +74,7 @@ pub struct PointMassInput {
 pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
     let mut bodies = Vec::new();
     let mut body_of_element = vec![usize::MAX; mesh.elements.len()];
-    for (name, BodyInput { material, element, damping, initial_stress, thermal }) in given {
+    for (name, BodyInput { material, element, damping, initial_stress, pore_fluid, thermal }) in given {
         let place = format!("bodies.{name}");
         let law = match material {
             BulkLaw::Parameters(parameters) => {
@@ -80,13 +82,18 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             }
             BulkLaw::FromCode(law) => law.clone(),
         };
-        let material = with_imposed(law, initial_stress.as_ref(), *thermal, &place)?;
-        let material = section::material(material, *element == Formulation::FBar, mesh.section, &place)?;
         let group = group(mesh, name, &place)?;
         let Group::Elements(elements) = group else {
             let message = format!("`{name}` is a group of {}, not of solid elements", kind(group));
             return Err(ModelError::new(place, message));
         };
+        let law = at_initial_pressure(law, initial_stress.as_ref(), &mesh.nodes_of(group), mesh);
+        let material = with_imposed(law, initial_stress.as_ref(), *thermal, &place)?;
+        let material = match pore_fluid {
+            Some(fluid) => undrained(material, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?,
+            None => material,
+        };
+        let material = section::material(material, *element == Formulation::FBar, mesh.section, &place)?;
         check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.p_wave_modulus())?;
         check_damping(*damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
@@ -96,8 +103,16 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             check_stress(stress, &nodes, mesh, &place)?;
             check_stiffness(stress, &*material, &nodes, mesh, &place)?;
         }
-        let (name, initial_stress) = (name.clone(), initial_stress.clone());
-        bodies.push(Body { name, material, damping: *damping, initial_stress, thermal: *thermal, elements, nodes });
+        bodies.push(Body {
+            name: name.clone(),
+            material,
+            damping: *damping,
+            initial_stress: initial_stress.clone(),
+            pore_fluid: pore_fluid.clone(),
+            thermal: *thermal,
+            elements,
+            nodes,
+        });
     }
     match body_of_element.iter().position(|&body| body == usize::MAX) {
         Some(element) => {
@@ -156,6 +171,71 @@ const TIMES: u32 = 100;
 
 /// Maximum number of nodes of a body at which it is checked.
 const PLACES: usize = 50;
+
+/// Returns the law with the moduli that it has under the mean pressure of the initial stress of its body, over the nodes.
+fn at_initial_pressure(
+    law: Arc<dyn Material>,
+    stress: Option<&InitialStress>,
+    nodes: &[usize],
+    mesh: &Mesh,
+) -> Arc<dyn Material> {
+    let Some(stress) = stress else { return law };
+    let pressure = |&node: &usize| {
+        let [xx, yy, _, zz] = stress.at(mesh.nodes[node], mesh.section.is_plate());
+        -(xx + yy + zz) / 3.0
+    };
+    let mean = nodes.iter().map(pressure).sum::<f64>() / nodes.len().max(1) as f64;
+    if mean.is_finite() { law.at_pressure(mean).unwrap_or(law) } else { law }
+}
+
+/// Returns the law of a body whose pores hold a fluid.
+fn undrained(
+    law: Arc<dyn Material>,
+    fluid: &PoreFluid,
+    nodes: &[usize],
+    mesh: &Mesh,
+    place: &str,
+) -> Checked<Arc<dyn Material>> {
+    let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}{key}"), message));
+    let PoreFluid { bulk_modulus, porosity, pressure, cavitation } = fluid;
+    check_positive(&format!("{place}.bulk_modulus"), *bulk_modulus, " (2.2e9 Pa of water)")?;
+    if !(*porosity > 0.0 && *porosity < 1.0) {
+        return refused(
+            ".porosity",
+            format!("is {porosity}: it must be above 0 and below 1, e/(1 + e) of a void ratio e"),
+        );
+    }
+    check_size(place, "the stiffness bulk_modulus/porosity", fluid.modulus())?;
+    if mesh.section.is_plate() {
+        return refused(
+            "",
+            "is not for plane stress: a fluid leaves a plate through its faces; take plane strain".into(),
+        );
+    }
+    check_profile(pressure, &format!("{place}.pressure"))?;
+    if let Some(least) = cavitation {
+        check_finite(&format!("{place}.cavitation"), [*least])?;
+    }
+    for &node in nodes {
+        let (at, place) = (mesh.nodes[node], format!("{place}.pressure"));
+        let value = defined(pressure, at, &place)?;
+        if cavitation.is_some_and(|least| value < least) {
+            let message = format!(
+                "is {value} at ({}, {}), below cavitation: raise one or lower the other",
+                number(at.x),
+                number(at.y)
+            );
+            return Err(ModelError::new(place, message));
+        }
+    }
+    if law.is_linear() && cavitation.is_some() {
+        return refused(".cavitation", "is not for the material linear: take hencky, or leave it out".into());
+    }
+    match Undrained::new(law, fluid.modulus(), *cavitation) {
+        Some(law) => Ok(Arc::new(law)),
+        None => refused("", "needs a law with an out-of-plane stretch: take another material, or leave it out".into()),
+    }
+}
 
 /// Returns the law of a body with initial stress and thermal expansion.
 pub fn with_imposed(

@@ -124,7 +124,11 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
             ));
         }
         if let Some(body) = model.bodies.iter().find(|body| body.is_imposed()) {
-            let key = if body.initial_stress.is_some() { "initial_stress" } else { "thermal" };
+            let key = match (&body.initial_stress, &body.pore_fluid) {
+                (Some(_), _) => "initial_stress",
+                (None, Some(_)) => "pore_fluid",
+                (None, None) => "thermal",
+            };
             let message = "is not for quasi_dynamic steps: leave it out, and give the tractions of the contacts (initial, \
                            balanced), on top of whose stress the run counts";
             return Err(ModelError::new(format!("bodies.{}.{key}", body.name), message));

@@ -53,7 +53,7 @@ pub struct Contact {
     #[serde(default)]
     pub normal: Normal,
     /// Largest elastic slip allowed where surfaces stick [L], for laws that know none, whose alpha_t is a penalty (coulomb,
-    /// slip_weakening): the traction is adjusted until no elastic slip is larger, as `penetration` does it along the normal;
+    /// adhesion, slip_weakening): the traction is adjusted until no elastic slip is larger, as `penetration` does it along the normal;
     /// default: penalty only
     pub stick: Option<f64>,
     /// Whether the initial overlap of the surfaces is applied gradually over the first step (shrink fit) instead of at

@@ -12,8 +12,9 @@ use super::error::{Checked, ModelError};
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
-    ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, Offsets, PrescribedSlipParameters,
-    RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, Tie, observables,
+    AdhesionParameters, ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, Offsets,
+    PrescribedSlipParameters, RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, Tie,
+    observables,
 };
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::Mesh;
@@ -205,6 +206,7 @@ macro_rules! friction_from {
 }
 
 friction_from!(
+    AdhesionParameters,
     CoulombParameters,
     SuperSubloadingParameters,
     SlipWeakeningParameters,

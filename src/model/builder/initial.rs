@@ -174,12 +174,12 @@ fn of_bodies(
         return refused("needs a slave of edges: give pressure and traction".into());
     };
     let bodies: BTreeSet<usize> = edges.iter().map(|edge| model.body_of_element[edge.element]).collect();
-    let stress = bodies.first().and_then(|&body| model.bodies[body].initial_stress.as_ref());
-    let Some(stress) = stress.filter(|_| bodies.len() == 1) else {
+    let body = bodies.first().map(|&body| &model.bodies[body]);
+    let Some(body) = body.filter(|body| bodies.len() == 1 && body.is_stressed()) else {
         return refused(format!("needs a slave `{slave}` on one body, and that with an initial_stress"));
     };
     let tensor = |at: Vector2<f64>| {
-        let [xx, yy, xy, _] = stress.at(at, model.mesh.section.is_plate());
+        let CauchyStress { xx, yy, xy, .. } = body.total_stress(at, model.mesh.section.is_plate()).unwrap_or_default();
         Matrix2::new(xx, xy, xy, yy)
     };
     let found = pair.tractions_under(tensor, &model.mesh.undeformed());
@@ -207,18 +207,25 @@ fn of_bodies(
 pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
     for e in 0..model.solids.len() {
         let body = &model.bodies[model.body_of_element[e]];
-        let Some(stress) = &body.initial_stress else { continue };
-        let mut stresses = Vec::new();
+        let in_plate = model.mesh.section.is_plate();
+        if body.initial_stress.is_none() && body.material.holds_initial_stress() {
+            body.material.admits(&CauchyStress::default()).map_err(|why| {
+                let place = format!("bodies.{}.initial_stress", body.name);
+                ModelError::new(place, format!("is missing, and the body {why}"))
+            })?;
+        }
+        let mut total = Vec::new();
         for at in model.quadrature_positions(e) {
-            let [xx, yy, xy, zz] = stress.at(at, model.mesh.section.is_plate());
+            total.extend(body.total_stress(at, in_plate));
+            let Some(stress) = &body.initial_stress else { continue };
+            let [xx, yy, xy, zz] = stress.at(at, in_plate);
             let stress = CauchyStress { xx, yy, zz, xy };
             body.material.admits(&stress).map_err(|why| {
                 let [x, y] = [at.x, at.y].map(number);
                 ModelError::new(format!("bodies.{}.initial_stress", body.name), format!("at ({x}, {y}) it {why}"))
             })?;
-            stresses.push(stress);
         }
-        model.solids[e].start_under(stresses.into_iter());
+        model.solids[e].start_under(total.into_iter());
     }
     Ok(())
 }

@@ -73,7 +73,7 @@ use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::mesh::ties::Ties;
 pub use crate::model::element::Formulation;
-use crate::model::imposed::{InitialStress, Thermal};
+use crate::model::imposed::{InitialStress, PoreFluid, Thermal};
 use crate::model::linkage::Linkage;
 use crate::model::{Damping, Memories, Model, NewtonSettings, OutputRequests};
 
@@ -127,6 +127,7 @@ impl Builder {
             element: Formulation::Displacement,
             damping: Damping::default(),
             initial_stress: None,
+            pore_fluid: None,
             thermal: None,
         };
         self.bodies.push((name.into(), body));
@@ -151,6 +152,11 @@ impl Builder {
     /// Sets the initial stress of a body; displacements are measured from this state.
     pub fn initial_stress(self, body: impl Into<String>, stress: InitialStress) -> Self {
         self.change(body, |body| body.initial_stress = Some(stress))
+    }
+
+    /// Fills the pores of a body with a fluid that has no time to flow.
+    pub fn pore_fluid(self, body: impl Into<String>, fluid: PoreFluid) -> Self {
+        self.change(body, |body| body.pore_fluid = Some(fluid))
     }
 
     /// Sets the thermal expansion of a body, whose temperature is given by the steps ([`LoadStep::temperature`]).

@@ -193,7 +193,7 @@ fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
     if pair.stick.is_none() || pair.laws.iter().any(|law| law.description.stiffness_is_penalty) {
         return Ok(());
     }
-    let message = "is for laws whose alpha_t is a penalty (coulomb, slip_weakening), and here elastic slip is part of the law, \
+    let message = "is for laws whose alpha_t is a penalty (coulomb, adhesion, slip_weakening), and here elastic slip is part of the law, \
                    or there is no friction: leave it out";
     Err(ModelError::new(format!("{place}.stick"), message))
 }

@@ -30,7 +30,7 @@ use crate::mesh::configuration::{Configuration, vector};
 use crate::mesh::rigid::RigidBody;
 use crate::model::element::Memory;
 use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Body, Model, Step};
 use crate::solve::failure::IncrementFailure;
 
 /// Change of an element, as a fraction of its size, at which its bound is re-evaluated; this is also about its accuracy.
@@ -66,7 +66,7 @@ pub(super) struct Stability {
     relooked: bool,
     /// Relative motion of nodes below which an element counts as unchanged [L]
     margin: f64,
-    /// Elements whose stiffness depends on a temperature
+    /// Elements whose stiffness depends on a temperature or a pressure
     heated: Vec<usize>,
 }
 
@@ -249,9 +249,11 @@ fn rigid_weights(body: Option<&RigidBody>, slave: &SlavePoint, mass: &[f64], x: 
     weights.into_iter().filter(|(node, _)| mass[*node] > 0.0).collect()
 }
 
-/// Elements of bodies with thermal expansion; the stiffness of those with a linear law does not change.
+/// Elements of bodies whose stiffness changes without their shape: with thermal expansion, unless their law is linear, and with stiffness
+/// from pressure.
 fn heated(model: &Model) -> Vec<usize> {
-    let bodies = model.bodies.iter().filter(|body| body.thermal.is_some() && !body.material.is_linear());
+    let heated = |body: &Body| body.thermal.is_some() && !body.material.is_linear();
+    let bodies = model.bodies.iter().filter(|body| heated(body) || body.material.at_pressure(0.0).is_some());
     bodies.flat_map(|body| body.elements.iter().copied()).collect()
 }
 

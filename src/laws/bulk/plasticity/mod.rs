@@ -5,15 +5,19 @@
 //! | [`VonMises`] | √(3/2) ‖s − α‖ = Y(ε̄): metals; clay that is sheared undrained |
 //! | [`DruckerPrager`] | √J₂ + η p = ξ c: a smooth cone |
 //! | [`MohrCoulomb`] | τ = c − σ_n tan φ on some plane: soil, rock |
+//! | [`CamClay`] | q²/M² + p (p − p_c) = 0: clay, whose stiffness and strength grow with pressure |
 //!
 //! A law is a [`ReturnMap`] of small strains; [`Elastoplastic`] makes it one of large deformations, in every section.
 
 mod axes;
+mod cam_clay;
 mod drucker_prager;
+mod elasticity;
 mod mohr_coulomb;
 mod von_mises;
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use nalgebra::{Matrix4, Vector2, Vector3, Vector4};
 
@@ -24,7 +28,9 @@ use super::{
 };
 use crate::laws::parameter::{InvalidParameter, require_not_negative};
 use axes::Axes;
+pub use cam_clay::{CamClay, CamClayParameters};
 pub use drucker_prager::{DruckerPrager, DruckerPragerParameters, Matching};
+pub use elasticity::{Elasticity, LogarithmicBulk};
 pub use mohr_coulomb::{MohrCoulomb, MohrCoulombParameters, Softening};
 pub use von_mises::{BackStress, VonMises, VonMisesParameters};
 
@@ -67,35 +73,6 @@ fn deviator(tensor: &Vector4<f64>) -> (Vector4<f64>, f64) {
 /// The unit tensor.
 const ONE: Vector4<f64> = Vector4::new(1.0, 1.0, 1.0, 0.0);
 
-impl Lame {
-    /// K = λ + ⅔ G: bulk modulus [F/L²]
-    pub(super) fn bulk(&self) -> f64 {
-        self.lambda + 2.0 / 3.0 * self.shear
-    }
-
-    /// τ = λ tr(ε) 1 + 2G ε
-    fn kirchhoff(&self, strain: &Vector4<f64>) -> Vector4<f64> {
-        self.lambda * (strain[0] + strain[1] + strain[2]) * ONE + 2.0 * self.shear * strain
-    }
-
-    /// The strain of a stress, ε = dev τ/2G + tr τ/9K.
-    fn strain(&self, stress: &Vector4<f64>) -> Vector4<f64> {
-        let (deviator, trace) = deviator(stress);
-        deviator / (2.0 * self.shear) + trace / (9.0 * self.bulk()) * ONE
-    }
-
-    /// W = λ/2 (tr ε)² + G ε:ε
-    fn stored(&self, strain: &Vector4<f64>) -> f64 {
-        let trace = strain[0] + strain[1] + strain[2];
-        0.5 * self.lambda * trace * trace + self.shear * double_dot(strain, strain)
-    }
-
-    /// C = λ 1⊗1 + 2G
-    fn stiffness(&self) -> Matrix4<f64> {
-        self.lambda * ONE * ONE.transpose() + Matrix4::from_diagonal_element(2.0 * self.shear)
-    }
-}
-
 /// A law that yields, at small strains: a pure function of trial strains and history.
 ///
 /// ```text
@@ -108,8 +85,37 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
     /// Its name in a case.
     fn name(&self) -> &'static str;
 
-    /// λ and G of its elasticity, τ = λ tr(ε_e) 1 + 2G ε_e.
+    /// λ and G of its elasticity, τ = λ tr(ε_e) 1 + 2G ε_e, or of an [elasticity](Self::elasticity) that is not linear at the start.
     fn elastic(&self) -> Lame;
+
+    /// Its elasticity, which derives from a potential.
+    fn elasticity(&self, _history: &[f64]) -> Elasticity {
+        Elasticity::Linear(self.elastic())
+    }
+
+    /// The law with the [moduli](Self::elastic) that it has under a mean pressure p; none where they do not depend on it [F/L²]
+    fn at_pressure(&self, _pressure: f64) -> Option<Self> {
+        None
+    }
+
+    /// Write its own history at the start, under an initial stress. It stays zero unless the law says otherwise.
+    fn begin(&self, _stress: &Vector4<f64>, _history: &mut [f64]) {}
+
+    /// Whether it can begin under a stress, which is not beyond its yield surface.
+    ///
+    /// # Errors
+    /// Why it cannot, and what to do.
+    fn admits(&self, _stress: &CauchyStress) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Names of what it shows, those that every law shows first.
+    fn shown(&self) -> &'static [&'static str] {
+        &SHOWN
+    }
+
+    /// Write what it shows behind those, of a stress and its history.
+    fn show(&self, _stress: &Vector4<f64>, _history: &[f64], _values: &mut [f64]) {}
 
     /// Names of its own history, that of the tensors last: four each, xx, yy, zz, xy.
     fn history(&self) -> &[&'static str] {
@@ -162,11 +168,11 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
 /// b = F C_p⁻¹ Fᵀ = Σ b_i m_i⊗m_i,   ε_i = ½ ln b_i                      trial, i = 1, 2 in plane, 3 across it       (1)
 /// τ, D, Δε_p = law(ε_i; history),   ε_e = ε − Δε_p                                                                  (2)
 /// C_p⁻¹ ← F⁻¹ exp(2 ε_e) F⁻ᵀ,   P = τ F⁻ᵀ                               the exponential map                         (3)
-/// W = λ/2 (tr ε_e)² + G ε_e:ε_e + what the history stores, less that at the start                                   (4)
+/// W = W_e(ε_e) + what the history stores, less that at the start                                                     (4)
 /// dissipation = ½ (τ_y + τ₁):Δε_p − Δ(what the history stores)                                                      (5)
 /// ```
 /// τ_y is where the way from the committed stress to the trial stress meets the yield surface, so (5) is of second order in the increment,
-/// as the audit of energies is./// with F_p of C_p⁻¹ = F_p⁻¹ F_p⁻ᵀ, so that F at the end of the increment alone is needed. Plastic volume is exact: tr Δε_p = 0 keeps
+/// as the audit of energies is, with F_p of C_p⁻¹ = F_p⁻¹ F_p⁻ᵀ, so that F at the end of the increment alone is needed. Plastic volume is exact: tr Δε_p = 0 keeps
 /// det C_p. The tangent is that of (1) to (3), l = dF F⁻¹ in the axes m:
 ///
 /// ```text
@@ -292,7 +298,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
         let mut before = [0, 1, 2, 3].map(|k| old[STRESS + k]);
         axes.enter(&mut before);
         let (before, committed) = (Vector4::from(before), self.history_in(axes, old));
-        let trial = self.law.elastic().kirchhoff(&in_axes(&axes.strains));
+        let trial = self.law.elasticity(&committed).kirchhoff(&in_axes(&axes.strains));
         let [from, to] = [&before, &trial].map(|stress| self.law.yield_indicator(stress, &committed));
         let share = if to > from { (-from / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
         let met = before + share * (trial - before);
@@ -303,25 +309,31 @@ impl<L: ReturnMap> Elastoplastic<L> {
     /// Let an answer lag behind, by the law of Duvaut and Lions.
     fn lag(&self, dt: f64, axes: &Axes, old: &[f64], history: &mut [f64], found: &mut Returned) {
         let share = dt / (self.viscosity + dt);
-        let elastic = self.law.elastic();
+        let elastic = self.law.elasticity(old);
         for (new, old) in history.iter_mut().zip(old) {
             *new = old + share * (*new - old);
         }
+        let trial = in_axes(&axes.strains);
+        let at_return = elastic.bulk(&(trial - found.plastic));
         found.plastic *= share;
-        found.stress = elastic.kirchhoff(&(in_axes(&axes.strains) - found.plastic));
-        found.tangent = (1.0 - share) * elastic.stiffness() + share * found.tangent;
+        let lagging = trial - found.plastic;
+        found.stress = elastic.kirchhoff(&lagging);
+        // The law's part passes through Δε_p: its pressure counts by the bulk modulus here over that where the law returned to.
+        let pressure = ONE * (ONE.transpose() * found.tangent) / 3.0;
+        found.tangent += (elastic.bulk(&lagging) / at_return - 1.0) * pressure;
+        found.tangent = (1.0 - share) * elastic.stiffness(&lagging) + share * found.tangent;
     }
 
     /// Elastic energy and that of the history.
     fn stored(&self, elastic_strain: &Vector4<f64>, variables: &[f64]) -> f64 {
-        self.law.elastic().stored(elastic_strain) + self.law.stored(&variables[HISTORY..])
+        self.law.elasticity(&variables[HISTORY..]).stored(elastic_strain) + self.law.stored(&variables[HISTORY..])
     }
 
-    /// f where the law remembers `straining.old`.
-    fn indicator(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+    /// Stress and history in the axes where the law remembers `straining.old`.
+    fn committed(&self, straining: &Straining) -> Result<(Vector4<f64>, Vec<f64>), MaterialFailure> {
         let axes = Axes::of(&straining.deformation, straining.stretch, straining.old)?;
         let history = self.history_in(&axes, straining.old);
-        Ok(self.law.yield_indicator(&self.law.elastic().kirchhoff(&in_axes(&axes.strains)), &history))
+        Ok((self.law.elasticity(&history).kirchhoff(&in_axes(&axes.strains)), history))
     }
 }
 
@@ -385,13 +397,20 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
         Some(self)
     }
 
+    fn at_pressure(&self, pressure: f64) -> Option<Arc<dyn Material>> {
+        let law = self.law.at_pressure(pressure)?;
+        Some(Arc::new(Self { law, ..self.clone() }))
+    }
+
     fn holds_initial_stress(&self) -> bool {
         true
     }
 
     fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+        self.law.admits(stress)?;
         let CauchyStress { xx, yy, zz, xy } = *stress;
-        let (tensor, history) = (Vector4::new(xx, yy, zz, xy), vec![0.0; self.names.len() - HISTORY]);
+        let (tensor, mut history) = (Vector4::new(xx, yy, zz, xy), vec![0.0; self.names.len() - HISTORY]);
+        self.law.begin(&tensor, &mut history);
         // f is a function of stresses in any axes.
         let f = self.law.yield_indicator(&tensor, &history);
         match f <= WRITTEN * tensor.amax() {
@@ -402,12 +421,13 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
 
     fn initial_state(&self, _: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
         let CauchyStress { xx, yy, zz, xy } = *stress;
-        let strain = self.law.elastic().strain(&Vector4::new(xx, yy, zz, xy));
+        let tensor = Vector4::new(xx, yy, zz, xy);
+        self.law.begin(&tensor, &mut variables[HISTORY..]);
+        let strain = self.law.elasticity(&variables[HISTORY..]).strain(&tensor);
         let [xx, yy, zz, xy] = axes::exponential_less_one(&(2.0 * strain)).into();
         variables[..AT_START].copy_from_slice(&[xx, yy, xy, zz]);
         variables[AT_START] = self.stored(&strain, variables);
-        let CauchyStress { xx, yy, zz, xy } = *stress;
-        variables[STRESS..HISTORY].copy_from_slice(&[xx, yy, zz, xy]);
+        variables[STRESS..HISTORY].copy_from_slice(tensor.as_slice());
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
@@ -417,13 +437,15 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
         Ok(MaterialResponse { stress: plane(&stress), tangent, energy, stress_zz, dissipation })
     }
 
-    fn shown(&self) -> &'static [&'static str] {
-        &SHOWN
+    fn shown(&self) -> &[&'static str] {
+        self.law.shown()
     }
 
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
-        let indicator = self.indicator(straining)?;
-        values.copy_from_slice(&[straining.old[HISTORY], straining.old[HISTORY + 1], indicator]);
+        let (stress, history) = self.committed(straining)?;
+        let (first, own) = values.split_at_mut(SHOWN.len());
+        first.copy_from_slice(&[history[0], history[1], self.law.yield_indicator(&stress, &history)]);
+        self.law.show(&stress, &history, own);
         Ok(())
     }
 }
