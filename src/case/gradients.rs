@@ -1,10 +1,10 @@
 //! Neighbours of a case: the same case with another value at one place, for derivatives of its run ([`crate::output::gradients`]).
 //!
 //! ```text
-//! θ (1 ± 3e-5)
+//! θ (1 ± 1e-4)                        or θ, θ (1 + 1e-4), θ (1 + 2e-4), or these below θ, at an end of its range
 //! ```
 //!
-//! Truncation leaves ε² of a derivative, some 1e-9 where θ acts smoothly; round-off and the tolerance of the neighbours leave
+//! Truncation leaves ε² of a derivative, some 1e-8 where θ acts smoothly; round-off and the tolerance of the neighbours leave
 //! 1e-12/ε or less.
 
 use serde_json::{Map, Number, Value};
@@ -26,7 +26,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// ε/θ
-const STEP: f64 = 3e-5;
+const STEP: f64 = 1e-4;
+
+/// k and weights of the values θ + k ε whose difference is a derivative, to second order in ε; the weights add up to 0.
+const STENCILS: [&[(f64, f64)]; 3] =
+    [&[(-1.0, -0.5), (1.0, 0.5)], &[(0.0, -1.5), (1.0, 2.0), (2.0, -0.5)], &[(0.0, 1.5), (-1.0, -2.0), (-2.0, 0.5)]];
 
 /// Parts of a case whose values act on its run without changing mesh, increments or output.
 const PARTS: [&str; 7] = ["section", "bodies", "point_masses", "rigid_bodies", "contacts", "initial_velocity", "steps"];
@@ -91,9 +95,16 @@ impl Differentiated<'_> {
         if theta == 0.0 {
             return Err("is 0, of which no small part can be taken: give the value about which it is to vary".into());
         }
-        let ends = [theta * (1.0 - STEP), theta * (1.0 + STEP)];
-        let [low, high] = ends.map(|value| self.with(&keys, value, mesh));
-        Ok(Parameter { place: place.into(), width: ends[1] - ends[0], sides: [low?, high?] })
+        let beside = |stencil: &[(f64, f64)]| {
+            let one = |(k, weight): &(f64, f64)| {
+                Ok((weight / (STEP * theta), self.with(&keys, theta * (1.0 + k * STEP), mesh)?))
+            };
+            stencil.iter().map(one).collect::<Result<Vec<_>, String>>()
+        };
+        // At the end of its range a value has neighbours on one side only.
+        let [both, above, below] = STENCILS;
+        let neighbours = beside(both).or_else(|why| beside(above).or_else(|_| beside(below)).map_err(|_| why))?;
+        Ok(Parameter { place: place.into(), neighbours })
     }
 
     /// The model with another value at a place.
@@ -212,9 +223,8 @@ fn unknown(value: &Value, words: &[String]) -> String {
         }
         _ => Vec::new(),
     };
-    let meant = nearest(word, names.iter().map(String::as_str))
-        .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-    format!("there is no `{word}` in this case{meant} There are {}", names.join(", "))
+    let meant = nearest(word, names.iter().map(String::as_str)).map(|near| format!("; did you mean `{near}`?"));
+    format!("there is no `{word}` in this case{} There are {}", meant.unwrap_or_else(|| ".".into()), names.join(", "))
 }
 
 /// Checks that a value there acts on the run alone.

@@ -1,12 +1,11 @@
 //! `gradients.csv`: derivatives of the quantities of the history by parameters of the case, at its rows.
 //!
 //! ```text
-//! dQ/dθ = (Q(θ + ε) − Q(θ − ε))/(2ε)
+//! dQ/dθ = Σ w_k Q(θ + k ε)/ε        k = −1, 1, w = −½, ½;  k = 0, ±1, ±2, w = ∓3/2, ±2, ∓½ at the end of the range of θ
 //! ```
 //!
-//! with two neighbours of the run per parameter, which follow it increment by increment ([`crate::time::neighbour`]). Where a contact
-//! point has another status in one of them than in the other, the run is at a kink, and the derivative is a mean of those on both
-//! sides.
+//! with neighbours of the run that follow it increment by increment ([`crate::time::neighbour`]). Where a contact point has another status
+//! in one of them than in the other, the run is at a kink, and the derivative is a mean of those on both sides.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,6 +18,7 @@ use super::csv::{self, Rows, Standing, Table};
 use super::history::HistoryRows;
 use super::quantities::INCREMENT;
 use super::warnings::Warn;
+use crate::laws::friction::Regime;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::control::is_of;
@@ -35,24 +35,23 @@ pub const FILE: &str = "gradients.csv";
 pub struct Parameter {
     /// its place in the case
     pub place: String,
-    /// 2ε: difference of its values in the two models
-    pub width: f64,
-    /// the models with θ − ε and θ + ε
-    pub sides: [Arc<Model>; 2],
+    /// w_k/ε, and the model with θ + k ε
+    pub neighbours: Vec<(f64, Arc<Model>)>,
 }
 
 /// What is known of a derivative besides its values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
-    /// number of contact points, summed over the increments, whose status differed between the two neighbours: their derivatives are
+    /// number of contact points, summed over the increments, whose status differed between the neighbours: their derivatives are
     /// one-sided
     pub one_sided: usize,
     /// time from which on there is no derivative, as a neighbour could not follow [T]
     pub lost_at: Option<f64>,
 }
 
-/// One of the two neighbours of a parameter, and the row of its history.
+/// A neighbour of the run, its weight, and the rows of its history.
 struct Side {
+    weight: f64,
     neighbour: Neighbour,
     rows: HistoryRows,
 }
@@ -60,13 +59,12 @@ struct Side {
 /// A parameter and its neighbours.
 struct Derivative {
     place: String,
-    width: f64,
-    sides: [Side; 2],
+    sides: Vec<Side>,
     account: Account,
 }
 
-/// Saved memory of a derivative: its place, its account, and state, step and row of both sides.
-type Memory = (String, Account, [(State, Option<usize>, Vec<u8>); 2]);
+/// Saved memory of a derivative: its place, its account, and state, step and rows of its neighbours.
+type Memory = (String, Account, Vec<(State, Option<usize>, Vec<u8>)>);
 
 /// Observer that writes `gradients.csv`.
 pub struct Gradients {
@@ -103,12 +101,14 @@ impl Gradients {
         let columns: Vec<String> = ["time", "step"].map(String::from).into_iter().chain(columns).collect();
         let path = folder.join(FILE);
         let table = if goes_on { Table::reopen(&path, columns) } else { Table::create(&path, columns) }?;
-        let side =
-            |model: &Arc<Model>| Side { neighbour: Neighbour::new(model.clone()), rows: HistoryRows::new(model).0 };
+        let side = |(weight, model): &(f64, Arc<Model>)| Side {
+            weight: *weight,
+            neighbour: Neighbour::new(model.clone()),
+            rows: HistoryRows::new(model).0,
+        };
         let derivative = |parameter: &Parameter| Derivative {
             place: parameter.place.clone(),
-            width: parameter.width,
-            sides: parameter.sides.each_ref().map(side),
+            sides: parameter.neighbours.iter().map(side).collect(),
             account: Account::default(),
         };
         Ok(Self {
@@ -129,27 +129,32 @@ impl Gradients {
 }
 
 impl Derivative {
-    /// Whether both neighbours have followed so far.
+    /// Whether its neighbours have followed so far.
     fn lives(&self) -> bool {
         self.account.lost_at.is_none()
     }
 
-    /// The derivatives of the row at the accepted state, and the points that are at a kink there.
+    /// The derivatives of the row at the accepted state; contact points at a kink there are counted.
     fn row(&mut self) -> Vec<f64> {
-        let [low, high] = self.sides.each_mut().map(|Side { neighbour: Neighbour { model, old, state, .. }, rows }| {
-            let statuses: Vec<_> = model
-                .contacts
-                .iter()
-                .zip(&state.contacts)
-                .flat_map(|(pair, states)| {
-                    pair.points.iter().zip(states).map(|(point, state)| pair.regime(point, state))
-                })
-                .collect();
-            (rows.values(model, old, state), statuses)
-        });
-        self.account.one_sided += low.1.iter().zip(&high.1).filter(|(low, high)| low != high).count();
-        low.0.iter().zip(&high.0).map(|(low, high)| (high - low) / self.width).collect()
+        let one = |Side { weight, neighbour: Neighbour { model, old, state, .. }, rows }: &mut Side| {
+            (*weight, rows.values(model, old, state), statuses(model, state))
+        };
+        let all: Vec<_> = self.sides.iter_mut().map(one).collect();
+        let Some(((_, first, statuses), others)) = all.split_first() else { return Vec::new() };
+        let at_kink = |point: &usize| others.iter().any(|(_, _, other)| other[*point] != statuses[*point]);
+        self.account.one_sided += (0..statuses.len()).filter(at_kink).count();
+        // The weights add up to 0.
+        let derivative = |k: usize| others.iter().map(|(weight, row, _)| weight * (row[k] - first[k])).sum();
+        (0..first.len()).map(derivative).collect()
     }
+}
+
+/// Status of every contact point.
+fn statuses(model: &Model, state: &State) -> Vec<Regime> {
+    let pairs = model.contacts.iter().zip(&state.contacts);
+    pairs
+        .flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(point, state)| pair.regime(point, state)))
+        .collect()
 }
 
 impl Observer for Gradients {
@@ -167,8 +172,8 @@ impl Observer for Gradients {
         table.text(&step.name);
         for derivative in derivatives.iter_mut() {
             if derivative.lives() {
-                let both = [followed.next(), followed.next()];
-                if let Some(failure) = both.into_iter().flatten().find_map(Result::err) {
+                let all: Vec<_> = followed.by_ref().take(derivative.sides.len()).collect();
+                if let Some(failure) = all.into_iter().find_map(Result::err) {
                     derivative.account.lost_at = Some(new.time);
                     let warning = format!(
                         "gradients.csv: no derivative by {} from t = {} on: a run with a slightly different value cannot make the \
@@ -195,11 +200,11 @@ impl Observer for Gradients {
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         let mut memories: Vec<Memory> = Vec::new();
-        for Derivative { place, sides: [low, high], account, .. } in &self.derivatives {
-            let side = |Side { neighbour, rows }: &Side| {
+        for Derivative { place, sides, account } in &self.derivatives {
+            let side = |Side { neighbour, rows, .. }: &Side| {
                 Ok::<_, Error>((neighbour.state.clone(), neighbour.begun, rows.save()?))
             };
-            memories.push((place.clone(), account.clone(), [side(low)?, side(high)?]));
+            memories.push((place.clone(), account.clone(), sides.iter().map(side).collect::<Result<_, _>>()?));
         }
         csv::remembered(&(self.table.standing()?, memories))
     }
@@ -208,7 +213,8 @@ impl Observer for Gradients {
         let (stood, memories) = csv::recalled::<(Standing, Vec<Memory>)>(memory)?;
         let of_these = |(derivative, (place, _, sides)): (&Derivative, &Memory)| {
             let fits = |(side, (state, ..)): (&Side, &(State, _, _))| is_of(state, &side.neighbour.model);
-            derivative.place == *place && derivative.sides.iter().zip(sides).all(fits)
+            let Derivative { place: own, sides: neighbours, .. } = derivative;
+            own == place && neighbours.len() == sides.len() && neighbours.iter().zip(sides).all(fits)
         };
         if memories.len() != self.derivatives.len() || !self.derivatives.iter().zip(&memories).all(of_these) {
             return Err(csv::failed(Path::new(FILE), &"the checkpoint holds derivatives by other parameters"));

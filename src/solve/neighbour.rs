@@ -21,14 +21,18 @@ use super::newton::NewtonFailure;
 use crate::contact::force::ContactState;
 use crate::equations::{Assembler, Trial};
 use crate::linear::system::{Request, System};
-use crate::linear::{self, LinearSolver, Multifrontal};
+use crate::linear::{LinearSolver, Multifrontal};
 use crate::model::Model;
 
 /// Required ‖r‖/‖f‖ of every part of a neighbour's solution [-]
 pub const TOLERANCE: f64 = 1e-12;
 
-/// Largest ‖r‖/‖f‖ after a correction relative to that before it for another one with the tangent of the run.
+/// Largest fraction of ‖r‖/‖f‖ left by a correction for another one with the tangent of the run.
 const SLOW: f64 = 0.1;
+
+/// Fraction left by a correction above which another one follows, though the residual is small already: it may be as small as round-off
+/// could be, and larger than round-off is.
+const SURE: f64 = 1e-3;
 
 /// The tangent of a run at a solution, and its factors.
 pub struct Tangent {
@@ -68,8 +72,9 @@ impl Tangent {
 
     /// −K⁻¹ r
     fn correction(&mut self, residual: &[f64]) -> Vec<f64> {
-        let right: Vec<f64> = residual.iter().map(|r| -r).collect();
-        linear::solve_again(&mut *self.solver, &self.system.tangent, &right).x
+        let mut way: Vec<f64> = residual.iter().map(|r| -r).collect();
+        self.solver.solve(&mut way);
+        way
     }
 }
 
@@ -92,10 +97,11 @@ pub fn beside(
             break;
         }
         let begins = before.is_infinite();
-        if !begins && system.imbalance <= TOLERANCE {
+        let share = system.imbalance / before;
+        if !begins && system.imbalance <= TOLERANCE && (share <= SURE || before <= TOLERANCE) {
             return Ok(u);
         }
-        if !begins && system.imbalance > SLOW * before || !system.imbalance.is_finite() {
+        if !(share <= SLOW || system.imbalance <= TOLERANCE) {
             break;
         }
         before = system.imbalance;
