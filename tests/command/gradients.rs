@@ -70,10 +70,10 @@ fn kind(column: &str) -> &str {
     }
 }
 
-/// Largest difference between the derivatives of a run and central differences of complete runs with a tolerance of 1e-12 and the
+/// Largest differences, first those of forces and displacements, then all others, between the derivatives of a run and central differences of complete runs with a tolerance of 1e-12 and the
 /// same increments, in each column relative to its largest derivative; with the column.
 #[track_caller]
-fn compared(case: &Value, places: &[&str]) -> (f64, String) {
+fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
     const STEP: f64 = 1e-4;
     let with = |extra: &dyn Fn(&mut Value)| {
         let mut case = case.clone();
@@ -83,7 +83,7 @@ fn compared(case: &Value, places: &[&str]) -> (f64, String) {
     };
     let own = with(&|case| case["gradients"] = json!(places));
     let (found, history) = (table(&own, "gradients.csv"), table(&own, "history.csv"));
-    let mut worst = (0.0, String::new());
+    let mut worst = [(0.0, String::new()), (0.0, String::new())];
     for place in places {
         let value = case.pointer(&pointer(place)).and_then(Value::as_f64).expect("a number at the place");
         let ends = [value * (1.0 - STEP), value * (1.0 + STEP)];
@@ -107,13 +107,19 @@ fn compared(case: &Value, places: &[&str]) -> (f64, String) {
             for (found, expected) in found[&column].iter().zip(&differences) {
                 // Below a tenth of Q/θ a derivative is known relative to that.
                 let error = (found - expected).abs() / scale.max(0.1 * typical.abs()).max(f64::MIN_POSITIVE);
+                let worst = &mut worst[usize::from(!["force", "motion"].contains(&kind(name)))];
                 if !(error <= worst.0) {
-                    worst = (error, format!("{column}: {found:e} for {expected:e}"));
+                    *worst = (error, format!("{column}: {found:e} for {expected:e}"));
                 }
             }
         }
     }
     worst
+}
+
+/// Whether forces and displacements agree to 1e-6, and what is small beside them to 5e-6: penetrations, momenta, powers.
+fn is_close([main, others]: &[(f64, String); 2]) -> bool {
+    main.0 < 1e-6 && others.0 < 5e-6
 }
 
 /// A block on ground, dragged until it slides; every increment has the same length.
@@ -155,8 +161,8 @@ fn of_a_dragged_block_by_every_parameter_are_those_of_complete_runs() {
     let mut places: Vec<&str> = laws.iter().map(String::as_str).collect();
     places.extend(["contacts.base.normal.alpha_n", "bodies.block.material.E", "bodies.ground.material.nu"]);
     places.extend(["steps[0].supports[1].uy", "steps[1].supports[0].ux.rate"]);
-    let (error, place) = compared(&dragged(weakening(), json!({"method": "gauss_to_segment"})), &places);
-    assert!(error < 1e-6, "{error:e} in {place}");
+    let worst = compared(&dragged(weakening(), json!({"method": "gauss_to_segment"})), &places);
+    assert!(is_close(&worst), "{worst:?}");
 }
 
 /// Coulomb friction in partial slip, by nodes, mortar with multipliers, and in small sliding.
@@ -172,15 +178,16 @@ fn in_partial_slip_are_those_of_complete_runs_by_every_method() {
         let mut case = dragged(coulomb.clone(), contact.clone());
         case["steps"][1]["duration"] = json!(1.5);
         let places = ["contacts.base.friction.mu", "bodies.block.material.E", "contacts.base.normal.alpha_n"];
-        let (error, place) = compared(&case, &places);
-        assert!(error < 1e-6, "{contact}: {error:e} in {place}");
+        let worst = compared(&case, &places);
+        assert!(is_close(&worst), "{contact}: {worst:?}");
     }
 }
 
 /// A block with mass, driven fast enough for its inertia to count, up to its first slip and through it.
 #[test]
 fn of_motion_are_those_of_complete_runs_in_every_scheme() {
-    for scheme in [json!({"hht": {"alpha": -0.1}}), json!({"newmark": {}}), json!({"generalized_alpha": {"rho": 0.8}})]
+    for scheme in
+        [json!({"hht": {"alpha": -0.1}}), json!({"newmark": {}}), json!({"generalized_alpha": {"rho_infinity": 0.8}})]
     {
         let mut case = dragged(weakening(), json!({"method": "gauss_to_segment"}));
         for body in ["block", "ground"] {
@@ -196,8 +203,9 @@ fn of_motion_are_those_of_complete_runs_in_every_scheme() {
             "bodies.block.material.density",
             "bodies.block.material.E",
         ];
-        let (error, place) = compared(&case, &places);
-        assert!(error < 1e-6, "{scheme}: {error:e} in {place}");
+        let worst = compared(&case, &places);
+        // The run itself is solved to 1e-8, and its distance from a neighbour is known by as much.
+        assert!(worst[0].0 < 5e-6 && worst[1].0 < 5e-5, "{scheme}: {worst:?}");
     }
 }
 
@@ -218,9 +226,9 @@ fn of_yielding_soil_are_those_of_complete_runs() {
         "contacts.base.friction.mu_s",
         "steps[0].loads[0].pressure",
     ];
-    let (error, place) = compared(&case, &places);
-    // The force on the ground is that of the pressure, by which no residual is as small as its derivative is.
-    assert!(error < 1e-5, "{error:e} in {place}");
+    let worst = compared(&case, &places);
+    // The force on the ground is that of the pressure: round-off of the soil is all there is of its derivative.
+    assert!(worst.iter().all(|(error, _)| *error < 5e-6), "{worst:?}");
 }
 
 /// A bar of a linear material under a given strain: F = E A u/L, W = ½ E A u²/L in plane stress. A block that slides by Coulomb's law:
@@ -328,20 +336,20 @@ fn at_the_end_of_a_range_are_those_on_its_inside() {
     }
 }
 
-/// Where two neighbours differ in what sticks, points are counted: Coulomb's law at a strain just at the onset of slip.
+/// A block that comes down by its gap, just so: it touches where it moves by a little more, and is apart where it moves by a little less.
 #[test]
 fn at_kinks_are_counted() {
     let mut case = dragged(json!({"law": "coulomb", "mu": 0.3}), json!({"method": "node_to_segment"}));
-    for step in ["steps", "steps"].iter().enumerate().map(|(k, _)| k) {
-        case["steps"][step]["dt"] = json!({"initial": 0.01, "min": 0.01, "max": 0.01});
-    }
-    case["gradients"] = json!(["contacts.base.friction.mu", "steps.drag.supports[0].ux.rate"]);
-    let told = summary(&run(&case, &[]));
-    let count = |place: &str| told["gradients"][place]["one_sided"].as_u64().expect("a number");
-    // Of 10 nodes in 500 increments some are at a kink within 1e-4 of the parameter; most are not.
-    let [by_mu, by_rate] = [count("contacts.base.friction.mu"), count("steps.drag.supports[0].ux.rate")];
-    assert!((1..=50).contains(&(by_mu + by_rate)), "{by_mu}, {by_rate}");
-    assert_eq!(told["gradients"]["contacts.base.friction.mu"]["lost_at"], Value::Null);
+    case["mesh"] = Blocks::default()
+        .rectangle("ground", [14, 3], [-2.0, -1.0], [5.0, 0.0])
+        .rectangle("block", [9, 3], [0.0, 0.01], [2.0, 1.01])
+        .json();
+    case["steps"].as_array_mut().expect("steps").pop();
+    case["gradients"] = json!(["contacts.base.friction.mu", "steps.press.supports[1].uy"]);
+    let told = &summary(&run(&case, &[]))["gradients"];
+    let nodes = told["steps.press.supports[1].uy"]["one_sided"].as_u64().expect("a number");
+    assert!((1..=10).contains(&nodes), "{told}");
+    assert_eq!(told["contacts.base.friction.mu"], json!({"one_sided": 0, "lost_at": null}));
 }
 
 #[test]
