@@ -22,7 +22,7 @@ use crate::model::Model;
 use crate::model::builder::{Checked, Contact, ModelError, Regime, regime};
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
-use crate::output::gradients::Parameter;
+use crate::output::gradients::Neighbours;
 use crate::run::{Saved, SavedRun};
 
 /// Keys that never affect how a run continues.
@@ -45,8 +45,8 @@ pub struct Opened {
     pub inputs: Vec<PathBuf>,
     /// mesh in memory, used instead of the one named by the case
     mesh: Option<Mesh>,
-    /// parameters by which the history is differentiated, once the model is built
-    pub parameters: Vec<Parameter>,
+    /// neighbours of its run, if its history is differentiated, once the model is built
+    pub neighbours: Option<Neighbours>,
     /// checkpoint at which it starts, if any
     start: Option<Checkpoint>,
     /// whether it resumes the run of that checkpoint
@@ -91,8 +91,8 @@ impl Opened {
     fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Self {
         let files = document["mesh"].as_array().map_or(slice::from_ref(&document["mesh"]), Vec::as_slice);
         let inputs = files.iter().filter_map(Value::as_str).map(|mesh| beside(path, mesh)).collect();
-        let (path, mesh, parameters) = (path.to_owned(), None, Vec::new());
-        Self { case, path, document, taken_over: 0, inputs, mesh, parameters, start, resumes: false }
+        let (path, mesh, neighbours) = (path.to_owned(), None, None);
+        Self { case, path, document, taken_over: 0, inputs, mesh, neighbours, start, resumes: false }
     }
 
     /// Uses a mesh in memory; the mesh named by the case is then only a label.
@@ -116,7 +116,7 @@ impl Opened {
         if let Some(mesh) = again {
             let Self { case, document, path, taken_over, .. } = self;
             let of = Differentiated { case, document, path, model: &model, begins_with: *taken_over > 0 };
-            self.parameters = of.parameters(&mesh)?;
+            self.neighbours = Some(of.neighbours(&mesh)?);
         }
         let Some(Checkpoint { mesh, run, .. }) = self.start.take() else { return Ok((model, None)) };
         let complain = |message: String| self.not_of(if self.resumes { "" } else { "begin_with" }, message);

@@ -20,7 +20,7 @@ use crate::model::builder::{Checked, ModelError};
 use crate::model::scheme::Scheme;
 use crate::model::{Model, Step};
 use crate::output::checkpoint::MeshPrint;
-use crate::output::gradients::Parameter;
+use crate::output::gradients::{Neighbours, Parameter};
 use crate::solve::neighbour::TOLERANCE;
 use std::path::Path;
 use std::sync::Arc;
@@ -57,11 +57,11 @@ impl Differentiated<'_> {
     ///
     /// # Errors
     /// Returns [`CaseError`] if a place has no value that can vary, or the run has no derivatives.
-    pub fn parameters(&self, mesh: &Mesh) -> Result<Vec<Parameter>, CaseError> {
-        self.parameters_on(mesh).map_err(|complaint| complaint.in_file(self.path))
+    pub fn neighbours(&self, mesh: &Mesh) -> Result<Neighbours, CaseError> {
+        self.neighbours_on(mesh).map_err(|complaint| complaint.in_file(self.path))
     }
 
-    fn parameters_on(&self, mesh: &Mesh) -> Checked<Vec<Parameter>> {
+    fn neighbours_on(&self, mesh: &Mesh) -> Checked<Neighbours> {
         let places = &self.case.gradients;
         if self.begins_with {
             let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
@@ -77,7 +77,9 @@ impl Differentiated<'_> {
             self.parameter(place, &defaults, mesh)
                 .map_err(|message| ModelError::new(at, format!("`{place}`: {message}")))
         };
-        places.iter().enumerate().map(one).collect()
+        let parameters = places.iter().enumerate().map(one).collect::<Checked<_>>()?;
+        let middle = self.model_of(self.document, mesh)?;
+        Ok(Neighbours { middle: solved_exactly(middle), parameters })
     }
 
     fn parameter(&self, place: &str, defaults: &Value, mesh: &Mesh) -> Result<Parameter, String> {
@@ -113,19 +115,26 @@ impl Differentiated<'_> {
         put(&mut document, keys, Number::from_f64(value).map_or(Value::Null, Value::Number));
         let refused =
             |place: &str, message: &str| format!("cannot be {value}, a little beside its value: {place}: {message}");
-        let case: Case = read::input(&document).map_err(|error| refused(&error.place, &error.message))?;
-        let built = super::build_on(&case, mesh.clone(), self.path);
-        let mut model = built.map_err(|error| refused(&error.place, &error.message))?;
+        let model = self.model_of(&document, mesh).map_err(|error| refused(&error.place, &error.message))?;
         if !is_alike(self.model, &model) {
             return Err(
                 "acts on the mesh, or on contact points or times of steps, which have to stay as they are".into()
             );
         }
-        model.newton.tolerance = TOLERANCE;
-        // They are solved with the tangent of the run.
-        model.aids.condense = false;
-        Ok(Arc::new(model))
+        Ok(solved_exactly(model))
     }
+
+    fn model_of(&self, document: &Value, mesh: &Mesh) -> Checked<Model> {
+        let case: Case = read::input(document)?;
+        super::build_on(&case, mesh.clone(), self.path).map_err(|error| ModelError::new(error.place, error.message))
+    }
+}
+
+/// A model to be solved with the tangent of the run.
+fn solved_exactly(mut model: Model) -> Arc<Model> {
+    model.newton.tolerance = TOLERANCE;
+    model.aids.condense = false;
+    Arc::new(model)
 }
 
 /// Whether a model has the same unknowns, contact points, internal variables and steps.

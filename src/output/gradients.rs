@@ -39,6 +39,15 @@ pub struct Parameter {
     pub neighbours: Vec<(f64, Arc<Model>)>,
 }
 
+/// The neighbours of a run.
+#[derive(Clone, Debug)]
+pub struct Neighbours {
+    /// the model of the run, to be solved as exactly as those beside it
+    pub middle: Arc<Model>,
+    /// those of every parameter
+    pub parameters: Vec<Parameter>,
+}
+
 /// What is known of a derivative besides its values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
@@ -66,10 +75,14 @@ struct Derivative {
 /// Saved memory of a derivative: its place, its account, and state, step and rows of its neighbours.
 type Memory = (String, Account, Vec<(State, Option<usize>, Vec<u8>)>);
 
+/// Saved memory of all: extent of the table, state and step of the neighbour with the value of the run, and the derivatives.
+type Whole = (Standing, (State, Option<usize>), Vec<Memory>);
+
 /// Observer that writes `gradients.csv`.
 pub struct Gradients {
     table: Table,
     tangent: Tangent,
+    middle: Neighbour,
     derivatives: Vec<Derivative>,
     /// Number of quantities
     quantities: usize,
@@ -88,7 +101,7 @@ impl Gradients {
     pub fn new(
         folder: &Path,
         model: &Arc<Model>,
-        parameters: &[Parameter],
+        Neighbours { middle, parameters }: &Neighbours,
         goes_on: bool,
         warn: Warn,
     ) -> Result<Self, Error> {
@@ -114,6 +127,7 @@ impl Gradients {
         Ok(Self {
             table,
             tangent: Tangent::new(model),
+            middle: Neighbour::new(middle.clone()),
             derivatives: parameters.iter().map(derivative).collect(),
             quantities: quantities.len(),
             warn,
@@ -158,16 +172,16 @@ fn statuses(model: &Model, state: &State) -> Vec<Regime> {
 }
 
 impl Observer for Gradients {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(new) = attempt.accepted else { return Ok(()) };
         let clock = Instant::now();
-        let Self { table, tangent, derivatives, quantities, warn, warnings, .. } = self;
+        let Self { table, tangent, middle, derivatives, quantities, warn, warnings, .. } = self;
         let Attempt { step, step_number, ended, old, passes, .. } = *attempt;
         let lead = Lead { step, number: step_number, ended, old, new, passes };
         let alive = derivatives.iter_mut().filter(|derivative| derivative.lives());
         let mut sides: Vec<&mut Neighbour> =
             alive.flat_map(|derivative| derivative.sides.iter_mut().map(|side| &mut side.neighbour)).collect();
-        let mut followed = follow(model, &lead, tangent, &mut sides).into_iter();
+        let mut followed = follow(&lead, tangent, middle, &mut sides).into_iter();
         table.number(new.time);
         table.text(&step.name);
         for derivative in derivatives.iter_mut() {
@@ -206,24 +220,28 @@ impl Observer for Gradients {
             };
             memories.push((place.clone(), account.clone(), sides.iter().map(side).collect::<Result<_, _>>()?));
         }
-        csv::remembered(&(self.table.standing()?, memories))
+        csv::remembered(&(self.table.standing()?, (&self.middle.state, self.middle.begun), memories))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, memories) = csv::recalled::<(Standing, Vec<Memory>)>(memory)?;
+        let (stood, (middle, _), memories) = csv::recalled::<Whole>(memory)?;
         let of_these = |(derivative, (place, _, sides)): (&Derivative, &Memory)| {
             let fits = |(side, (state, ..)): (&Side, &(State, _, _))| is_of(state, &side.neighbour.model);
             let Derivative { place: own, sides: neighbours, .. } = derivative;
             own == place && neighbours.len() == sides.len() && neighbours.iter().zip(sides).all(fits)
         };
-        if memories.len() != self.derivatives.len() || !self.derivatives.iter().zip(&memories).all(of_these) {
+        if !is_of(&middle, &self.middle.model)
+            || memories.len() != self.derivatives.len()
+            || !self.derivatives.iter().zip(&memories).all(of_these)
+        {
             return Err(csv::failed(Path::new(FILE), &"the checkpoint holds derivatives by other parameters"));
         }
         self.table.check(&stood)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, memories) = csv::recalled::<(Standing, Vec<Memory>)>(memory)?;
+        let (stood, (middle, begun), memories) = csv::recalled::<Whole>(memory)?;
+        self.middle.go_on(middle, begun);
         for (derivative, (_, account, sides)) in self.derivatives.iter_mut().zip(memories) {
             derivative.account = account;
             for (side, (state, begun, row)) in derivative.sides.iter_mut().zip(sides) {

@@ -6,9 +6,9 @@
 //!
 //! A neighbour makes the increments that the run has accepted, as they were, and as many passes of the augmented Lagrangian with the
 //! same penalties: the derivative is that of the discrete run. Everything else is its own, by the ordinary equations and
-//! laws: the states of bodies and contact points, starts of steps, accelerations, energies. It starts from the solution of the
-//! run and its distance from it so far, continued at its pace, and is solved with the tangent of the run
-//! ([`crate::solve::neighbour`]).
+//! laws: the states of bodies and contact points, starts of steps, accelerations, energies. It is solved with the tangent of the run
+//! ([`crate::solve::neighbour`]), from a solution beside it and its distance from that so far, continued at its pace. That solution is
+//! not the one of the run, which is as inexact as its tolerance allows, but of a neighbour with the same value.
 
 use std::sync::Arc;
 
@@ -88,8 +88,8 @@ impl Neighbour {
         (self.state, self.begun, self.step) = (state, begun, None);
     }
 
-    /// Begins the step of the increment if it is a new one.
-    fn set_out(&mut self, lead: &Lead) -> Result<OnItsWay, IncrementFailure> {
+    /// Begins the step of the increment if it is a new one. It starts beside this state of another neighbour, or beside the run.
+    fn set_out(&mut self, lead: &Lead, beside: Option<&State>) -> Result<OnItsWay, IncrementFailure> {
         let Self { model, state, begun, step, work, .. } = self;
         let new = *begun != Some(lead.number);
         if new || step.is_none() {
@@ -99,9 +99,10 @@ impl Neighbour {
         if let (true, Some(step)) = (new, step) {
             *state = begin(model, step, state, work)?;
         }
+        let other = beside.unwrap_or(lead.old);
         let mut distance: Vec<f64> =
-            state.displacement.iter().zip(&lead.old.displacement).map(|(own, other)| own - other).collect();
-        if let (Some(own), Some(other)) = (&state.last_increment, &lead.old.last_increment) {
+            state.displacement.iter().zip(&other.displacement).map(|(own, other)| own - other).collect();
+        if let (Some(own), Some(other)) = (&state.last_increment, &other.last_increment) {
             let share = (lead.new.time - lead.old.time) / own.dt;
             let ways = own.displacement.iter().zip(&other.displacement);
             distance.iter_mut().zip(ways).for_each(|(distance, (own, other))| *distance += share * (own - other));
@@ -109,11 +110,11 @@ impl Neighbour {
         Ok(OnItsWay { old: state.clone(), distance, u: Vec::new() })
     }
 
-    /// Solves a pass.
+    /// Solves a pass, beside the solution `other`.
     fn pass(
         &mut self,
         lead: &Lead,
-        pass: &Pass,
+        (pass, other): (&Pass, &[f64]),
         tangent: &mut Tangent,
         mut way: OnItsWay,
     ) -> Result<OnItsWay, IncrementFailure> {
@@ -122,9 +123,9 @@ impl Neighbour {
         if !way.u.is_empty() {
             multiply(model, &work.assembler.evaluation.contacts, &mut way.old);
         }
-        let start = pass.displacement.iter().zip(&way.distance).map(|(u, distance)| u + distance).collect();
+        let start = other.iter().zip(&way.distance).map(|(u, distance)| u + distance).collect();
         way.u = beside(model, lead.trial(&way.old, step, pass), start, tangent, work)?;
-        way.distance = way.u.iter().zip(&pass.displacement).map(|(own, other)| own - other).collect();
+        way.distance = way.u.iter().zip(other).map(|(own, other)| own - other).collect();
         Ok(way)
     }
 
@@ -138,26 +139,40 @@ impl Neighbour {
     }
 }
 
-/// Lets neighbours of a run make the increment that it has accepted, all with the same tangents. A neighbour that fails stays
-/// behind.
+/// Lets neighbours of a run make the increment that it has accepted, all with the same tangents. One with the value of the run itself goes
+/// ahead: it is solved as exactly as they are, and they start beside it. A neighbour that fails stays behind; none can go on if the first
+/// does.
 pub fn follow(
-    model: &Model,
     lead: &Lead,
     tangent: &mut Tangent,
+    middle: &mut Neighbour,
     neighbours: &mut [&mut Neighbour],
 ) -> Vec<Result<(), IncrementFailure>> {
+    match ahead(lead, tangent, middle, neighbours) {
+        Ok(followed) => followed,
+        Err(failure) => neighbours.iter().map(|_| Err(failure.clone())).collect(),
+    }
+}
+
+fn ahead(
+    lead: &Lead,
+    tangent: &mut Tangent,
+    middle: &mut Neighbour,
+    neighbours: &mut [&mut Neighbour],
+) -> Result<Vec<Result<(), IncrementFailure>>, IncrementFailure> {
+    let mut first = middle.set_out(lead, None)?;
     let mut ways: Vec<Result<OnItsWay, IncrementFailure>> =
-        neighbours.iter_mut().map(|neighbour| neighbour.set_out(lead)).collect();
+        neighbours.iter_mut().map(|neighbour| neighbour.set_out(lead, Some(&middle.state))).collect();
     let mut old = lead.old.clone();
     for (k, pass) in lead.passes.iter().enumerate() {
         if k > 0 {
-            multiply(model, tangent.contacts(), &mut old);
+            multiply(&middle.model, tangent.contacts(), &mut old);
         }
-        if let Err(failure) = tangent.of(lead.trial(&old, lead.step, pass), &pass.displacement) {
-            return neighbours.iter().map(|_| Err(failure.clone())).collect();
-        }
+        tangent.of(lead.trial(&old, lead.step, pass), &pass.displacement)?;
+        first = middle.pass(lead, (pass, &pass.displacement), tangent, first)?;
         let each = neighbours.iter_mut().zip(ways);
-        ways = each.map(|(neighbour, way)| neighbour.pass(lead, pass, tangent, way?)).collect();
+        ways = each.map(|(neighbour, way)| neighbour.pass(lead, (pass, &first.u), tangent, way?)).collect();
     }
-    neighbours.iter_mut().zip(ways).map(|(neighbour, way)| neighbour.accept(lead, way?)).collect()
+    middle.accept(lead, first)?;
+    Ok(neighbours.iter_mut().zip(ways).map(|(neighbour, way)| neighbour.accept(lead, way?)).collect())
 }

@@ -114,6 +114,7 @@ fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
             }
         }
     }
+    println!("{worst:?}");
     worst
 }
 
@@ -204,8 +205,7 @@ fn of_motion_are_those_of_complete_runs_in_every_scheme() {
             "bodies.block.material.E",
         ];
         let worst = compared(&case, &places);
-        // The run itself is solved to 1e-8, and its distance from a neighbour is known by as much.
-        assert!(worst[0].0 < 5e-6 && worst[1].0 < 5e-5, "{scheme}: {worst:?}");
+        assert!(is_close(&worst), "{scheme}: {worst:?}");
     }
 }
 

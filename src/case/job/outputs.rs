@@ -74,13 +74,12 @@ impl Outputs {
     pub fn open(
         folder: &Path,
         model: &Arc<Model>,
-        Opened { case, parameters, .. }: &Opened,
+        Opened { case, neighbours, .. }: &Opened,
         frames: Frames,
         saved: Option<&SavedRun>,
         warnings: Warnings,
         warn: Warn,
     ) -> Result<Self, Error> {
-        let differentiated = !parameters.is_empty();
         let start = saved.map_or_else(|| model.initial_state(), |saved| saved.simulation().state().clone());
         let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
         let (has_contacts, has_fields) = (!model.contacts.is_empty(), case.output.fields);
@@ -94,8 +93,9 @@ impl Outputs {
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
             fronts: case.output.fronts.map(|criterion| Fronts::new(folder, model, &start, criterion)),
-            gradients: differentiated
-                .then(|| Gradients::new(folder, model, parameters, goes_on("gradients"), warn))
+            gradients: neighbours
+                .as_ref()
+                .map(|neighbours| Gradients::new(folder, model, neighbours, goes_on("gradients"), warn))
                 .transpose()?,
         };
         // A run is resumed only if all its files are unchanged.
