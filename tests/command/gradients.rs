@@ -114,13 +114,12 @@ fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
             }
         }
     }
-    println!("{worst:?}");
     worst
 }
 
-/// Whether forces and displacements agree to 1e-6, and what is small beside them to 5e-6: penetrations, momenta, powers.
+/// Whether forces and displacements agree to 1e-7, and what is small beside them to 1e-6: penetrations, momenta, powers.
 fn is_close([main, others]: &[(f64, String); 2]) -> bool {
-    main.0 < 1e-6 && others.0 < 5e-6
+    main.0 < 1e-7 && others.0 < 1e-6
 }
 
 /// A block on ground, dragged until it slides; every increment has the same length.
