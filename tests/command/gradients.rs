@@ -108,7 +108,7 @@ fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
                 // Below a tenth of Q/θ a derivative is known relative to that.
                 let error = (found - expected).abs() / scale.max(0.1 * typical.abs()).max(f64::MIN_POSITIVE);
                 let worst = &mut worst[usize::from(!["force", "motion"].contains(&kind(name)))];
-                if !(error <= worst.0) {
+                if error.is_nan() || error > worst.0 {
                     *worst = (error, format!("{column}: {found:e} for {expected:e}"));
                 }
             }
