@@ -9,7 +9,7 @@ import json
 import os
 import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -173,6 +173,7 @@ class Case:
         progress: bool = True,
         resume: bool = False,
         report: bool = False,
+        gradients: Sequence[str] | None = None,
     ) -> Result:
         """Run the case, with results bitwise identical to ``fecontact run``.
 
@@ -186,12 +187,15 @@ class Case:
             resume: whether to resume from the last checkpoint in ``out``; if this case's own run has left none yet, it starts anew,
                 with a warning.
             report: whether to write ``report.html`` into ``out``.
+            gradients: places of values by which the history is differentiated, such as ``["contacts.base.friction.mu_k"]``, instead of those
+                of the case; they are in :attr:`Result.gradients`.
 
         Raises:
             CaseError: the input is invalid; nothing was written.
             Stopped: the run stopped while solving; ``.result`` contains the results so far.
             Interrupted: Ctrl-C was pressed; ``.result`` contains the results so far.
         """
+        native = self._native if gradients is None else self.replace({"gradients": list(gradients)})._native
         holder = None
         if out is None:
             if resume:
@@ -206,7 +210,7 @@ class Case:
                 for text in told:
                     warnings.warn(text, RunWarning, stacklevel=3)
 
-            status, why, raised = _native.run(self._native, out, threads, bool(resume), bool(report), poll)
+            status, why, raised = _native.run(native, out, threads, bool(resume), bool(report), poll)
         result = Result(out, _holder=holder)
         _raise(status, why, raised, result)
         return result

@@ -1594,6 +1594,10 @@ class CaseKeys(TypedDict, total=False):
     bodies: Mapping[str, Body]
     # Contacts by a name of your choice
     contacts: Mapping[str, Contact]
+    # Places of values by which the history is differentiated (gradients.csv): "contacts.base.friction.mu_k",
+    # "bodies.block.material.E", "steps.drag.supports[0].uy". The derivatives are those of the run with its
+    # increments as they are; not for explicit and quasi-dynamic steps, nor where a step may become explicit
+    gradients: Sequence[str]
     # Initial velocity [x, y] of whole bodies; supported nodes follow their supports
     initial_velocity: Mapping[str, Vector]
     # Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given

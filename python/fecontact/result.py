@@ -114,6 +114,15 @@ class Result:
         return self._table("probes.csv", "the case asks for them by probes")
 
     @cached_property
+    def gradients(self) -> pd.DataFrame:
+        """Derivatives of the history by values of the case, with its rows: ``d(base.tangential_force)/d(contacts.base.friction.mu_k)`` for
+        every quantity and place; requires ``gradients`` in the case or its run."""
+        table = self._table("gradients.csv", "the case asks for derivatives by gradients")
+        # Units are those of quantity and value, which has none that is known.
+        table.attrs.clear()
+        return table
+
+    @cached_property
     def interface(self) -> Mapping[str, xr.Dataset]:
         """Fields of every contact over time and place, by contact name: ``result.interface["base"].slip`` has the dimensions
         (time, point) and the coordinates time [T] and position [L]."""

@@ -362,3 +362,24 @@ def test_a_log_has_no_bar(document: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / "case.json").write_text(json.dumps(document))
     text = f"import fecontact as fc; fc.Case({str(tmp_path / 'case.json')!r}).run()"
     assert "iter" not in python("-c", text).stderr
+
+
+def test_derivatives(document: dict[str, Any]) -> None:
+    """Those of a run are central differences of runs; a case may name their places, or its run."""
+    place = "contacts.base.friction.kappa"
+    document["newton"] = {"tolerance": 1e-12, "max_iterations": 40}
+    case = fc.Case(document)
+    result = case.run(progress=False, gradients=[place])
+    column = f"d(base.tangential_force)/d({place})"
+    assert len(result.gradients) == len(result.history) and result.gradients["step"].iloc[-1] == "drag"
+    low, high = (case.replace({place: 10 * (1 + end)}).run(progress=False).history for end in (-1e-4, 1e-4))
+    assert list(low["time"]) == list(result.history["time"]) == list(high["time"])
+    differences = (high["base.tangential_force"] - low["base.tangential_force"]) / (20 * 1e-4)
+    assert abs(differences).max() > 0
+    np.testing.assert_allclose(result.gradients[column], differences, rtol=0, atol=1e-5 * abs(differences).max())
+    named = fc.Case({**document, "gradients": [place]}).run(progress=False)
+    assert named.gradients.equals(result.gradients)
+    with pytest.raises(FileNotFoundError, match="gradients"):
+        _ = case.run(progress=False).gradients
+    with pytest.raises(fc.CaseError, match="kapa"):
+        case.run(progress=False, gradients=["contacts.base.friction.kapa"])

@@ -11,6 +11,7 @@ use serde_json::{Map, Value};
 
 use super::error::CaseError;
 use super::file::Case;
+use super::gradients::Differentiated;
 use super::read::clipped;
 use super::resolved::with_defaults;
 use super::{Written, read};
@@ -21,6 +22,7 @@ use crate::model::Model;
 use crate::model::builder::{Checked, Contact, ModelError, Regime, regime};
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
+use crate::output::gradients::Neighbours;
 use crate::run::{Saved, SavedRun};
 
 /// Keys that never affect how a run continues.
@@ -43,6 +45,8 @@ pub struct Opened {
     pub inputs: Vec<PathBuf>,
     /// mesh in memory, used instead of the one named by the case
     mesh: Option<Mesh>,
+    /// neighbours of its run, if its history is differentiated, once the model is built
+    pub neighbours: Option<Neighbours>,
     /// checkpoint at which it starts, if any
     start: Option<Checkpoint>,
     /// whether it resumes the run of that checkpoint
@@ -87,7 +91,8 @@ impl Opened {
     fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Self {
         let files = document["mesh"].as_array().map_or(slice::from_ref(&document["mesh"]), Vec::as_slice);
         let inputs = files.iter().filter_map(Value::as_str).map(|mesh| beside(path, mesh)).collect();
-        Self { case, path: path.to_owned(), document, taken_over: 0, inputs, mesh: None, start, resumes: false }
+        let (path, mesh, neighbours) = (path.to_owned(), None, None);
+        Self { case, path, document, taken_over: 0, inputs, mesh, neighbours, start, resumes: false }
     }
 
     /// Uses a mesh in memory; the mesh named by the case is then only a label.
@@ -101,11 +106,18 @@ impl Opened {
     /// # Errors
     /// Returns [`CaseError`] as [`super::build`], and if the run does not belong to this model.
     pub fn build(&mut self) -> Result<(Arc<Model>, Option<SavedRun>), CaseError> {
-        let built = match self.mesh.take() {
-            Some(mesh) => super::build_on(&self.case, mesh, &self.path),
-            None => super::build(&self.case, &self.path),
+        let mesh = match self.mesh.take() {
+            Some(mesh) => mesh,
+            None => super::mesh(&self.case, &self.path).map_err(|complaint| complaint.in_file(&self.path))?,
         };
+        let again = (!self.case.gradients.is_empty()).then(|| mesh.clone());
+        let built = super::build_on(&self.case, mesh, &self.path);
         let model = Arc::new(built.map_err(|error| CaseError { place: self.own_place(error.place), ..error })?);
+        if let Some(mesh) = again {
+            let Self { case, document, path, taken_over, .. } = self;
+            let of = Differentiated { case, document, path, model: &model, begins_with: *taken_over > 0 };
+            self.neighbours = Some(of.neighbours(&mesh)?);
+        }
         let Some(Checkpoint { mesh, run, .. }) = self.start.take() else { return Ok((model, None)) };
         let complain = |message: String| self.not_of(if self.resumes { "" } else { "begin_with" }, message);
         check_mesh(&mesh, &model).map_err(complain)?;

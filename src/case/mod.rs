@@ -4,6 +4,7 @@
 mod again;
 mod error;
 pub mod file;
+mod gradients;
 pub mod job;
 pub mod law_test;
 pub mod loading;

@@ -110,6 +110,21 @@ impl Step {
         self
     }
 
+    /// The step shifted in time to its start if earlier ones have ended early: at the second of each of these times instead of the
+    /// first [T].
+    #[must_use]
+    pub fn after(self, ended: &[[f64; 2]]) -> Self {
+        if ended.is_empty() {
+            return self;
+        }
+        let moved = |span: Span| {
+            let before = ended.iter().rev().find(|[planned, _]| *planned <= span.start);
+            let at = |time: f64| before.map_or(time, |[planned, came]| came + (time - planned));
+            Span { start: at(span.start), end: at(span.end) }
+        };
+        self.moved(&moved)
+    }
+
     /// The support that prescribes a dof: its own, or an inclined one of its node.
     pub fn support_at(&self, dof: usize) -> Option<&Prescribed> {
         let find = |dof: usize| self.supports.binary_search_by_key(&dof, |support| support.at.dof).ok();

@@ -9,11 +9,11 @@ use serde_json::Value;
 
 use super::files::Lock;
 use super::summary::SUMMARY;
-use super::{checkpoint, files, report, store};
+use super::{checkpoint, files, gradients, report, store};
 use crate::run::error::Error;
 
 /// Files written by the commands; a name that ends in `/` is a folder of numbered frames.
-const KNOWN: [&str; 17] = [
+const KNOWN: [&str; 18] = [
     "history.csv",
     "newton.csv",
     "slip_map.csv",
@@ -25,6 +25,7 @@ const KNOWN: [&str; 17] = [
     "points.pvd",
     "points/",
     "probes.csv",
+    gradients::FILE,
     INTERFACE,
     "contact.pvd",
     "contact/",

@@ -96,54 +96,11 @@ impl Rows for HistoryRows {
 
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let Self { observed, middles, bodies, edges, memory } = self;
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
         table.count(attempt.iterations.len());
-        table.numbers(energy_row(&state.energy));
-        for ((pair, states), course) in model.contacts.iter().zip(&state.contacts).zip(&mut memory.courses) {
-            let row @ [normal, tangential, _, slipping, ..] = contact_row(pair, states);
-            course.note(state.time, normal, tangential, slipping);
-            table.numbers(row);
-        }
-        for set in &model.requests.watch {
-            table.numbers(watched_row(set, state));
-        }
-        table.numbers(radiates(model).then_some(state.energy.radiated));
-        for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
-            table.numbers(names.iter().map(|name| mean(pair, states, state.time, name)));
-        }
-        let x = model.configuration(&state.displacement);
-        for ((pair, states), middle) in model.contacts.iter().zip(&state.contacts).zip(middles) {
-            let Resultant { force, moment } = pair.resultant(states, &x, *middle);
-            table.numbers([force.x, force.y, moment]);
-        }
-        if memory.rotations.is_empty() {
-            memory.rotations = bodies.iter().map(|body| body.motion(model, attempt.old).rotation).collect();
-        }
-        for (body, rotation) in bodies.iter().zip(&mut memory.rotations) {
-            let motion = body.motion(model, state);
-            *rotation = nearest_turn(*rotation, motion.rotation);
-            let Motion { momentum: p, angular_momentum, centre: c, .. } = motion;
-            table.numbers([p.x, p.y, angular_momentum, c.x, c.y, *rotation]);
-        }
-        for (_, shares) in edges {
-            let mean = |i: usize| shares.iter().map(|(node, share)| share * state.displacement[2 * node + i]).sum();
-            table.numbers([mean(0), mean(1)]);
-        }
-        for (_, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.fluid.is_some()) {
-            table.number(states.iter().map(|state| state.length * state.fluid).sum());
-        }
-        for (heat, (old, new)) in memory.heat.iter_mut().zip(attempt.old.contacts.iter().zip(&state.contacts)) {
-            let more = contacts::dissipated(slice::from_ref(old), slice::from_ref(new));
-            *heat += more;
-            table.numbers([*heat, more / (state.time - attempt.old.time)]);
-        }
-        for body in &model.mesh.rigid_bodies {
-            table.numbers([body.angle(&x), body.radius * state.reaction[2 * body.turning]]);
-        }
-        table.numbers(yields(model).then_some(state.energy.plastic_dissipation));
+        table.numbers(self.values(model, attempt.old, state));
         table.end_row_as(attempt.row)
     }
 
@@ -154,6 +111,56 @@ impl Rows for HistoryRows {
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         self.memory = csv::recalled::<Memory>(memory)?;
         Ok(())
+    }
+}
+
+impl HistoryRows {
+    /// Numbers of the row of an accepted increment behind those of the increment itself ([`INCREMENT`]).
+    pub(super) fn values(&mut self, model: &Model, old: &State, state: &State) -> Vec<f64> {
+        let Self { observed, middles, bodies, edges, memory } = self;
+        let mut row = Vec::from(energy_row(&state.energy));
+        for ((pair, states), course) in model.contacts.iter().zip(&state.contacts).zip(&mut memory.courses) {
+            let columns @ [normal, tangential, _, slipping, ..] = contact_row(pair, states);
+            course.note(state.time, normal, tangential, slipping);
+            row.extend(columns);
+        }
+        row.extend(model.requests.watch.iter().flat_map(|set| watched_row(set, state)));
+        row.extend(radiates(model).then_some(state.energy.radiated));
+        for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
+            row.extend(names.iter().map(|name| mean(pair, states, state.time, name)));
+        }
+        let x = model.configuration(&state.displacement);
+        for ((pair, states), middle) in model.contacts.iter().zip(&state.contacts).zip(middles) {
+            let Resultant { force, moment } = pair.resultant(states, &x, *middle);
+            row.extend([force.x, force.y, moment]);
+        }
+        if memory.rotations.is_empty() {
+            memory.rotations = bodies.iter().map(|body| body.motion(model, old).rotation).collect();
+        }
+        for (body, rotation) in bodies.iter().zip(&mut memory.rotations) {
+            let motion = body.motion(model, state);
+            *rotation = nearest_turn(*rotation, motion.rotation);
+            let Motion { momentum: p, angular_momentum, centre: c, .. } = motion;
+            row.extend([p.x, p.y, angular_momentum, c.x, c.y, *rotation]);
+        }
+        for (_, shares) in edges {
+            let mean =
+                |i: usize| -> f64 { shares.iter().map(|(node, share)| share * state.displacement[2 * node + i]).sum() };
+            row.extend([mean(0), mean(1)]);
+        }
+        for (_, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.fluid.is_some()) {
+            row.push(states.iter().map(|state| state.length * state.fluid).sum());
+        }
+        for (heat, (old_states, new)) in memory.heat.iter_mut().zip(old.contacts.iter().zip(&state.contacts)) {
+            let more = contacts::dissipated(slice::from_ref(old_states), slice::from_ref(new));
+            *heat += more;
+            row.extend([*heat, more / (state.time - old.time)]);
+        }
+        for body in &model.mesh.rigid_bodies {
+            row.extend([body.angle(&x), body.radius * state.reaction[2 * body.turning]]);
+        }
+        row.extend(yields(model).then_some(state.energy.plastic_dissipation));
+        row
     }
 }
 

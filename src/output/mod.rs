@@ -16,6 +16,7 @@ cfg_if::cfg_if! {
         pub mod folder;
         pub mod friction_history;
         pub mod fronts;
+        pub mod gradients;
         pub mod history;
         pub mod store;
         pub mod law;
@@ -37,6 +38,7 @@ cfg_if::cfg_if! {
         pub(crate) mod folder;
         pub(crate) mod friction_history;
         pub(crate) mod fronts;
+        pub(crate) mod gradients;
         pub(crate) mod history;
         pub(crate) mod store;
         pub(crate) mod law;

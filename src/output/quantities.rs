@@ -389,7 +389,7 @@ const INTEGRATION_POINTS: [Quantity; 9] = [
 pub type Group = (&'static str, &'static [Quantity]);
 
 /// All quantities by their files, in the order of their columns.
-pub const ALL: [(&str, &[Group]); 10] = [
+pub const ALL: [(&str, &[Group]); 11] = [
     (
         "history.csv",
         &[
@@ -421,6 +421,20 @@ pub const ALL: [(&str, &[Group]); 10] = [
     ),
     ("points.pvd", &[("", &INTEGRATION_POINTS), ("", &OF_YIELDING)]),
     ("probes.csv", &[("", &[INCREMENT[0]]), ("PROBE", &PROBE), ("PROBE", &[HOOP])]),
+    (
+        "gradients.csv",
+        &[
+            ("", &[INCREMENT[0], INCREMENT[2]]),
+            (
+                "",
+                &[q(
+                    "d(…)/d(…)",
+                    NONE,
+                    "derivative of a quantity of history.csv by a value of the case, in units of both",
+                )],
+            ),
+        ],
+    ),
     ("fronts.csv", &[("", &FRONTS)]),
     ("events.csv", &[("", &EVENTS)]),
     (

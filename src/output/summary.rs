@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::csv::failed;
 use super::files;
 use super::friction_history::FrictionHistory;
+use super::gradients::Account;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::run::control::RunReport;
@@ -121,6 +122,9 @@ pub struct Summary {
     pub chatter: Option<BTreeMap<String, f64>>,
     /// friction history of each contact with friction
     pub friction_course: BTreeMap<String, FrictionHistory>,
+    /// derivatives of the history by the places of their parameters, if the case requests them
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gradients: Option<BTreeMap<String, Account>>,
     /// fraction of the elastic energy of bodies and contacts stored in contact penalties when it was largest; `None` without
     /// contacts [-]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -145,6 +149,7 @@ impl Summary {
             report,
             chatter: None,
             friction_course: BTreeMap::new(),
+            gradients: None,
             energy_in_penalties: None,
             peak_memory_mib: peak_memory_mib(),
             warnings,

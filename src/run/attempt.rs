@@ -71,8 +71,20 @@ impl Simulation {
         };
         let increments = usize::from(accepted.is_some());
         let coupling = self.work.assembler.coupling();
-        let explicit = None;
-        Candidate { number, dt, iterations, accepted, local_error, doubt, increments, outcome, coupling, explicit }
+        let (passes, explicit) = (std::mem::take(&mut self.work.passes), None);
+        Candidate {
+            number,
+            dt,
+            iterations,
+            accepted,
+            local_error,
+            doubt,
+            passes,
+            increments,
+            outcome,
+            coupling,
+            explicit,
+        }
     }
 
     /// Outcome of an increment that could not be solved.
@@ -153,8 +165,20 @@ impl Simulation {
         outcome: Outcome,
     ) -> Candidate {
         let (iterations, coupling) = (Vec::new(), self.work.assembler.coupling());
-        let (local_error, doubt, explicit) = (None, None, None);
-        Candidate { number, dt, iterations, accepted, local_error, doubt, increments, outcome, coupling, explicit }
+        let (local_error, doubt, passes, explicit) = (None, None, Vec::new(), None);
+        Candidate {
+            number,
+            dt,
+            iterations,
+            accepted,
+            local_error,
+            doubt,
+            passes,
+            increments,
+            outcome,
+            coupling,
+            explicit,
+        }
     }
 
     /// Phase after an output; a rupture ends when no point has slipped fast during the calm time.

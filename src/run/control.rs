@@ -16,8 +16,8 @@ use crate::equations::Coupling;
 use crate::model::boundary::Span;
 use crate::model::state::{Energy, State};
 use crate::model::{Model, Step};
-use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
+use crate::solve::{IterationRecord, Pass};
 use crate::time::explicit::Explicit;
 use crate::time::touching::Touching;
 
@@ -48,16 +48,7 @@ pub(super) struct Control {
 impl Control {
     /// Current step, shifted in time to its start if an earlier step has ended early.
     pub(super) fn step_of(&self, model: &Model) -> Option<Step> {
-        let step = model.steps.get(self.step)?.clone();
-        if self.ended.is_empty() {
-            return Some(step);
-        }
-        let moved = |span: Span| {
-            let before = self.ended.iter().rev().find(|[planned, _]| *planned <= span.start);
-            let at = |time: f64| before.map_or(time, |[planned, came]| came + (time - planned));
-            Span { start: at(span.start), end: at(span.end) }
-        };
-        Some(step.moved(&moved))
+        model.steps.get(self.step).map(|step| step.clone().after(&self.ended))
     }
 
     /// Whether it belongs to this model; steps may have been appended since.
@@ -77,7 +68,7 @@ impl Control {
 
 /// Whether a state belongs to a model: the numbers of dofs, contact points and internal variables agree, and all projections
 /// lie on its masters.
-pub(super) fn is_of(state: &State, model: &Model) -> bool {
+pub fn is_of(state: &State, model: &Model) -> bool {
     let State { displacement, velocity, acceleration, force, external, damping, reaction, .. } = state;
     let start = &state.step_start;
     let last = state.last_increment.as_ref().map(|last| &last.displacement);
@@ -199,6 +190,7 @@ pub struct Candidate {
     pub(super) accepted: Option<Arc<State>>,
     pub(super) local_error: Option<f64>,
     pub(super) doubt: Option<f64>,
+    pub(super) passes: Vec<Pass>,
     /// number of accepted increments in it
     pub(super) increments: usize,
     pub(super) outcome: Outcome,

@@ -47,9 +47,9 @@ use crate::model::step::{Until, UntilStatus};
 use crate::model::text::{count, number};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
-use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
+use crate::solve::{IterationRecord, Pass};
 
 /// An attempt at one increment, accepted or not.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +57,10 @@ use crate::solve::newton::NewtonFailure;
 pub struct Attempt<'a> {
     /// current step
     pub step: &'a Step,
+    /// its number, from 0 on
+    pub step_number: usize,
+    /// planned and actual ends of the steps that a reaction has ended [T]
+    pub ended: &'a [[f64; 2]],
     /// 1 for the first attempt at this increment
     pub number: usize,
     /// state at its start
@@ -78,6 +82,9 @@ pub struct Attempt<'a> {
     /// fraction of a contact's force that is uncertain because contact closed at an unknown time within the increment,
     /// in static steps [-]
     pub doubt: Option<f64>,
+    /// its passes, if it is an implicit or static increment that was solved
+    #[doc(hidden)]
+    pub passes: &'a [Pass],
 }
 
 impl Attempt<'_> {

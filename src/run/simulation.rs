@@ -147,6 +147,8 @@ impl Simulation {
     pub fn attempt_of<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
         let mut attempt = Attempt {
             step: self.step_now(),
+            step_number: self.control.step,
+            ended: &self.control.ended,
             number: candidate.number,
             old: &self.state,
             dt: candidate.dt,
@@ -157,6 +159,7 @@ impl Simulation {
             cause: candidate.cause(),
             local_error: candidate.local_error,
             doubt: candidate.doubt,
+            passes: &candidate.passes,
         };
         attempt.row = attempt.row_after(&self.model, self.control.last_row);
         attempt

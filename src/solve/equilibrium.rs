@@ -43,7 +43,7 @@ use super::contact_iteration::{Acted, Flips};
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
 use super::newton::{self, NewtonFailure};
-use super::{IterationRecord, Workspace};
+use super::{IterationRecord, Pass, Workspace};
 use crate::contact::force::ContactState;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports;
@@ -399,8 +399,10 @@ pub fn augment(
     let (mut iterations, mut result) = from_start_values(model, trial, work);
     let (mut stiffening, mut before) = (1.0, f64::INFINITY);
     let mut begun: Option<State> = None;
+    work.passes.clear();
     for pass in 1.. {
         let Ok(u) = &result else { break };
+        work.passes.push(Pass { displacement: u.clone(), stiffening });
         let found = &work.assembler.evaluation.contacts;
         let excess = model.contacts.iter().zip(found).map(|(pair, found)| pair.excess(found));
         let [penetration, slip] = excess.fold([0.0f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);
@@ -419,11 +421,16 @@ pub fn augment(
         }
         before = penetration;
         let old = begun.get_or_insert_with(|| trial.old.clone());
-        let pairs = model.contacts.iter().zip(found);
-        pairs.zip(&mut old.contacts).for_each(|((pair, found), old)| *old = pair.multiplied(old, found));
+        multiply(model, found, old);
         let (more, again) = equilibrium(model, Trial { old, stiffening, ..trial }, Some(u.clone()), work);
         iterations.extend(more.into_iter().map(|iteration| IterationRecord { pass: pass + 1, ..iteration }));
         result = again;
     }
     (iterations, result)
+}
+
+/// Gives the state at the start of an increment the multipliers from what a pass has `found`.
+pub fn multiply(model: &Model, found: &[Vec<ContactState>], old: &mut State) {
+    let pairs = model.contacts.iter().zip(found);
+    pairs.zip(&mut old.contacts).for_each(|((pair, found), old)| *old = pair.multiplied(old, found));
 }

@@ -6,6 +6,7 @@ pub mod contact_iteration;
 pub mod equilibrium;
 pub mod failure;
 pub mod floating;
+pub mod neighbour;
 pub mod newton;
 
 use std::sync::Arc;
@@ -33,8 +34,19 @@ pub struct Workspace {
     interface: Option<CondensedNewton>,
     /// Contact states predicted by continuing the motion before the last attempt
     pub foreseen: Vec<Vec<ContactState>>,
+    /// Passes of the last increment solved
+    pub passes: Vec<Pass>,
     /// Seconds spent in linear solves
     pub linear_seconds: f64,
+}
+
+/// Solution of one pass of an increment: the augmented Lagrangian method makes several of them, the penalty method one.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// u at the time at which the scheme requires equilibrium [L]
+    pub displacement: Vec<f64>,
+    /// its factor on α_n ([`crate::equations::Trial::stiffening`])
+    pub stiffening: f64,
 }
 
 impl Workspace {
@@ -49,6 +61,7 @@ impl Workspace {
             system,
             interface: CondensedNewton::new(model),
             foreseen: Vec::new(),
+            passes: Vec::new(),
             linear_seconds: 0.0,
         }
     }

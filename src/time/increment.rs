@@ -24,9 +24,21 @@ pub fn advance(
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let increment = Trial::new(old, step, time, time - old.time);
     let (iterations, equilibrium) = augment(model, increment.ahead(), work);
-    let new =
-        equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| reached(model, increment, u, work));
+    let new = equilibrium.and_then(|u| arrive(model, increment, u, work));
     (iterations, new)
+}
+
+/// The new state from the equilibrium `u` at the time of the scheme, where the equations were evaluated last.
+///
+/// # Errors
+/// Returns [`IncrementFailure`] if they cannot be evaluated at the end of the increment.
+pub(super) fn arrive(
+    model: &Model,
+    increment: Trial,
+    u: Vec<f64>,
+    work: &mut Workspace,
+) -> Result<State, IncrementFailure> {
+    reach_end(model, increment, u, work).map(|u| reached(model, increment, u, work))
 }
 
 /// Displacement at the end of an increment, and everything else evaluated there, from the equilibrium `u` found at the time

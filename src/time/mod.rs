@@ -4,6 +4,7 @@ mod accept;
 pub mod beginning;
 pub mod explicit;
 pub mod increment;
+pub mod neighbour;
 pub mod quasi_dynamic;
 pub mod step_size;
 pub mod touching;

@@ -6,6 +6,7 @@ mod common;
 mod delayed;
 
 mod convergence;
+mod gradients;
 mod input;
 mod law;
 mod layout;

@@ -37,6 +37,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     (&["hole"], "the rim of a hole: tests/contact/contact.rs"),
     (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),
     (&["beta", "gamma", "rho_infinity"], "parameters of schemes: tests/time/time_integration.rs"),
+    (&["gradients"], "derivatives of what is computed: tests/command/gradients.rs"),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 

@@ -232,6 +232,9 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
         (new.energy.external_work, new.energy.strain) = (5.0 * time, 2.0 * time);
         let told = Attempt {
             step: &model.steps[0],
+            step_number: 0,
+            ended: &[],
+            passes: &[],
             number: 1,
             old: &old,
             dt: 0.05,

@@ -79,6 +79,11 @@ pub struct Case {
     /// the history (probes.csv)
     #[serde(default)]
     pub probes: BTreeMap<String, Gauge>,
+    /// Places of values by which the history is differentiated (gradients.csv): "contacts.base.friction.mu_k",
+    /// "bodies.block.material.E", "steps.drag.supports[0].uy". The derivatives are those of the run with its increments as they are;
+    /// not for explicit and quasi-dynamic steps, nor where a step may become explicit
+    #[serde(default)]
+    pub gradients: Vec<String>,
     /// Stopping criteria of Newton's method
     #[serde(default)]
     pub newton: NewtonSettings,

@@ -23,6 +23,7 @@ use crate::output::events;
 use crate::output::folder::Folder;
 use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
+use crate::output::gradients::Account;
 use crate::output::summary::{self, About, Ending, Summary};
 pub use crate::output::warnings::Warn;
 use crate::output::warnings::Warnings;
@@ -185,6 +186,7 @@ impl Job {
         let last = Summary {
             chatter: work.chatter,
             friction_course: work.courses,
+            gradients: work.gradients,
             energy_in_penalties: work.energy_in_penalties,
             ..summary(ending, report, work.warnings)
         };
@@ -232,6 +234,8 @@ struct Work {
     /// repeated onsets of slip, if the case requests fronts
     chatter: Option<BTreeMap<String, f64>>,
     courses: BTreeMap<String, FrictionHistory>,
+    /// what is known of derivatives, if the case requests them
+    gradients: Option<BTreeMap<String, Account>>,
     /// fraction of the elastic energy stored in contact penalties [-]
     energy_in_penalties: Option<f64>,
     /// largest initial energy + external work [F·L]
@@ -256,9 +260,9 @@ impl Work {
         if !resumes {
             summary::write(first, &folder.path)?;
         }
-        let warnings = Warnings::reporting(model.warnings(), warn);
+        let warnings = Warnings::reporting(model.warnings(), warn.clone());
         let frames = opened.case.output.frames(opened.case.steps.len() - opened.taken_over);
-        let mut outputs = Outputs::open(&folder.path, model, &opened.case, frames, saved.as_ref(), warnings)?;
+        let mut outputs = Outputs::open(&folder.path, model, opened, frames, saved.as_ref(), warnings, warn)?;
         let mut observers = outputs.observers();
         if let Some(progress) = &mut progress {
             observers.push(&mut **progress);
@@ -282,6 +286,10 @@ impl Work {
         self.energy_in_penalties = outputs.warnings.audit.give.share().filter(|_| !model.contacts.is_empty());
         self.warnings = std::mem::take(&mut outputs.warnings.list);
         self.warnings.extend(keeper.concern);
+        if let Some(gradients) = outputs.gradients {
+            self.warnings.extend(gradients.warnings.iter().cloned());
+            self.gradients = Some(gradients.accounts());
+        }
         result
     }
 }

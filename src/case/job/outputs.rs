@@ -6,17 +6,19 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::case::again::Opened;
 use crate::case::file::Case;
 use crate::model::Model;
 use crate::output::fields::{Fields, Frames};
 use crate::output::folder::INTERFACE;
 use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
+use crate::output::gradients::{self, Gradients};
 use crate::output::history::History;
 use crate::output::newton_log::NewtonLog;
 use crate::output::probes::Probes;
 use crate::output::store::InterfaceStore;
-use crate::output::warnings::Warnings;
+use crate::output::warnings::{Warn, Warnings};
 use crate::output::{checkpoint, report};
 use crate::run::SavedRun;
 use crate::run::error::Error;
@@ -40,6 +42,9 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     if !model.requests.probes.is_empty() {
         files.push("probes.csv");
     }
+    if !case.gradients.is_empty() {
+        files.push(gradients::FILE);
+    }
     if case.output.fronts.is_some() {
         files.extend(["fronts.csv", "events.csv"]);
     }
@@ -61,6 +66,7 @@ pub(super) struct Outputs {
     probes: Option<Probes>,
     fields: Option<Fields>,
     pub fronts: Option<Fronts>,
+    pub gradients: Option<Gradients>,
 }
 
 impl Outputs {
@@ -68,10 +74,11 @@ impl Outputs {
     pub fn open(
         folder: &Path,
         model: &Arc<Model>,
-        case: &Case,
+        Opened { case, neighbours, .. }: &Opened,
         frames: Frames,
         saved: Option<&SavedRun>,
         warnings: Warnings,
+        warn: Warn,
     ) -> Result<Self, Error> {
         let start = saved.map_or_else(|| model.initial_state(), |saved| saved.simulation().state().clone());
         let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
@@ -86,6 +93,10 @@ impl Outputs {
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
             fronts: case.output.fronts.map(|criterion| Fronts::new(folder, model, &start, criterion)),
+            gradients: neighbours
+                .as_ref()
+                .map(|neighbours| Gradients::new(folder, model, neighbours, goes_on("gradients"), warn))
+                .transpose()?,
         };
         // A run is resumed only if all its files are unchanged.
         saved.map_or(Ok(()), |saved| saved.check(&outputs.observers()))?;
@@ -120,7 +131,7 @@ impl Outputs {
         fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
             observer.as_mut().map(|observer| observer as &mut dyn Observer)
         }
-        let Self { history, newton_log, warnings, interface, probes, fields, fronts } = self;
+        let Self { history, newton_log, warnings, interface, probes, fields, fronts, gradients } = self;
         let warnings: Option<&mut dyn Observer> = Some(warnings);
         let all = [
             watch(history),
@@ -130,6 +141,7 @@ impl Outputs {
             watch(probes),
             watch(fields),
             watch(fronts),
+            watch(gradients),
         ];
         all.into_iter().flatten().collect()
     }

@@ -1,0 +1,389 @@
+//! Derivatives of the history by values of the case (gradients.csv): closed forms, and central differences of complete runs with the
+//! same increments.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::common::{Blocks, close};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+fn start(folder: &Path, case: &Value, more: &[&str]) -> Output {
+    fs::write(folder.join("case.json"), case.to_string()).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact"));
+    command.current_dir(folder).args(["run", "case.json", "--quiet", "--out", "out"]).args(more);
+    command.output().expect("the program runs")
+}
+
+/// A folder with the results of a case.
+#[track_caller]
+fn run(case: &Value, more: &[&str]) -> TempDir {
+    let folder = TempDir::new().expect("a folder");
+    let output = start(folder.path(), case, more);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    folder
+}
+
+/// What a case is refused with.
+#[track_caller]
+fn refused(case: &Value) -> String {
+    let folder = TempDir::new().expect("a folder");
+    let output = start(folder.path(), case, &[]);
+    assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(!folder.path().join("out").exists(), "nothing is written");
+    String::from_utf8_lossy(&output.stderr).into()
+}
+
+/// Columns of a table by name, those of numbers.
+fn table(folder: &TempDir, file: &str) -> BTreeMap<String, Vec<f64>> {
+    let text = fs::read_to_string(folder.path().join("out").join(file)).expect("a table");
+    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+    let mut columns: BTreeMap<String, Vec<f64>> = names.iter().map(|name| ((*name).into(), Vec::new())).collect();
+    for line in text.lines().skip(1) {
+        for (name, cell) in names.iter().zip(line.split(',')) {
+            columns.get_mut(*name).expect("a column").push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
+
+fn summary(folder: &TempDir) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.path().join("out/summary.json")).expect("a file")).expect("JSON")
+}
+
+/// JSON pointer to a place whose lists are named by numbers.
+fn pointer(place: &str) -> String {
+    format!("/{}", place.replace('[', ".").replace(']', "").replace('.', "/"))
+}
+
+/// Columns whose round-off is that of the largest of them: energies, forces, momenta, displacements; otherwise the column alone.
+fn kind(column: &str) -> &str {
+    match column.rsplit('.').next().unwrap_or(column) {
+        _ if !column.contains('.') => "energy",
+        "normal_force" | "tangential_force" | "force_x" | "force_y" | "fx" | "fy" | "moment" => "force",
+        "momentum_x" | "momentum_y" | "angular_momentum" => "momentum",
+        "ux" | "uy" | "mean_ux" | "mean_uy" | "rotation" => "motion",
+        "heat" | "heat_rate" | "frictional_heat" | "frictional_power" => "heat",
+        _ => column,
+    }
+}
+
+/// Largest differences, first those of forces and displacements, then all others, between the derivatives of a run and central differences of complete runs with a tolerance of 1e-12 and the
+/// same increments, in each column relative to its largest derivative; with the column.
+#[track_caller]
+fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
+    const STEP: f64 = 1e-4;
+    let with = |extra: &dyn Fn(&mut Value)| {
+        let mut case = case.clone();
+        case["output"] = json!({"fields": false, "checkpoint": null, "report": false});
+        extra(&mut case);
+        run(&case, &[])
+    };
+    let own = with(&|case| case["gradients"] = json!(places));
+    let (found, history) = (table(&own, "gradients.csv"), table(&own, "history.csv"));
+    let mut worst = [(0.0, String::new()), (0.0, String::new())];
+    for place in places {
+        let value = case.pointer(&pointer(place)).and_then(Value::as_f64).expect("a number at the place");
+        let ends = [value * (1.0 - STEP), value * (1.0 + STEP)];
+        let [low, high] = ends.map(|value| {
+            let ended = with(&|case| {
+                case["newton"] = json!({"tolerance": 1e-12, "max_iterations": 40});
+                *case.pointer_mut(&pointer(place)).expect("a place") = json!(value);
+            });
+            table(&ended, "history.csv")
+        });
+        assert_eq!(low["time"], history["time"], "the same increments");
+        assert_eq!(high["time"], history["time"], "the same increments");
+        for (name, low) in low.iter().filter(|(name, _)| !["time", "dt", "step", "iterations"].contains(&name.as_str()))
+        {
+            let differences: Vec<f64> =
+                low.iter().zip(&high[name]).map(|(low, high)| (high - low) / (ends[1] - ends[0])).collect();
+            let scale = differences.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+            let alike = history.iter().filter(|(other, _)| kind(other) == kind(name)).flat_map(|(_, column)| column);
+            let typical = alike.fold(0.0f64, |most, value| most.max(value.abs())) / value;
+            let column = format!("d({name})/d({place})");
+            for (found, expected) in found[&column].iter().zip(&differences) {
+                // Below a tenth of Q/θ a derivative is known relative to that.
+                let error = (found - expected).abs() / scale.max(0.1 * typical.abs()).max(f64::MIN_POSITIVE);
+                let worst = &mut worst[usize::from(!["force", "motion"].contains(&kind(name)))];
+                if error.is_nan() || error > worst.0 {
+                    *worst = (error, format!("{column}: {found:e} for {expected:e}"));
+                }
+            }
+        }
+    }
+    worst
+}
+
+/// Whether forces and displacements agree to 1e-7, and what is small beside them to 1e-6: penetrations, momenta, powers.
+fn is_close([main, others]: &[(f64, String); 2]) -> bool {
+    main.0 < 1e-7 && others.0 < 1e-6
+}
+
+/// A block on ground, dragged until it slides; every increment has the same length.
+fn dragged(friction: Value, contact: Value) -> Value {
+    let mut base =
+        json!({"slave": "block_bottom", "master": "ground_top", "normal": {"alpha_n": 4e5}, "friction": friction});
+    for (key, value) in contact.as_object().expect("keys") {
+        base[key] = value.clone();
+    }
+    json!({
+        "mesh": Blocks::default()
+            .rectangle("ground", [14, 3], [-2.0, -1.0], [5.0, 0.0])
+            .rectangle("block", [9, 3], [0.0, 0.0], [2.0, 1.0]).json(),
+        "bodies": {
+            "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+            "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+        },
+        "contacts": {"base": base},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.25, "min": 0.25, "max": 0.25},
+             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.01}]},
+            {"name": "drag", "duration": 4, "dt": {"initial": 0.25, "min": 0.25, "max": 0.25},
+             "supports": [{"on": "block_top", "ux": {"rate": 0.003}}]},
+        ],
+        "watch": ["block_top"],
+    })
+}
+
+fn weakening() -> Value {
+    json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e4, "r": 400, "kappa": 20, "xi": 0.002, "m": 1, "n": 1,
+           "structure": 1.8})
+}
+
+#[test]
+fn of_a_dragged_block_by_every_parameter_are_those_of_complete_runs() {
+    let friction = "contacts.base.friction";
+    let of = |name: &str| format!("{friction}.{name}");
+    let laws: Vec<String> = ["mu_s", "mu_k", "r", "kappa", "xi", "alpha_t"].map(of).into();
+    let mut places: Vec<&str> = laws.iter().map(String::as_str).collect();
+    places.extend(["contacts.base.normal.alpha_n", "bodies.block.material.E", "bodies.ground.material.nu"]);
+    places.extend(["steps[0].supports[1].uy", "steps[1].supports[0].ux.rate"]);
+    let worst = compared(&dragged(weakening(), json!({"method": "gauss_to_segment"})), &places);
+    assert!(is_close(&worst), "{worst:?}");
+}
+
+/// Coulomb friction in partial slip, by nodes, mortar with multipliers, and in small sliding.
+#[test]
+fn in_partial_slip_are_those_of_complete_runs_by_every_method() {
+    let coulomb = json!({"law": "coulomb", "mu": 0.5, "alpha_t": 4e4});
+    let methods = [
+        json!({"method": "node_to_segment"}),
+        json!({"method": "mortar", "normal": {"alpha_n": 4e4, "penetration": 1e-6}}),
+        json!({"method": "gauss_to_segment", "sliding": "small", "stick": 1e-6}),
+    ];
+    for contact in methods {
+        let mut case = dragged(coulomb.clone(), contact.clone());
+        case["steps"][1]["duration"] = json!(1.5);
+        let places = ["contacts.base.friction.mu", "bodies.block.material.E", "contacts.base.normal.alpha_n"];
+        let worst = compared(&case, &places);
+        assert!(is_close(&worst), "{contact}: {worst:?}");
+    }
+}
+
+/// A block with mass, driven fast enough for its inertia to count, up to its first slip and through it.
+#[test]
+fn of_motion_are_those_of_complete_runs_in_every_scheme() {
+    for scheme in
+        [json!({"hht": {"alpha": -0.1}}), json!({"newmark": {}}), json!({"generalized_alpha": {"rho_infinity": 0.8}})]
+    {
+        let mut case = dragged(weakening(), json!({"method": "gauss_to_segment"}));
+        for body in ["block", "ground"] {
+            case["bodies"][body]["material"]["density"] = json!(1e-4);
+        }
+        case["steps"][1]["scheme"] = scheme.clone();
+        case["steps"][1]["duration"] = json!(0.04);
+        case["steps"][1]["dt"] = json!({"initial": 0.002, "min": 0.002, "max": 0.002});
+        case["steps"][1]["supports"][0]["ux"]["rate"] = json!(0.3);
+        let places = [
+            "contacts.base.friction.mu_s",
+            "contacts.base.friction.xi",
+            "bodies.block.material.density",
+            "bodies.block.material.E",
+        ];
+        let worst = compared(&case, &places);
+        assert!(is_close(&worst), "{scheme}: {worst:?}");
+    }
+}
+
+/// Soil that yields under a rough, stiff block, which slips on it; initial tractions and a pressure by a table.
+#[test]
+fn of_yielding_soil_are_those_of_complete_runs() {
+    let mut case = dragged(
+        json!({"law": "slip_weakening", "mu_s": 0.4, "mu_d": 0.3, "D_c": 0.01, "alpha_t": 4e3}),
+        json!({"method": "mortar"}),
+    );
+    case["bodies"]["ground"] = json!({"element": "f_bar",
+        "material": {"model": "mohr_coulomb", "E": 1000, "nu": 0.3, "c": 1.0, "phi": 25, "psi": 5}});
+    case["steps"][0]["supports"][1] = json!({"on": "block_top", "ux": 0});
+    case["steps"][0]["loads"] = json!([{"on": "block_top", "pressure": 3}]);
+    let places = [
+        "bodies.ground.material.c",
+        "bodies.ground.material.phi",
+        "contacts.base.friction.mu_s",
+        "steps[0].loads[0].pressure",
+    ];
+    let worst = compared(&case, &places);
+    // The force on the ground is that of the pressure: round-off of the soil is all there is of its derivative.
+    assert!(worst.iter().all(|(error, _)| *error < 5e-6), "{worst:?}");
+}
+
+/// A bar of a linear material under a given strain: F = E A u/L, W = ½ E A u²/L in plane stress. A block that slides by Coulomb's law:
+/// Q = μ P.
+#[test]
+fn have_closed_forms() {
+    let bar = json!({
+        "mesh": Blocks::default().rectangle("bar", [4, 1], [0.0, 0.0], [2.0, 0.5]).json(),
+        "section": {"plane_stress": {"thickness": 0.1}},
+        "bodies": {"bar": {"material": {"model": "linear", "E": 200, "nu": 0.3}}},
+        "steps": [{"name": "pull", "duration": 1, "dt": {"initial": 0.5}, "supports": [
+            {"on": "bar_left", "ux": 0}, {"on": "bar_bottom", "uy": 0}, {"on": "bar_right", "ux": 0.01}]}],
+        "watch": ["bar_right"],
+        "gradients": ["bodies.bar.material.E", "bodies.bar.material.nu", "steps.pull.supports[2].ux", "section.plane_stress.thickness"],
+    });
+    let found = table(&run(&bar, &[]), "gradients.csv");
+    let (e, area, length) = (200.0, 0.5 * 0.1, 2.0);
+    for (k, u) in [(0, 0.005), (1, 0.01)] {
+        let force = e * area * u / length;
+        let check = |column: &str, exact: f64, scale: f64| {
+            let all = found.get(column).unwrap_or_else(|| panic!("no {column} in {:?}", found.keys()));
+            close(column, all[k], exact, 1e-8 * scale);
+        };
+        check("d(bar_right.fx)/d(bodies.bar.material.E)", force / e, force / e);
+        check("d(strain)/d(bodies.bar.material.E)", 0.5 * force * u / e, force * u / e);
+        check("d(bar_right.fx)/d(bodies.bar.material.nu)", 0.0, force / 0.3);
+        check("d(bar_right.fx)/d(steps.pull.supports[2].ux)", force / 0.01, force / 0.01);
+        check("d(bar_right.fx)/d(section.plane_stress.thickness)", force / 0.1, force / 0.1);
+        check("d(bar_right.ux)/d(steps.pull.supports[2].ux)", u / 0.01, 1.0);
+    }
+
+    let mut sliding = dragged(json!({"law": "coulomb", "mu": 0.3}), json!({}));
+    sliding["gradients"] = json!(["contacts.base.friction.mu", "steps.drag.supports[0].ux.rate"]);
+    let folder = run(&sliding, &[]);
+    let (history, found) = (table(&folder, "history.csv"), table(&folder, "gradients.csv"));
+    let last = |table: &BTreeMap<String, Vec<f64>>, column: &str| *table[column].last().expect("a row");
+    let [force, by_mu] = ["base.normal_force", "d(base.tangential_force)/d(contacts.base.friction.mu)"];
+    // Q = μ P: dQ/dμ = P + μ dP/dμ.
+    let p_by_mu = last(&found, "d(base.normal_force)/d(contacts.base.friction.mu)");
+    let exact = last(&history, force) + 0.3 * p_by_mu;
+    close("dQ/dμ", last(&found, by_mu), exact, 1e-7 * exact);
+    // What does not act yet changes nothing, to the last bit.
+    let idle = &found["d(base.tangential_force)/d(steps.drag.supports[0].ux.rate)"];
+    assert!(idle[..4].iter().all(|value| *value == 0.0) && idle[4] != 0.0, "{idle:?}");
+}
+
+/// A run taken up again has the same derivatives, bit by bit, and so has one on several threads; and the run itself is the one without derivatives.
+#[test]
+fn are_the_same_bits_after_a_resume_and_on_any_number_of_threads() {
+    let mut case = dragged(weakening(), json!({"method": "gauss_to_segment"}));
+    case["steps"][1]["duration"] = json!(2.0);
+    let plain = run(&case, &["--threads", "1"]);
+    case["gradients"] =
+        json!(["contacts.base.friction.mu_k", "contacts.base.normal.alpha_n", "bodies.block.material.E"]);
+    let whole = run(&case, &["--threads", "1"]);
+    let bytes = |folder: &TempDir, file: &str| fs::read(folder.path().join("out").join(file)).expect("a file");
+    assert_eq!(bytes(&plain, "history.csv"), bytes(&whole, "history.csv"));
+    let threads = run(&case, &["--threads", "2"]);
+    assert_eq!(bytes(&whole, "gradients.csv"), bytes(&threads, "gradients.csv"));
+
+    let mut first = case.clone();
+    first["steps"].as_array_mut().expect("steps").pop();
+    let folder = run(&first, &["--threads", "1"]);
+    let output = start(folder.path(), &case, &["--resume"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bytes(&whole, "gradients.csv"), bytes(&folder, "gradients.csv"));
+    assert_eq!(summary(&whole)["gradients"], summary(&folder)["gradients"]);
+
+    case["gradients"] = json!(["contacts.base.friction.mu_s"]);
+    let output = start(folder.path(), &case, &["--resume"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("gradients"),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+/// A value at the end of its range is varied inwards: `structure` lets `mu_s` grow only, and `mu_k` fall only. The law is the same on both
+/// sides where `structure` is at its bound by as little as nothing acts.
+#[test]
+fn at_the_end_of_a_range_are_those_on_its_inside() {
+    let mut case = dragged(weakening(), json!({"method": "gauss_to_segment"}));
+    let (own, near) = (2.0, 2.0 - 1e-6);
+    case["gradients"] = json!(["contacts.base.friction.mu_s", "contacts.base.friction.mu_k"]);
+    case["contacts"]["base"]["friction"]["structure"] = json!(own);
+    let at_bound = table(&run(&case, &[]), "gradients.csv");
+    // Inside by 1e-6 of μ, with differences as small, all is nearly the same: both are compared by the differences of complete runs.
+    case["contacts"]["base"]["friction"]["structure"] = json!(near);
+    case["gradients"] = json!([]);
+    case["newton"] = json!({"tolerance": 1e-12, "max_iterations": 40});
+    for (place, value, inwards) in [("mu_s", 0.4, 1.0), ("mu_k", 0.2, -1.0)] {
+        let at = |share: f64| {
+            let mut case = case.clone();
+            case["contacts"]["base"]["friction"][place] = json!(value * (1.0 + share));
+            table(&run(&case, &[]), "history.csv")["base.tangential_force"].clone()
+        };
+        let [first, second, third] = [0.0, 1e-3, 2e-3].map(|share| at(inwards * share));
+        let step = inwards * 1e-3 * value;
+        let column = &at_bound[&format!("d(base.tangential_force)/d(contacts.base.friction.{place})")];
+        let expected = first.iter().zip(&second).zip(&third).map(|((a, b), c)| (-1.5 * a + 2.0 * b - 0.5 * c) / step);
+        let expected: Vec<f64> = expected.collect();
+        let largest = expected.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        column.iter().zip(&expected).for_each(|(found, expected)| close(place, *found, *expected, 1e-4 * largest));
+    }
+}
+
+/// A block that comes down by its gap, just so: it touches where it moves by a little more, and is apart where it moves by a little less.
+#[test]
+fn at_kinks_are_counted() {
+    let mut case = dragged(json!({"law": "coulomb", "mu": 0.3}), json!({"method": "node_to_segment"}));
+    case["mesh"] = Blocks::default()
+        .rectangle("ground", [14, 3], [-2.0, -1.0], [5.0, 0.0])
+        .rectangle("block", [9, 3], [0.0, 0.01], [2.0, 1.01])
+        .json();
+    case["steps"].as_array_mut().expect("steps").pop();
+    case["gradients"] = json!(["contacts.base.friction.mu", "steps.press.supports[1].uy"]);
+    let told = &summary(&run(&case, &[]))["gradients"];
+    let nodes = told["steps.press.supports[1].uy"]["one_sided"].as_u64().expect("a number");
+    assert!((1..=10).contains(&nodes), "{told}");
+    assert_eq!(told["contacts.base.friction.mu"], json!({"one_sided": 0, "lost_at": null}));
+}
+
+#[test]
+fn that_no_run_has_are_refused_with_the_reason() {
+    let plain = dragged(weakening(), json!({"method": "gauss_to_segment"}));
+    let asked = |places: Value| {
+        let mut case = plain.clone();
+        case["gradients"] = places;
+        refused(&case)
+    };
+    let told = asked(json!(["contacts.base.friction.mu_x"]));
+    assert!(told.contains("gradients[0]") && told.contains("did you mean `mu_"), "{told}");
+    for (place, why) in [
+        ("newton.tolerance", "is no parameter of the run"),
+        ("mesh.nodes", "is no parameter of the run"),
+        ("steps.drag.duration", "decides on the increments"),
+        ("steps.drag.dt.initial", "decides on the increments"),
+        ("contacts.base.friction.law", "the text \"super_subloading\""),
+        ("contacts.base.friction", "an object"),
+        ("steps.press.supports[0].ux", "is 0"),
+        ("bodies.stone.material.E", "there is no `stone`"),
+        ("contacts.base.points", "cannot be"),
+    ] {
+        let told = asked(json!([place]));
+        assert!(told.contains("gradients[0]") && told.contains(place) && told.contains(why), "{place}: {told}");
+    }
+    let twice = asked(json!(["bodies.block.material.E", "bodies.block.material.E"]));
+    assert!(twice.contains("gradients[1]") && twice.contains("given twice"), "{twice}");
+    let mut explicit = plain.clone();
+    for body in ["block", "ground"] {
+        explicit["bodies"][body]["material"]["density"] = json!(1e-4);
+    }
+    explicit["steps"][1]["scheme"] = json!({"explicit": {}});
+    explicit["steps"][1].as_object_mut().expect("keys").remove("dt");
+    explicit["gradients"] = json!(["bodies.block.material.E"]);
+    let told = refused(&explicit);
+    assert!(told.contains("step `drag` is explicit"), "{told}");
+}
