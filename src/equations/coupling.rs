@@ -248,7 +248,8 @@ impl Layout {
         true
     }
 
-    /// Finds the blocks of all closed points, unless they are unchanged; returns whether the pattern contains them all.
+    /// Finds the blocks of all closed points, unless they are unchanged; returns whether the pattern contains them all, and says which are
+    /// not symmetric.
     fn find_contacts(&mut self, responses: &[PairResponse]) -> bool {
         let closed = || responses.iter().flat_map(PairResponse::all_acting).map(|(_, closed)| closed.nodes);
         let listed = || closed().flat_map(|nodes| std::iter::once(nodes.len()).chain(nodes.iter().copied()));
@@ -266,10 +267,20 @@ impl Layout {
             found.all(|block| block.map(|block| blocks.push(block)).is_some())
         });
         self.contact_blocks = blocks;
-        if !coupled {
+        let covered = coupled && self.knows_skew(responses);
+        if !covered {
             self.contacts.clear();
         }
-        coupled
+        covered
+    }
+
+    /// Whether the pattern says of all that closed points couple with each other that it is not symmetric, where theirs is not: on a
+    /// rigid master these are nodes of one element, for which no new place is needed.
+    fn knows_skew(&self, responses: &[PairResponse]) -> bool {
+        let skew = self.pattern.skew();
+        let pairs = self.model.contacts.iter().zip(responses).filter(|(pair, _)| !pair.is_symmetric());
+        let mut nodes = pairs.flat_map(|(_, responses)| responses.all_acting()).flat_map(|(_, closed)| closed.nodes);
+        nodes.all(|&node| skew[self.original(node)])
     }
 
     /// Blocks of the closed contact points last included, point after point, each column by column.

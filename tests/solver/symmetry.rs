@@ -14,7 +14,7 @@ use fecontact::laws::friction::{CoulombParameters, Frictionless};
 use fecontact::linear::system::Request;
 use fecontact::linear::{LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve};
 use fecontact::mesh::section::Section;
-use fecontact::model::builder::{Builder, Contact, Load, LoadStep, Plate, Support};
+use fecontact::model::builder::{Builder, Contact, Load, LoadStep, MasterSide, Plate, Support};
 use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::{Damping, Model};
@@ -113,6 +113,11 @@ fn contributions_say_whether_they_are_symmetric() {
             check("smooth, small", Term::Interfaces, contact(base(Frictionless).small_sliding()), false);
             let slides = base(CoulombParameters::new(0.3)).small_sliding();
             check("sliding, small", Term::Interfaces, contact(slides), true);
+            // A rigid master couples no nodes that an element does not.
+            let plane = || MasterSide::Plane { point: [1.5, 0.0], normal: [0.0, 1.0] };
+            let on_plane = || Contact::new("base", "upper_bottom", plane(), CoulombParameters::new(0.3)).alpha_n(500.0);
+            check("sliding on a plane", Term::Interfaces, contact(on_plane()), true);
+            check("sliding on a plane, small", Term::Interfaces, contact(on_plane().small_sliding()), true);
         }
     }
     let block = || pressed(Section::PlaneStrain, soft);
