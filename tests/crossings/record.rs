@@ -455,6 +455,14 @@ fn point_entries(simulation: &Simulation, ways: &Ways) -> Vec<Entry> {
 }
 
 impl Record {
+    /// Values of a column, row by row.
+    pub fn values(&self, column: &str) -> impl Iterator<Item = f64> {
+        let of = move |(_, row): &(f64, Vec<Entry>)| {
+            row.iter().find(|entry| &*entry.column == column).map(|entry| entry.value)
+        };
+        self.rows.iter().filter_map(of)
+    }
+
     /// Whether all increments of a stage are as long as its first, as they are where nothing made one shorter.
     pub fn is_even(&self, stage: f64) -> bool {
         let mut bounds: BTreeMap<u64, [f64; 2]> = BTreeMap::new();

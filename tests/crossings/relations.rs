@@ -325,6 +325,10 @@ fn turned_square(base: &Base) -> Outcome {
     base.same(Ways { frame: base.ways.frame.clone().turned(90.0), ..base.ways.clone() }, SAME, NOTHING)
 }
 
+fn faces_nodes(draft: &Draft) -> bool {
+    draft.is("surfaces", "matching") && draft.is("method", "node_to_segment")
+}
+
 fn mirrored(base: &Base) -> Outcome {
     let axis = usize::from(base.draft.of("section").starts_with("rings"));
     if base.draft.is("stress", "geostatic") && axis == 1 {
@@ -332,8 +336,7 @@ fn mirrored(base: &Base) -> Outcome {
     }
     // A node that faces a node is projected on the edge before it or the one after; in a mirror on the other, which is not quite
     // straight on with it.
-    let faces_nodes = base.draft.is("surfaces", "matching") && base.draft.is("method", "node_to_segment");
-    if faces_nodes && base.draft.is("scheme", "explicit") {
+    if faces_nodes(base.draft) && is_explicit(base.draft) {
         return Outcome::Idle;
     }
     base.same(Ways { frame: base.ways.frame.clone().mirrored(axis), ..base.ways.clone() }, SAME, NOTHING)
@@ -367,6 +370,10 @@ fn renamed(base: &Base) -> Outcome {
 }
 
 fn shuffled(base: &Base) -> Outcome {
+    // A node that faces a node is projected on the edge before it or the one after, whichever comes first.
+    if faces_nodes(base.draft) && is_explicit(base.draft) {
+        return Outcome::Idle;
+    }
     base.same(Ways { shuffled: true, ..base.ways.clone() }, SAME, NOTHING)
 }
 
@@ -487,9 +494,7 @@ fn energies(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     // A point that slides off the end of its master takes its force along, at once.
-    let length =
-        |row: &[Entry]| row.iter().find(|entry| &*entry.column == "c.contact_length").map_or(0.0, |entry| entry.value);
-    let lengths: Vec<f64> = base.record.rows.iter().map(|(_, row)| length(row)).collect();
+    let lengths: Vec<f64> = base.record.values("c.contact_length").collect();
     if !moves(draft) && lengths.windows(2).any(|pair| pair[1] < 0.95 * pair[0]) {
         return Outcome::Idle;
     }
@@ -775,6 +780,12 @@ fn sides_swapped(base: &Base) -> Outcome {
     }
     let plain = Ways::plain(&draft);
     let ways = |swapped, load| Ways { swapped, load, ..plain.clone() };
+    // How much slip counts where a point closes anew hangs on the depth of the elements behind the slave.
+    let record = run(&model::case(&draft, &plain), &plain, Lead::Through);
+    let lengths: Vec<f64> = record.values("c.contact_length").filter(|length| *length > 0.0).collect();
+    if lengths.windows(2).any(|pair| pair[1] > 1.01 * pair[0]) {
+        return Outcome::Idle;
+    }
     let on_slave = |column: &str| not_of_forces(column) || column.starts_with("c.tangential");
     falls(&draft, &|load| [ways(false, load), ways(true, load)], 1.0, &on_slave)
 }
