@@ -1,6 +1,7 @@
 //! Warnings about a model before it is solved: initial gaps and overlaps of its contacts, and their accuracy.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
@@ -10,6 +11,7 @@ use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
+use crate::laws::friction::{ContactLaw, Description};
 use crate::mesh::shape::ElementKind;
 use crate::mesh::{Element, Mesh};
 use crate::model::method::Chosen;
@@ -32,10 +34,10 @@ impl Model {
                 true => Vec::new(),
                 false => Gaps::of(self, pair, farthest).warnings(),
             };
-            let away = faces_away(self, pair);
+            let further = faces_away(self, pair).into_iter().chain(friction_of_total_pressure(self, pair));
             warnings
                 .into_iter()
-                .chain(away)
+                .chain(further)
                 .map(|warning| format!("contact `{}`: {warning}", pair.name))
                 .collect::<Vec<_>>()
         };
@@ -92,6 +94,27 @@ fn faces_away(model: &Model, pair: &ContactPair) -> Option<String> {
             number(at.y)
         )
     })
+}
+
+/// Coefficient of friction that stands for none in a law that goes by cohesion alone [-]
+const NO_FRICTION: f64 = 1e-6;
+
+/// Warns of friction that goes by the pressure where a body beside it has fluid in its pores: contacts carry total stress.
+fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
+    let goes_by_pressure = |law: &Arc<ContactLaw>| {
+        let Description { is_frictionless, least_coefficient, .. } = law.description;
+        !is_frictionless && least_coefficient.is_none_or(|least| least > NO_FRICTION)
+    };
+    if pair.tied || pair.fluid.is_some() || !pair.laws.iter().any(goes_by_pressure) {
+        return None;
+    }
+    let nodes: BTreeSet<usize> = pair.nodes().collect();
+    let is_beside = |body: &&Body| body.pore_fluid.is_some() && body.nodes.iter().any(|node| nodes.contains(node));
+    let body = &model.bodies.iter().find(is_beside)?.name;
+    Some(format!(
+        "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: give the contact that part \
+         (`fluid_pressure`), or a strength by total stress (friction law `adhesion`)"
+    ))
 }
 
 /// Corners of a bilinear element that are sharper than this are sheared too much beside a fault [rad]

@@ -103,6 +103,31 @@ fn moduli_come_from_the_initial_stress() {
     assert!(warnings.contains("fluid in its pores") && warnings.contains("f_bar"), "{warnings}");
 }
 
+/// Friction beside pores that hold a fluid is warned of where it goes by the total pressure, and only there.
+#[test]
+fn friction_of_the_total_pressure_is_warned_of() {
+    let mesh = Blocks::default().rectangle("ground", [1, 1], [0.0, 0.0], [1.0, 1.0]).json();
+    let said = |change: &dyn Fn(&mut Value)| {
+        let mut case = json!({
+            "mesh": mesh,
+            "bodies": {"ground": {"material": {"model": "linear", "E": 100, "nu": 0.3}, "element": "f_bar",
+                "pore_fluid": {"bulk_modulus": 2.2e6, "porosity": 0.4}}},
+            "contacts": {"floor": {"slave": "ground_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                "friction": {"law": "coulomb", "mu": 0.3}}},
+            "steps": [{"name": "rest", "duration": 1, "supports": [{"on": "ground_top", "ux": 0, "uy": -0.01}]}]
+        });
+        change(&mut case);
+        let warnings = model(&case).warnings().join("\n");
+        warnings.contains("contact `floor`: its friction goes by the total pressure, part of which the fluid in the pores of body `ground`")
+    };
+    assert!(said(&|_| ()));
+    assert!(!said(&|case| case["bodies"]["ground"]["pore_fluid"] = Value::Null));
+    assert!(!said(&|case| case["contacts"]["floor"]["fluid_pressure"] = json!(1)));
+    for law in [json!({"law": "frictionless"}), json!({"law": "adhesion", "strength": 2})] {
+        assert!(!said(&|case| case["contacts"]["floor"]["friction"] = law.clone()), "{law}");
+    }
+}
+
 /// What cannot be is refused with its place and what to do.
 #[test]
 fn what_has_no_pressure_or_no_volume_is_refused() {
