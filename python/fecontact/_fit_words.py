@@ -53,6 +53,8 @@ class Evidence:
     samples: int
     # Root mean square of the residuals as a share of the largest value measured.
     misfit: float
+    # What was fitted: a "law" or a "case".
+    model: str = "law"
 
 
 def words(of: Evidence) -> list[str]:
@@ -63,12 +65,12 @@ def words(of: Evidence) -> list[str]:
         told.append("mu_s = mu_k: these data show no weakening, and kappa, xi have no effect")
     if of.misfit > COMPUTED and of.memory > NOISE / np.sqrt(of.samples):
         told.append(
-            f"the residuals are no noise (each has the correlation {of.memory:.2f} with the one before): this law does not follow these "
+            f"the residuals are no noise (each has the correlation {of.memory:.2f} with the one before): this {of.model} does not follow these "
             "data, or their noise has a memory; the intervals are too narrow"
         )
     if of.sigma and of.noise > MISFIT:
         told.append(
-            f"the residuals are {of.noise:.3g} times as large as sigma: this law does not follow these data; the intervals are too narrow"
+            f"the residuals are {of.noise:.3g} times as large as sigma: this {of.model} does not follow these data; the intervals are too narrow"
         )
     return told + _others(of)
 

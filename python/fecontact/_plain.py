@@ -47,7 +47,7 @@ def numbers(given: Any, place: str, file: str) -> NDArray[np.float64]:
     try:
         return np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        raise refused(file, place, f"is {_told(given)}: must be a number, or numbers in rows of one length") from None
+        raise refused(file, place, f"is {told(given)}: must be a number, or numbers in rows of one length") from None
 
 
 def number(given: Any, place: str, file: str) -> float:
@@ -58,7 +58,7 @@ def number(given: Any, place: str, file: str) -> float:
     """
     values = numbers(given, place, file)
     if values.ndim or not np.isfinite(values):
-        raise refused(file, place, f"is {_told(given)}: must be a finite number")
+        raise refused(file, place, f"is {told(given)}: must be a finite number")
     return float(values)
 
 
@@ -69,7 +69,7 @@ def count(given: Any, name: str) -> int | None:
         ValueError: it is not an integer.
     """
     if given is not None and (isinstance(given, (bool, np.bool_)) or not isinstance(given, (int, np.integer))):
-        raise ValueError(f"{name}: is {_told(given)}: must be a whole number")
+        raise ValueError(f"{name}: is {told(given)}: must be a whole number")
     return None if given is None else int(given)
 
 
@@ -81,7 +81,7 @@ def names(given: Any, place: str, file: str) -> list[str]:
     """
     listed: list[Any] = list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [None]
     if not all(isinstance(name, str) for name in listed):
-        raise refused(file, place, f"is {_told(given)}: must be a list of names")
+        raise refused(file, place, f"is {told(given)}: must be a list of names")
     return listed
 
 
@@ -92,7 +92,7 @@ def a_name(given: Any, place: str, file: str) -> str:
         CaseError: it is none, with its place.
     """
     if not isinstance(given, str):
-        raise refused(file, place, f"is {_told(given)}: must be a name")
+        raise refused(file, place, f"is {told(given)}: must be a name")
     return given
 
 
@@ -103,11 +103,11 @@ def path(given: Any, place: str) -> str:
         ValueError: it is not a path.
     """
     if not isinstance(given, (str, os.PathLike)):
-        raise ValueError(f"{place}: is {_told(given)}: must be a path")
+        raise ValueError(f"{place}: is {told(given)}: must be a path")
     return str(os.fspath(given))
 
 
-def _told(given: Any) -> str:
+def told(given: Any) -> str:
     """Short description of a value."""
     shown = " ".join(repr(given).split())
     return shown if len(shown) <= 40 else f"a {type(given).__name__}"

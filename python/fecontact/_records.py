@@ -47,12 +47,12 @@ class Interface:
         weight: float = 1.0,
         initial: float = 0.0,
     ) -> None:
-        self.time = _array("time", time)
+        self.time = array_of("time", time)
         size = self.time.size
-        self.slip, self.measured = _array("slip", slip, size), _array("traction", traction, size)
-        self.pressure = np.broadcast_to(_array("pressure", pressure, size), size)
-        self.initial = float(_array("initial", initial, 1).ravel()[0])
-        self.sigma, self.weight = _noise(sigma, weight, size)
+        self.slip, self.measured = array_of("slip", slip, size), array_of("traction", traction, size)
+        self.pressure = np.broadcast_to(array_of("pressure", pressure, size), size)
+        self.initial = float(array_of("initial", initial, 1).ravel()[0])
+        self.sigma, self.weight = noise_of(sigma, weight, size)
 
     def scales(self) -> tuple[float, float, float]:
         """Coefficient of friction, slip [L] and time [T] that the record covers."""
@@ -160,14 +160,14 @@ class Holds:
         sigma: ArrayLike | None = None,
         weight: float = 1.0,
     ) -> None:
-        self.hold = _array("hold", hold)
+        self.hold = array_of("hold", hold)
         size = self.hold.size
-        self.measured = _array("peak", peak, size)
+        self.measured = array_of("peak", peak, size)
         for name, value in (("rate", rate), ("slide", slide), ("pressure", pressure), ("hold", self.hold.min(initial=1.0))):
             if not (isinstance(value, Real) and float(value) > 0):
                 raise ValueError(f"{name}: is {value}: must be positive")
         self.rate, self.slide, self.pressure = float(rate), float(slide), float(pressure)
-        self.sigma, self.weight = _noise(sigma, weight, size)
+        self.sigma, self.weight = noise_of(sigma, weight, size)
         starts = np.concatenate([[0.0], np.cumsum(self.hold + slide / rate)])
         self._time = (starts[:, None] + slide / rate * self.SAMPLES).ravel()
         self._slip = (slide * (np.arange(size + 1)[:, None] + self.SAMPLES)).ravel()
@@ -216,7 +216,7 @@ def _columns(drive: Drive, what: str, by: Sequence[str]) -> Array:
     return np.stack([drive.get(f"d{what}_d{name}", np.zeros_like(drive[what])) for name in by], axis=-1)
 
 
-def _array(name: str, given: ArrayLike, size: int | None = None) -> Array:
+def array_of(name: str, given: ArrayLike, size: int | None = None) -> Array:
     try:
         values = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
@@ -228,12 +228,12 @@ def _array(name: str, given: ArrayLike, size: int | None = None) -> Array:
     return values
 
 
-def _noise(sigma: ArrayLike | None, weight: float, size: int) -> tuple[Array | None, float]:
+def noise_of(sigma: ArrayLike | None, weight: float, size: int) -> tuple[Array | None, float]:
     if not (isinstance(weight, Real) and weight > 0):
         raise ValueError(f"weight: is {weight}: must be positive")
     if sigma is None:
         return None, float(weight)
-    values = np.broadcast_to(_array("sigma", sigma, size), size)
+    values = np.broadcast_to(array_of("sigma", sigma, size), size)
     if not (values > 0).all():
         raise ValueError("sigma: must be positive")
     return values, float(weight)

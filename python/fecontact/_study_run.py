@@ -173,10 +173,10 @@ def _run(task: Task, halted: Callable[[], bool], resume: bool) -> tuple[str, str
         if halted():
             raise Halted
 
-    return _native.run(_lean(task.case)._native, os.fspath(task.folder), task.threads, resume, False, poll)
+    return _native.run(lean(task.case)._native, os.fspath(task.folder), task.threads, resume, False, poll)
 
 
-def _lean(case: Case) -> Case:
+def lean(case: Case) -> Case:
     """The case as a study runs it: without fields, unless it asks for some."""
     output = case._document.get("output") or {}
     asked = any(key in output for key in ("fields", "every", "times", "points"))

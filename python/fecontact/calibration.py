@@ -21,22 +21,28 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ._fit_names import check_names, check_room, no_room
+from ._fit_problem import End, plain_of, search
+from ._fit_problem import Problem as _Problem
 from ._fit_space import Array, Space
 from ._fit_words import Evidence, words
 from ._plain import a_name, count, names, number
 from ._records import MACHINE, Holds, Interface, Record, SpringSlider
-from .errors import CaseError, Stopped
+from ._run_problem import RunProblem, run_problem
+from ._run_record import Run
+from .case import Case
 from .law import Law
 from .law import law as law_of
 
-__all__ = ["Fit", "Holds", "Interface", "SpringSlider", "fit"]
+__all__ = ["Fit", "Holds", "Interface", "Run", "SpringSlider", "fit"]
 
-# Step of differences, in logarithms or shares of the range.
-STEP = 1e-4
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128
 # Searches that are begun for each that is carried on to its end, and linear solves that they have for it.
 BEGUN, BEGINNING = 3, 12
+# Law and number of completed searches of a fit, unless others are given.
+LAW, STARTS = "super_subloading", 4
+# Trials of a search through runs.
+MOST_RUNS = 40
 # Standard deviation of a logarithm, or share of a range, from which on an interval says nothing: a factor of 100 either way.
 NOTHING = 2.3
 # Coordinates nearer to a border than this share of the range are there.
@@ -57,109 +63,7 @@ RANGES = {
 }
 
 
-class _Problem:
-    """Residuals of all records over points of the space."""
-
-    def __init__(self, records: Sequence[Record], space: Space, threads: int | None) -> None:
-        self.records, self.space, self.threads = records, space, threads
-        # What the law said of the first parameters that it does not accept.
-        self.refusal: CaseError | None = None
-        self.scales = [np.ones(record.measured.size) if record.sigma is None else record.sigma for record in records]
-
-    def residuals(self, points: Array) -> Array:
-        """Weighted residuals (sets, samples) at points (sets, free)."""
-        parameters = self.space.parameters(points)
-        parts = [
-            (self._predicted(record, parameters) - record.measured) * (record.weight / scale)
-            for record, scale in zip(self.records, self.scales)
-        ]
-        return np.concatenate(parts, axis=-1)
-
-    def _predicted(self, record: Record, parameters: dict[str, Any]) -> Array:
-        """Prediction of the law; NaN for sets that it does not accept or cannot solve, which the search avoids."""
-        try:
-            return record.predicted(parameters, self.threads)
-        except (CaseError, Stopped) as error:
-            if isinstance(error, CaseError):
-                self.refusal = self.refusal or error
-            sets = next(value.size for value in parameters.values() if isinstance(value, np.ndarray))
-            if sets == 1:
-                return np.full((1, record.measured.size), np.nan)
-            one = [{name: _entry(value, k) for name, value in parameters.items()} for k in range(sets)]
-            return np.concatenate([self._predicted(record, each) for each in one])
-
-    def at(self, point: Array) -> Array:
-        """Residuals at one point."""
-        return np.asarray(self.residuals(point[None])[0])
-
-    def jacobian(self, point: Array) -> Array:
-        """∂residual/∂coordinate (samples, free), exact if the law provides derivatives."""
-        try:
-            found = self._exact(point)
-        except (CaseError, Stopped):
-            found = None
-        if found is None or not np.isfinite(found).all():
-            found = self.differences(point)
-        return np.nan_to_num(found, nan=0.0, posinf=0.0, neginf=0.0)
-
-    def _exact(self, point: Array) -> Array | None:
-        """The same from the derivatives of the law; None if it has none."""
-        slopes = self.space.slopes(point)
-        parameters = {name: _plain(value) for name, value in self.space.parameters(point[None]).items()}
-        of_law = law_of({name: value for name, value in parameters.items() if name not in MACHINE})
-        if not set(slopes) <= {*of_law.sensitivities(), *MACHINE}:
-            return None
-        by = list(slopes)
-        parts = [
-            record.derivatives(parameters, by, self.threads) * (record.weight / np.broadcast_to(scale, record.measured.size))[:, None]
-            for record, scale in zip(self.records, self.scales)
-        ]
-        return np.asarray(np.concatenate(parts) @ np.stack(list(slopes.values())))
-
-    def differences(self, point: Array) -> Array:
-        """The same by central differences within the ranges, one-sided where the law fails on the other side."""
-        above, below = np.minimum(point + STEP, self.space.high), np.maximum(point - STEP, self.space.low)
-        sides = self.residuals(point + np.concatenate([np.diag(above - point), np.diag(below - point)]))
-        here, count = self.at(point), point.size
-        known = np.asarray(np.isfinite(sides).all(axis=-1))
-        sides[~known] = here
-        steps = np.where(known[:count], above - point, 0.0) - np.where(known[count:], below - point, 0.0)
-        return np.asarray(((sides[:count] - sides[count:]) / np.where(steps > 0.0, steps, 1.0)[:, None]).T)
-
-
-@dataclass(frozen=True)
-class _End:
-    """End of a search: shares of the valid ranges, the point, and its residuals."""
-
-    shares: Array
-    point: Array
-    residuals: Array
-
-    @property
-    def squares(self) -> float:
-        """S."""
-        return float(np.sum(self.residuals**2))
-
-
-def _search(problem: _Problem, shares: Array, most: int) -> _End | None:
-    """A search from one point, with a limited number of solves; None if the law fails there."""
-    from scipy.optimize import least_squares
-
-    space, shares = problem.space, np.clip(shares, 1e-9, 1.0 - 1e-9)
-    if not np.isfinite(problem.at(space.within(shares))).all():
-        return None
-    # Where there are no residuals at all, it divides by nothing.
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        found = least_squares(
-            lambda shares: problem.at(space.within(shares)),
-            shares,
-            lambda shares: problem.jacobian(space.within(shares)) @ space.slopes_within(shares),
-            (0.0, 1.0), x_scale="jac", ftol=1e-8, xtol=1e-8, gtol=None, max_nfev=most,
-        )  # fmt: skip
-    return _End(found.x, space.within(found.x), found.fun)
-
-
-def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: int) -> list[_End]:
+def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: int) -> list[End]:
     """Ends of the searches, the best first: many are started, the most promising are continued."""
     from scipy.stats import qmc
 
@@ -177,9 +81,9 @@ def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: 
     return _ends(problem, carried[:starts], 100) or _ends(problem, carried[starts:], 100)
 
 
-def _ends(problem: _Problem, begin: list[Array], most: int) -> list[_End]:
+def _ends(problem: _Problem, begin: list[Array], most: int) -> list[End]:
     """Ends of searches from some points, the best first."""
-    found = (_search(problem, shares, most) for shares in begin)
+    found = (search(problem, shares, most) for shares in begin)
     return sorted((end for end in found if end is not None), key=lambda end: end.squares)
 
 
@@ -204,13 +108,13 @@ def _first(problem: _Problem, start: Mapping[str, float], point: Array) -> Array
     return space.shares(point)
 
 
-def _profile(problem: _Problem, best: _End, name: str, step: float, excess: float, points: int) -> pd.DataFrame:
+def _profile(problem: _Problem, best: End, name: str, step: float, excess: float, points: int) -> pd.DataFrame:
     """Minimum sums of squares with a parameter fixed at values on either side of the best, up to `excess` above it."""
     space, k = problem.space, problem.space.names.index(name)
     # √(S − S_min), linear in the parameter where the law is.
     target, rows = np.sqrt(excess), {float(best.point[k]): (0.0, best)}
 
-    def distance(at: float, near: _End) -> tuple[float, _End]:
+    def distance(at: float, near: End) -> tuple[float, End]:
         rows[at] = (0.0, end := _held(problem, k, at, near.point))
         rows[at] = (float(np.sqrt(max(end.squares - best.squares, 0.0))), end)
         return rows[at]
@@ -244,26 +148,26 @@ def _profile(problem: _Problem, best: _End, name: str, step: float, excess: floa
     return table
 
 
-def _held(problem: _Problem, k: int, at: float, near: Array) -> _End:
+def _held(problem: _Problem, k: int, at: float, near: Array) -> End:
     """The best fit with one coordinate fixed, starting from a nearby point."""
     space, point = problem.space, near.copy()
     point[k] = at
     name = space.names[k]
     others = {other: ends for other, ends in space.ranges.items() if other != name}
     if not others:
-        return _End(point, point, problem.at(point))
-    rest = Space(space.law, others, {**space.fixed, name: float(space.values(point)[k])})
-    end = _search(_Problem(problem.records, rest, problem.threads), rest.shares(np.delete(point, k)), 40)
+        return End(point, point, problem.at(point))
+    rest = type(space)(space.law, others, {**space.fixed, name: float(space.values(point)[k])})
+    end = search(type(problem)(problem.records, rest, problem.threads), rest.shares(np.delete(point, k)), 40)
     if end is None:
-        return _End(point, point, np.full(problem.at(near).size, np.inf))
-    return _End(end.shares, np.insert(end.point, k, at), end.residuals)
+        return End(point, point, np.full(problem.at(near).size, np.inf))
+    return End(end.shares, np.insert(end.point, k, at), end.residuals)
 
 
 class Fit:
-    """A fitted law.
+    """A fitted law, or fitted parameters of cases.
 
     Attributes:
-        parameters: all parameters, including the given ones.
+        parameters: all parameters, including the given ones; of a fit through runs the fitted ones, by place.
         table: one row per free parameter: ``value``, ``low`` and ``high`` of its 95 % interval, from zero to infinity where the data do not
             determine it, ``std`` (of its logarithm where ``log``).
         correlation: correlation of the free parameters.
@@ -272,16 +176,17 @@ class Fit:
         residuals: fitted minus measured values of each record.
         memory: correlation of successive residuals; 0 for noise, near 1 where the law cannot follow the data.
         ends: result of each search: the free parameters and S.
+        runs: number of finite-element runs that it took; 0 for records of a point.
     """
 
-    def __init__(self, problem: _Problem, ends: list[_End]) -> None:
+    def __init__(self, problem: _Problem, ends: list[End]) -> None:
         from scipy.stats import t
 
         self._problem, self._best = problem, ends[0]
         best, space, samples = ends[0], problem.space, ends[0].residuals.size
         free, sigma = len(space.names), problem.records[0].sigma is not None
         self.noise = float(np.sqrt(best.squares / (samples - free)))
-        self.parameters = {name: _plain(value) for name, value in space.parameters(best.point[None]).items()}
+        self.parameters = {name: plain_of(value) for name, value in space.parameters(best.point[None]).items()}
         at_border = np.minimum(abs(best.point - space.low), abs(best.point - space.high)) <= BORDER * (space.high - space.low)
         scale = 1.0 if sigma else max(self.noise, LEAST_NOISE)
         # That a parameter is somewhere in its range is known beforehand: without data its standard deviation is the width of it.
@@ -289,7 +194,8 @@ class Fit:
         _, singular, directions = np.linalg.svd(np.vstack([problem.jacobian(best.point) / scale, known]), full_matrices=False)
         spread = 1.0 / singular
         covariance = (directions.T * spread**2) @ directions
-        self._std, self._sigma, self._quantile = np.sqrt(np.diag(covariance)), sigma, float(t.ppf(0.975, samples - free))
+        self._covariance, self._std = covariance, np.sqrt(np.diag(covariance))
+        self._sigma, self._quantile = sigma, float(t.ppf(0.975, samples - free))
         index = pd.Index(space.names, name="parameter")
         self.correlation = pd.DataFrame(covariance / np.outer(self._std, self._std), index=index, columns=index)
         self.table = _table(space, best.point, self._std, self._quantile)
@@ -301,19 +207,58 @@ class Fit:
         self.words = words(
             Evidence(
                 self.table, self.correlation, self.ends, self.parameters, spread, directions, at_border,
-                self.noise, sigma, self.memory, samples, misfit,
+                self.noise, sigma, self.memory, samples, misfit, problem.model,
             )
         )  # fmt: skip
+        self.runs = problem.runs if isinstance(problem, RunProblem) else 0
+        if self.runs and not best.converged:
+            self.words.append(f"the search was not at its end after {MOST_RUNS} trials: go on from here with start, or narrow the ranges")
+
+    @property
+    def standardized(self) -> list[Array]:
+        """Residuals of each record in standard deviations of the noise: of ``sigma`` where given, else s."""
+        size = 1.0 if self._sigma else max(self.noise, LEAST_NOISE)
+        sizes = [size * scale / record.weight for scale, record in zip(self._problem.scales, self._problem.records)]
+        return [residuals / size for residuals, size in zip(self.residuals, sizes)]
+
+    @property
+    def cases(self) -> list[Case]:
+        """The cases of the fitted runs, with these parameters; none for records of a point."""
+        return [record.with_values(self.parameters) for record in self._problem.records if isinstance(record, Run)]
 
     @property
     def law(self) -> Law:
-        """The law with these parameters."""
+        """The law with these parameters.
+
+        Raises:
+            ValueError: cases were fitted.
+        """
+        if isinstance(self._problem, RunProblem):
+            raise ValueError("law: cases were fitted, not a law alone: they are in cases")
         return law_of({name: value for name, value in self.parameters.items() if name not in MACHINE})
 
-    def predicted(self, record: Record) -> Array:
-        """Prediction for a record, also for one that was not fitted, shape (n,)."""
+    def predicted(self, record: Record | Run) -> Array:
+        """Prediction for a record, also for one that was not fitted, shape (n,); of a :class:`Run` its columns, one after another."""
         sets = {name: np.array([value]) if isinstance(value, float) else value for name, value in self.parameters.items()}
         return np.asarray(record.predicted(sets)[0])
+
+    def band(self, record: Record | Run) -> pd.DataFrame:
+        """Prediction for a record, also for one that was not fitted, and how sure it is::
+
+            y ± t₀.₉₇₅ √diag(J cov Jᵀ),   J = ∂y/∂x
+
+        Returns:
+            One row per sample: ``predicted``, and ``low`` and ``high``, between which the curve of the true parameters lies in 95 % of all
+            cases; noise of a measurement comes on top.
+        """
+        other = type(self._problem)([record], self._problem.space, self._problem.threads)
+        scale = other.scales[0] / record.weight
+        predicted = other.at(self._best.point) * scale + record.measured
+        slopes = other.jacobian(self._best.point) * np.broadcast_to(scale, predicted.shape)[:, None]
+        reach = self._quantile * np.sqrt(np.einsum("ni,ij,nj->n", slopes, self._covariance, slopes))
+        if not np.isfinite(predicted).all():
+            raise other.refusal or ValueError("record: the fitted parameters have no answer to it")
+        return pd.DataFrame({"predicted": predicted, "low": predicted - reach, "high": predicted + reach})
 
     def profile(self, name: str, points: int = 12) -> pd.DataFrame:
         """Quality of the fit with a parameter fixed at other values: its profile likelihood, for intervals where the law is
@@ -350,27 +295,30 @@ class Fit:
 
 
 def fit(
-    data: Record | Iterable[Record],
-    law: str = "super_subloading",
+    data: Record | Run | Iterable[Record | Run],
+    law: str = LAW,
     free: Sequence[str] | Mapping[str, tuple[float, float]] = ("mu_s", "mu_k", "r", "kappa", "xi"),
     *,
     start: Mapping[str, float] | None = None,
-    starts: int = 4,
+    starts: int = STARTS,
     seed: int = 0,
     threads: int | None = None,
     **fixed: Any,
 ) -> Fit:
-    """Fit a law to measured curves.
+    """Fit a law to measured curves, or parameters of cases to measured histories of their runs.
+
+    A fit through runs has one search, by Gauss–Newton steps in a trust region with :attr:`Result.gradients` as derivatives: a run a step.
 
     Args:
-        data: records: :class:`Interface`, :class:`SpringSlider`, :class:`Holds`, or several of them. Records of different kinds need a
-            ``sigma`` each.
-        law: name of the law.
+        data: records: :class:`Interface`, :class:`SpringSlider`, :class:`Holds`, or several of them; or :class:`Run`, one or several.
+            Records of different kinds need a ``sigma`` each.
+        law: name of the law; cases have theirs.
         free: parameters to be found, with their ranges; positive ranges are searched by the logarithm. Without ranges
             (super/subloading friction only) wide ones are derived from the records. Ranges may overlap: trials that the law does not accept,
-            such as ``mu_d`` above ``mu_s``, are skipped.
+            such as ``mu_d`` above ``mu_s``, are skipped. Of runs they are places that every case has, such as
+            ``"contacts.base.friction.mu_k"``; without ranges a factor of 10 either way of the value in the first case.
         start: start of the first search: values of free parameters, within their ranges; others are taken from the
-            best starting point of the other searches.
+            best starting point of the other searches, through runs from the first case (where outside its range, the middle of that).
         starts: number of completed searches; three times as many are started from the best of 128 points spread over the ranges.
         seed: random seed of those points.
         threads: number of threads; default: all cores.
@@ -382,8 +330,12 @@ def fit(
     Raises:
         ValueError: the law has no parameter of a name (the message suggests the nearest one), or no starting point in the ranges is valid.
         CaseError: a given parameter is invalid.
+        Stopped: the first run of a case stopped; ``.result`` contains its results so far.
+        Interrupted: Ctrl-C was pressed during a run.
     """
     records = _records(data)
+    if any(isinstance(record, Run) for record in records):
+        return _through_runs(records, law, free, start or {}, starts, threads, fixed)
     free = free if isinstance(free, Mapping) else [free] if isinstance(free, str) else free
     names(list(free) if isinstance(free, Mapping) else free, "free", "fit")
     if not isinstance(start, (Mapping, type(None))):
@@ -404,7 +356,28 @@ def fit(
     return Fit(problem, ends)
 
 
-def _records(data: Any) -> list[Record]:
+def _through_runs(
+    records: Sequence[Any], law: str, free: Any, start: Any, starts: int, threads: int | None, fixed: Mapping[str, Any]
+) -> Fit:
+    """The fit of cases.
+
+    Raises:
+        ValueError: an argument is one of a law alone, or not what it must be.
+    """
+    if not all(isinstance(record, Run) for record in records):
+        raise ValueError("data: there are runs and records of a point: fit them one after another")
+    given = [name for name, own in (("law", law == LAW), ("starts", starts == STARTS)) if not own] + list(fixed)
+    if given:
+        raise ValueError(f"{given[0]}: a fit through runs has none: values that are not free are those of its cases, and its one search begins at start")
+    problem, shares = run_problem(records, [free] if isinstance(free, str) else free, start, count(threads, "threads"))
+    _check(records, problem.space.names, {}, 1)
+    end = search(problem, shares, MOST_RUNS)
+    if end is None:
+        raise problem.refusal or ValueError("start: the runs have no answer there: give another start")
+    return Fit(problem, [end])
+
+
+def _records(data: Any) -> list[Any]:
     """The records of a fit.
 
     Raises:
@@ -412,12 +385,12 @@ def _records(data: Any) -> list[Record]:
     """
     records: list[Any] = [data] if isinstance(data, np.ndarray) or not isinstance(data, Iterable) else list(data)
     for record in records:
-        if not isinstance(record, (Interface, Holds)):
-            raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider or Holds, or several of them")
+        if not isinstance(record, (Interface, Holds, Run)):
+            raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider, Holds or Run, or several of them")
     return records
 
 
-def _check(records: Sequence[Record], free: Iterable[str], fixed: Mapping[str, Any], starts: int) -> None:
+def _check(records: Sequence[Record | Run], free: Iterable[str], fixed: Mapping[str, Any], starts: int) -> None:
     if not records:
         raise ValueError("data: there are no records")
     if starts < 1:
@@ -482,11 +455,3 @@ def _memory(residuals: NDArray[np.float64]) -> float:
     """Correlation of successive residuals."""
     power = float(np.sum(residuals**2))
     return float(np.sum(residuals[1:] * residuals[:-1])) / power if power > 0 else 0.0
-
-
-def _entry(value: Any, k: int) -> Any:
-    return value[k : k + 1] if isinstance(value, np.ndarray) else value
-
-
-def _plain(value: Any) -> Any:
-    return float(value[0]) if isinstance(value, np.ndarray) else value

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+    from .calibration import Fit
+
 def friction(result: Result, contact: str | None = None, *, x: str = "time", ax: Axes | None = None, **line: Any) -> Axes:
     """|Q|/N of contacts over time, or over another column of the history.
 
@@ -173,6 +175,20 @@ def newton(result: Result, *, ax: Axes | None = None, **line: Any) -> Axes:
     for _, attempt in result.newton.groupby(["step", "increment", "attempt"], sort=False):
         ax.semilogy(attempt["iteration"], attempt["residual"], **{"linewidth": 0.6, "color": "C0", "alpha": 0.5, **line})
     ax.set(xlabel="iteration", ylabel="residual, relative [-]")
+    return ax
+
+
+def residuals(found: Fit, *, ax: Axes | None = None, **points: Any) -> Axes:
+    """Fitted minus measured values of every record of a fit over its samples, in standard deviations of the noise; between the dashed
+    lines lie 95 % of them where the fit follows the data."""
+    ax = _axes(ax)
+    for k, residuals in enumerate(found.standardized):
+        ax.plot(residuals, **{"marker": ".", "linestyle": "none", "label": f"record {k}", **points})
+    for level, style in ((0.0, "-"), (1.96, "--"), (-1.96, "--")):
+        ax.axhline(level, color="0.5", linewidth=0.6, linestyle=style)
+    ax.set(xlabel="sample", ylabel="fitted − measured, standard deviations [-]")
+    if len(found.residuals) > 1:
+        ax.legend()
     return ax
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fecontact as fc
-from fecontact import calibration
+from fecontact import _fit_problem, calibration
 from fecontact.calibration import Holds, Interface, SpringSlider
 
 SUPER = {"law": "super_subloading", "mu_s": 0.6, "mu_k": 0.4, "alpha_t": 2000.0, "r": 400.0, "kappa": 40.0, "xi": 0.05, "tolerance": 1e-12}
@@ -129,7 +129,7 @@ def test_jacobians_of_records(name: str, monkeypatch: pytest.MonkeyPatch) -> Non
     one, point = problem(record, {**PARAMETERS, **machine}, tolerance=1e-12)
     exact, errors = one.jacobian(point), []
     for step in (1e-4, 1e-5, 1e-6, 1e-7):
-        monkeypatch.setattr(calibration, "STEP", step)
+        monkeypatch.setattr(_fit_problem, "STEP", step)
         errors.append(np.abs(one.differences(point) - exact) / np.abs(exact).max(axis=0))
     # Each parameter has a best step of its own. Steps of a slider that are halved make differences jump, by what they may err.
     least = np.min(errors, axis=0)

@@ -33,7 +33,7 @@ SECTIONS = [
     ("Laws alone", "law", ["law", "Law", "Drive", "friction_law"]),
     ("Studies", "studies", ["study", "grid", "latin_hypercube", "sobol"]),
     ("Fits", "calibration", ["fit", *(name for name in calibration.__all__ if name != "fit")]),
-    ("Figures", "plot", ["friction", "slip_fraction", "interface", "events", "path", "newton"]),
+    ("Figures", "plot", ["friction", "slip_fraction", "interface", "events", "path", "newton", "residuals"]),
     ("Errors", "errors", ["CaseError", "Stopped", "Interrupted", "Defect", "RunWarning"]),
 ]
 TITLES = {"Args", "Returns", "Raises", "Attributes", "Yields"}

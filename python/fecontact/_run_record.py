@@ -1,0 +1,145 @@
+"""Measured histories of a case, and what its run predicts for them."""
+
+from __future__ import annotations
+
+import difflib
+import warnings
+from collections.abc import Mapping, Sequence
+from numbers import Real
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from ._plain import refused
+from ._records import Array, array_of, noise_of
+from ._study_run import lean
+from .case import Case
+from .errors import RunWarning, Stopped
+
+
+class Run:
+    """Measured histories of a case, for fits of its values through the finite-element run.
+
+    What is predicted is the history of the run, linear in time between its increments: increments should be as close together as
+    what was measured bends.
+
+    Args:
+        case: the case, with everything that is not to be fitted as it was in the experiment.
+        measured: by column of ``history.csv``, such as ``base.tangential_force``, its times, ascending, and values, both (n,); times lie
+            between the first increment and the last.
+        sigma: standard deviation of the noise: a number, or by column a number or shape (n,); by default estimated by the fit. Several columns need it.
+        weight: weight of this record relative to others.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        measured: Mapping[str, tuple[ArrayLike, ArrayLike]],
+        *,
+        sigma: float | Mapping[str, ArrayLike] | None = None,
+        weight: float = 1.0,
+    ) -> None:
+        if not isinstance(case, Case):
+            raise ValueError(f"case: is a {type(case).__name__}: give a Case")
+        self.case = case
+        if not (isinstance(measured, Mapping) and measured and all(isinstance(column, str) for column in measured)):
+            raise ValueError('measured: give times and values by column of the history, as {"base.tangential_force": (time, force)}')
+        self._times: dict[str, Array] = {}
+        values, noises = [], []
+        for column, pair in measured.items():
+            if not (isinstance(pair, Sequence) and len(pair) == 2) and not (isinstance(pair, np.ndarray) and len(pair) == 2):
+                raise ValueError(f"measured: {column}: give two arrays, (time, values)")
+            time = np.atleast_1d(array_of(f"measured: {column}: time", pair[0]))
+            if not (time.size and (np.diff(time) > 0).all()):
+                raise ValueError(f"measured: {column}: time: must be ascending, with at least one time")
+            self._times[column] = time
+            values.append(np.broadcast_to(array_of(f"measured: {column}: values", pair[1], time.size), time.size))
+            noises.append(self._noise_of(column, sigma, time.size))
+        self.measured = np.concatenate(values)
+        known = None if sigma is None else np.concatenate(noises)
+        self.sigma, self.weight = noise_of(known, weight, self.measured.size)
+        if self.sigma is None and len(measured) > 1:
+            raise ValueError("sigma: several columns need it: how large their noise is says what each counts for")
+
+    @staticmethod
+    def _noise_of(column: str, sigma: Any, size: int) -> Array:
+        """Noise of a column; ones where it is not given."""
+        if isinstance(sigma, Mapping):
+            if column not in sigma:
+                raise ValueError(f"sigma: there is none for {column}: give one for every column")
+            return np.broadcast_to(array_of(f"sigma: {column}", sigma[column], size), size)
+        if not isinstance(sigma, (Real, type(None))):
+            raise ValueError(f"sigma: is a {type(sigma).__name__}: give a number, or by column of the history")
+        return np.full(size, 1.0 if sigma is None else float(sigma))
+
+    @property
+    def kind(self) -> str:
+        """What the residuals are of."""
+        return ", ".join(sorted(self._times))
+
+    def predicted(self, parameters: Mapping[str, Any], threads: int | None = None) -> Array:
+        """What the run predicts with values by place, shape (1, n)."""
+        values = {place: float(np.ravel(value)[0]) for place, value in parameters.items()}
+        return self.solved(values, [], threads)[0][None]
+
+    def with_values(self, values: Mapping[str, float]) -> Case:
+        """The case with values by place."""
+        return self.case.replace(values)
+
+    def solved(self, values: Mapping[str, float], by: Sequence[str], threads: int | None) -> tuple[Array, Array]:
+        """What the run predicts, (n,), and its derivatives by places, (n, by).
+
+        Raises:
+            CaseError: the case has no such place, does not accept a value, or its run does not have what was measured.
+            Stopped: the run stopped, or its derivatives are lost on the way.
+        """
+        with warnings.catch_warnings():
+            # Those of every trial are the same; whoever runs the fitted case is told.
+            warnings.simplefilter("ignore", RunWarning)
+            result = lean(self.with_values(values)).run(threads=threads, progress=False, gradients=by)
+        history = result.history
+        self._check(history)
+        predicted = np.concatenate([np.interp(time, history["time"], history[column]) for column, time in self._times.items()])
+        if not by:
+            return predicted, np.zeros((predicted.size, 0))
+        gradients = result.gradients
+        slopes = np.empty((predicted.size, len(by)))
+        for k, place in enumerate(by):
+            of = [f"d({column})/d({place})" for column in self._times]
+            for column, name in zip(self._times, of):
+                if name not in gradients:
+                    raise refused("fit", f"measured.{column}", "has no derivatives: give a force, displacement or energy of the history")
+            own = [np.interp(time, gradients["time"], gradients[name]) for name, time in zip(of, self._times.values())]
+            slopes[:, k] = np.concatenate(own)
+            if not np.isfinite(slopes[:, k]).all():
+                lost = gradients["time"][~np.isfinite(gradients[of].to_numpy(dtype=float)).all(axis=1)].min()
+                raise Stopped(
+                    f"the derivatives by {place} are lost at time {lost:g} (docs/guide/gradients.md): give shorter increments there, or fix it",
+                    result,
+                )
+        return predicted, slopes
+
+    def _check(self, history: pd.DataFrame) -> None:
+        """Check that a history has what was measured.
+
+        Raises:
+            CaseError: a column is missing, or times are outside.
+        """
+        known = [str(column) for column in history if column not in ("time", "step", "dt")]
+        first, last = history["time"].iloc[0], history["time"].iloc[-1]
+        for column, time in self._times.items():
+            if column not in known:
+                near = difflib.get_close_matches(column, known, 1)
+                meant = f"did you mean `{near[0]}`? It" if near else "it"
+                raise refused("fit", f"measured.{column}", f"the history has no such column; {meant} has {', '.join(known)}")
+            # Times are sums of increments.
+            slack = 1e-9 * max(abs(first), abs(last))
+            for at in (time[0], time[-1]):
+                if not first - slack <= at <= last + slack:
+                    raise refused("fit", f"measured.{column}", f"was measured at time {at:g}, but increments end at {first:g} to {last:g}: leave it out")
+
+    def __repr__(self) -> str:
+        spans = ", ".join(f"{column} at {time.size} times {time[0]:.6g} to {time[-1]:.6g}" for column, time in self._times.items())
+        return f"<Run of {self.case!r}: {spans}>"
