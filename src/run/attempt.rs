@@ -70,21 +70,9 @@ impl Simulation {
             Err(cause) => self.unsolved(cause, dt, number, touching),
         };
         let increments = usize::from(accepted.is_some());
-        let coupling = self.work.assembler.coupling();
-        let (passes, explicit) = (std::mem::take(&mut self.work.passes), None);
-        Candidate {
-            number,
-            dt,
-            iterations,
-            accepted,
-            local_error,
-            doubt,
-            passes,
-            increments,
-            outcome,
-            coupling,
-            explicit,
-        }
+        let passes = std::mem::take(&mut self.work.passes);
+        let candidate = self.without_iterations(number, dt, accepted, increments, outcome);
+        Candidate { iterations, local_error, doubt, passes, ..candidate }
     }
 
     /// Outcome of an increment that could not be solved.

@@ -402,7 +402,8 @@ pub fn augment(
     work.passes.clear();
     for pass in 1.. {
         let Ok(u) = &result else { break };
-        work.passes.push(Pass { displacement: u.clone(), stiffening });
+        let coupling = work.assembler.coupling();
+        work.passes.push(Pass { displacement: u.clone(), stiffening, coupling });
         let found = &work.assembler.evaluation.contacts;
         let excess = model.contacts.iter().zip(found).map(|(pair, found)| pair.excess(found));
         let [penetration, slip] = excess.fold([0.0f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);

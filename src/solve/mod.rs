@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use crate::contact::force::ContactState;
 use crate::equations::condensed::is_linear;
-use crate::equations::{Assembler, ContactCounts};
+use crate::equations::{Assembler, ContactCounts, Coupling};
 use crate::linear::LinearSolver;
 use crate::linear::system::System;
 use crate::model::{Model, Step};
@@ -47,6 +47,8 @@ pub struct Pass {
     pub displacement: Vec<f64>,
     /// its factor on α_n ([`crate::equations::Trial::stiffening`])
     pub stiffening: f64,
+    /// Coupling of the nodes at it, on which the order of elimination depends
+    pub coupling: Arc<Coupling>,
 }
 
 impl Workspace {

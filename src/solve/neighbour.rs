@@ -14,10 +14,10 @@
 
 use std::sync::Arc;
 
-use super::Workspace;
 use super::equilibrium::equilibrium;
 use super::failure::IncrementFailure;
 use super::newton::NewtonFailure;
+use super::{Pass, Workspace};
 use crate::contact::force::ContactState;
 use crate::equations::{Assembler, Trial};
 use crate::linear::system::{Request, System};
@@ -51,12 +51,15 @@ impl Tangent {
         Self { assembler, system, solver: Box::<Multifrontal>::default(), serves: false }
     }
 
-    /// Evaluates and factorizes it at the solution `u` of an increment of the run.
+    /// Evaluates and factorizes it at the solution of a pass of the run, in the order of elimination of the run: a resumed one has the same
+    /// bits.
     ///
     /// # Errors
     /// Returns [`IncrementFailure`] if the equations cannot be evaluated there.
-    pub fn of(&mut self, trial: Trial, u: &[f64]) -> Result<(), IncrementFailure> {
+    pub fn of(&mut self, trial: Trial, pass: &Pass) -> Result<(), IncrementFailure> {
         let Self { assembler, system, solver, serves } = self;
+        assembler.couple(&pass.coupling);
+        let u = &pass.displacement;
         let evaluated = assembler.with_responses(trial, u, Request::Tangent, |assembler, responses| {
             assembler.assemble(trial, u, responses, Request::Tangent, system)
         });

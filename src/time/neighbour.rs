@@ -123,6 +123,7 @@ impl Neighbour {
         if !way.u.is_empty() {
             multiply(model, &work.assembler.evaluation.contacts, &mut way.old);
         }
+        work.assembler.couple(&pass.coupling);
         let start = other.iter().zip(&way.distance).map(|(u, distance)| u + distance).collect();
         way.u = beside(model, lead.trial(&way.old, step, pass), start, tangent, work)?;
         way.distance = way.u.iter().zip(other).map(|(own, other)| own - other).collect();
@@ -168,7 +169,7 @@ fn ahead(
         if k > 0 {
             multiply(&middle.model, tangent.contacts(), &mut old);
         }
-        tangent.of(lead.trial(&old, lead.step, pass), &pass.displacement)?;
+        tangent.of(lead.trial(&old, lead.step, pass), pass)?;
         first = middle.pass(lead, (pass, &pass.displacement), tangent, first)?;
         let each = neighbours.iter_mut().zip(ways);
         ways = each.map(|(neighbour, way)| neighbour.pass(lead, (pass, &first.u), tangent, way?)).collect();

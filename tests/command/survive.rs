@@ -218,6 +218,13 @@ fn augmented() -> Value {
     case
 }
 
+/// With derivatives, whose neighbours go on as well.
+fn differentiated() -> Value {
+    let mut case = dragged(json!("static"), 40);
+    case["gradients"] = json!(["contacts.base.friction.mu_k", "steps.drag.supports[0].ux.rate"]);
+    case
+}
+
 fn mortar() -> Value {
     let mut case = dragged(json!({"newmark": {}}), 60);
     case["contacts"]["base"]["method"] = json!("mortar");
@@ -227,7 +234,7 @@ fn mortar() -> Value {
 #[test]
 fn runs_killed_at_random_moments_go_on_to_the_same_bytes() {
     let mut seed = 1;
-    for case in [dragged(json!("static"), 40), explicit(), ruptures()] {
+    for case in [dragged(json!("static"), 40), explicit(), ruptures(), differentiated()] {
         killed(&case, 4, &mut seed);
     }
 }

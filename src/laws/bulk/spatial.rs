@@ -77,6 +77,17 @@ pub trait Spatial: Material {
         Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: stress[4] / f.determinant(), xy: sigma.m12 })
     }
 
+    /// The answer in plane strain, of which σ_zz = P₃₃/det F.
+    ///
+    /// # Errors
+    /// As [`Spatial::stretched`].
+    fn in_plane_strain(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        let Stretched { stress, tangent, energy, dissipation } = self.stretched(straining, new)?;
+        let volume = if self.is_linear() { 1.0 } else { straining.deformation.determinant() };
+        let tangent = tangent.fixed_view::<4, 4>(0, 0).into();
+        Ok(MaterialResponse { stress: plane(&stress), tangent, energy, stress_zz: stress[4] / volume, dissipation })
+    }
+
     /// P_v/τ at F and Ḟ, see [`super`]; of a linear law the elastic stress of the rate [F/(L² T)].
     fn viscous(&self, [f, rate]: [&Vector5<f64>; 2]) -> Vector5<f64> {
         let [f, rate] = [f, rate].map(matrix);

@@ -207,15 +207,7 @@ impl Material for Undrained {
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        let Stretched { stress, tangent, energy, dissipation } = self.stretched(straining, new)?;
-        let volume = if self.is_linear() { 1.0 } else { straining.deformation.determinant() };
-        Ok(MaterialResponse {
-            stress: plane(&stress),
-            tangent: tangent.fixed_view::<4, 4>(0, 0).into(),
-            energy,
-            stress_zz: stress[4] / volume,
-            dissipation,
-        })
+        self.in_plane_strain(straining, new)
     }
 
     fn viscous_stress(&self, motion: [&Matrix2<f64>; 2]) -> Matrix2<f64> {

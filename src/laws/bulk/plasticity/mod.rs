@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix4, Vector2, Vector3, Vector4};
 
-use super::spatial::{Stretched, plane, positive_stretch};
+use super::spatial::{Stretched, positive_stretch};
 use super::{
     CauchyStress, Flow, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining,
     positive_jacobian,
@@ -431,10 +431,7 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        let Stretched { stress, tangent, energy, dissipation } = self.stretched(straining, new)?;
-        let stress_zz = stress[4] / straining.deformation.determinant();
-        let tangent = tangent.fixed_view::<4, 4>(0, 0).into();
-        Ok(MaterialResponse { stress: plane(&stress), tangent, energy, stress_zz, dissipation })
+        self.in_plane_strain(straining, new)
     }
 
     fn shown(&self) -> &[&'static str] {
