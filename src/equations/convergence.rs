@@ -72,7 +72,7 @@ impl ConvergenceCriterion {
         for (e, element) in model.mesh.elements.iter().enumerate() {
             let body = &model.bodies[model.body_of_element[e]];
             let [solid, depth] = [model.solids[e].volume(), model.solids[e].mean_weight()];
-            let modulus = body.material.p_wave_modulus() * depth;
+            let modulus = body.material.description().p_wave_modulus * depth;
             let viscous = body.damping.retardation * modulus;
             for &node in &element.nodes {
                 lone[node] = false;
@@ -112,7 +112,7 @@ impl ConvergenceCriterion {
         self.stiffness.iter_mut().for_each(|[.., viscous]| *viscous = 0.0);
         for (e, element) in model.mesh.elements.iter().enumerate() {
             let body = model.body_of_element[e];
-            let modulus = model.bodies[body].material.p_wave_modulus() * model.solids[e].mean_weight();
+            let modulus = model.bodies[body].material.description().p_wave_modulus * model.solids[e].mean_weight();
             let viscous = dampings[body].retardation * modulus;
             let originals = element.nodes.iter().map(|&node| model.ties.original(node));
             originals.for_each(|node| self.stiffness[node][2] += viscous * viscous);

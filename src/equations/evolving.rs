@@ -19,7 +19,7 @@ pub(super) struct Evolving(Vec<bool>);
 /// Whether a body is one of them.
 pub(super) fn evolves(model: &Model, body: usize) -> bool {
     let material = &model.bodies[body].material;
-    !material.variables().is_empty() || !material.is_symmetric()
+    !material.description().variables.is_empty() || !material.description().is_symmetric
 }
 
 impl Evolving {
@@ -51,7 +51,7 @@ impl Evolving {
             model.write_temperatures(trial.step, trial.moment(), e, old, new);
             let found = evolve(model, e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted);
             let found = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
-            let yields = model.bodies[model.body_of_element[e]].material.flow().is_some();
+            let yields = model.bodies[model.body_of_element[e]].material.description().flow.is_some();
             Ok((found, model.heating(e, [old, new]), yields))
         };
         let elements = model.memories.each_mut(memory).enumerate().zip(&self.0);

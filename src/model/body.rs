@@ -97,7 +97,7 @@ impl Memories {
         let mut starts = vec![0];
         let mut end = 0;
         for (solid, &body) in solids.iter().zip(body_of_element) {
-            end += solid.quadrature_points() * bodies[body].material.variables().len();
+            end += solid.quadrature_points() * bodies[body].material.description().variables.len();
             starts.push(end);
         }
         Self { starts }

@@ -152,7 +152,7 @@ impl Model {
         for (e, own) in self.memories.each_mut(&mut memory).enumerate() {
             let body = &self.bodies[self.body_of_element[e]];
             let stress_at = |at| body.initial_stress.as_ref().map(|stress| stress.at(at, self.mesh.section.is_plate()));
-            let count = body.material.variables().len().max(1);
+            let count = body.material.description().variables.len().max(1);
             for (point, at) in own.chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
                 let [xx, yy, xy, zz] = stress_at(at).unwrap_or_default();
                 body.material.initial_state(at, &CauchyStress { xx, yy, zz, xy }, point);
@@ -206,7 +206,7 @@ impl Model {
     /// Number of variables of an element's material at a point, and the index of T − T₀; `None` without thermal expansion.
     fn rises(&self, element: usize) -> Option<(usize, usize)> {
         let body = &self.bodies[self.body_of_element[element]];
-        let count = body.material.variables().len();
+        let count = body.material.description().variables.len();
         body.thermal.map(|_| (count, count - TEMPERATURE.len()))
     }
 

@@ -197,7 +197,7 @@ impl Model {
 
     /// Consistent mass matrix of an element, the same for both directions [M].
     pub fn element_mass(&self, element: usize) -> DMatrix<f64> {
-        self.consistent(element, self.bodies[self.body_of_element[element]].material.density())
+        self.consistent(element, self.bodies[self.body_of_element[element]].material.description().density)
     }
 
     /// ∫ N_a N_b dV of an element, in accordance with its mass [L³].
@@ -214,7 +214,7 @@ impl Model {
 
     /// Lumped mass of each node of an element [M].
     pub fn element_lumped_mass(&self, element: usize) -> DVector<f64> {
-        self.lumped(element, self.bodies[self.body_of_element[element]].material.density())
+        self.lumped(element, self.bodies[self.body_of_element[element]].material.description().density)
     }
 
     /// Volume of the lumped mass of each node of an element [L³].
@@ -230,8 +230,9 @@ impl Model {
 
     /// (λ + 2G) w of the stiffest element, the ratio of force to displacement; 0 without elements [F/L].
     pub fn stiffness(&self) -> f64 {
-        let of =
-            |(solid, &body): (&SolidElement, &usize)| self.bodies[body].material.p_wave_modulus() * solid.mean_weight();
+        let of = |(solid, &body): (&SolidElement, &usize)| {
+            self.bodies[body].material.description().p_wave_modulus * solid.mean_weight()
+        };
         self.solids.iter().zip(&self.body_of_element).map(of).fold(0.0, f64::max)
     }
 

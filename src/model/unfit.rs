@@ -20,7 +20,7 @@ pub fn concerns(model: &Model) -> Vec<String> {
 /// Source: Nagtegaal, Parks & Rice (1974), Comput. Methods Appl. Mech. Eng. 4, 153, doi:10.1016/0045-7825(74)90032-2.
 fn locks(model: &Model, body: &Body) -> Option<String> {
     let undrained = body.pore_fluid.is_some();
-    let flow = if undrained { Some(Flow::Isochoric) } else { body.material.flow() };
+    let flow = if undrained { Some(Flow::Isochoric) } else { body.material.description().flow };
     let flow = flow.filter(|_| !model.mesh.section.is_plate())?;
     let is_unfit = |e: &&usize| match (model.mesh.elements[**e].kind, model.solids[**e].formulation(), flow) {
         (ElementKind::T6, ..) | (_, Formulation::Reduced, _) => false,

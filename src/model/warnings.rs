@@ -65,7 +65,7 @@ impl Model {
 
 /// What the law of a body has to say before anything is solved.
 fn concern_of_law(body: &Body) -> Option<String> {
-    body.material.concern().map(|concern| format!("body `{}`: {concern}", body.name))
+    body.material.description().concern.map(|concern| format!("body `{}`: {concern}", body.name))
 }
 
 /// Output times that a step ending early may shift.
@@ -161,8 +161,11 @@ const MANY: [f64; 2] = [1e6, 1e7];
 /// Lower bound of the number of increments: from the longest one of implicit steps, and from the travel time of a wave along
 /// the shortest side for explicit ones.
 fn many_increments(model: &Model) -> Option<String> {
-    let fastest =
-        model.bodies.iter().map(|body| body.material.p_wave_modulus() / body.material.density()).fold(0.0, f64::max);
+    let fastest = model
+        .bodies
+        .iter()
+        .map(|body| body.material.description().p_wave_modulus / body.material.description().density)
+        .fold(0.0, f64::max);
     let crossed = shortest_side(&model.mesh) / fastest.sqrt();
     let of_steps = |explicit: bool| -> f64 {
         let steps = model.steps.iter().filter(|step| matches!(step.scheme, Scheme::Explicit { .. }) == explicit);

@@ -89,7 +89,7 @@ impl BodyMeans {
         let shares: Vec<Share> = body.nodes.iter().zip(lengths).map(share).collect();
         let pairs = summed(pairs);
         let inertia = shares.iter().map(|share| share.moment.dot(&(place(share.node) - origin - from_origin))).sum();
-        let density = body.material.density();
+        let density = body.material.description().density;
         Self { density, pairs, shares, centre: origin + from_origin, inertia }
     }
 

@@ -453,9 +453,10 @@ impl WaveSpeeds {
     /// (2 − ξ²)² = 4 √(1 − ξ²) √(1 − ξ² c_s²/c_p²),   ξ = c_R/c_s
     /// ```
     pub fn of(material: &dyn Material) -> Self {
-        let speed = |modulus: f64| (modulus / material.density()).sqrt();
-        let (shear, pressure) = (speed(material.shear_modulus()), speed(material.p_wave_modulus()));
-        let ratio = material.shear_modulus() / material.p_wave_modulus();
+        let speed = |modulus: f64| (modulus / material.description().density).sqrt();
+        let (shear, pressure) =
+            (speed(material.description().shear_modulus), speed(material.description().p_wave_modulus));
+        let ratio = material.description().shear_modulus / material.description().p_wave_modulus;
         // Negative below the root, except at the trivial root 0, positive above.
         let excess = |square: f64| (2.0 - square).powi(2) - 4.0 * ((1.0 - square) * (1.0 - square * ratio)).sqrt();
         let (mut low, mut high) = (0.1, 1.0);

@@ -69,7 +69,7 @@ fn contact_forces(model: &Model, state: &State) -> Vec<f64> {
 pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, grid: &mut Grid) {
     let elements = &model.mesh.elements;
     let mut names: Vec<&str> = Vec::new();
-    for name in model.bodies.iter().flat_map(|body| body.material.variables()) {
+    for name in model.bodies.iter().flat_map(|body| body.material.description().variables) {
         if !names.contains(name) {
             names.push(name);
         }
@@ -97,14 +97,14 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
             moved.extend([at.x, at.y]);
             body.push(number as i32);
             fields.push(both);
-            let own = material.variables();
+            let own = material.description().variables;
             for (name, list) in names.iter().zip(&mut variables) {
                 let place = own.iter().position(|other| other == name);
                 list.push(place.map_or(f64::NAN, |place| memory[k * own.len() + place]));
             }
             for (name, list) in shown.iter().zip(&mut further) {
-                let place = material.shown().iter().position(|other| other == name);
-                let value = place.and_then(|place| seen.get(k * material.shown().len() + place));
+                let place = material.description().shown.iter().position(|other| other == name);
+                let value = place.and_then(|place| seen.get(k * material.description().shown.len() + place));
                 list.push(value.copied().unwrap_or(f64::NAN));
             }
         }

@@ -178,7 +178,7 @@ fn radiates(model: &Model) -> bool {
 
 /// Whether some body yields, and the energies have a column for it.
 fn yields(model: &Model) -> bool {
-    model.bodies.iter().any(|body| body.material.flow().is_some())
+    model.bodies.iter().any(|body| body.material.description().flow.is_some())
 }
 
 fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {

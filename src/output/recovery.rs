@@ -207,7 +207,7 @@ pub fn nodal_fields(model: &Model, state: &State) -> NodalFields {
         let of_bodies: Vec<(&[&str], Vec<f64>)> = stencils
             .iter()
             .map(|(body, stencil)| {
-                let names = model.bodies[*body].material.shown();
+                let names = model.bodies[*body].material.description().shown;
                 let mut sums = vec![0.0; names.len()];
                 if !names.is_empty() {
                     stencil.sum(&mut sums, |e| &shown[e]);
@@ -228,7 +228,7 @@ pub fn nodal_fields(model: &Model, state: &State) -> NodalFields {
 /// Names of what the laws of the bodies show.
 pub fn shown_names(model: &Model) -> Vec<&'static str> {
     let mut names: Vec<&str> = Vec::new();
-    for name in model.bodies.iter().flat_map(|body| body.material.shown()) {
+    for name in model.bodies.iter().flat_map(|body| body.material.description().shown) {
         if !names.contains(name) {
             names.push(name);
         }
@@ -256,7 +256,7 @@ fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
     let material = &*model.bodies[model.body_of_element[e]].material;
     let found = solid.shown(material, model.memories.of(e, &state.memory), &u);
-    found.unwrap_or_else(|_| vec![0.0; material.shown().len() * solid.quadrature_points()])
+    found.unwrap_or_else(|_| vec![0.0; material.description().shown.len() * solid.quadrature_points()])
 }
 
 /// Places of the undeformed bodies at points of some elements.

@@ -251,7 +251,7 @@ fn penalty(pair: &ContactPair) -> Option<String> {
 }
 
 fn locking(model: &Model, body: &Body) -> Option<String> {
-    let [wave, shear] = [body.material.p_wave_modulus(), body.material.shear_modulus()];
+    let [wave, shear] = [body.material.description().p_wave_modulus, body.material.description().shear_modulus];
     let poisson = (wave - 2.0 * shear) / (2.0 * (wave - shear));
     let locks = poisson >= LOCKS
         && body.elements.iter().any(|&element| model.solids[element].formulation() == Formulation::Displacement);

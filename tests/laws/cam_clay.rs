@@ -30,7 +30,7 @@ struct Point {
 
 impl Point {
     fn new(law: Box<dyn Material>) -> Self {
-        let mut old = vec![0.0; law.variables().len()];
+        let mut old = vec![0.0; law.description().variables.len()];
         let stress = CauchyStress { xx: -P_0, yy: -P_0, zz: -P_0, xy: 0.0 };
         law.admits(&stress).expect("it carries its pressure");
         law.initial_state(Vector2::zeros(), &stress, &mut old);
@@ -47,7 +47,7 @@ impl Point {
 
     /// p, q and p_c of the committed state, of the Kirchhoff stress.
     fn shown(&self, f: &Vector5<f64>) -> [f64; 3] {
-        let mut values = vec![0.0; self.law.shown().len()];
+        let mut values = vec![0.0; self.law.description().shown.len()];
         let plane = Matrix2::from_column_slice(&f.as_slice()[..4]);
         self.law.show(&with!(Straining::new(plane, &self.old), stretch: f[4]), &mut values).expect("an answer");
         [values[3], values[4], values[5]]
@@ -263,7 +263,7 @@ fn moduli_and_strength_come_from_the_initial_stress() {
     json.as_object_mut().expect("keys").retain(|key, _| key != "G" && key != "p_c");
     (json["nu"], json["OCR"]) = (json!(nu), json!(over));
     let law = build(json);
-    let mut old = vec![0.0; law.variables().len()];
+    let mut old = vec![0.0; law.description().variables.len()];
     let stress = CauchyStress { xx: -60.0, yy: -120.0, zz: -60.0, xy: 0.0 };
     law.admits(&stress).expect("OCR makes room for it");
     law.initial_state(Vector2::zeros(), &stress, &mut old);
@@ -272,12 +272,12 @@ fn moduli_and_strength_come_from_the_initial_stress() {
     close("σ_xx", here.xx, -60.0, 1e-10);
     let (p, q, bulk) = (80.0, 60.0, 80.0 / KAPPA);
     let shear = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu) * bulk;
-    let of = |name: &str| old[law.variables().iter().position(|own| *own == name).expect(name)];
+    let of = |name: &str| old[law.description().variables.iter().position(|own| *own == name).expect(name)];
     close("p_c", of("p_c"), over * (p + q * q / (M * M * p)), 1e-10);
     close("G", of("shear_modulus"), shear, 1e-9);
     let told = law.at_pressure(p).expect("they depend on it");
-    close("G told", told.shear_modulus(), shear, 1e-9);
-    close("K + 4G/3", told.p_wave_modulus(), bulk + 4.0 / 3.0 * shear, 1e-9);
+    close("G told", told.description().shear_modulus, shear, 1e-9);
+    close("K + 4G/3", told.description().p_wave_modulus, bulk + 4.0 / 3.0 * shear, 1e-9);
     let given = Matrix2::new(1.0 + 1e-7, 0.0, 0.0, 1.0);
     let answer = law.respond(&Straining::new(given, &old), &mut old.clone()).expect("an answer");
     // dP₁₁ = dτ₁₁ − τ₁₁ dF₁₁
@@ -346,7 +346,7 @@ fn a_large_increment_is_answered_or_refused() {
     let mut random = Random(5);
     let (mut answered, mut refused) = (0, 0);
     for walk in 0..600 {
-        let mut old = vec![0.0; law.variables().len()];
+        let mut old = vec![0.0; law.description().variables.len()];
         law.initial_state(Vector2::zeros(), &CauchyStress { xx: -1.0, yy: -4.0, zz: -2.0, xy: 0.0 }, &mut old);
         let (mut f, size) = (Matrix2::identity(), random.magnitude(-3.0, -0.5));
         let growth = if walk % 3 == 0 { 1.05 } else { 1.0 };
@@ -358,7 +358,7 @@ fn a_large_increment_is_answered_or_refused() {
                 break;
             }
             (old, answered) = (new, answered + 1);
-            let mut values = vec![0.0; law.shown().len()];
+            let mut values = vec![0.0; law.description().shown.len()];
             law.show(&Straining::new(f, &old), &mut values).expect("an answer");
             let [indicator, p_c] = [values[2], values[5]];
             assert!(indicator < 1e-9 * p_c + 1e-9, "{values:?} at {f}");

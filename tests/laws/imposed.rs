@@ -27,7 +27,7 @@ struct Under {
 impl Under {
     fn new(model: &str, stress: Option<[f64; 4]>, heated: bool) -> Self {
         let law = Imposed::new(material(model), stress.is_some(), heated.then_some(ALPHA)).expect("it is known");
-        let count = law.variables().len();
+        let count = law.description().variables.len();
         let first = count - if heated { 2 } else { 0 } - if stress.is_some() { 4 } else { 0 };
         let mut variables = vec![0.0; count];
         stress.iter().flatten().zip(&mut variables[first..]).for_each(|(stress, variable)| *variable = *stress);
@@ -41,7 +41,7 @@ impl Under {
     /// Variables at a rise of temperature.
     fn at(&self, rise: f64) -> Vec<f64> {
         let mut new = self.variables.clone();
-        if self.law.variables().last() == Some(&"expansion_stress") {
+        if self.law.description().variables.last() == Some(&"expansion_stress") {
             let count = new.len();
             new[count - 2] = rise;
         }
@@ -105,8 +105,8 @@ fn stress_tangent_and_expansion_stress_are_derivatives() {
             let flat = Vector5::new(f[0], f[1], f[2], f[3], 1.0);
             let (spatial, known) =
                 (law.stretched(&flat, rise).0, law.evolve(&Matrix2::from_column_slice(&flat.as_slice()[..4]), rise).0);
-            let sigma =
-                spatial.stress[4] / if law.law.is_linear() { 1.0 } else { flat[0] * flat[3] - flat[1] * flat[2] };
+            let sigma = spatial.stress[4]
+                / if law.law.description().is_linear { 1.0 } else { flat[0] * flat[3] - flat[1] * flat[2] };
             assert_eq!(known.stress.as_slice(), &spatial.stress.as_slice()[..4]);
             assert_eq!((known.energy, known.stress_zz), (spatial.energy, sigma));
         }

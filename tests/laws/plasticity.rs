@@ -72,8 +72,8 @@ fn laws() -> Vec<(&'static str, Box<dyn Material>)> {
 
 /// Variables before the first increment: clay begins under a pressure.
 fn start(law: &dyn Material) -> Vec<f64> {
-    let mut variables = vec![0.0; law.variables().len()];
-    if law.variables().contains(&"p_c") {
+    let mut variables = vec![0.0; law.description().variables.len()];
+    if law.description().variables.contains(&"p_c") {
         let stress = CauchyStress { xx: -0.3, yy: -0.3, zz: -0.3, xy: 0.0 };
         law.initial_state(Vector2::zeros(), &stress, &mut variables);
     }
@@ -101,7 +101,7 @@ fn stretched(law: &dyn Material, f: &Vector5<f64>, old: &[f64]) -> Result<(Stret
 
 /// f in a state, and what else it shows.
 fn shown(law: &dyn Material, f: &Vector5<f64>, old: &[f64]) -> Vec<f64> {
-    let mut values = vec![0.0; law.shown().len()];
+    let mut values = vec![0.0; law.description().shown.len()];
     law.show(&with!(Straining::new(plane(f), old), stretch: f[4]), &mut values).expect("an answer");
     values
 }
@@ -164,8 +164,12 @@ fn the_tangent_equals_differences_over_random_histories() {
             let error = (answer.tangent - Matrix5::from_columns(&columns)).amax();
             assert!(error < 1e-6 * E, "{name}: {error} at {f} after {old:?}");
             compared += 1;
-            let place =
-                law.variables().iter().position(|name| *name == "equivalent_plastic_strain").expect("it is there");
+            let place = law
+                .description()
+                .variables
+                .iter()
+                .position(|name| *name == "equivalent_plastic_strain")
+                .expect("it is there");
             yielded += usize::from(new[place] > old[place]);
         }
         assert!((100..300).contains(&yielded), "{name}: {yielded} of {compared} yield");
@@ -219,7 +223,7 @@ fn a_committed_state_stays_and_is_within_the_yield_surface() {
             for (a, b) in new.iter().zip(&committed) {
                 assert!((a - b).abs() < 1e-12, "{name}: {new:?} {committed:?}");
             }
-            if law.flow().is_some() && !name.starts_with("viscous") {
+            if law.description().flow.is_some() && !name.starts_with("viscous") {
                 let indicator = shown(&*law, &f, &committed)[2];
                 assert!(indicator < 1e-11 * E, "{name}: f = {indicator}");
             }
@@ -231,7 +235,7 @@ fn a_committed_state_stays_and_is_within_the_yield_surface() {
 #[test]
 fn isochoric_flow_keeps_the_volume() {
     for (name, law) in laws().into_iter().filter(|(name, _)| *name != "cut off" && *name != "Tresca") {
-        let isochoric = law.flow() == Some(Flow::Isochoric);
+        let isochoric = law.description().flow == Some(Flow::Isochoric);
         let mut random = Random(3);
         let (mut most, mut flowed) = (0.0f64, 0.0f64);
         for _ in 0..50 {
@@ -291,7 +295,11 @@ fn energy_is_balanced() {
     for (name, law) in all_laws().into_iter().filter(|(name, _)| !name.starts_with("viscous")) {
         let [coarse, fine] = [100, 1000].map(|parts| {
             let (_, [stored, dissipated, work]) = driven(&*law, winding, parts);
-            assert_eq!(dissipated > 0.01 * work, !law.variables().is_empty(), "{name}: {dissipated} of {work}");
+            assert_eq!(
+                dissipated > 0.01 * work,
+                !law.description().variables.is_empty(),
+                "{name}: {dissipated} of {work}"
+            );
             (work - stored - dissipated).abs() / work
         });
         assert!(coarse < 3e-3 && fine < 0.02 * coarse + 1e-9, "{name}: {coarse} {fine}");
@@ -319,7 +327,7 @@ struct Bar {
 impl Bar {
     fn new(law: &dyn Material) -> Self {
         let law = law.plane_stress().expect("a metal");
-        Self { old: vec![0.0; law.variables().len()], law, lateral: 1.0 }
+        Self { old: vec![0.0; law.description().variables.len()], law, lateral: 1.0 }
     }
 
     /// τ₁₁ at a logarithmic strain.
@@ -426,7 +434,7 @@ fn mohr_coulomb_is_the_closest_point() {
             let strain = Vector3::from_fn(|_, _| random.between(-0.01, 0.01));
             let trial = (K - 2.0 / 3.0 * G) * strain.sum() * Vector3::repeat(1.0) + 2.0 * G * strain;
             let f = strain.map(f64::exp);
-            let old = vec![0.0; law.variables().len()];
+            let old = vec![0.0; law.description().variables.len()];
             let (answer, _) = stretched(&*law, &Vector5::new(f.x, 0.0, 0.0, f.y, f.z), &old).expect("an answer");
             let found = Vector3::new(answer.stress[0] * f.x, answer.stress[3] * f.y, answer.stress[4] * f.z);
             let expected = nearest(&trial, [0.1, phi], tension);
@@ -448,7 +456,8 @@ fn cone_and_hexagon_collapse_alike_in_plane_strain() {
         json!({"model": "drucker_prager", "c": c, "phi": phi, "psi": phi, "matching": "plane_strain"}),
     ] {
         let law = with_elasticity(given.clone());
-        let (mut old, mut wide, mut sigma, mut expected) = (vec![0.0; law.variables().len()], 1.0, 0.0, 0.0);
+        let (mut old, mut wide, mut sigma, mut expected) =
+            (vec![0.0; law.description().variables.len()], 1.0, 0.0, 0.0);
         for k in 1..=200 {
             let high = 1.0 - 0.05 * f64::from(k) / 200.0;
             for iteration in 0.. {
@@ -476,7 +485,7 @@ fn overstress_relaxes_in_its_time() {
     let [viscous, inviscid] = [given(2.0), given(0.0)].map(with_elasticity);
     let hencky = with_elasticity(json!({"model": "hencky"}));
     let f = Matrix2::new(1.0, 0.02, 0.0, 1.0);
-    let zeros = vec![0.0; viscous.variables().len()];
+    let zeros = vec![0.0; viscous.description().variables.len()];
     let respond = |law: &dyn Material, old: &[f64], dt: f64| {
         let mut new = vec![0.0; old.len()];
         (law.respond(&with!(Straining::new(f, old), dt: dt), &mut new).expect("an answer").stress, new)
@@ -500,7 +509,7 @@ fn overstress_relaxes_in_its_time() {
 fn an_initial_stress_is_inside_the_law() {
     let law = with_elasticity(json!({"model": "mohr_coulomb", "c": 0.0, "phi": 30, "psi": 0}));
     let stress = CauchyStress { xx: -0.4, yy: -1.0, zz: -0.4, xy: 0.1 };
-    let mut old = vec![0.0; law.variables().len()];
+    let mut old = vec![0.0; law.description().variables.len()];
     law.admits(&stress).expect("it is within");
     law.initial_state(Vector2::zeros(), &stress, &mut old);
     let here = law.cauchy_stress(&Matrix2::identity(), &old).expect("an answer");
@@ -554,7 +563,7 @@ fn a_heated_body_yields() {
 #[test]
 fn what_cannot_be_answered_is_told() {
     let law = with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y}));
-    let old = vec![0.0; law.variables().len()];
+    let old = vec![0.0; law.description().variables.len()];
     let far = stretched(&*law, &Vector5::new(1.0, 0.0, 2.0, 1.0, 1.0), &old).expect_err("too far");
     assert!(matches!(far, MaterialFailure::OutOfRange { law: "von_mises", .. }), "{far}");
     assert!(far.to_string().contains("in one increment"), "{far}");
@@ -562,8 +571,8 @@ fn what_cannot_be_answered_is_told() {
     assert!(matches!(inverted, MaterialFailure::Inverted { .. }));
     let soil = with_elasticity(json!({"model": "mohr_coulomb", "c": 0.1, "phi": 30, "psi": 0}));
     assert!(soil.plane_stress().is_none());
-    assert!(soil.concern().expect("it is not associated").contains("psi < phi"));
-    assert!(law.concern().is_none());
+    assert!(soil.description().concern.expect("it is not associated").contains("psi < phi"));
+    assert!(law.description().concern.is_none());
 }
 
 /// Constants out of range are refused with their name.

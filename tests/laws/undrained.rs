@@ -33,8 +33,8 @@ fn laws() -> Vec<(&'static str, Undrained)> {
 }
 
 fn start(law: &Undrained) -> Vec<f64> {
-    let mut variables = vec![0.0; law.variables().len()];
-    let stress = match law.holds_initial_stress() {
+    let mut variables = vec![0.0; law.description().variables.len()];
+    let stress = match law.description().holds_initial_stress {
         true => CauchyStress { xx: -0.3, yy: -0.3, zz: -0.3, xy: 0.0 },
         false => CauchyStress::default(),
     };
@@ -54,8 +54,8 @@ fn at(law: &Undrained, f: &Vector5<f64>, old: &[f64]) -> Result<(Stretched, Vec<
 }
 
 fn pore_pressure(law: &Undrained, f: &Vector5<f64>, old: &[f64]) -> f64 {
-    let mut values = vec![f64::NAN; law.shown().len()];
-    assert_eq!(law.shown().last(), Some(&"pore_pressure"));
+    let mut values = vec![f64::NAN; law.description().shown.len()];
+    assert_eq!(law.description().shown.last(), Some(&"pore_pressure"));
     law.show(&with!(Straining::new(plane(f), old), stretch: f[4]), &mut values).expect("an answer");
     values[values.len() - 1]
 }
@@ -90,7 +90,7 @@ fn stress_is_effective_less_the_pressure_and_the_tangent_is_exact() {
                 .collect();
             let error = (answer.tangent - Matrix5::from_columns(&columns)).amax();
             // Of laws that yield, an edge of their surface may lie between.
-            if law.flow().is_none() || error < 1e-3 {
+            if law.description().flow.is_none() || error < 1e-3 {
                 assert!(error < 1e-6 * MODULUS, "{name}: {error} at {f}");
                 compared += 1;
             }
@@ -128,8 +128,8 @@ fn moduli_and_damping() {
     let own = build(json!({"model": "hencky", "E": 100.0, "nu": 0.3, "density": 2.0}));
     let law = build(json!({"model": "hencky", "E": 100.0, "nu": 0.3, "density": 2.0}));
     let law = Undrained::new(law, MODULUS, None).expect("every section");
-    close("λ + 2G", law.p_wave_modulus(), own.p_wave_modulus() + MODULUS, 1e-12);
-    assert_eq!([law.shear_modulus(), law.density()], [own.shear_modulus(), 2.0]);
+    close("λ + 2G", law.description().p_wave_modulus, own.description().p_wave_modulus + MODULUS, 1e-12);
+    assert_eq!([law.description().shear_modulus, law.description().density], [own.description().shear_modulus, 2.0]);
     let (one, rate) = (Matrix2::identity(), Matrix2::new(0.1, 0.2, 0.0, 0.3));
     assert_eq!(law.viscous_stress([&one, &rate]), own.viscous_stress([&one, &rate]));
     let soft = build(json!({"model": "linear", "E": 100.0, "nu": 0.3}));
@@ -145,7 +145,7 @@ fn clay_under_a_constant_lateral_stress() {
     let given = json!({"model": "cam_clay", "lambda": of_cauchy(lambda), "kappa": of_cauchy(kappa), "M": m, "G": 3000.0,
                        "p_c": p_0, "p_min": 1.0});
     let law = Undrained::new(build(given), 2.2e6 / 0.5, None).expect("every section");
-    let mut old = vec![0.0; law.variables().len()];
+    let mut old = vec![0.0; law.description().variables.len()];
     law.initial_state(Vector2::zeros(), &CauchyStress { xx: -p_0, yy: -p_0, zz: -p_0, xy: 0.0 }, &mut old);
     old[0] = 30.0;
     let total = p_0 + 30.0;
@@ -165,7 +165,7 @@ fn clay_under_a_constant_lateral_stress() {
             radial -= rest / ((answer.tangent[(0, 0)] + answer.tangent[(0, 4)]) * f[0] / (f[3] * f[4]));
         }
         if k % 100 == 0 {
-            let mut values = vec![0.0; law.shown().len()];
+            let mut values = vec![0.0; law.description().shown.len()];
             law.show(&with!(Straining::new(plane(&f), &old), stretch: f[4]), &mut values).expect("an answer");
             let [p, q, p_w] = [values[3], values[4], values[6]];
             let closed = p_0 * (1.0 + (q / p / m).powi(2)).powf(kappa / lambda - 1.0);

@@ -3,7 +3,7 @@
 
 use crate::common::{Blocks, close, finished};
 use fecontact::laws::bulk::{
-    CauchyStress, ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, Straining,
+    CauchyStress, ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining,
 };
 use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
@@ -28,20 +28,14 @@ struct VonMises {
 const LONGEST: f64 = 0.1;
 
 impl Material for VonMises {
-    fn density(&self) -> f64 {
-        0.0
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.lame.constrained_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.lame.shear
-    }
-
-    fn variables(&self) -> &[&'static str] {
-        &["plastic_xx", "plastic_yy", "plastic_zz", "plastic_xy", "equivalent_plastic"]
+    fn description(&self) -> MaterialDescription<'_> {
+        MaterialDescription::new(0.0, self.lame.constrained_modulus(), self.lame.shear).remembering(&[
+            "plastic_xx",
+            "plastic_yy",
+            "plastic_zz",
+            "plastic_xy",
+            "equivalent_plastic",
+        ])
     }
 
     /// What has been loaded up to a stress has hardened for it.

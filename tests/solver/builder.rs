@@ -7,7 +7,7 @@ use crate::common::{
     self, Blocks, elastic, expression, finish_at, finished, floor, linear, model, model_at, neo_hookean,
 };
 use fecontact::case::law_test;
-use fecontact::laws::bulk::{Material, NeoHookean, SaintVenantKirchhoff};
+use fecontact::laws::bulk::{Material, MaterialDescription, NeoHookean, SaintVenantKirchhoff};
 use fecontact::laws::friction::{
     Coulomb, CoulombParameters, Description, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure,
     Sliding, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
@@ -313,16 +313,9 @@ fn press() -> LoadStep {
 struct Doubled(NeoHookean);
 
 impl Material for Doubled {
-    fn density(&self) -> f64 {
-        0.0
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        2.0 * self.0.p_wave_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        2.0 * self.0.shear_modulus()
+    fn description(&self) -> MaterialDescription<'_> {
+        let own = self.0.description();
+        MaterialDescription::new(0.0, 2.0 * own.p_wave_modulus, 2.0 * own.shear_modulus)
     }
 
     fn respond(

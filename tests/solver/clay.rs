@@ -95,10 +95,15 @@ fn moduli_come_from_the_initial_stress() {
     let (bulk, share) = (50.0 / 0.02, 1.5 * 0.5 / 1.25);
     let built = model(&case(false));
     let law = &built.bodies[0].material;
-    close("G", law.shear_modulus(), share * bulk, 1e-9 * bulk);
-    close("K + 4G/3", law.p_wave_modulus(), bulk * (1.0 + 4.0 / 3.0 * share), 1e-9 * bulk);
+    close("G", law.description().shear_modulus, share * bulk, 1e-9 * bulk);
+    close("K + 4G/3", law.description().p_wave_modulus, bulk * (1.0 + 4.0 / 3.0 * share), 1e-9 * bulk);
     let with = model(&case(true));
-    close("with K_w/n", with.bodies[0].material.p_wave_modulus(), law.p_wave_modulus() + 1e6, 1e-6);
+    close(
+        "with K_w/n",
+        with.bodies[0].material.description().p_wave_modulus,
+        law.description().p_wave_modulus + 1e6,
+        1e-6,
+    );
     let warnings = with.warnings().join("\n");
     assert!(warnings.contains("fluid in its pores") && warnings.contains("f_bar"), "{warnings}");
 }

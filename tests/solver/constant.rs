@@ -9,7 +9,8 @@ use fecontact::equations::sums::Dependence;
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::laws::bulk::{
-    Linear, Material, MaterialFailure, MaterialResponse, Straining, Viscoelastic, ViscoelasticConstants,
+    Linear, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining, Viscoelastic,
+    ViscoelasticConstants,
 };
 use fecontact::linear::system::Request;
 use fecontact::mesh::section::Section;
@@ -356,20 +357,8 @@ struct Own {
 }
 
 impl Material for Own {
-    fn density(&self) -> f64 {
-        self.law.density()
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.law.p_wave_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.law.shear_modulus()
-    }
-
-    fn is_linear(&self) -> bool {
-        true
+    fn description(&self) -> MaterialDescription<'_> {
+        self.law.description()
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use fecontact::laws::bulk::{
-    CauchyStress, ElasticConstants, Material, MaterialFailure, MaterialParameters, MaterialResponse, Straining,
-    Viscoelastic, ViscoelasticConstants,
+    CauchyStress, ElasticConstants, Material, MaterialDescription, MaterialFailure, MaterialParameters,
+    MaterialResponse, Straining, Viscoelastic, ViscoelasticConstants,
 };
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::{ElementKind, edge_values, gauss};
@@ -462,7 +462,7 @@ fn solve(
             tangent.column_mut(dof).fill(0.0);
             tangent[(dof, dof)] = 1.0;
         }
-        if residual.amax() < 1e-14 * material.p_wave_modulus() * size {
+        if residual.amax() < 1e-14 * material.description().p_wave_modulus * size {
             return iteration;
         }
         let correction = tangent.lu().solve(&residual).unwrap();
@@ -532,20 +532,8 @@ fn all_kinds_converge_to_the_same_compressible_solution() {
 struct Turning;
 
 impl Material for Turning {
-    fn density(&self) -> f64 {
-        0.0
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        E
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        E
-    }
-
-    fn is_symmetric(&self) -> bool {
-        false
+    fn description(&self) -> MaterialDescription<'_> {
+        MaterialDescription { is_symmetric: false, ..MaterialDescription::new(0.0, E, E) }
     }
 
     fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
@@ -565,7 +553,7 @@ fn the_tangent_of_memory_and_of_laws_without_a_potential_equals_differences() {
     for (kind, formulation) in VARIANTS {
         let patch = Patch::distorted(kind, formulation);
         for (material, (element, nodes)) in laws.iter().zip([&patch.elements[0], &patch.elements[0]]) {
-            let count = element.quadrature_points() * material.variables().len();
+            let count = element.quadrature_points() * material.description().variables.len();
             let motion = |share: f64| -> Vec<Vector2<f64>> {
                 let bend = |x: Vector2<f64>| Vector2::new(0.2 * x.y * x.y + 0.1 * x.x, -0.15 * x.x * x.y + 0.2 * x.x);
                 nodes.iter().map(|&a| share * bend(patch.nodes[a])).collect()
@@ -594,7 +582,7 @@ fn the_tangent_of_memory_and_of_laws_without_a_potential_equals_differences() {
                 assert!(error < 1e-7 * tangent.amax(), "{kind:?} {formulation:?} {material:?}: {error}");
             }
             let skew = (&tangent - tangent.transpose()).amax() / tangent.amax();
-            assert_eq!(skew < 1e-12, material.is_symmetric(), "{kind:?} {material:?}: {skew}");
+            assert_eq!(skew < 1e-12, material.description().is_symmetric, "{kind:?} {material:?}: {skew}");
         }
     }
 }

@@ -130,7 +130,10 @@ fn every_element_has_a_place_of_its_own() {
     let mut next = 0.0;
     for (e, &body) in model.body_of_element.iter().enumerate() {
         let own = model.memories.of(e, &memory);
-        assert_eq!(own.len(), model.solids[e].quadrature_points() * model.bodies[body].material.variables().len());
+        assert_eq!(
+            own.len(),
+            model.solids[e].quadrature_points() * model.bodies[body].material.description().variables.len()
+        );
         assert!(own.iter().enumerate().all(|(k, value)| *value == next + k as f64));
         next += own.len() as f64;
     }

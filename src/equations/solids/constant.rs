@@ -48,12 +48,15 @@ const FEW_BLOCKS: usize = 2;
 /// internal variables; with F-bar the tangent varies nevertheless.
 pub fn is_constant(model: &Model, element: usize) -> bool {
     let material = &model.bodies[model.body_of_element[element]].material;
-    material.is_linear() && material.is_symmetric() && !material.evolves() && !model.solids[element].is_f_bar()
+    material.description().is_linear
+        && material.description().is_symmetric
+        && !material.description().evolves
+        && !model.solids[element].is_f_bar()
 }
 
 /// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F; not every linear law has one.
 pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool {
-    if !material.is_linear() {
+    if !material.description().is_linear {
         return false;
     }
     let (deformation, rate) = (Matrix2::new(1.25, 0.5, -0.25, 0.75), Matrix2::new(0.5, -1.0, 0.75, 0.25));

@@ -1,7 +1,8 @@
 use super::isotropic::{Across, Invariants, StrainEnergy};
 use super::spatial::{ln_stretch, positive_stretch};
 use super::{
-    ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+    ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress, Spatial,
+    Straining, Stretched,
 };
 use crate::laws::parameter::InvalidParameter;
 
@@ -60,16 +61,8 @@ impl Hencky {
 }
 
 impl Material for Hencky {
-    fn density(&self) -> f64 {
-        self.density
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.lame.constrained_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.lame.shear
+    fn description(&self) -> MaterialDescription<'_> {
+        self.lame.description(self.density)
     }
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {

@@ -6,7 +6,8 @@ use nalgebra::{Matrix2, Matrix4, Vector2};
 
 use super::spatial::plane;
 use super::{
-    CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+    CauchyStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining,
+    Stretched,
 };
 
 /// Names of the initial stress among the variables of a law.
@@ -25,7 +26,7 @@ pub const TEMPERATURE: [&str; 2] = ["temperature_rise", "expansion_stress"];
 /// ```
 /// F, P and W are those of the unheated, undeformed body, whose stress is σ₀ as it is given. It turns with the body: σ₀ is a
 /// constant second Piola–Kirchhoff stress beside that of the law, and δ_ik σ₀ its geometric stiffness. All tensors are those in
-/// space, F₃₃ = 1 in plane strain. A [linear](Material::is_linear) law adds small strains, and no rotation matters:
+/// space, F₃₃ = 1 in plane strain. A [linear](MaterialDescription::is_linear) law adds small strains, and no rotation matters:
 ///
 /// ```text
 /// ε_e = ε − α (T − T₀) 1,   W = W_l(ε_e) + σ₀:ε_e,   σ = σ_l(ε_e) + σ₀,   −∂W/∂ϑ = tr σ                       (5)
@@ -58,7 +59,7 @@ impl Imposed {
     }
 
     fn of(law: Arc<dyn Material>, flat: bool, stressed: bool, expansion: Option<f64>) -> Self {
-        let mut names = law.variables().to_vec();
+        let mut names = law.description().variables.to_vec();
         names.extend(INITIAL_STRESS.iter().filter(|_| stressed));
         names.extend(TEMPERATURE.iter().filter(|_| expansion.is_some()));
         Self { law, flat, stressed, expansion, names }
@@ -72,8 +73,9 @@ impl Imposed {
     /// F and F₃₃ of the underlying law, without the thermal strain.
     fn elastic<'a>(&self, straining: &Straining<'a>, strain: f64) -> Straining<'a> {
         let Straining { deformation, stretch, dt, old } = *straining;
-        let old = &old[..self.law.variables().len()];
-        match self.is_linear() {
+        let own = self.law.description();
+        let old = &old[..own.variables.len()];
+        match own.is_linear {
             true => Straining {
                 deformation: deformation - Matrix2::from_diagonal_element(strain),
                 stretch: stretch - strain,
@@ -103,7 +105,8 @@ impl Imposed {
 
     /// The initial stress in plane and across it, which stays as it is.
     fn initial(&self, old: &[f64], new: &mut [f64]) -> Option<(Matrix2<f64>, f64)> {
-        let own = self.law.variables().len()..self.law.variables().len() + INITIAL_STRESS.len();
+        let own = self.law.description().variables.len();
+        let own = own..own + INITIAL_STRESS.len();
         self.stressed.then(|| {
             new[own.clone()].copy_from_slice(&old[own.clone()]);
             let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| old[own.start + k]);
@@ -147,7 +150,7 @@ impl Spatial for Imposed {
         let strain = self.thermal_strain(straining.old);
         let elastic = self.elastic(straining, strain);
         let own = self.law.spatial().map_or(Ok(0.0), |law| law.ln_free_stretch(&elastic))?;
-        Ok(own + if self.is_linear() { 0.0 } else { strain.ln_1p() })
+        Ok(own + if self.law.description().is_linear { 0.0 } else { strain.ln_1p() })
     }
 
     fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
@@ -157,8 +160,8 @@ impl Spatial for Imposed {
         if theta.is_nan() || theta <= 0.0 {
             return Err(MaterialFailure::Inverted { jacobian: theta });
         }
-        let (elastic, linear) = (self.elastic(straining, strain), self.is_linear());
-        let mut answer = self.answer(&elastic, &mut new[..self.law.variables().len()])?;
+        let (elastic, linear) = (self.elastic(straining, strain), self.law.description().is_linear);
+        let mut answer = self.answer(&elastic, &mut new[..elastic.old.len()])?;
         if let Some(initial) = self.initial(straining.old, new) {
             add_initial(&mut answer, &elastic, initial, linear);
         }
@@ -181,32 +184,13 @@ impl Spatial for Imposed {
 }
 
 impl Material for Imposed {
-    fn density(&self) -> f64 {
-        self.law.density()
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.law.p_wave_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.law.shear_modulus()
-    }
-
-    fn is_linear(&self) -> bool {
-        self.law.is_linear()
-    }
-
-    fn is_symmetric(&self) -> bool {
-        self.law.is_symmetric()
-    }
-
-    fn variables(&self) -> &[&'static str] {
-        &self.names
+    fn description(&self) -> MaterialDescription<'_> {
+        let own = self.law.description();
+        MaterialDescription { variables: &self.names, evolves: own.evolves || self.expansion.is_some(), ..own }
     }
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
-        match self.is_linear() {
+        match self.law.description().is_linear {
             true => Some(Box::new(Self::of(self.law.plane_stress()?.into(), true, self.stressed, self.expansion))),
             false => Some(Box::new(PlaneStress::new(self.clone()))),
         }
@@ -228,47 +212,27 @@ impl Material for Imposed {
 
     /// The initial stress, and the expansion stress that it is.
     fn initial_state(&self, position: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
-        let own = self.law.variables().len();
+        let own = self.law.description().variables.len();
         self.law.initial_state(position, stress, &mut variables[..own]);
         let CauchyStress { xx, yy, zz, xy } = *stress;
         if self.stressed {
             variables[own..own + INITIAL_STRESS.len()].copy_from_slice(&[xx, yy, xy, zz]);
         }
-        if self.expansion.is_some() && (self.stressed || self.law.holds_initial_stress()) {
+        if self.expansion.is_some() && (self.stressed || self.law.description().holds_initial_stress) {
             variables[self.names.len() - 1] = xx + yy + zz;
         }
-    }
-
-    fn flow(&self) -> Option<Flow> {
-        self.law.flow()
-    }
-
-    fn concern(&self) -> Option<String> {
-        self.law.concern()
     }
 
     fn at_pressure(&self, pressure: f64) -> Option<Arc<dyn Material>> {
         Some(Arc::new(Self { law: self.law.at_pressure(pressure)?, ..self.clone() }))
     }
 
-    fn holds_initial_stress(&self) -> bool {
-        self.law.holds_initial_stress()
-    }
-
     fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
         self.law.admits(stress)
     }
 
-    fn shown(&self) -> &[&'static str] {
-        self.law.shown()
-    }
-
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
         self.law.show(&self.elastic(straining, self.thermal_strain(straining.old)), values)
-    }
-
-    fn evolves(&self) -> bool {
-        self.law.evolves() || self.expansion.is_some()
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {

@@ -1,7 +1,8 @@
 use nalgebra::{Matrix2, Matrix4, Vector4};
 
 use super::{
-    CauchyStress, ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, Spatial, Straining, Stretched,
+    CauchyStress, ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, Spatial,
+    Straining, Stretched,
 };
 use crate::laws::parameter::InvalidParameter;
 
@@ -36,20 +37,8 @@ impl Linear {
 }
 
 impl Material for Linear {
-    fn density(&self) -> f64 {
-        self.density
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.lame.constrained_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.lame.shear
-    }
-
-    fn is_linear(&self) -> bool {
-        true
+    fn description(&self) -> MaterialDescription<'_> {
+        MaterialDescription { is_linear: true, ..self.lame.description(self.density) }
     }
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
@@ -80,7 +69,7 @@ impl Material for Linear {
         let strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
         let trace = strain.trace();
         let stress = Matrix2::from_diagonal_element(lambda * trace) + 2.0 * shear * strain;
-        let m = self.p_wave_modulus();
+        let m = self.lame.constrained_modulus();
         #[rustfmt::skip]
         let tangent = Matrix4::new(
             m,      0.0,   0.0,   lambda,

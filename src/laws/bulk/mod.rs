@@ -83,6 +83,64 @@ impl MaterialResponse {
     }
 }
 
+/// What a law says of itself in plain values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+pub struct MaterialDescription<'a> {
+    /// ρ₀: mass per reference volume [M/L³]
+    pub density: f64,
+    /// λ + 2G: P-wave modulus of the undeformed material at once, the scale of its stiffness: of waves, penalties and steps [F/L²]
+    pub p_wave_modulus: f64,
+    /// G: shear modulus of the undeformed material [F/L²]
+    pub shear_modulus: f64,
+    /// Whether ∂P/∂F is the same at every F
+    pub is_linear: bool,
+    /// Whether ∂P/∂F is symmetric, as it is where P has a potential: half of the tangent is the mirror image of the other
+    pub is_symmetric: bool,
+    /// Names of what the law remembers at every quadrature point; none for elastic laws
+    pub variables: &'a [&'static str],
+    /// Whether an increment changes what the law remembers
+    pub evolves: bool,
+    /// How it flows if it yields; none if it does not. What a law that yields dissipates is plastic work, and damping that of others
+    pub flow: Option<Flow>,
+    /// Why results depend on the mesh, of a law of which they do
+    pub concern: Option<&'a str>,
+    /// Whether an initial stress is the law's own, which [`Material::initial_state`] makes it remember; it stands beside the law
+    /// ([`Imposed`]) otherwise
+    pub holds_initial_stress: bool,
+    /// Names of what the law shows besides stress, at a point in any state
+    pub shown: &'a [&'static str],
+}
+
+impl<'a> MaterialDescription<'a> {
+    /// An elastic law of the density ρ₀, λ + 2G and G.
+    pub const fn new(density: f64, p_wave_modulus: f64, shear_modulus: f64) -> Self {
+        Self {
+            density,
+            p_wave_modulus,
+            shear_modulus,
+            is_linear: false,
+            is_symmetric: true,
+            variables: &[],
+            evolves: false,
+            flow: None,
+            concern: None,
+            holds_initial_stress: false,
+            shown: &[],
+        }
+    }
+
+    /// A law whose increments change these variables.
+    pub const fn remembering(self, variables: &'a [&'static str]) -> Self {
+        Self { variables, evolves: true, ..self }
+    }
+
+    /// λ
+    pub(crate) fn lambda(&self) -> f64 {
+        self.p_wave_modulus - 2.0 * self.shear_modulus
+    }
+}
+
 /// Input of a law at one quadrature point: deformation at the end of the increment, and internal variables at its
 /// start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +152,7 @@ pub struct Straining<'a> {
     pub stretch: f64,
     /// Δt: length of the increment [T]
     pub dt: f64,
-    /// The committed [`variables`](Material::variables)
+    /// The committed [`variables`](MaterialDescription::variables)
     pub old: &'a [f64],
 }
 
@@ -223,22 +281,11 @@ pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
 /// ```text
 /// (P, ∂P/∂F, variables, W, dissipation)₁ = law(variables₀; F₁, Δt)
 /// ```
-/// It is asked in plane strain. What it remembers it names in [`variables`](Self::variables); an elastic law has none, and answers to F
-/// alone. An increment of no length leaves no time to relax.
+/// It is asked in plane strain. What it remembers it names in its [description](Self::description); an elastic law has no variables, and
+/// answers to F alone. An increment of no length leaves no time to relax.
 pub trait Material: Debug + Send + Sync {
-    /// ρ₀: mass per reference volume [M/L³]
-    fn density(&self) -> f64;
-
-    /// λ + 2G: P-wave modulus of the undeformed material at once, the scale of its stiffness: of waves, penalties and steps [F/L²]
-    fn p_wave_modulus(&self) -> f64;
-
-    /// G: shear modulus of the undeformed material [F/L²]
-    fn shear_modulus(&self) -> f64;
-
-    /// Whether ∂P/∂F is the same at every F.
-    fn is_linear(&self) -> bool {
-        false
-    }
+    /// What the law says of itself, before anything is strained.
+    fn description(&self) -> MaterialDescription<'_>;
 
     /// The answer to an increment, whose variables at the end are written over `new`.
     ///
@@ -252,7 +299,7 @@ pub trait Material: Debug + Send + Sync {
     /// # Errors
     /// As [`Material::respond`].
     fn at_once(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, MaterialFailure> {
-        let old = vec![0.0; self.variables().len()];
+        let old = vec![0.0; self.description().variables.len()];
         let straining = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &old };
         self.respond(&straining, &mut old.clone())
     }
@@ -275,40 +322,14 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
-    /// Names of what the law remembers at every quadrature point; none for elastic laws.
-    fn variables(&self) -> &[&'static str] {
-        &[]
-    }
-
     /// Write what the law remembers before the first increment over `variables`, which are zero: at a reference position, in a body
     /// with an initial stress.
     fn initial_state(&self, _position: Vector2<f64>, _stress: &CauchyStress, _variables: &mut [f64]) {}
-
-    /// Whether an increment changes what the law remembers.
-    fn evolves(&self) -> bool {
-        !self.variables().is_empty()
-    }
-
-    /// How it flows if it yields; none if it does not. What a law that yields dissipates is plastic work, and damping that of others.
-    fn flow(&self) -> Option<Flow> {
-        None
-    }
-
-    /// What is to be told of the law before anything is solved.
-    fn concern(&self) -> Option<String> {
-        None
-    }
 
     /// The law with the moduli that it has under a mean pressure p at the start, p being positive in compression; none where they do not
     /// depend on it [F/L²]
     fn at_pressure(&self, _pressure: f64) -> Option<Arc<dyn Material>> {
         None
-    }
-
-    /// Whether an initial stress is the law's own, which [`initial_state`](Self::initial_state) makes it remember; it stands beside
-    /// the law ([`Imposed`]) otherwise.
-    fn holds_initial_stress(&self) -> bool {
-        false
     }
 
     /// Whether a body of this law can have an initial stress.
@@ -319,22 +340,12 @@ pub trait Material: Debug + Send + Sync {
         Ok(())
     }
 
-    /// Names of what the law shows besides stress, at a point in any state.
-    fn shown(&self) -> &[&'static str] {
-        &[]
-    }
-
-    /// Write what it [shows](Self::shown) where it remembers `straining.old`.
+    /// Write what it [shows](MaterialDescription::shown) where it remembers `straining.old`.
     ///
     /// # Errors
     /// As [`Material::respond`].
     fn show(&self, _straining: &Straining, _values: &mut [f64]) -> Result<(), MaterialFailure> {
         Ok(())
-    }
-
-    /// Whether ∂P/∂F is symmetric, as it is where P has a potential: half of the tangent is the mirror image of the other.
-    fn is_symmetric(&self) -> bool {
-        true
     }
 
     /// P and W alone. Compiled for each law, so that the tangent that is not asked for costs nothing.
@@ -382,9 +393,9 @@ pub trait Material: Debug + Send + Sync {
 
     /// C:sym(e) = λ tr(e) 1 + G (e + eᵀ)
     fn hooke(&self, strain: &Matrix2<f64>) -> Matrix2<f64> {
-        let shear = self.shear_modulus();
-        let lambda = self.p_wave_modulus() - 2.0 * shear;
-        Matrix2::from_diagonal_element(lambda * strain.trace()) + shear * (strain + strain.transpose())
+        let own = self.description();
+        Matrix2::from_diagonal_element(own.lambda() * strain.trace())
+            + own.shear_modulus * (strain + strain.transpose())
     }
 
     /// σ = P Fᵀ / J at F in plane strain, with the variables that the law remembers there.

@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    CamClay, CamClayParameters, DruckerPrager, DruckerPragerParameters, Hencky, Linear, Material, MohrCoulomb,
-    MohrCoulombParameters, NeoHookean, SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants, VonMises,
-    VonMisesParameters,
+    CamClay, CamClayParameters, DruckerPrager, DruckerPragerParameters, Hencky, Linear, Material, MaterialDescription,
+    MohrCoulomb, MohrCoulombParameters, NeoHookean, SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants,
+    VonMises, VonMisesParameters,
 };
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
@@ -116,5 +116,10 @@ impl Lame {
     /// λ + 2G: constrained modulus, stress per uniaxial strain [F/L²]
     pub fn constrained_modulus(&self) -> f64 {
         self.lambda + 2.0 * self.shear
+    }
+
+    /// What an elastic law with these constants says of itself, with its density [M/L³].
+    pub(crate) fn description(&self, density: f64) -> MaterialDescription<'static> {
+        MaterialDescription::new(density, self.constrained_modulus(), self.shear)
     }
 }

@@ -1,7 +1,8 @@
 use super::isotropic::{Across, Invariants, StrainEnergy};
 use super::spatial::positive_stretch;
 use super::{
-    ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+    ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress, Spatial,
+    Straining, Stretched,
 };
 use crate::laws::parameter::InvalidParameter;
 
@@ -35,7 +36,7 @@ impl SaintVenantKirchhoff {
     /// W and its derivatives in plane strain, and e.
     #[inline(always)]
     fn energy(&self, invariants: &Invariants) -> (StrainEnergy, f64) {
-        let (shear, constrained) = (self.lame.shear, self.p_wave_modulus());
+        let (shear, constrained) = (self.lame.shear, self.lame.constrained_modulus());
         let (m, j) = (invariants.distortion, invariants.volume_strain);
         let trace = 0.5 * m + j;
         let energy = StrainEnergy {
@@ -51,16 +52,8 @@ impl SaintVenantKirchhoff {
 }
 
 impl Material for SaintVenantKirchhoff {
-    fn density(&self) -> f64 {
-        self.density
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.lame.constrained_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.lame.shear
+    fn description(&self) -> MaterialDescription<'_> {
+        self.lame.description(self.density)
     }
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {

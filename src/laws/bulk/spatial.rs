@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
 
-use super::{CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, Straining};
+use super::{CauchyStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining};
 
 /// Response of a law at F with an out-of-plane stretch.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,8 +59,8 @@ pub trait Spatial: Material {
     /// # Errors
     /// [`MaterialFailure::Inverted`] when det F is not positive.
     fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
-        let (modulus, shear) = (self.p_wave_modulus(), self.shear_modulus());
-        Ok(-super::positive_jacobian(&straining.deformation)?.ln() * (modulus - 2.0 * shear) / modulus)
+        let own = self.description();
+        Ok(-super::positive_jacobian(&straining.deformation)?.ln() * own.lambda() / own.p_wave_modulus)
     }
 
     /// σ = P Fᵀ/J where the law remembers `straining.old`.
@@ -70,7 +70,7 @@ pub trait Spatial: Material {
     fn cauchy(&self, straining: &Straining) -> Result<CauchyStress, MaterialFailure> {
         let stress = self.stretched(straining, &mut straining.old.to_vec())?.stress;
         let (f, h) = (&straining.deformation, straining.stretch);
-        if self.is_linear() {
+        if self.description().is_linear {
             return Ok(CauchyStress { xx: stress[0], yy: stress[3], zz: stress[4], xy: stress[1] });
         }
         let sigma = plane(&stress) * f.transpose() / (f.determinant() * h);
@@ -83,7 +83,7 @@ pub trait Spatial: Material {
     /// As [`Spatial::stretched`].
     fn in_plane_strain(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
         let Stretched { stress, tangent, energy, dissipation } = self.stretched(straining, new)?;
-        let volume = if self.is_linear() { 1.0 } else { straining.deformation.determinant() };
+        let volume = if self.description().is_linear { 1.0 } else { straining.deformation.determinant() };
         let tangent = tangent.fixed_view::<4, 4>(0, 0).into();
         Ok(MaterialResponse { stress: plane(&stress), tangent, energy, stress_zz: stress[4] / volume, dissipation })
     }
@@ -91,7 +91,7 @@ pub trait Spatial: Material {
     /// P_v/τ at F and Ḟ, see [`super`]; of a linear law the elastic stress of the rate [F/(L² T)].
     fn viscous(&self, [f, rate]: [&Vector5<f64>; 2]) -> Vector5<f64> {
         let [f, rate] = [f, rate].map(matrix);
-        in_five(&match self.is_linear() {
+        in_five(&match self.description().is_linear {
             true => hooke(self, &rate),
             false => f * hooke(self, &(f.transpose() * rate)),
         })
@@ -100,7 +100,7 @@ pub trait Spatial: Material {
     /// Variation of P_v/τ with δF and δḞ.
     fn varied_viscous(&self, [f, rate]: [&Vector5<f64>; 2], [df, drate]: [&Vector5<f64>; 2]) -> Vector5<f64> {
         let [f, rate, df, drate] = [f, rate, df, drate].map(matrix);
-        in_five(&match self.is_linear() {
+        in_five(&match self.description().is_linear {
             true => hooke(self, &drate),
             false => {
                 let strain = df.transpose() * rate + f.transpose() * drate;
@@ -112,9 +112,8 @@ pub trait Spatial: Material {
 
 /// λ tr(e) 1 + G (e + eᵀ)
 fn hooke(law: &(impl Spatial + ?Sized), strain: &Matrix3<f64>) -> Matrix3<f64> {
-    let shear = law.shear_modulus();
-    let lambda = law.p_wave_modulus() - 2.0 * shear;
-    Matrix3::from_diagonal_element(lambda * strain.trace()) + shear * (strain + strain.transpose())
+    let own = law.description();
+    Matrix3::from_diagonal_element(own.lambda() * strain.trace()) + own.shear_modulus * (strain + strain.transpose())
 }
 
 /// The five components of a tensor, from its part in plane and 33.
@@ -183,7 +182,7 @@ impl<L: Spatial> PlaneStress<L> {
 
     /// h and the answer there.
     fn solved(&self, straining: &Straining, new: &mut [f64]) -> Result<(f64, Stretched), MaterialFailure> {
-        let modulus = self.law.p_wave_modulus();
+        let modulus = self.law.description().p_wave_modulus;
         let mut ln_h = self.law.ln_free_stretch(straining)?;
         let mut rest = 0.0;
         for _ in 0..ITERATIONS {
@@ -205,53 +204,18 @@ impl<L: Spatial> PlaneStress<L> {
 }
 
 impl<L: Spatial> Material for PlaneStress<L> {
-    fn density(&self) -> f64 {
-        self.law.density()
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        let (modulus, shear) = (self.law.p_wave_modulus(), self.law.shear_modulus());
-        4.0 * shear * (modulus - shear) / modulus
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.law.shear_modulus()
-    }
-
-    fn variables(&self) -> &[&'static str] {
-        self.law.variables()
-    }
-
-    fn is_symmetric(&self) -> bool {
-        self.law.is_symmetric()
+    fn description(&self) -> MaterialDescription<'_> {
+        let own = self.law.description();
+        let (modulus, shear) = (own.p_wave_modulus, own.shear_modulus);
+        MaterialDescription { p_wave_modulus: 4.0 * shear * (modulus - shear) / modulus, is_linear: false, ..own }
     }
 
     fn initial_state(&self, position: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
         self.law.initial_state(position, stress, variables);
     }
 
-    fn evolves(&self) -> bool {
-        self.law.evolves()
-    }
-
-    fn flow(&self) -> Option<Flow> {
-        self.law.flow()
-    }
-
-    fn concern(&self) -> Option<String> {
-        self.law.concern()
-    }
-
-    fn holds_initial_stress(&self) -> bool {
-        self.law.holds_initial_stress()
-    }
-
     fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
         self.law.admits(stress)
-    }
-
-    fn shown(&self) -> &[&'static str] {
-        self.law.shown()
     }
 
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {

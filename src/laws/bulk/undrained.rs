@@ -6,7 +6,8 @@ use nalgebra::{Matrix2, Vector2, Vector5};
 
 use super::spatial::{components, plane, positive_stretch};
 use super::{
-    CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, Spatial, Straining, Stretched, positive_jacobian,
+    CauchyStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, Spatial, Straining, Stretched,
+    positive_jacobian,
 };
 
 /// Name of the initial pressure of the fluid among the variables of a law, the first of them.
@@ -24,7 +25,7 @@ const SHOWN: &str = "pore_pressure";
 /// p_w ≥ p_cav,   W = W′ + w(ln J_cav) − p_cav (ln J − ln J_cav)  there                         cavitation        (4)
 /// ```
 /// The grains do not change their volume, and n, the porosity, stays as it is: that of small changes of volume, which they are as K_w is
-/// large. A [linear](Material::is_linear) law has tr ε in place of ln J, and P = σ.
+/// large. A [linear](MaterialDescription::is_linear) law has tr ε in place of ln J, and P = σ.
 ///
 /// p_w0 stands among the variables, and the stress that the law begins with is the effective one. Damping is the law's own.
 ///
@@ -54,11 +55,12 @@ impl Undrained {
     pub fn new(law: impl Into<Arc<dyn Material>>, modulus: f64, cavitation: Option<f64>) -> Option<Self> {
         let law = law.into();
         law.spatial()?;
-        if law.is_linear() && cavitation.is_some() {
+        let own = law.description();
+        if own.is_linear && cavitation.is_some() {
             return None;
         }
-        let names = std::iter::once(PORE_PRESSURE).chain(law.variables().iter().copied()).collect();
-        let shown = law.shown().iter().copied().chain([SHOWN]).collect();
+        let names = std::iter::once(PORE_PRESSURE).chain(own.variables.iter().copied()).collect();
+        let shown = own.shown.iter().copied().chain([SHOWN]).collect();
         Some(Self { law, modulus, cavitation, names, shown })
     }
 
@@ -70,7 +72,7 @@ impl Undrained {
     /// ln J, of a linear law tr ε.
     fn expansion(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
         let Straining { deformation: f, stretch, .. } = *straining;
-        if self.is_linear() {
+        if self.law.description().is_linear {
             return Ok(f.trace() - 2.0 + (stretch - 1.0));
         }
         let jacobian = positive_jacobian(&f)?;
@@ -110,7 +112,7 @@ impl Spatial for Undrained {
         let law = self.law.spatial().expect("`new` asks for one");
         let mut answer = law.stretched(&self.inner(straining), &mut new[1..])?;
         answer.energy += fluid.energy;
-        if self.is_linear() {
+        if self.law.description().is_linear {
             let one = Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0);
             answer.stress -= fluid.pressure * one;
             answer.tangent += fluid.stiffness * one * one.transpose();
@@ -140,32 +142,14 @@ impl Spatial for Undrained {
 }
 
 impl Material for Undrained {
-    fn density(&self) -> f64 {
-        self.law.density()
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.law.p_wave_modulus() + self.modulus
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.law.shear_modulus()
-    }
-
-    fn is_linear(&self) -> bool {
-        self.law.is_linear()
-    }
-
-    fn is_symmetric(&self) -> bool {
-        self.law.is_symmetric()
-    }
-
-    fn variables(&self) -> &[&'static str] {
-        &self.names
-    }
-
-    fn evolves(&self) -> bool {
-        self.law.evolves()
+    fn description(&self) -> MaterialDescription<'_> {
+        let own = self.law.description();
+        MaterialDescription {
+            p_wave_modulus: own.p_wave_modulus + self.modulus,
+            variables: &self.names,
+            shown: &self.shown,
+            ..own
+        }
     }
 
     fn initial_state(&self, position: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
@@ -180,24 +164,8 @@ impl Material for Undrained {
         Some(Arc::new(Self { law: self.law.at_pressure(pressure)?, ..self.clone() }))
     }
 
-    fn flow(&self) -> Option<Flow> {
-        self.law.flow()
-    }
-
-    fn concern(&self) -> Option<String> {
-        self.law.concern()
-    }
-
-    fn holds_initial_stress(&self) -> bool {
-        self.law.holds_initial_stress()
-    }
-
     fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
         self.law.admits(stress)
-    }
-
-    fn shown(&self) -> &[&'static str] {
-        &self.shown
     }
 
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {

@@ -3,7 +3,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::spatial::{Spatial, Stretched, positive_stretch};
-use super::{ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, NeoHookean, PlaneStress, Straining};
+use super::{
+    ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, NeoHookean, PlaneStress,
+    Straining,
+};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Constants of [`Viscoelastic`].
@@ -85,6 +88,10 @@ impl Viscoelastic {
     }
 }
 
+/// What it remembers: ε of the arm, and E.
+const VARIABLES: [&str; 8] =
+    ["arm_xx", "arm_yy", "arm_xy", "arm_zz", "strain_xx", "strain_yy", "strain_xy", "strain_zz"];
+
 /// A symmetric strain or stress: in plane, and out of plane.
 #[derive(Clone, Copy, Debug)]
 struct Tensor {
@@ -136,20 +143,11 @@ fn relaxation(x: f64) -> [f64; 3] {
 }
 
 impl Material for Viscoelastic {
-    fn density(&self) -> f64 {
-        self.behind.density()
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.behind.p_wave_modulus() + self.arm.constrained_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.behind.shear_modulus() + self.arm.shear
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["arm_xx", "arm_yy", "arm_xy", "arm_zz", "strain_xx", "strain_yy", "strain_xy", "strain_zz"]
+    fn description(&self) -> MaterialDescription<'_> {
+        let behind = self.behind.description();
+        let (modulus, shear) = (self.arm.constrained_modulus(), self.arm.shear);
+        MaterialDescription::new(behind.density, behind.p_wave_modulus + modulus, behind.shear_modulus + shear)
+            .remembering(&VARIABLES)
     }
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {

@@ -136,7 +136,6 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// a contact directly, `Contact::new("base", "block_bottom", "ground_top", Oil { viscosity: 2.0 })`; no registration is needed.
 /// It names its internal variables, at most [`MOST_VARIABLES`] numbers, in [`Description::variables`] (the k-th name is that of
 /// `state.variables[k]`); they appear by name in tables, frames and `Simulation::contact_field`:
-/// `state.variables[k]`), and they appear by name in tables, frames and `Simulation::contact_field`:
 ///
 /// ```
 /// use fecontact::laws::friction::{

@@ -94,7 +94,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             None => material,
         };
         let material = section::material(material, *element == Formulation::FBar, mesh.section, &place)?;
-        check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.p_wave_modulus())?;
+        check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.description().p_wave_modulus)?;
         check_damping(*damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
         let (elements, nodes) = (elements.clone(), mesh.nodes_of(group));
@@ -131,7 +131,7 @@ pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> 
     let Damping { mass, retardation } = damping;
     check_not_negative(&format!("{place}.mass"), mass)?;
     check_not_negative(&format!("{place}.stiffness"), retardation)?;
-    if mass > 0.0 && material.density() == 0.0 {
+    if mass > 0.0 && material.description().density == 0.0 {
         let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
         return Err(ModelError::new(format!("{place}.mass"), message));
     }
@@ -228,7 +228,7 @@ fn undrained(
             return Err(ModelError::new(place, message));
         }
     }
-    if law.is_linear() && cavitation.is_some() {
+    if law.description().is_linear && cavitation.is_some() {
         return refused(".cavitation", "is not for the material linear: take hencky, or leave it out".into());
     }
     match Undrained::new(law, fluid.modulus(), *cavitation) {
@@ -248,7 +248,7 @@ pub fn with_imposed(
         check_finite(&format!("{place}.thermal.expansion"), [expansion])?;
         check_finite(&format!("{place}.thermal.reference"), [reference])?;
     }
-    let stressed = stress.is_some() && !given.holds_initial_stress();
+    let stressed = stress.is_some() && !given.description().holds_initial_stress;
     if !stressed && thermal.is_none() {
         return Ok(given);
     }
@@ -322,9 +322,10 @@ pub fn check_stiffness(
         let components = stress.at(mesh.nodes[node], mesh.section.is_plate());
         (components.into_iter().fold(0.0, |most: f64, component| most.max(component.abs())), node)
     };
-    let shear = material.shear_modulus();
+    let shear = material.description().shear_modulus;
     let found = nodes.iter().map(largest).max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((largest, node)) = found.filter(|(largest, _)| !material.is_linear() && *largest >= shear) else {
+    let Some((largest, node)) = found.filter(|(largest, _)| !material.description().is_linear && *largest >= shear)
+    else {
         return Ok(());
     };
     let [largest, shear, x, y] = [largest, shear, mesh.nodes[node].x, mesh.nodes[node].y].map(number);

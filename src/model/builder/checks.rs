@@ -117,7 +117,7 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
         if model.contacts.is_empty() {
             return of_scheme("quasi_dynamic integrates the slip of contacts, and there is none".into());
         }
-        if let Some(body) = model.bodies.iter().find(|body| !body.material.is_linear()) {
+        if let Some(body) = model.bodies.iter().find(|body| !body.material.description().is_linear) {
             return of_scheme(format!(
                 "quasi_dynamic takes linear bodies, and `{}` is not: take material linear",
                 body.name

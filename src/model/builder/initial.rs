@@ -208,7 +208,7 @@ pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
     for e in 0..model.solids.len() {
         let body = &model.bodies[model.body_of_element[e]];
         let in_plate = model.mesh.section.is_plate();
-        if body.initial_stress.is_none() && body.material.holds_initial_stress() {
+        if body.initial_stress.is_none() && body.material.description().holds_initial_stress {
             body.material.admits(&CauchyStress::default()).map_err(|why| {
                 let place = format!("bodies.{}.initial_stress", body.name);
                 ModelError::new(place, format!("is missing, and the body {why}"))

@@ -364,7 +364,7 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
     }
     let impedance = |edge: &Edge| {
         let body = &model.bodies[model.body_of_element[edge.element]];
-        let (density, modulus) = (body.material.density(), body.material.shear_modulus());
+        let (density, modulus) = (body.material.description().density, body.material.description().shear_modulus);
         if density > 0.0 {
             return Ok((density * modulus).sqrt());
         }
@@ -451,7 +451,7 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
         return Ok(None);
     }
     let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
-    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.p_wave_modulus();
+    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.description().p_wave_modulus;
     let master = match &contact.master {
         MasterSide::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
         _ => &[],
@@ -528,6 +528,6 @@ pub fn modulus(contact: &Contact, model: &Model) -> f64 {
 
 /// G/(1 − ν) = 2 G (M − G)/M,   M = λ + 2 G
 fn plane(material: &dyn Material) -> f64 {
-    let (shear, constrained) = (material.shear_modulus(), material.p_wave_modulus());
+    let (shear, constrained) = (material.description().shear_modulus, material.description().p_wave_modulus);
     2.0 * shear * (constrained - shear) / constrained
 }

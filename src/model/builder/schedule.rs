@@ -227,7 +227,7 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
     }
     let mut coefficients = vec![0.0; model.dofs()];
     for body in &model.bodies {
-        let coefficient = share * body.material.p_wave_modulus() * given.duration / body.nodes.len() as f64;
+        let coefficient = share * body.material.description().p_wave_modulus * given.duration / body.nodes.len() as f64;
         let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         // A node of two bodies has the sum of both.
         dofs.for_each(|dof| coefficients[dof] += coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
@@ -246,7 +246,7 @@ fn softest(model: &Model, rigid: &RigidBody) -> f64 {
     let mut softest = f64::INFINITY;
     for body in model.bodies.iter().filter(|body| body.nodes.iter().any(|node| touched.contains(node))) {
         let depths = body.elements.iter().map(|&e| model.solids[e].mean_weight());
-        softest = softest.min(body.material.p_wave_modulus() * depths.fold(f64::INFINITY, f64::min));
+        softest = softest.min(body.material.description().p_wave_modulus * depths.fold(f64::INFINITY, f64::min));
     }
     if softest.is_finite() { softest } else { 0.0 }
 }
@@ -274,7 +274,8 @@ pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: 
     }
     let scheme = Scheme::Explicit { safety };
     scheme.check().map_err(|error| ModelError::new(place, error))?;
-    let slowest = |body: &Body| (body.material.shear_modulus() / body.material.density()).sqrt();
+    let slowest =
+        |body: &Body| (body.material.description().shear_modulus / body.material.description().density).sqrt();
     let slowest = model.bodies.iter().map(slowest).fold(f64::INFINITY, f64::min);
     let calm = (model.mesh.diagonal() / slowest).max(step.increments.min);
     let increments = Increments { error: None, ..step.increments };

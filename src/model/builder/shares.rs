@@ -53,7 +53,7 @@ pub fn mass_shares(model: &Model, name: &str, place: &str) -> Checked<Vec<Share>
     let body = model.bodies.iter().find(|body| body.name == name);
     let points = model.point_masses.iter().find(|point| point.name == name);
     match (body, points) {
-        (Some(body), None) if body.material.density() == 0.0 => {
+        (Some(body), None) if body.material.description().density == 0.0 => {
             let message = format!("gravity needs a mass: give bodies.{name}.material.density");
             return Err(ModelError::new(place, message));
         }
@@ -84,7 +84,7 @@ pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
     for Edge { nodes, element } in edges {
         let material = &*model.bodies[model.body_of_element[*element]].material;
-        let density = material.density();
+        let density = material.description().density;
         let impedance = |modulus: f64| (modulus * density).sqrt();
         for (xi, weight) in shape::gauss(nodes.len()) {
             let values = shape::edge_values(nodes.len(), xi);
@@ -94,8 +94,8 @@ pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
             let depth = model.mesh.section.weight(place);
             let s = along.normalize();
             let n = Vector2::new(s.y, -s.x);
-            let resistance = n * n.transpose() * impedance(material.p_wave_modulus())
-                + s * s.transpose() * impedance(material.shear_modulus());
+            let resistance = n * n.transpose() * impedance(material.description().p_wave_modulus)
+                + s * s.transpose() * impedance(material.description().shear_modulus);
             for (&node, value) in nodes.iter().zip(values) {
                 *total.entry(node).or_default() += resistance * (weight * value * along.norm() * depth);
             }

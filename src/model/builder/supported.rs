@@ -83,7 +83,8 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
 /// Checks that free nodes have mass, from which accelerations follow.
 fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     let mut carried = vec![false; model.mesh.nodes.len()];
-    let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
+    let dense =
+        model.bodies.iter().filter(|body| body.material.description().density > 0.0).flat_map(|body| &body.nodes);
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
     dense.chain(points).for_each(|&node| carried[node] = true);
     model.mesh.rigid_bodies.iter().for_each(|body| carried[body.turning] = body.inertia > 0.0);

@@ -252,7 +252,7 @@ fn rigid_weights(body: Option<&RigidBody>, slave: &SlavePoint, mass: &[f64], x: 
 /// Elements of bodies whose stiffness changes without their shape: with thermal expansion, unless their law is linear, and with stiffness
 /// from pressure.
 fn heated(model: &Model) -> Vec<usize> {
-    let heated = |body: &Body| body.thermal.is_some() && !body.material.is_linear();
+    let heated = |body: &Body| body.thermal.is_some() && !body.material.description().is_linear;
     let bodies = model.bodies.iter().filter(|body| heated(body) || body.material.at_pressure(0.0).is_some());
     bodies.flat_map(|body| body.elements.iter().copied()).collect()
 }
@@ -295,7 +295,7 @@ impl Element {
     ) -> Result<Self, TrialFailure> {
         let body = &model.bodies[model.body_of_element[e]];
         let local = model.mesh.vectors(e, u);
-        let size = if body.material.is_linear() { f64::INFINITY } else { size(model, e, &local) };
+        let size = if body.material.description().is_linear { f64::INFINITY } else { size(model, e, &local) };
         let undeformed = size_at_rest(model, e);
         if size < CRUSHED * undeformed {
             return Err(TrialFailure::crushed(model, e, size / undeformed));
@@ -330,7 +330,7 @@ fn bounds(
     let n = 2 * local.len();
     let (mut force, mut tangent) = (vec![0.0; n], DMatrix::zeros(n, n));
     let (solid, law) = (&model.solids[e], &*body.material);
-    let answer = match law.variables().is_empty() {
+    let answer = match law.description().variables.is_empty() {
         true => solid.force_and_tangent(law, local, &mut force, tangent.as_mut_slice()).map(drop),
         // What is imposed stiffens, and what has yielded is another body.
         false => {
@@ -368,7 +368,7 @@ fn alike(model: &Model) -> Vec<usize> {
     let mut seen = HashMap::new();
     let first = |e: usize| {
         let (body, solid) = (model.body_of_element[e], &model.solids[e]);
-        if !model.bodies[body].material.is_linear() || solid.is_f_bar() {
+        if !model.bodies[body].material.description().is_linear || solid.is_f_bar() {
             return e;
         }
         let mass = model.element_lumped_mass(e);

@@ -23,8 +23,8 @@ use nalgebra::{Matrix4, Vector2, Vector3, Vector4};
 
 use super::spatial::{Stretched, positive_stretch};
 use super::{
-    CauchyStress, Flow, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining,
-    positive_jacobian,
+    CauchyStress, Flow, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress, Spatial,
+    Straining, positive_jacobian,
 };
 use crate::laws::parameter::{InvalidParameter, require_not_negative};
 use axes::Axes;
@@ -198,6 +198,7 @@ pub struct Elastoplastic<L> {
     /// τ_v [T]
     viscosity: f64,
     names: Vec<&'static str>,
+    concern: Option<String>,
 }
 
 /// C_p⁻¹ − 1, what was stored at the start, the unrotated stress, and what every law has in its history.
@@ -245,7 +246,14 @@ impl<L: ReturnMap> Elastoplastic<L> {
         require_not_negative("density", density)?;
         require_not_negative("viscosity", viscosity)?;
         let names = STATE.iter().chain(law.history()).copied().collect();
-        Ok(Self { law, density, viscosity, names })
+        let concern = law.localizes().filter(|_| viscosity == 0.0).map(|why| {
+            format!(
+                "`{}` {why}: bands of localized strain are as wide as an element, and what follows a peak load depends on the \
+                 mesh; compare two meshes, or give the law a `viscosity`",
+                law.name()
+            )
+        });
+        Ok(Self { law, density, viscosity, names, concern })
     }
 
     /// The axes of b, the law's answer there at the end of the increment, and what was dissipated.
@@ -356,37 +364,15 @@ impl<L: ReturnMap> Spatial for Elastoplastic<L> {
 }
 
 impl<L: ReturnMap> Material for Elastoplastic<L> {
-    fn density(&self) -> f64 {
-        self.density
-    }
-
-    fn p_wave_modulus(&self) -> f64 {
-        self.law.elastic().constrained_modulus()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.law.elastic().shear
-    }
-
-    fn variables(&self) -> &[&'static str] {
-        &self.names
-    }
-
-    fn is_symmetric(&self) -> bool {
-        self.law.is_associated() && self.law.tensors() == 0
-    }
-
-    fn flow(&self) -> Option<Flow> {
-        Some(self.law.flow())
-    }
-
-    fn concern(&self) -> Option<String> {
-        let why = self.law.localizes().filter(|_| self.viscosity == 0.0)?;
-        Some(format!(
-            "`{}` {why}: bands of localized strain are as wide as an element, and what follows a peak load depends on the mesh; \
-             compare two meshes, or give the law a `viscosity`",
-            self.law.name()
-        ))
+    fn description(&self) -> MaterialDescription<'_> {
+        MaterialDescription {
+            is_symmetric: self.law.is_associated() && self.law.tensors() == 0,
+            flow: Some(self.law.flow()),
+            concern: self.concern.as_deref(),
+            holds_initial_stress: true,
+            shown: self.law.shown(),
+            ..self.law.elastic().description(self.density).remembering(&self.names)
+        }
     }
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
@@ -400,10 +386,6 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
     fn at_pressure(&self, pressure: f64) -> Option<Arc<dyn Material>> {
         let law = self.law.at_pressure(pressure)?;
         Some(Arc::new(Self { law, ..self.clone() }))
-    }
-
-    fn holds_initial_stress(&self) -> bool {
-        true
     }
 
     fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
@@ -432,10 +414,6 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
         self.in_plane_strain(straining, new)
-    }
-
-    fn shown(&self) -> &[&'static str] {
-        self.law.shown()
     }
 
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {

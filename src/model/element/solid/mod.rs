@@ -323,7 +323,7 @@ impl SolidElement {
             return self.ring(material, memory, u, force, tangent);
         }
         let Memory { dt, old, new } = memory;
-        let count = material.variables().len();
+        let count = material.description().variables.len();
         if let Some(mean) = self.mean(u)? {
             let answer = |k: usize, seen: &Vector5<f64>| {
                 let own = k * count..(k + 1) * count;

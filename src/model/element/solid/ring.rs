@@ -28,7 +28,7 @@ impl SolidElement {
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], MaterialFailure> {
-        let (law, count) = (spatial(material), material.variables().len());
+        let (law, count) = (spatial(material), material.description().variables.len());
         if let Some(mean) = self.mean(u)? {
             let answer = |k: usize, seen: &Vector5<f64>| {
                 let own = k * count..(k + 1) * count;
@@ -64,7 +64,7 @@ impl SolidElement {
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, MaterialFailure> {
-        let old = vec![0.0; material.variables().len() * self.quadrature_points()];
+        let old = vec![0.0; material.description().variables.len() * self.quadrature_points()];
         let memory = Memory { dt: 0.0, old: &old, new: &mut old.clone() };
         self.ring(material, memory, u, force, tangent).map(|[energy, _]| energy)
     }

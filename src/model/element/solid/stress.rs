@@ -26,7 +26,7 @@ impl SolidElement {
         memory: &[f64],
         u: &[Vector2<f64>],
     ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
-        let count = material.variables().len();
+        let count = material.description().variables.len();
         let of = |(k, seen): (usize, &Vector5<f64>)| {
             let old = &memory[k * count..(k + 1) * count];
             match self.hoop {
@@ -55,11 +55,11 @@ impl SolidElement {
         memory: &[f64],
         u: &[Vector2<f64>],
     ) -> Result<Few<[f64; 4], 9>, MaterialFailure> {
-        let strain = |f: &Matrix2<f64>, across: f64| match material.is_linear() {
+        let strain = |f: &Matrix2<f64>, across: f64| match material.description().is_linear {
             true => [f.m11 - 1.0, f.m22 - 1.0, across - 1.0, 0.5 * (f.m12 + f.m21)],
             false => log_strain(f, across),
         };
-        let count = material.variables().len();
+        let count = material.description().variables.len();
         let of = |(k, seen): (usize, &Vector5<f64>)| {
             let across = match self.hoop {
                 Some(_) => seen[4],
@@ -86,7 +86,7 @@ impl SolidElement {
         shares(self.kind, self.formulation)
     }
 
-    /// What a material [shows](Material::shown) at each quadrature point, one behind the other.
+    /// What a material [shows](MaterialDescription::shown) at each quadrature point, one behind the other.
     ///
     /// # Errors
     /// Returns the [`MaterialFailure`] of the law at a quadrature point.
@@ -96,7 +96,7 @@ impl SolidElement {
         memory: &[f64],
         u: &[Vector2<f64>],
     ) -> Result<Vec<f64>, MaterialFailure> {
-        let (count, own) = (material.variables().len(), material.shown().len());
+        let (count, own) = (material.description().variables.len(), material.description().shown.len());
         let mut values = vec![0.0; own * self.quadrature_points()];
         for ((k, seen), values) in self.seen(u)?.iter().enumerate().zip(values.chunks_exact_mut(own.max(1))) {
             let old = &memory[k * count..(k + 1) * count];
