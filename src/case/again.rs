@@ -19,7 +19,7 @@ use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::model::builder::{Checked, Contact, ModelError, Regime, regime};
+use crate::model::builder::{Checked, ModelError, Regime, evaluation, regime};
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::output::gradients::Neighbours;
@@ -118,9 +118,12 @@ impl Opened {
             let of = Differentiated { case, document, path, model: &model, begins_with: *taken_over > 0 };
             self.neighbours = Some(of.neighbours(&mesh)?);
         }
-        let Some(Checkpoint { mesh, run, .. }) = self.start.take() else { return Ok((model, None)) };
+        let Some(checkpoint) = self.start.take() else { return Ok((model, None)) };
+        let before = document_of(&checkpoint).map_err(|complaint| complaint.in_file(&self.path))?;
+        let Checkpoint { mesh, run, .. } = checkpoint;
         let complain = |message: String| self.not_of(if self.resumes { "" } else { "begin_with" }, message);
         check_mesh(&mesh, &model).map_err(complain)?;
+        same_defaults(&before, &self.case, &model.mesh).map_err(|complaint| complaint.in_file(&self.path))?;
         let saved = SavedRun::from_bytes(run, &model).map_err(|error| complain(error.to_string()))?;
         if self.resumes {
             return Ok((model, Some(saved)));
@@ -142,6 +145,7 @@ impl Opened {
         model: &Arc<Model>,
     ) -> Result<Saved, CaseError> {
         unchanged(before, &self.document, run.begun()).map_err(|complaint| complaint.in_file(&self.path))?;
+        same_defaults(before, &self.case, &model.mesh).map_err(|complaint| complaint.in_file(&self.path))?;
         check_mesh(mesh, model)
             .and_then(|()| run.on(model).map_err(|error| error.to_string()))
             .map_err(|message| self.not_of("", message))
@@ -259,7 +263,6 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
     differences.retain(|difference| !difference.is_variant());
     refuse(differences, "this case cannot begin with the end of that run")?;
     join(document, steps(&before));
-    same_defaults(&before, document)?;
     Ok((file, checkpoint))
 }
 
@@ -275,24 +278,32 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
     for k in 0..begun {
         compare(format!("steps[{k}]"), steps(&before).get(k), steps(&now).get(k), &mut differences);
     }
-    refuse(differences, "the case has changed since its checkpoint was written")?;
-    same_defaults(&before, &now)
+    refuse(differences, "the case has changed since its checkpoint was written")
 }
 
-/// Penalties and methods that a case leaves open are other ones where a step has inertia, or is explicit: the gaps of the run so
-/// far would be other pressures.
-fn same_defaults(before: &Value, now: &Value) -> Checked<()> {
-    let [Ok(before), Ok(now)] = [before, now].map(read::input::<Case>) else { return Ok(()) };
-    if regime(&before.steps) == regime(&now.steps) {
+/// Checks that the methods and penalties that a case leaves open are those of the run so far. They are other ones where a step has inertia
+/// or is explicit: the points would be others, and their gaps other pressures.
+fn same_defaults(before: &Value, now: &Case, mesh: &Mesh) -> Checked<()> {
+    let Ok(before) = read::input::<Case>(before) else { return Ok(()) };
+    let regimes = [&before.steps, &now.steps].map(|steps| regime(steps));
+    if regimes[0] == regimes[1] {
         return Ok(());
     }
-    let explicit = [&before, &now].iter().any(|case| regime(&case.steps) == Regime::Explicit);
-    let open =
-        |contact: &&Contact| contact.area.is_none() && contact.normal.alpha_n.is_none() && (explicit || !contact.tied);
-    let Some(open) = now.contacts.iter().find(|(_, contact)| open(contact)) else { return Ok(()) };
-    let message = "is left open, and is another one where all steps are static, where one has inertia and where one is explicit, and \
-                   in this the runs differ: give it in both cases; `fecontact check --resolved` prints what it was";
-    Err(ModelError::new(format!("contacts.{}.normal.alpha_n", open.0), message))
+    let explicit = regimes.contains(&Regime::Explicit);
+    for (name, contact) in &now.contacts {
+        let [was, is] = regimes.map(|regime| evaluation(contact, mesh, regime).map(|own| (own.method, own.points)));
+        let key = if was != is {
+            "method"
+        } else if contact.area.is_none() && contact.normal.alpha_n.is_none() && (explicit || !contact.tied) {
+            "normal.alpha_n"
+        } else {
+            continue;
+        };
+        let message = "is left open, and is another one where all steps are static, where one has inertia and where one is explicit, \
+                       and in this the runs differ: give it in both cases; `fecontact check --resolved` prints what it was";
+        return Err(ModelError::new(format!("contacts.{name}.{key}"), message));
+    }
+    Ok(())
 }
 
 /// Friction parameters that affect only the start of a run, or stored states.

@@ -995,6 +995,13 @@ fn a_case_begins_where_another_has_ended() {
 
     let mut drags = whole.clone();
     drags["steps"].as_array_mut().expect("steps").remove(0);
+    // The method that is left open is another one where a step is explicit, as nodes do not face nodes.
+    let mut explicit = drags.clone();
+    explicit["begin_with"] = json!("pressed");
+    explicit["steps"][0]["scheme"] = json!({"explicit": {"safety": 0.9}});
+    written(folder.path(), &explicit);
+    let text = told(&run(folder.path(), "refused", &[]), 2);
+    assert!(text.contains("contacts.base.method: is left open") && text.contains("explicit"), "{text}");
     for source in ["pressed", "pressed/checkpoint.bin"] {
         drags["begin_with"] = json!(source);
         written(folder.path(), &drags);

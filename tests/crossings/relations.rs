@@ -216,9 +216,10 @@ fn threads(base: &Base) -> Outcome {
 
 /// The steps after the first as a case that begins with the first.
 fn begun_with(base: &Base) -> Outcome {
-    // The default penalty of the first step is another one where a later one has inertia; the command refuses to go on there.
-    let other_penalty = base.draft.is("normal", "default") && base.draft.has("then");
-    if !base.has_ended_well() || base.draft.has("times") || other_penalty {
+    // The default penalty, or method, of the first step is another one where a later one has inertia, or is explicit; the command
+    // refuses to go on there.
+    let by_default = base.draft.is("normal", "default") || base.draft.is("method", "chosen");
+    if !base.has_ended_well() || base.draft.has("times") || by_default && base.draft.has("then") {
         return Outcome::Idle;
     }
     let record = run(&model::case(base.draft, &base.ways), &base.ways, Lead::Begun);

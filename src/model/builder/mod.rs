@@ -62,6 +62,7 @@ pub use groups::Place;
 pub use load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
 pub use loads::LoadsInForce;
+pub(crate) use pair::evaluation;
 pub use pair::{default_alpha_t, default_over};
 pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
 pub use probes::Gauge;
