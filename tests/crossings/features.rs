@@ -525,7 +525,7 @@ impl Draft {
     }
 
     /// A draft that has some features; nothing where others, drawn on the way, leave no value of a slot.
-    fn drawn(seed: u64, first: &[Feature]) -> Option<Self> {
+    pub fn drawn(seed: u64, first: &[Feature]) -> Option<Self> {
         let mut draft = Self { seed, chosen: BTreeMap::new() };
         if !first.iter().all(|feature| draft.take(*feature)) {
             return None;

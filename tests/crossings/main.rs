@@ -11,6 +11,7 @@ mod hunt;
 mod law;
 mod mesh;
 mod model;
+mod pairs;
 mod record;
 mod relations;
 mod schema;

@@ -511,8 +511,12 @@ fn energies(base: &Base) -> Outcome {
     }
     let (Some(fine), Some(finest)) = (audited(2.0), audited(4.0)) else { return Outcome::Idle };
     let stored = base.largest("contact_elastic");
+    // Multipliers store nothing. In finite sliding the gap that they close in the mean along an edge of the mesh is not closed between:
+    // what pressures do there falls with the mesh.
+    let by_the_mesh = draft.is("normal", "augmented") && !draft.is("sliding", "small");
     let falls = |finer: &Difference| {
         finer.values[0].abs() <= stored
+            || by_the_mesh && finer.share <= BY_THE_MESH
             || finer.share <= BALANCED
             || finer.share <= 0.6 * fine.share
             || finer.share <= 0.6 * coarse.share
@@ -599,6 +603,9 @@ fn dilating(base: &Base) -> Outcome {
         Outcome::Idle
     }
 }
+
+/// Share of the largest energy that gaps within an edge account for on meshes of a few elements.
+const BY_THE_MESH: f64 = 1e-2;
 
 /// Energies that balance to this share of the largest are exact.
 const BALANCED: f64 = 1e-7;
