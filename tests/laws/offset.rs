@@ -1,7 +1,8 @@
 //! Dilatancy and wear beside every friction law.
 
 use fecontact::laws::friction::{
-    ContactLaw, Dilatancy, FrictionLaw, FrictionParameters, FrictionState, Offsets, Sliding,
+    Answer, ContactLaw, Description, Dilatancy, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState,
+    Offsets, Sliding,
 };
 use fecontact::laws::parameter::InvalidParameter;
 
@@ -63,6 +64,34 @@ fn tangents_of_opening_equal_differences() {
         }
     }
     assert!(slips > 8 && reversals > 4, "{slips} and {reversals} answers opened");
+}
+
+/// An oil film, q = η Δu/Δt: a law that stores nothing, and has no stiffness of its own.
+#[derive(Clone, Debug)]
+struct Oil;
+
+impl FrictionLaw for Oil {
+    fn description(&self) -> Description {
+        Description::default()
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        let Sliding { slip, pressure, dt, .. } = sliding.checked()?;
+        let stiffness = 3.0 * pressure / dt;
+        let mut state = old.stuck(stiffness * slip, pressure);
+        (state.plastic_slip, state.plastic_increment) = (old.plastic_slip + slip, slip);
+        FrictionResponse::new(state, stiffness, 3.0 * slip / dt).checked(stiffness)
+    }
+}
+
+/// Wear takes nothing from the tangent of a law without stiffness: ∂q/∂Δu = 3 p/Δt and ∂q/∂p = 3 Δu/Δt stay as they are.
+#[test]
+fn a_law_without_stiffness_keeps_its_tangent_where_surfaces_wear() {
+    let worn = ContactLaw::with_offsets(Box::new(Oil), Offsets { dilatancy: None, wear: Some(1e-3) }).expect("good");
+    let response = worn.respond(&worn.law.initial_state(4.0, 0.0), Sliding::new(0.2, 5.0, 0.1)).expect("an answer");
+    assert_eq!([response.dtraction_dslip, response.dtraction_dpressure], [3.0 * 5.0 / 0.1, 3.0 * 0.2 / 0.1]);
+    // w = k ½(p₀ + p₁) Δu
+    assert!((response.state.wear - 1e-3 * 4.5 * 0.2).abs() < 1e-15 && response.dopening_dslip == -1e-3 * 4.5);
 }
 
 /// Slip to and fro opens the interface with its whole way, up to the limit; wear takes away k p of it, and the work of lifting

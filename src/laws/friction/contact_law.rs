@@ -122,7 +122,7 @@ impl Offsets {
         let rate = by_slip - wear * mean;
         response.dopening_dslip += rate * dslip;
         response.dopening_dpressure += rate * dslip_dpressure - 0.5 * wear * slip;
-        response.checked(stiffness)
+        response.finite()
     }
 }
 

@@ -107,6 +107,11 @@ impl FrictionResponse {
     pub fn checked(mut self, stiffness: f64) -> Result<Self, LawFailure> {
         self.dtraction_dslip = self.dtraction_dslip.clamp(-STEEPEST * stiffness, STEEPEST * stiffness);
         self.dtraction_dpressure = self.dtraction_dpressure.clamp(-STEEPEST, STEEPEST);
+        self.finite()
+    }
+
+    /// Refuses numbers that have overflowed.
+    fn finite(self) -> Result<Self, LawFailure> {
         let tangent = self.dtraction_dslip + self.dtraction_dpressure + self.dopening_dslip + self.dopening_dpressure;
         if self.state.is_finite() && tangent.is_finite() {
             Ok(self)
