@@ -535,8 +535,11 @@ fn energies(base: &Base) -> Outcome {
 /// Where one scheme follows another in motion no energy comes or goes but what the error of an increment explains: the error that the
 /// first increment of the new scheme adds falls with its length.
 fn switched(base: &Base) -> Outcome {
-    // What sets in at once shakes at frequencies that implicit increments do not resolve, but damp.
-    let Some(draft) = base.draft.plainer(&SUDDEN) else { return Outcome::Idle };
+    // What sets in at once shakes at frequencies that implicit increments do not resolve, but damp; friction acts across the gap of
+    // dilatancy without a couple, all the while.
+    let Some(draft) = base.draft.plainer(&SUDDEN).and_then(|draft| draft.plainer(&["dilatancy"])) else {
+        return Outcome::Idle;
+    };
     let f_bar = ["ground_element", "block_element"].iter().any(|slot| draft.is(slot, "f_bar"));
     // Statics stops what moves; rings on end are not held along their radius, where a load sets in.
     let idle = !draft.has("then")
