@@ -225,14 +225,17 @@ fn every_stretch_of_explicit_increments_can_be_redone_and_resumed() {
 
 #[test]
 fn every_increment_of_committed_cases_can_be_redone_and_resumed() {
-    for file in ["cases/coulomb_drag_5k.json", "cases/tube.json"] {
-        let (case, path) = repository(file);
+    // A second step in fewer increments does for the first two.
+    for (file, duration) in
+        [("cases/coulomb_drag_5k.json", Some(5)), ("cases/block_on_ground.json", Some(2)), ("cases/tube.json", None)]
+    {
+        let (mut case, path) = repository(file);
+        if let Some(duration) = duration {
+            case["steps"][1]["duration"] = json!(duration);
+            case["steps"].as_array_mut().expect("steps").truncate(2);
+        }
         check(&case, &path);
     }
-    let (mut case, path) = repository("cases/block_on_ground.json");
-    case["steps"][1]["duration"] = json!(2);
-    case["steps"].as_array_mut().expect("steps").truncate(2);
-    check(&case, &path);
 }
 
 /// Stopped half way, taken up from the bytes of a checkpoint and run to its end: every increment has the same bits.
