@@ -178,8 +178,8 @@ class Law:
         return listed
 
     def sensitivities(self) -> list[str]:
-        """Parameters by which :meth:`drive` can differentiate: those of Coulomb friction, slip weakening, rate-and-state friction, and
-        super/subloading friction except with backward Euler; none for other laws."""
+        """Parameters by which :meth:`drive` can differentiate: those of Coulomb friction, adhesion, slip weakening, rate-and-state friction,
+        and super/subloading friction except with backward Euler; none for other laws."""
         return _native.sensitivities(self._sets[0])
 
     def steady(self, rate: ArrayLike) -> Array:

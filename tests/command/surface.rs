@@ -53,11 +53,12 @@ fn sections(text: &str) -> Vec<String> {
     text.lines().map(line).collect()
 }
 
-/// What may stand at a place of an input: whether something must, of which types, which words.
+/// What may stand at a place of an input: whether something must, of which types, which words, and what stands for nothing.
 #[derive(Default)]
 struct Place {
     required: bool,
     values: BTreeSet<String>,
+    default: String,
 }
 
 /// Every place of an input by its path, however the types that read it are called: `*` stands for a name of the user's, `[]` for
@@ -98,7 +99,10 @@ fn collect<'a>(
     let required = schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect::<Vec<_>>();
     for (key, property) in properties() {
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        found.entry(path.clone()).or_default().required |= required.contains(&key.as_str());
+        let place = found.entry(path.clone()).or_default();
+        place.required |= required.contains(&key.as_str());
+        let default = property.get("default").filter(|default| !default.is_null());
+        place.default = default.map_or(String::new(), |default| format!(" = {default}"));
         collect(root, property, &path, open, found);
     }
     if schema["additionalProperties"].is_object() {
@@ -115,9 +119,9 @@ fn keys_of_the_inputs() {
     for of in ["case", "law"] {
         let schema: Value = serde_json::from_str(&printed(&["schema", of])).unwrap();
         let mut text = String::new();
-        for (path, Place { required, values }) in places(&schema).iter().filter(|(path, _)| !path.is_empty()) {
+        for (path, Place { required, values, default }) in places(&schema).iter().filter(|(path, _)| !path.is_empty()) {
             let values: Vec<&str> = values.iter().map(String::as_str).collect();
-            let line = format!("{path} {}{}", if *required { "required " } else { "" }, values.join(" | "));
+            let line = format!("{path} {}{}{default}", if *required { "required " } else { "" }, values.join(" | "));
             writeln!(text, "{}", line.trim_end()).unwrap();
         }
         compare(&format!("schema_{of}.txt"), &text);

@@ -77,14 +77,18 @@ impl FrictionLaw for Oil {
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Sliding { slip, pressure, dt, .. } = sliding.checked()?;
-        let stiffness = 3.0 * pressure / dt;
-        let mut state = old.stuck(stiffness * slip, pressure);
+        if pressure <= 0.0 {
+            return FrictionResponse::elastic(old.parted(0.0), 0.0).checked(0.0);
+        }
+        let viscosity = 3.0 * pressure / dt;
+        let mut state = old.stuck(viscosity * slip, pressure);
         (state.plastic_slip, state.plastic_increment) = (old.plastic_slip + slip, slip);
-        FrictionResponse::new(state, stiffness, 3.0 * slip / dt).checked(stiffness)
+        FrictionResponse::new(state, viscosity, 3.0 * slip / dt).checked(0.0)
     }
 }
 
-/// Wear takes nothing from the tangent of a law without stiffness: ∂q/∂Δu = 3 p/Δt and ∂q/∂p = 3 Δu/Δt stay as they are.
+/// Wear takes nothing from the tangent of a law without stiffness: ∂q/∂Δu = 3 p/Δt and ∂q/∂p = 3 Δu/Δt stay as they are. Nothing is lost
+/// where the surfaces part.
 #[test]
 fn a_law_without_stiffness_keeps_its_tangent_where_surfaces_wear() {
     let worn = ContactLaw::with_offsets(Box::new(Oil), Offsets { dilatancy: None, wear: Some(1e-3) }).expect("good");
@@ -92,6 +96,8 @@ fn a_law_without_stiffness_keeps_its_tangent_where_surfaces_wear() {
     assert_eq!([response.dtraction_dslip, response.dtraction_dpressure], [3.0 * 5.0 / 0.1, 3.0 * 0.2 / 0.1]);
     // w = k ½(p₀ + p₁) Δu
     assert!((response.state.wear - 1e-3 * 4.5 * 0.2).abs() < 1e-15 && response.dopening_dslip == -1e-3 * 4.5);
+    let parted = answer(&worn, &response.state, 0.1, -1.0);
+    assert_eq!([parted.traction, parted.dissipation], [0.0, response.state.dissipation]);
 }
 
 /// Slip to and fro opens the interface with its whole way, up to the limit; wear takes away k p of it, and the work of lifting

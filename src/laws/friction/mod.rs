@@ -100,12 +100,14 @@ impl FrictionResponse {
     }
 
     /// Limits the tangent as [`FrictionLaw::respond`] requires for the stiffness α_t, and refuses numbers that have overflowed
-    /// or a non-finite committed state.
+    /// or a non-finite committed state. A law without stiffness, α_t = 0, has a ∂q/∂Δu_t of its own, which is not limited.
     ///
     /// # Errors
     /// Returns [`LawFailure::Overflow`] for such numbers.
     pub fn checked(mut self, stiffness: f64) -> Result<Self, LawFailure> {
-        self.dtraction_dslip = self.dtraction_dslip.clamp(-STEEPEST * stiffness, STEEPEST * stiffness);
+        if stiffness > 0.0 {
+            self.dtraction_dslip = self.dtraction_dslip.clamp(-STEEPEST * stiffness, STEEPEST * stiffness);
+        }
         self.dtraction_dpressure = self.dtraction_dpressure.clamp(-STEEPEST, STEEPEST);
         self.finite()
     }
@@ -159,7 +161,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///         let Sliding { slip, pressure, dt, .. } = sliding.checked()?;
 ///         if pressure <= 0.0 || dt == 0.0 {
 ///             let traction = if pressure > 0.0 { old.traction } else { 0.0 };
-///             return FrictionResponse::elastic(old.stuck(traction, pressure.max(0.0)), 0.0).checked(1.0);
+///             return FrictionResponse::elastic(old.stuck(traction, pressure.max(0.0)), 0.0).checked(0.0);
 ///         }
 ///         let dtraction_dslip = self.viscosity / dt;
 ///         let traction = dtraction_dslip * slip;
@@ -168,7 +170,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///         state.plastic_increment = slip;
 ///         state.dissipation += traction * slip;
 ///         state.regime = if slip == 0.0 { Regime::Stick } else { Regime::Slip };
-///         FrictionResponse::new(state, dtraction_dslip, 0.0).checked(dtraction_dslip)
+///         FrictionResponse::new(state, dtraction_dslip, 0.0).checked(0.0) // no α_t
 ///     }
 ///
 ///     fn description(&self) -> Description {

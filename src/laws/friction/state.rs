@@ -64,9 +64,10 @@ impl FrictionState {
         if strength > 0.0 { self.traction.abs() / strength } else { 0.0 }
     }
 
-    /// Returns the state after separation of the surfaces: the elastic energy q²/(2 α_t) of the contact spring is lost.
+    /// Returns the state after separation of the surfaces: the elastic energy q²/(2 α_t) of the contact spring is lost, if it has
+    /// one, with α_t > 0.
     pub fn parted(self, stiffness: f64) -> Self {
-        let lost = self.traction * self.traction / (2.0 * stiffness);
+        let lost = if stiffness > 0.0 { self.traction * self.traction / (2.0 * stiffness) } else { 0.0 };
         let dissipation = self.dissipation + lost;
         Self { traction: 0.0, pressure: 0.0, plastic_increment: 0.0, dissipation, regime: Regime::Open, ..self }
     }
