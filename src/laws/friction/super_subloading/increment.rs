@@ -121,7 +121,8 @@ impl LoadPath<'_> {
         }
         let (end, evaluations) = equation.solve(start)?;
         self.evaluations += evaluations;
-        // The tangent neglects the change by the last step of the search, which would accumulate over many increments.
+        // The tangent is that of the point found, off by the order of the search's tolerance. Sensitivities, which add up over many
+        // increments, are those of the settled one.
         let end = if self.parameters.is_some() { equation.settled(end) } else { end };
         Ok(self.slide(from, x, &end))
     }
