@@ -759,7 +759,8 @@ impl Writer<'_> {
                 }
                 "super_subloading" => ("mu_s", growing(Kind::Number, 0.5, time)),
                 "slip_weakening" => ("mu_d", growing(Kind::Number, 0.35, time)),
-                _ => ("f_0", growing(Kind::Number, 0.45, time)),
+                "rate_and_state" => ("f_0", growing(Kind::Number, 0.45, time)),
+                law => panic!("say which parameter of `{law}` varies"),
             }
         };
         match self.draft.of("varying") {

@@ -1,4 +1,4 @@
-//! Every key of the schema is in a model that is drawn, or in the list of those that change nothing in it.
+//! Every key of the schema, and every law by its name, is in a model that is drawn, or in the list of those that change nothing in it.
 
 use std::collections::BTreeSet;
 
@@ -41,10 +41,16 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 
+/// Keys whose words are laws.
+const NAMING: [&str; 2] = ["law", "model"];
+
 fn keys(value: &Value, found: &mut BTreeSet<String>) {
     match value {
         Value::Object(object) => object.iter().for_each(|(key, value)| {
             found.insert(key.clone());
+            if NAMING.contains(&key.as_str()) {
+                found.extend(value.as_str().map(|name| format!("{key} {name}")));
+            }
             keys(value, found);
         }),
         Value::Array(array) => array.iter().for_each(|value| keys(value, found)),
@@ -52,12 +58,14 @@ fn keys(value: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-/// Names of all properties of a schema.
+/// Names of all properties of a schema, and of all laws.
 fn properties(value: &Value, found: &mut BTreeSet<String>) {
     match value {
         Value::Object(object) => {
             if let Some(Value::Object(properties)) = object.get("properties") {
                 found.extend(properties.keys().cloned());
+                let named = |key: &&str| Some(format!("{key} {}", properties.get(*key)?["const"].as_str()?));
+                found.extend(NAMING.iter().filter_map(named));
             }
             object.values().for_each(|value| properties_of(value, found));
         }
