@@ -1,11 +1,14 @@
 //! Variation of prescribed quantities in time and space, and loads. Supports are in [`super::support`]. Moments in time and
 //! step spans are also defined here.
 
+use std::fmt::{Display, Formatter};
+
 use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use super::expression::Expression;
+use super::text::{count, number};
 use super::written::written;
 
 /// Prescribed quantity as a function of time and position.
@@ -160,6 +163,18 @@ impl From<f64> for Drive {
     }
 }
 
+impl Display for Drive {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        match self {
+            Self::Constant(value) => f.write_str(&number(*value)),
+            Self::Expression(expression) => write!(f, "\"{}\"", expression.as_ref()),
+            Self::Rate(rate) => write!(f, "at the rate {}", number(*rate)),
+            Self::Table(table) => write!(f, "by a table of {}", count(table.len(), "time")),
+            Self::ByPlace(_, table) => write!(f, "by a table of {}", count(table.len(), "place")),
+        }
+    }
+}
+
 impl Drive {
     /// Checks that its numbers are finite and the coordinates of its table ascend.
     ///
@@ -306,8 +321,20 @@ pub struct DeadLoad {
     pub component: usize,
     /// value per unit of `weight`
     pub amplitude: Amplitude,
-    /// (node, weight, reference position for the amplitude)
-    pub shares: Vec<(usize, f64, Vector2<f64>)>,
+    /// nodes on which it acts
+    pub shares: Vec<NodalWeight>,
+}
+
+/// Fraction of a load at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct NodalWeight {
+    /// node
+    pub node: usize,
+    /// force per value of the load: a length or an area of edges, a mass, or 1
+    pub weight: f64,
+    /// reference position at which the load is evaluated
+    pub position: Vector2<f64>,
 }
 
 /// Follower pressure on edges.

@@ -13,8 +13,8 @@ use super::friction::{check_profile, defined};
 use super::groups;
 use super::groups::{group, kind};
 use super::load_step::LoadStep;
-use super::section;
 use crate::laws::bulk::{Imposed, Material, MaterialParameters, Undrained};
+use crate::mesh::section::Section;
 use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{Formulation, SolidElement, consistent_mass};
@@ -93,7 +93,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             Some(fluid) => undrained(material, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?,
             None => material,
         };
-        let material = section::material(material, *element == Formulation::FBar, mesh.section, &place)?;
+        let material = in_section(material, *element == Formulation::FBar, mesh.section, &place)?;
         check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.p_wave_modulus())?;
         check_damping(*damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
@@ -234,6 +234,26 @@ fn undrained(
     match Undrained::new(law, fluid.modulus(), *cavitation) {
         Some(law) => Ok(Arc::new(law)),
         None => refused("", "needs a law with an out-of-plane stretch: take another material, or leave it out".into()),
+    }
+}
+
+/// Returns the law of a body in a section.
+fn in_section(given: Arc<dyn Material>, f_bar: bool, section: Section, place: &str) -> Checked<Arc<dyn Material>> {
+    let refused = |key: &str, message: &str| Err(ModelError::new(format!("{place}.{key}"), message));
+    match section {
+        Section::PlaneStress { .. } if f_bar => refused(
+            "element",
+            "f_bar is not needed in plane stress, where the thickness is free to change and elements do not lock for \
+             nu near 1/2: leave it out",
+        ),
+        Section::PlaneStress { .. } => match given.plane_stress() {
+            Some(law) => Ok(law.into()),
+            None => refused("material", "does not support plane stress: take another law, or plane strain"),
+        },
+        Section::Axisymmetric if given.spatial().is_none() => {
+            refused("material", "does not support the hoop stretch of axisymmetric bodies: take another law")
+        }
+        Section::Axisymmetric | Section::PlaneStrain | Section::Graded { .. } => Ok(given),
     }
 }
 

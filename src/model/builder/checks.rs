@@ -5,12 +5,14 @@
 use std::collections::BTreeSet;
 
 use super::contact::Contact;
-use super::error::{Checked, ModelError, check_positive};
-use super::schedule::MOST_INCREMENTS;
+use super::error::{Checked, ModelError, check_positive, check_size};
+use super::supports::axis;
 use crate::contact::pair::ContactPair;
+use crate::mesh::Mesh;
+use crate::mesh::section::Section;
 use crate::model::boundary::{Amplitude, Drive, Span};
-use crate::model::scheme::Scheme;
 use crate::model::support::{Inclined, Motion, Prescribed};
+use crate::model::text::number;
 use crate::model::{Model, NewtonSettings, Step};
 
 /// Maximum accepted limit of Newton iterations.
@@ -36,49 +38,31 @@ pub fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
     Ok(newton)
 }
 
-/// Checks the interval of the results of explicit steps.
-pub fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
-    let otherwise = " (leave it out for a hundredth of each explicit step)";
-    check_positive("output.interval", interval.unwrap_or(1.0), otherwise).map(|()| interval)
-}
-
-/// Checks the number of result rows of explicit steps, one per interval.
-pub fn check_rows(model: &Model) -> Checked<()> {
-    let Some(interval) = model.requests.interval else { return Ok(()) };
-    let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
-    let time: f64 = model.steps.iter().filter(explicit).map(|step| step.span.end - step.span.start).sum();
-    let rows = time / interval;
-    match rows <= MOST_INCREMENTS {
-        true => Ok(()),
-        false => {
+/// Checks that a thickness is positive and axisymmetric bodies do not cross the axis.
+pub fn check_section(mesh: &Mesh) -> Checked<()> {
+    match mesh.section {
+        Section::PlaneStress { thickness } => {
+            check_positive("section.plane_stress.thickness", thickness, "")?;
+            check_size("section.plane_stress", "thickness", thickness)
+        }
+        Section::Axisymmetric => {
+            let inside = axis(mesh).map_or(0.0, |near| -near);
+            let Some(node) = (0..mesh.nodes.len()).find(|&node| mesh.nodes[node].x < inside) else { return Ok(()) };
+            let (tag, at) = (mesh.node_tags[node], mesh.nodes[node]);
             let message = format!(
-                "is {interval:e}: that makes {rows:.1e} rows of results, at most {MOST_INCREMENTS:e} are allowed"
+                "is axisymmetric about x = 0, and node {tag} lies at x = {}: x is the radius, so move the mesh to x >= 0 and \
+                 model one side of the axis",
+                number(at.x)
             );
-            Err(ModelError::new("output.interval", message))
+            Err(ModelError::new("section", message))
         }
+        Section::PlaneStrain | Section::Graded { .. } => Ok(()),
     }
-}
-
-/// Checks the output times of fields: within the steps, ascending.
-pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
-    let (start, end) =
-        steps.first().zip(steps.last()).map_or((0.0, 0.0), |(first, last)| (first.span.start, last.span.end));
-    for (k, time) in times.iter().enumerate() {
-        let refused = |message: String| Err(ModelError::new(format!("output.times[{k}]"), message));
-        if !(*time > start && *time <= end) {
-            return refused(format!("is {time}: must be after {start} and not after {end}, the end of the last step"));
-        }
-        if k > 0 && *time <= times[k - 1] {
-            return refused(format!("is {time}, but {} comes before it: times must increase", times[k - 1]));
-        }
-    }
-    Ok(times)
 }
 
 /// Checks combinations of schemes and contact: explicit steps solve no equations, and can neither augment pressures nor
 /// determine the position of massless nodes. In Wilson-θ, equilibrium and its multipliers lie beyond the increment.
 pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
-    let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
     let augmented = model.contacts.iter().find_map(|pair| match (pair.penetration, pair.stick) {
         (Some(_), _) => Some((&pair.name, "normal.penetration", "alpha_n")),
         (None, Some(_)) => Some((&pair.name, "stick", "alpha_t")),
@@ -94,7 +78,7 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
         );
         return refused(name, key, message);
     }
-    let Some(Step { name: step, .. }) = model.steps.iter().find(explicit) else { return Ok(()) };
+    let Some(Step { name: step, .. }) = model.steps.iter().find(|step| step.may_be_explicit()) else { return Ok(()) };
     if let Some(contact) = contacts.iter().find(|contact| contact.massless) {
         let message = format!("the explicit step `{step}` needs the mass of every node: leave it out");
         return refused(&contact.name, "massless", message);
@@ -111,7 +95,7 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
 /// rate by traction, and time functions that are linear within a step.
 pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
     let steps = model.steps.iter().enumerate();
-    for (k, step) in steps.filter(|(_, step)| matches!(step.scheme, Scheme::QuasiDynamic { .. })) {
+    for (k, step) in steps.filter(|(_, step)| step.scheme.is_quasi_dynamic()) {
         let place = format!("steps[{k}]");
         let of_scheme = |message: String| Err(ModelError::new(format!("{place}.scheme"), message));
         if model.contacts.is_empty() {

@@ -10,7 +10,6 @@ use super::error::{Checked, ModelError, check_finite};
 use super::friction::{check_profile, defined, position};
 use super::groups;
 use super::load_step::LoadStep;
-use super::section::check_velocities;
 use crate::contact::pair::{ContactPair, InitialTraction};
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
@@ -27,6 +26,7 @@ pub fn velocities(
     masses: &[(String, PointMassInput)],
     model: &Model,
 ) -> Checked<Vec<f64>> {
+    check_velocities("initial_velocity", of_bodies.iter().map(|(name, value)| (name, value)), model)?;
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in of_bodies {
         let place = format!("initial_velocity.{name}");
@@ -53,18 +53,29 @@ pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Ch
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in &step.velocity {
         let place = format!("{place}.{name}");
-        let body = model.bodies.iter().find(|body| body.name == *name).map(|body| &body.nodes);
-        let points = model.point_masses.iter().find(|point| point.name == *name).map(|point| &point.nodes);
-        let Some(nodes) = body.or(points) else {
-            let known = model.bodies.iter().map(|body| body.name.as_str());
-            let known: Vec<&str> = known.chain(model.point_masses.iter().map(|point| point.name.as_str())).collect();
-            let message = format!("there is no body or point mass `{name}`; there are {}", known.join(", "));
-            return Err(ModelError::new(place, message));
-        };
-        given.give(place, nodes, *value)?;
+        let (body, masses) = groups::bodies_and_masses(model, name, &place)?;
+        let nodes = body.map(|body| &body.nodes).or(masses.map(|masses| &masses.nodes));
+        given.give(place, nodes.map_or(&[], Vec::as_slice), *value)?;
     }
     tied(&place, &given.velocity, model)?;
     Ok(given.velocity.into_iter().enumerate().filter_map(|(node, velocity)| Some((node, velocity?))).collect())
+}
+
+/// Refuses radial initial velocities in axisymmetry.
+fn check_velocities<'v>(
+    place: &str,
+    given: impl IntoIterator<Item = (&'v String, &'v [f64; 2])>,
+    model: &Model,
+) -> Checked<()> {
+    let radial = |(_, velocity): &(&String, &[f64; 2])| velocity[0] != 0.0;
+    match given.into_iter().find(radial).filter(|_| model.mesh.section.is_axisymmetric()) {
+        Some((name, _)) => {
+            let message =
+                "x is the radius of axisymmetric bodies, along which they cannot move as a whole: give [0, vy]";
+            Err(ModelError::new(format!("{place}.{name}"), message))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Velocities assigned to nodes so far.
@@ -206,7 +217,7 @@ fn of_bodies(
 /// Lets the elements start under the initial stress of their bodies, which must be one that their laws can have.
 pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
     for e in 0..model.solids.len() {
-        let body = &model.bodies[model.body_of_element[e]];
+        let body = model.body_of(e);
         let in_plate = model.mesh.section.is_plate();
         if body.initial_stress.is_none() && body.material.holds_initial_stress() {
             body.material.admits(&CauchyStress::default()).map_err(|why| {

@@ -1,6 +1,7 @@
 //! Input of a load step, which inherits from the previous step. Its loads are in [`super::load`].
 
 use std::collections::BTreeMap;
+use std::fmt::{Display, Formatter};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ use crate::model::Damping;
 use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::ForceComponent;
+use crate::model::text::number;
 
 /// Default relative tolerance of the force that ends a step.
 #[doc(hidden)]
@@ -226,16 +228,21 @@ pub struct Rotation {
     pub angle: Drive,
 }
 
+impl Display for Rotation {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        write!(f, "{} about ({})", self.angle, self.about.map(number).join(", "))
+    }
+}
+
 impl Support {
     /// Creates a support at a place without prescribed displacements.
     pub fn on(place: impl Into<Place>) -> Self {
         Self { on: place.into(), ux: None, uy: None, along: None, u: None, un: None, rotation: None, angle: None }
     }
 
-    /// Returns its displacements, with their keys.
-    #[doc(hidden)]
-    pub fn displacements(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
-        let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un)];
+    /// Returns its motions but for a rotation about a point, with their keys.
+    pub(super) fn motions(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
+        let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un), ("angle", &self.angle)];
         all.into_iter().filter_map(|(key, change)| Some((key, change.as_ref()?)))
     }
 

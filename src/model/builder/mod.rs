@@ -30,7 +30,6 @@
 //! A load step inherits scheme, increments, supports and loads from the previous one. Errors are reported with their
 //! place, in the terms of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
-mod along;
 mod body;
 mod checks;
 mod contact;
@@ -42,30 +41,24 @@ mod load;
 mod load_step;
 mod loads;
 mod pair;
-mod plates;
-mod probes;
+mod requests;
 mod rigid;
 pub(crate) mod schedule;
-mod section;
-mod shares;
-mod supported;
 mod supports;
-mod tied;
+mod unconstrained;
 
-pub use along::{Along, LawChoice};
 pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_positive};
-pub use friction::Friction;
+pub use friction::{Along, Friction, LawChoice};
 pub use groups::Place;
-pub use load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
+pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
 pub use loads::LoadsInForce;
 pub use pair::{default_alpha_t, default_over};
-pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
-pub use probes::Gauge;
-pub use rigid::RigidBodyInput;
+pub use requests::Gauge;
+pub use rigid::{LoadingPlateInput, MovingPlateInput, Plate, RigidBodyInput};
 pub use schedule::{Regime, regime};
 
 use crate::laws::bulk::Material;
@@ -271,8 +264,8 @@ impl Builder {
     /// Returns [`ModelError`] with place, value and remedy if the input is invalid.
     pub fn build(mut self) -> Checked<Model> {
         self.check_names()?;
-        section::check(&self.mesh)?;
-        rigid::add(&self.rigid_bodies, &mut self.mesh)?;
+        checks::check_section(&self.mesh)?;
+        rigid::add_bodies(&self.rigid_bodies, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
         let mut model = Model {
@@ -294,33 +287,28 @@ impl Builder {
             aids: Default::default(),
             newton: checks::checked_newton(self.newton)?,
             prestress: Vec::new(),
-            requests: OutputRequests { interval: checks::checked_interval(self.interval)?, ..Default::default() },
+            requests: OutputRequests { interval: requests::checked_interval(self.interval)?, ..Default::default() },
         };
         initial::start_under_stresses(&mut model)?;
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
-        model.plates = plates::plates(&self.plates, &model.mesh)?;
-        model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;
+        model.plates = rigid::plates(&self.plates, &model.mesh)?;
+        model.ties = rigid::ties(&self.periodic, &model.plates, &model.mesh)?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
-        model.linkage = plates::linkage(&self.plates, &self.steps, &model)?;
+        model.linkage = rigid::linkage(&self.plates, &self.steps, &model)?;
         let regime = schedule::regime(&self.steps);
         model.contacts = pair::pairs(&self.contacts, &model, regime)?;
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, regime)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
-        section::check_velocities(
-            "initial_velocity",
-            self.velocities.iter().map(|(name, value)| (name, value)),
-            &model,
-        )?;
         model.initial_velocity = initial::velocities(&self.velocities, &self.point_masses, &model)?;
-        model.requests.watch = groups::watched(&self.watch, &model)?;
-        model.requests.times = checks::checked_times(self.times, &model.steps)?;
-        model.requests.probes = probes::probes(&self.gauges, &model)?;
+        model.requests.watch = requests::watched(&self.watch, &model)?;
+        model.requests.times = requests::checked_times(self.times, &model.steps)?;
+        model.requests.probes = requests::probes(&self.gauges, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
-        checks::check_rows(&model)?;
+        requests::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;
         contact::check_fluids_in_time(&self.contacts, &model)?;
-        supported::check(&self.steps, &model)?;
+        unconstrained::check(&self.steps, &model)?;
         Ok(model)
     }
 }

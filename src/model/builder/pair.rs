@@ -42,7 +42,7 @@ use super::error::{Checked, ModelError, check_positive, check_size};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
-use super::{along, contact, initial, rigid, tied};
+use super::{contact, friction, initial, rigid};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
@@ -75,8 +75,8 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model, regime)?;
     let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
     let structure = contact.initial.as_ref().and_then(|initial| initial.structure.as_ref());
-    tied::check_friction(contact, &place)?;
-    let friction = along::friction(&contact.friction, &contact.along, structure, &place)?;
+    contact::check_has_friction(contact, &place)?;
+    let friction = friction::friction(&contact.friction, &contact.along, structure, &place)?;
     let (laws, in_time) = friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
     for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
@@ -104,9 +104,9 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         master,
     };
     if contact.tied {
-        tied::check(contact, &place)?;
+        contact::check_tied(contact, &place)?;
         pair.tie(contact.sliding == SlidingRange::Small, &model.mesh.undeformed());
-        tied::check_feet(&pair, &place)?;
+        contact::check_ties(&pair, &place)?;
     } else if contact.sliding == SlidingRange::Small {
         if contact.is_own() {
             let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \
@@ -363,7 +363,7 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
         return Err(ModelError::new(at, message));
     }
     let impedance = |edge: &Edge| {
-        let body = &model.bodies[model.body_of_element[edge.element]];
+        let body = model.body_of(edge.element);
         let (density, modulus) = (body.material.density(), body.material.shear_modulus());
         if density > 0.0 {
             return Ok((density * modulus).sqrt());
@@ -451,7 +451,7 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
         return Ok(None);
     }
     let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
-    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.p_wave_modulus();
+    let modulus = |edge: &Edge| model.body_of(edge.element).material.p_wave_modulus();
     let master = match &contact.master {
         MasterSide::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
         _ => &[],
@@ -513,7 +513,7 @@ fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
 pub fn modulus(contact: &Contact, model: &Model) -> f64 {
     let compliance = |name: &str| match model.mesh.group(name) {
         Ok(Group::Edges(edges)) => {
-            let of = |element: usize| 1.0 / plane(&*model.bodies[model.body_of_element[element]].material);
+            let of = |element: usize| 1.0 / plane(&*model.body_of(element).material);
             edges.iter().map(|edge| of(edge.element)).reduce(f64::max)
         }
         _ => None,

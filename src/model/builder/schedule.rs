@@ -12,16 +12,13 @@ use super::groups;
 use super::groups::nodes_at;
 use super::initial::launch;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UNTIL_TOLERANCE, UntilSettings};
-use super::loads;
-use super::loads::LoadsInForce;
-use super::rigid;
-use super::section::hold_axis;
-use super::supports::{InForce, freed, supports};
+use super::loads::{LoadsInForce, check_defined};
+use super::supports::{SupportsInForce, freed};
 use crate::contact::pair::ContactPair;
 use crate::mesh::rigid::RigidBody;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::scheme::Scheme;
-use crate::model::step::{ForceComponent, Until};
+use crate::model::step::{Entry, ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
@@ -40,9 +37,8 @@ pub enum Regime {
 /// The regime of a run of these steps.
 #[doc(hidden)]
 pub fn regime(steps: &[LoadStep]) -> Regime {
-    let explicit = |scheme: Scheme| matches!(scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. });
     let any = |is: &dyn Fn(Scheme) -> bool| steps.iter().any(|step| step.scheme.is_some_and(is));
-    if any(&explicit) || steps.iter().any(|step| step.rupture.is_some()) {
+    if any(&Scheme::is_integrated_explicitly) || steps.iter().any(|step| step.rupture.is_some()) {
         Regime::Explicit
     } else if any(&Scheme::is_dynamic) {
         Regime::Dynamic
@@ -61,7 +57,7 @@ pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
         start: 0.0,
         scheme: Scheme::Static,
         increments: None,
-        in_force: InForce::default(),
+        in_force: SupportsInForce::default(),
         may_end_early: false,
         damping: model.bodies.iter().map(|body| body.damping).collect(),
         supports: Vec::new(),
@@ -77,7 +73,7 @@ struct Schedule<'m> {
     start: f64,
     scheme: Scheme,
     increments: Option<IncrementSettings>,
-    in_force: InForce,
+    in_force: SupportsInForce,
     /// whether the last step may end early
     may_end_early: bool,
     damping: Vec<Damping>,
@@ -100,21 +96,15 @@ impl Schedule<'_> {
         if std::mem::replace(&mut self.may_end_early, given.until.is_some()) {
             self.in_force.stay();
         }
-        supports(&mut self.in_force, &given.supports, place, span, self.model)?;
-        for dof in rigid::still(self.model) {
-            let held = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
-            self.in_force.dofs.entry(dof).or_insert_with(held);
-        }
-        hold_axis(&mut self.in_force.dofs, place, span, self.model)?;
-        let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
         // In dynamics a released reaction vanishes at once.
-        let released = if scheme.is_dynamic() { Vec::new() } else { freed(&before, &self.supports) };
-        for (k, load) in given.loads.iter().enumerate() {
-            self.loads.change(load, &format!("{place}.loads[{k}]"), span, self.model)?;
-        }
+        let fades = !scheme.is_dynamic();
+        self.in_force.step(&given.supports, place, span, fades, self.model)?;
+        let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
+        let released = if fades { freed(&before, &self.supports) } else { Vec::new() };
+        self.loads.step(&given.loads, place, span, self.model)?;
         self.damp(&given.damping, place)?;
         temperatures(&mut self.temperatures, given, place, span, self.model)?;
-        loads::check_defined(place, given, scheme, span, self.model)?;
+        check_defined(place, given, scheme, span, self.model)?;
         let stabilization = stabilization(&format!("{place}.stabilize"), given, scheme, self.model)?;
         let increments = if stabilization.is_empty() { increments } else { increments.at_most(0.5 * given.duration) };
         let mut step = Step {
@@ -127,6 +117,7 @@ impl Schedule<'_> {
             supports: self.supports.clone(),
             released,
             loads: self.loads.all(),
+            entries: Entry::of_step(self.in_force.entries().chain(self.loads.entries())),
             damping: self.damping.clone(),
             until: None,
             temperatures: in_force(&self.temperatures),
@@ -160,7 +151,7 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     let duration = span.end - span.start;
     let given = given.unwrap_or(IncrementSettings::from(0.1 * duration));
     let least = SHORTEST_INCREMENT * span.end;
-    let quasi_dynamic = matches!(scheme, Scheme::QuasiDynamic { .. });
+    let quasi_dynamic = scheme.is_quasi_dynamic();
     let (default_min, default_max) = match given.error {
         None if quasi_dynamic => (least, given.initial.max(0.1 * duration)),
         None => (1e-3 * given.initial, given.initial),
@@ -204,7 +195,7 @@ pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Schem
         return Err(ModelError::new(format!("{place}.{name}"), message));
     }
     let count = duration / max;
-    if count > MOST_INCREMENTS && !matches!(scheme, Scheme::Explicit { .. }) {
+    if count > MOST_INCREMENTS && !scheme.is_explicit() {
         let message = format!(
             "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and at most \
              {MOST_INCREMENTS:e} are allowed: make them longer"
@@ -255,10 +246,10 @@ fn softest(model: &Model, rigid: &RigidBody) -> f64 {
 pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: &Model) -> Checked<Option<Rupture>> {
     let Some(RuptureSettings { slip_rate, safety }) = given else { return Ok(None) };
     check_positive(&format!("{place}.slip_rate"), slip_rate, "")?;
-    if matches!(step.scheme, Scheme::Explicit { .. }) {
+    if step.scheme.is_explicit() {
         return Err(ModelError::new(place, "is for static and implicit steps: this one is explicit throughout"));
     }
-    if matches!(step.scheme, Scheme::QuasiDynamic { .. }) {
+    if step.scheme.is_quasi_dynamic() {
         return Err(ModelError::new(
             place,
             "is for static and implicit steps: this one follows slip at any rate by itself",
@@ -329,7 +320,7 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
 /// Checks settings that refer to the whole step.
 fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<()> {
     let refused = |message: &str| Err(ModelError::new(place, message));
-    if matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. }) {
+    if step.scheme.is_integrated_explicitly() {
         return refused("ends static and implicit steps only: leave it out, and give the step its time");
     }
     if given.rupture.is_some() {
