@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::MeshSource;
 use crate::mesh::{Block, BlockError, BlockKind, Blocks, Grading, InlineMesh};
 use crate::model::boundary::Expression;
-use crate::model::builder::{Checked, ModelError};
+use crate::model::builder::{Checked, ModelError, refuse_if};
 use crate::model::written::written;
 
 /// A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements. Blocks of one body
@@ -247,10 +247,8 @@ impl Parameters<'_> {
     /// An integer, within the round-off of its expression.
     fn count(&self, amount: &Amount, place: &str) -> Checked<usize> {
         let value = self.value(amount, place)?;
-        if !(value > 0.5 && value < 1e15 && (value - value.round()).abs() <= 1e-9 * value) {
-            let message = format!("is {value}: must be a whole number, 1 or more, such as \"round(L/h)\" gives");
-            return Err(ModelError::new(place, message));
-        }
+        let message = format!("is {value}: must be a whole number, 1 or more, such as \"round(L/h)\" gives");
+        refuse_if(!(value > 0.5 && value < 1e15 && (value - value.round()).abs() <= 1e-9 * value), place, message)?;
         Ok(value.round() as usize)
     }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size};
+use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size, refuse_if};
 use super::friction::{check_profile, defined};
 use super::groups;
 use super::groups::{group, kind};
@@ -131,10 +131,8 @@ pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> 
     let Damping { mass, retardation } = damping;
     check_not_negative(&format!("{place}.mass"), mass)?;
     check_not_negative(&format!("{place}.stiffness"), retardation)?;
-    if mass > 0.0 && material.density() == 0.0 {
-        let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
-        return Err(ModelError::new(format!("{place}.mass"), message));
-    }
+    let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
+    refuse_if(mass > 0.0 && material.density() == 0.0, format!("{place}.mass"), message)?;
     Ok(())
 }
 
@@ -196,22 +194,13 @@ fn undrained(
     mesh: &Mesh,
     place: &str,
 ) -> Checked<Arc<dyn Material>> {
-    let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}{key}"), message));
     let PoreFluid { bulk_modulus, porosity, pressure, cavitation } = fluid;
     check_positive(&format!("{place}.bulk_modulus"), *bulk_modulus, " (2.2e9 Pa of water)")?;
-    if !(*porosity > 0.0 && *porosity < 1.0) {
-        return refused(
-            ".porosity",
-            format!("is {porosity}: it must be above 0 and below 1, e/(1 + e) of a void ratio e"),
-        );
-    }
+    let message = format!("is {porosity}: it must be above 0 and below 1, e/(1 + e) of a void ratio e");
+    refuse_if(!(*porosity > 0.0 && *porosity < 1.0), format!("{place}.porosity"), message)?;
     check_size(place, "the stiffness bulk_modulus/porosity", fluid.modulus())?;
-    if mesh.section.is_plate() {
-        return refused(
-            "",
-            "is not for plane stress: a fluid leaves a plate through its faces; take plane strain".into(),
-        );
-    }
+    let message = "is not for plane stress: a fluid leaves a plate through its faces; take plane strain";
+    refuse_if(mesh.section.is_plate(), place, message)?;
     check_profile(pressure, &format!("{place}.pressure"))?;
     if let Some(least) = cavitation {
         check_finite(&format!("{place}.cavitation"), [*least])?;
@@ -228,13 +217,10 @@ fn undrained(
             return Err(ModelError::new(place, message));
         }
     }
-    if law.is_linear() && cavitation.is_some() {
-        return refused(".cavitation", "is not for the material linear: take hencky, or leave it out".into());
-    }
-    match Undrained::new(law, fluid.modulus(), *cavitation) {
-        Some(law) => Ok(Arc::new(law)),
-        None => refused("", "needs a law with an out-of-plane stretch: take another material, or leave it out".into()),
-    }
+    let message = "is not for the material linear: take hencky, or leave it out";
+    refuse_if(law.is_linear() && cavitation.is_some(), format!("{place}.cavitation"), message)?;
+    let undrained = Undrained::new(law, fluid.modulus(), *cavitation);
+    Ok(Arc::new(undrained.ok_or_else(|| ModelError::new(place, NEEDS_STRETCH))?))
 }
 
 /// Returns the law of a body in a section.
@@ -257,6 +243,9 @@ fn in_section(given: Arc<dyn Material>, f_bar: bool, section: Section, place: &s
     }
 }
 
+/// What is added to the deformation of a law must have an out-of-plane part.
+const NEEDS_STRETCH: &str = "needs a law with an out-of-plane stretch: take another material, or leave it out";
+
 /// Returns the law of a body with initial stress and thermal expansion.
 pub fn with_imposed(
     given: Arc<dyn Material>,
@@ -272,19 +261,13 @@ pub fn with_imposed(
     if !stressed && thermal.is_none() {
         return Ok(given);
     }
-    match Imposed::new(given, stressed, thermal.map(|thermal| thermal.expansion)) {
-        Some(imposed) => Ok(Arc::new(imposed)),
-        None => {
-            let key = if stressed { "initial_stress" } else { "thermal" };
-            let message = "needs a law with an out-of-plane stretch: take another material, or leave it out";
-            Err(ModelError::new(format!("{place}.{key}"), message))
-        }
-    }
+    let key = if stressed { "initial_stress" } else { "thermal" };
+    let imposed = Imposed::new(given, stressed, thermal.map(|thermal| thermal.expansion));
+    Ok(Arc::new(imposed.ok_or_else(|| ModelError::new(format!("{place}.{key}"), NEEDS_STRETCH))?))
 }
 
 /// Checks an initial stress: finite throughout the body, ground below its surface, and no out-of-plane stress in plane stress.
 pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place: &str) -> Checked<()> {
-    let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}.{key}"), message));
     match stress {
         InitialStress::Geostatic { surface, weight, k0 } => {
             for (key, value) in [("surface", surface), ("weight", weight), ("K0", k0)] {
@@ -294,24 +277,16 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
             check_positive(&format!("{place}.geostatic.weight"), *weight, along_y)?;
             check_not_negative(&format!("{place}.geostatic.K0"), *k0)?;
             let top = nodes.iter().map(|&node| mesh.nodes[node].y).fold(f64::NEG_INFINITY, f64::max);
-            if top > surface + ROUNDED * mesh.diagonal() {
-                let message = format!(
-                    "is {}, and the body reaches up to y = {}: ground lies below its surface, so give the level of its top or \
-                     above",
-                    number(*surface),
-                    number(top)
-                );
-                return refused("geostatic.surface", message);
-            }
-            Ok(())
+            let [level, reached] = [*surface, top].map(number);
+            let message = format!(
+                "is {level}, and the body reaches up to y = {reached}: ground lies below its surface, so give the level of its \
+                 top or above"
+            );
+            refuse_if(top > surface + ROUNDED * mesh.diagonal(), format!("{place}.geostatic.surface"), message)
         }
         InitialStress::Components { xx, yy, xy, zz } => {
-            if zz.is_none() && !mesh.section.is_plate() {
-                return refused(
-                    "components.zz",
-                    "is missing: give the out-of-plane stress as well, 0 if there is none".into(),
-                );
-            }
+            let message = "is missing: give the out-of-plane stress as well, 0 if there is none";
+            refuse_if(zz.is_none() && !mesh.section.is_plate(), format!("{place}.components.zz"), message)?;
             let given = [("xx", xx), ("yy", yy), ("xy", xy)].into_iter().chain(zz.as_ref().map(|zz| ("zz", zz)));
             for (key, profile) in given {
                 let place = format!("{place}.components.{key}");

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, check_finite, check_positive};
+use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
 use super::friction::{Along, Friction, check_in_time};
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
@@ -425,9 +425,7 @@ pub fn shape(side: &MasterSide, place: &str) -> Checked<Shape> {
         MasterSide::Polyline { points } => {
             let place = format!("{place}.polyline.points");
             check_finite(&place, points.iter().flatten().copied())?;
-            if points.len() < 2 {
-                return Err(ModelError::new(place, format!("has {} points: must have two or more", points.len())));
-            }
+            refuse_if(points.len() < 2, &place, format_args!("has {} points: must have two or more", points.len()))?;
             if let Some(k) = points.windows(2).position(|pair| pair[0] == pair[1]) {
                 let message = format!("points {} and {} are the same: leave one out", k, k + 1);
                 return Err(ModelError::new(place, message));
@@ -461,18 +459,14 @@ pub fn check_has_friction(contact: &Contact, place: &str) -> Checked<()> {
 pub fn check_ties(pair: &ContactPair, place: &str) -> Checked<()> {
     let faces = pair.small.iter().flat_map(|small| &small.points).any(Option::is_some);
     let message = "ties nothing: no point of the slave has a projection on the master; check the groups named and their positions";
-    if faces { Ok(()) } else { Err(ModelError::new(format!("{place}.tied"), message)) }
+    refuse_if(!faces, format!("{place}.tied"), message)
 }
 
 /// Surfaces of two bodies can be tied, and what moves or presses them otherwise is refused.
 pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
-    let refused = |key: &str, why: &str| Err(ModelError::new(format!("{place}.{key}"), why));
-    if !matches!(contact.master, MasterSide::Group(_)) || contact.is_own() {
-        return refused(
-            "master",
-            "is no other group of edges, to which a surface can be tied: hold it by supports instead",
-        );
-    }
+    let fails = !matches!(contact.master, MasterSide::Group(_)) || contact.is_own();
+    let message = "is no other group of edges, to which a surface can be tied: constrain it by supports instead";
+    refuse_if(fails, format!("{place}.master"), message)?;
     let beside = [
         ("area", contact.area.is_some()),
         ("smooth", contact.smooth),
@@ -487,8 +481,6 @@ pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
         ("along", !contact.along.is_empty()),
         ("initial", contact.initial.is_some()),
     ];
-    match beside.iter().find(|(_, given)| *given) {
-        Some((key, _)) => refused(key, "has no meaning for surfaces that are tied: leave it out"),
-        None => Ok(()),
-    }
+    let message = "has no meaning for surfaces that are tied: leave it out";
+    beside.into_iter().try_for_each(|(key, given)| refuse_if(given, format!("{place}.{key}"), message))
 }

@@ -12,7 +12,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::ser::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::error::{Checked, ModelError};
+use super::error::{Checked, ModelError, refuse_if};
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
@@ -250,28 +250,22 @@ pub fn defined(profile: &Profile, at: Vector2<f64>, place: &str) -> Checked<f64>
 
 /// Checks that a profile does not depend on time, and that the coordinates of a table ascend.
 pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
-    if profile.depends_on_time() {
-        return Err(ModelError::new(place, "the time t has no meaning here: the variables are x and y"));
-    }
+    refuse_if(profile.depends_on_time(), place, "the time t has no meaning here: the variables are x and y")?;
     check_in_time(profile, place)
 }
 
 /// Checks that the coordinates of a table ascend, and that a parameter of the initial state does not depend on time.
 pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
     let parameter = place.rsplit('.').next().unwrap_or_default();
-    if profile.depends_on_time() && OF_THE_START.contains(&parameter) {
-        let message = format!("{parameter} is constant in time at each point: the variables are x and y, and not t");
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!("{parameter} is constant in time at each point: the variables are x and y, and not t");
+    refuse_if(profile.depends_on_time() && OF_THE_START.contains(&parameter), place, message)?;
     let (name, table) = match profile {
         Profile::Constant(_) | Profile::Expression(_) => return Ok(()),
         Profile::X(table) => ("x", table),
         Profile::Y(table) => ("y", table),
     };
-    if table.is_empty() {
-        let message = format!("the table is empty: give pairs [{name}, value]");
-        return Err(ModelError::new(format!("{place}.{name}"), message));
-    }
+    let message = format!("the table is empty: give pairs [{name}, value]");
+    refuse_if(table.is_empty(), format!("{place}.{name}"), message)?;
     let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
     let message = format!("the coordinates of the table must increase: {} follows {}", pair[1][0], pair[0][0]);
     Err(ModelError::new(format!("{place}.{name}"), message))
@@ -454,12 +448,9 @@ pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, pl
     let mut varying = profiles(&along.parameters, "along");
     if let Some(structure) = structure {
         let place = format!("{place}.initial.structure");
-        if !parameters.has_structure() {
-            return Err(ModelError::new(place, "this friction law has no structure: leave it out"));
-        }
-        if along.parameters.contains_key("structure") {
-            return Err(ModelError::new(place, "is given by `along` already: leave one of them out"));
-        }
+        refuse_if(!parameters.has_structure(), &place, "this friction law has no structure: leave it out")?;
+        let message = "is given by `along` already: leave one of them out";
+        refuse_if(along.parameters.contains_key("structure"), place, message)?;
         varying.push(("structure".into(), "initial.structure".into(), structure.clone()));
     }
     let mut friction = with_varying(parameters.clone(), varying, place, "friction")?;

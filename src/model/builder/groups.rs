@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, no_body};
+use super::error::{Checked, ModelError, no_body, refuse_if};
 use crate::mesh::nearest::{NotOne, nearest as nearest_node};
 use crate::mesh::{Edge, Group, Mesh, shape};
 use crate::model::boundary::{Absorber, NodalWeight};
@@ -249,10 +249,8 @@ fn along_edges(mesh: &Mesh, edges: &[Edge], f: impl Fn(Vector2<f64>) -> f64) -> 
 /// Nodal weights of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
 pub fn mass_shares(model: &Model, name: &str, place: &str) -> Checked<Vec<NodalWeight>> {
     let (body, masses) = bodies_and_masses(model, name, place)?;
-    if masses.is_none() && body.is_some_and(|body| body.material.density() == 0.0) {
-        let message = format!("gravity needs a mass: give bodies.{name}.material.density");
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!("gravity needs a mass: give bodies.{name}.material.density");
+    refuse_if(masses.is_none() && body.is_some_and(|body| body.material.density() == 0.0), place, message)?;
     let share = |node: usize, weight: f64| NodalWeight { node, weight, position: model.mesh.nodes[node] };
     let mut shares = Vec::new();
     for &e in body.iter().flat_map(|body| &body.elements) {

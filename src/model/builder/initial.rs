@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::body::PointMassInput;
 use super::contact::{Contact, InitialTractions};
-use super::error::{Checked, ModelError, check_finite};
+use super::error::{Checked, ModelError, check_finite, refuse_if};
 use super::friction::{check_profile, defined, position};
 use super::groups;
 use super::load_step::LoadStep;
@@ -46,9 +46,8 @@ pub fn velocities(
 /// Returns the velocities assigned to nodes at the start of a step [L/T].
 pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Checked<Vec<(usize, [f64; 2])>> {
     let place = format!("{place}.velocity");
-    if !step.velocity.is_empty() && !scheme.is_dynamic() {
-        return Err(ModelError::new(place, "is for dynamic and explicit steps: a static one has no velocities"));
-    }
+    let message = "is for dynamic and explicit steps: a static one has no velocities";
+    refuse_if(!step.velocity.is_empty() && !scheme.is_dynamic(), &place, message)?;
     check_velocities(&place, &step.velocity, model)?;
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in &step.velocity {
@@ -178,9 +177,8 @@ fn of_bodies(
     }
     let place = format!("{place}.of_bodies");
     let refused = |message: String| Err(ModelError::new(place.clone(), message));
-    if given.balanced {
-        return refused("counts the stress of the bodies, and balanced would count it again: leave one out".into());
-    }
+    let message = "counts the stress of the bodies, and balanced would count it again: leave one out";
+    refuse_if(given.balanced, &place, message)?;
     let Some(Group::Edges(edges)) = model.mesh.groups.get(slave) else {
         return refused("needs a slave of edges: give pressure and traction".into());
     };

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use super::error::{Checked, ModelError, check_not_negative};
+use super::error::{Checked, ModelError, check_not_negative, refuse_if};
 use super::groups::{
     Place, absorbers, edge_shares, edges, even_shares, group_at, mass_shares, node_lists, nodes_at, pressure_shares,
 };
@@ -258,10 +258,12 @@ impl Changing<'_> {
 /// Checks that a total force on edges does not vary in space.
 fn check_even(given: Option<&Components>, place: &str) -> Checked<()> {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
-        if given.and_then(|given| given.along(component)).is_some_and(Drive::depends_on_position) {
-            let message = "is the force on the whole group, which does not vary in space: give it in t, or a traction";
-            return Err(ModelError::new(format!("{place}.total_force.{name}"), message));
-        }
+        let message = "is the force on the whole group, which does not vary in space: give it in t, or a traction";
+        refuse_if(
+            given.and_then(|given| given.along(component)).is_some_and(Drive::depends_on_position),
+            format!("{place}.total_force.{name}"),
+            message,
+        )?;
     }
     Ok(())
 }
@@ -283,10 +285,8 @@ fn amplitude(given: Option<&Drive>, before: Option<Amplitude>, place: &str, span
 /// Refuses radial gravity in axisymmetry.
 pub fn check_gravity(radial: Option<&Drive>, place: &str, model: &Model) -> Checked<()> {
     let none = matches!(radial, None | Some(Drive::Constant(0.0)));
-    if !none && model.mesh.section.is_axisymmetric() {
-        let message = "x is the radius of axisymmetric bodies, and gravity has no such direction: give y alone";
-        return Err(ModelError::new(format!("{place}.gravity.x"), message));
-    }
+    let message = "x is the radius of axisymmetric bodies, and gravity has no such direction: give y alone";
+    refuse_if(!none && model.mesh.section.is_axisymmetric(), format!("{place}.gravity.x"), message)?;
     Ok(())
 }
 

@@ -50,7 +50,7 @@ mod unconstrained;
 pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
-pub(crate) use error::{check_line, check_positive};
+pub(crate) use error::{check_line, check_positive, refuse_if};
 pub use friction::{Along, Friction, LawChoice};
 pub use groups::Place;
 pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};

@@ -38,7 +38,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
-use super::error::{Checked, ModelError, check_positive, check_size};
+use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
@@ -108,11 +108,9 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         pair.tie(contact.sliding == SlidingRange::Small, &model.mesh.undeformed());
         contact::check_ties(&pair, &place)?;
     } else if contact.sliding == SlidingRange::Small {
-        if contact.is_own() {
-            let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \
-                           take finite sliding, or name the two parts that touch as slave and master";
-            return Err(ModelError::new(format!("{place}.sliding"), message));
-        }
+        let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \
+                       take finite sliding, or name the two parts that touch as slave and master";
+        refuse_if(contact.is_own(), format!("{place}.sliding"), message)?;
         pair.slide_little(&model.mesh.undeformed());
     }
     check_stick(&pair, &place)?;
@@ -158,10 +156,8 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
         initial::close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
     }
     if contact.shrink_fit {
-        if contact.initial.is_some() {
-            let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
-            return Err(ModelError::new(format!("{place}.shrink_fit"), message));
-        }
+        let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
+        refuse_if(contact.initial.is_some(), format!("{place}.shrink_fit"), message)?;
         pair.start_fitting(&model.mesh.undeformed());
     }
     Ok(())
@@ -178,11 +174,9 @@ fn check_allowed(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
         for (key, allowed) in keys.into_iter().filter_map(|(key, allowed)| Some((key, allowed?))) {
             let place = format!("contacts.{}.{key}", contact.name);
             check_positive(&place, allowed, " (leave it out for the plain penalty)")?;
-            if allowed < least {
-                let message =
-                    format!("is {allowed:e}: gaps of this model have round-off of {least:.1e}; allow more than that");
-                return Err(ModelError::new(place, message));
-            }
+            let message =
+                format!("is {allowed:e}: gaps of this model have round-off of {least:.1e}; allow more than that");
+            refuse_if(allowed < least, place, message)?;
         }
     }
     Ok(())
@@ -190,12 +184,10 @@ fn check_allowed(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
 
 /// Elastic slip that is a part of the law cannot be taken away.
 fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
-    if pair.stick.is_none() || pair.laws.iter().any(|law| law.description.stiffness_is_penalty) {
-        return Ok(());
-    }
+    let has_penalty = pair.laws.iter().any(|law| law.description.stiffness_is_penalty);
     let message = "is for laws whose alpha_t is a penalty (coulomb, adhesion, slip_weakening), and here elastic slip is part of the law, \
                    or there is no friction: leave it out";
-    Err(ModelError::new(format!("{place}.stick"), message))
+    refuse_if(pair.stick.is_some() && !has_penalty, format!("{place}.stick"), message)
 }
 
 /// Method of a contact of edges; `None` for a point group.
@@ -221,10 +213,8 @@ pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
     let mut massless = vec![false; mesh.nodes.len()];
     for contact in contacts.iter().filter(|contact| contact.massless) {
         let place = format!("contacts.{}", contact.name);
-        if contact.area.is_some() {
-            let message = "is for a slave group of edges, whose elements have the mass: leave it out";
-            return Err(ModelError::new(format!("{place}.massless"), message));
-        }
+        let message = "is for a slave group of edges, whose elements have the mass: leave it out";
+        refuse_if(contact.area.is_some(), format!("{place}.massless"), message)?;
         let slave = edges(mesh, &contact.slave, &format!("{place}.slave"))?;
         slave.iter().flat_map(|edge| &edge.nodes).for_each(|&node| massless[node] = true);
     }
@@ -259,9 +249,7 @@ fn slave_points(
         let message = format!("`{name}` is a group of edges, which have lengths of their own: leave the area out");
         return Err(ModelError::new(format!("{place}.area"), message));
     };
-    if !(2..=4).contains(&points) {
-        return Err(ModelError::new(format!("{place}.points"), format!("is {points}: must be 2, 3 or 4")));
-    }
+    refuse_if(!(2..=4).contains(&points), format!("{place}.points"), format_args!("is {points}: must be 2, 3 or 4"))?;
     Ok(match method {
         Method::NodeToSegment if mesh.section.is_axisymmetric() => (nodal_points_of_rings(&edges), None),
         Method::NodeToSegment => (nodal_points(&edges), None),
@@ -287,11 +275,9 @@ fn lone_points(place: &str, contact: &Contact, nodes: &[usize]) -> Checked<Vec<S
 
 fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) -> Checked<Master> {
     let mesh = &model.mesh;
-    let refused = |why: &str| Err(ModelError::new(format!("{place}.smooth"), why));
+    let refuse_smooth_if = |fails: bool, why: &str| refuse_if(contact.smooth && fails, format!("{place}.smooth"), why);
     let MasterSide::Group(group) = &contact.master else {
-        if contact.smooth {
-            return refused("is for a master of mesh edges, and a rigid body needs none: leave it out");
-        }
+        refuse_smooth_if(true, "is for a master of mesh edges, and a rigid body needs none: leave it out")?;
         let shape = contact::shape(&contact.master, &format!("{place}.master"))?;
         return Ok(Master::Rigid(Rigid { shape, body: rigid::of_contact(contact, mesh, place)? }));
     };
@@ -307,12 +293,10 @@ fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) 
     if !contact.smooth {
         return Ok(Master::Mesh(surface));
     }
-    if contact.method == Some(Method::Mortar) {
-        return refused("is not for mortar, which averages the gap: leave it out, or take gauss_to_segment");
-    }
-    if master.iter().any(|edge| edge.nodes.len() > 2) {
-        return refused("is for straight edges, and the master has quadratic ones: leave it out");
-    }
+    let why = "is not for mortar, which averages the gap: leave it out, or take gauss_to_segment";
+    refuse_smooth_if(contact.method == Some(Method::Mortar), why)?;
+    let why = "is for straight edges, and the master has quadratic ones: leave it out";
+    refuse_smooth_if(master.iter().any(|edge| edge.nodes.len() > 2), why)?;
     Ok(Master::Mesh(surface.smoothed(&mesh.nodes)))
 }
 
@@ -358,10 +342,8 @@ pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> 
 
 /// η by (2), averaged over the edges of each side.
 fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked<f64> {
-    if contact.area.is_some() {
-        let message = "has no default for a slave group of points, behind which there is no body: give a number";
-        return Err(ModelError::new(at, message));
-    }
+    let message = "has no default for a slave group of points, behind which there is no body: give a number";
+    refuse_if(contact.area.is_some(), at, message)?;
     let impedance = |edge: &Edge| {
         let body = model.body_of(edge.element);
         let (density, modulus) = (body.material.density(), body.material.shear_modulus());

@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, check_name, check_positive};
+use super::error::{Checked, ModelError, check_name, check_positive, refuse_if};
 use super::groups::{Place, body, group, nodes_at};
 use super::schedule::MOST_INCREMENTS;
 use crate::mesh::Group;
@@ -76,15 +76,11 @@ impl Gauge {
                 return Err(ModelError::new(format!("probes.{}", self.name), message));
             }
         };
-        if !(2..=MOST).contains(&number) {
-            let message = format!("is {number}: a line has 2 to {MOST} points (one alone is given by `at`)");
-            return Err(ModelError::new(format!("probes.{}.number", self.name), message));
-        }
+        let message = format!("is {number}: a line has 2 to {MOST} points (one alone is given by `at`)");
+        refuse_if(!(2..=MOST).contains(&number), format!("probes.{}.number", self.name), message)?;
         let [from, to] = [Vector2::from(from), Vector2::from(to)];
-        if from == to {
-            let message = format!("is ({}, {}), the start of the line: its points would coincide", to.x, to.y);
-            return Err(ModelError::new(format!("probes.{}.to", self.name), message));
-        }
+        let message = format!("is ({}, {}), the start of the line: its points would coincide", to.x, to.y);
+        refuse_if(from == to, format!("probes.{}.to", self.name), message)?;
         let share = |k: usize| k as f64 / (number - 1) as f64;
         let at = |k: usize| from * (1.0 - share(k)) + to * share(k);
         Ok((0..number).map(|k| (format!("{}.{}", self.name, k + 1), at(k))).collect())
@@ -106,9 +102,8 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
         check_name(&place, &gauge.name)?;
         let body = gauge.body.as_ref().map(|name| body(model, name, &format!("{place}.body"))).transpose()?;
         for (name, at) in gauge.points()? {
-            if !taken.insert(name.clone()) {
-                return Err(ModelError::new(place, format!("there is a probe `{name}` already: rename one")));
-            }
+            let message = format!("there is a probe `{name}` already: rename one");
+            refuse_if(!taken.insert(name.clone()), &place, message)?;
             let is_meant = |e: &usize| body.is_none_or(|body| model.body_of_element[*e] == body);
             let within = |e: usize| Some((e, coordinates(model, e, at)?));
             let near = reaches.meeting(&Box2 { low: at, high: at });
@@ -192,9 +187,7 @@ pub fn watched(places: &[Place], model: &Model) -> Checked<Vec<WatchedSet>> {
     for (k, on) in places.iter().enumerate() {
         let (place, name) = (format!("watch[{k}]"), on.column());
         check_name(&place, &name)?;
-        if !seen.insert(name.clone()) {
-            return Err(ModelError::new(place, format!("`{name}` is watched already: name it once")));
-        }
+        refuse_if(!seen.insert(name.clone()), &place, format_args!("`{name}` is watched already: name it once"))?;
         sets.push(watched_set(model, on, &place)?);
     }
     for body in model.mesh.rigid_bodies.iter().filter(|body| !seen.contains(&body.name)) {

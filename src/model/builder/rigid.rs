@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::contact::{Contact, MasterSide};
-use super::error::{Checked, ModelError, check_finite, check_positive};
+use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
 use super::groups::{Place, group, nodes_at};
 use super::load::Change;
 use super::load_step::{LoadStep, Support};
@@ -281,12 +281,8 @@ pub fn add_bodies(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checke
         let place = format!("rigid_bodies.{name}");
         check_finite(&format!("{place}.reference"), *reference)?;
         check_positive(&format!("{place}.inertia"), inertia.unwrap_or(1.0), " (leave it out for none)")?;
-        if mesh.groups.contains_key(name) {
-            return Err(ModelError::new(
-                place,
-                "is a group of the mesh as well, and supports would not know which: rename it",
-            ));
-        }
+        let message = "is a group of the mesh as well, and supports would not know which: rename it";
+        refuse_if(mesh.groups.contains_key(name), place, message)?;
         let point = Vector2::from(*reference);
         let farthest = mesh.nodes.iter().map(|node| (node - point).norm()).fold(0.0, f64::max);
         let radius = if farthest > 0.0 { farthest } else { 1.0 };
@@ -337,11 +333,9 @@ pub fn angle(support: &Support, place: &str, span: Span, model: &Model) -> Check
         on => Err(format!("is for a rigid body, and {on} is a node: name the body")),
     };
     let body = body.map_err(|message| ModelError::new(&place, message))?;
-    if model.mesh.section.is_axisymmetric() {
-        let message = "a rotation in the plane is no motion of axisymmetric bodies, and a rigid body there moves along y alone: \
-                       leave it out";
-        return Err(ModelError::new(place, message));
-    }
+    let message = "a rotation in the plane is no motion of axisymmetric bodies, and a rigid body there moves along y alone: \
+                   leave it out";
+    refuse_if(model.mesh.section.is_axisymmetric(), &place, message)?;
     let Some(drive) = change.given() else { return Ok(Some((2 * body.turning, None))) };
     drive.check().map_err(|message| ModelError::new(&place, message))?;
     Ok(Some((2 * body.turning, Some(Motion::Displacement(drive.times(body.radius), span)))))

@@ -29,7 +29,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::error::{Checked, ModelError};
+use super::error::{Checked, ModelError, refuse_if};
 use super::groups::{Place, dofs_of, edges, nodes_at, pressure_shares};
 use super::load::Change;
 use super::load_step::{Rotation, Support};
@@ -184,10 +184,8 @@ impl SupportsInForce {
             return Ok(());
         }
         let turns = |support: &&Prescribed| matches!(support.motion, Motion::Rotation { .. });
-        if self.dofs.values().any(|support| turns(&support)) {
-            let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
-            return Err(ModelError::new(format!("{place}.supports"), message));
-        }
+        let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
+        refuse_if(self.dofs.values().any(|support| turns(&support)), format!("{place}.supports"), message)?;
         let rigid = model.mesh.rigid_bodies.iter().map(|body| body.reference);
         let (x, axis) = (&model.mesh.nodes, axis(&model.mesh));
         let on_axis = (0..x.len()).filter(|&node| axis.is_some_and(|near| x[node].x <= near));
@@ -223,10 +221,8 @@ fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Mode
         displacement(change, &key, Span::default())?;
         let d = Vector2::from(*direction);
         let size = d.amax();
-        if !(size > 0.0 && size.is_finite()) {
-            let message = format!("is [{}, {}]: give a direction [x, y] that is not zero", d.x, d.y);
-            return Err(ModelError::new(format!("{place}.along"), message));
-        }
+        let message = format!("is [{}, {}]: give a direction [x, y] that is not zero", d.x, d.y);
+        refuse_if(!(size > 0.0 && size.is_finite()), format!("{place}.along"), message)?;
         let d = (d / size).normalize();
         all.extend(nodes.iter().map(|&node| Along { node, d, change, is_normal: false, key: key.clone() }));
     }
