@@ -129,8 +129,7 @@ fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
         }
         _ => ModelError::new("friction", error),
     })?;
-    let named = observables::check_names(&law.description());
-    named.map_err(|message| ModelError::new("friction", format!("the names of the law: {message}")))?;
+    observables::check_names(&law.description()).map_err(|error| ModelError::new("friction", error))?;
     Ok(law.controlled().unwrap_or(law))
 }
 

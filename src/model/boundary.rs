@@ -6,8 +6,9 @@ use std::fmt::{Display, Formatter};
 use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
-pub use super::expression::Expression;
+pub use super::expression::{Expression, InvalidExpression};
 use super::text::{count, number};
 use super::written::written;
 
@@ -179,29 +180,18 @@ impl Drive {
     /// Checks that its numbers are finite and the coordinates of its table ascend.
     ///
     /// # Errors
-    /// Returns the error and its remedy if they do not.
-    pub fn check(&self) -> Result<(), String> {
-        let numbers: &[f64] = match self {
-            Self::Constant(value) | Self::Rate(value) => &[*value],
-            Self::Table(table) if table.is_empty() => return Err("the table is empty: give pairs [time, value]".into()),
-            Self::ByPlace(_, table) if table.is_empty() => {
-                return Err("the table is empty: give pairs [coordinate, value]".into());
-            }
-            Self::Table(table) | Self::ByPlace(_, table) => table.as_flattened(),
-            Self::Expression(_) => &[],
+    /// Returns [`InvalidValues`] if they do not.
+    pub fn check(&self) -> Result<(), InvalidValues> {
+        let (numbers, table) = match self {
+            Self::Constant(value) | Self::Rate(value) => (&[*value][..], None),
+            Self::Table(table) => (table.as_flattened(), Some((table, "time"))),
+            Self::ByPlace(_, table) => (table.as_flattened(), Some((table, "coordinate"))),
+            Self::Expression(_) => (&[][..], None),
         };
         if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
-            return Err(format!("is {value}: must be a finite number"));
+            return Err(InvalidValues::NotFinite(*value));
         }
-        let (table, kind, may_jump) = match self {
-            Self::Table(table) => (table, "times", false),
-            Self::ByPlace(_, table) => (table, "coordinates", true),
-            _ => return Ok(()),
-        };
-        match table.windows(2).find(|pair| pair[1][0] < pair[0][0] || pair[1][0] == pair[0][0] && !may_jump) {
-            Some(pair) => Err(format!("the {kind} of the table must increase: {} follows {}", pair[1][0], pair[0][0])),
-            None => Ok(()),
-        }
+        table.map_or(Ok(()), |(table, argument)| check_table(table, argument))
     }
 
     /// Whether it varies in space.
@@ -256,6 +246,38 @@ impl Drive {
             Self::Expression(expression) => expression.value(position, time),
             Self::ByPlace(along, table) => start + (interpolate(table, position[*along]) - start) * span.share(time),
         }
+    }
+}
+
+/// Numbers that define no variation.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InvalidValues {
+    /// A number is infinite or none
+    #[error("is {0}: must be a finite number")]
+    NotFinite(f64),
+    /// A table has no pairs; its argument
+    #[error("the table is empty: give pairs [{0}, value]")]
+    Empty(&'static str),
+    /// The arguments of a table do not ascend
+    #[error("the {} of the table must increase: {next} follows {before}", if *argument == "time" { "times" } else { "coordinates" })]
+    Descending {
+        /// its argument
+        argument: &'static str,
+        /// one of them
+        before: f64,
+        /// the next one
+        next: f64,
+    },
+}
+
+/// Checks that a table has pairs with ascending arguments; the same coordinate twice is a jump, and there is none in time.
+pub fn check_table(table: &[[f64; 2]], argument: &'static str) -> Result<(), InvalidValues> {
+    let descends = |pair: &&[[f64; 2]]| pair[1][0] < pair[0][0] || argument == "time" && pair[1][0] == pair[0][0];
+    match table.windows(2).find(descends) {
+        _ if table.is_empty() => Err(InvalidValues::Empty(argument)),
+        Some(pair) => Err(InvalidValues::Descending { argument, before: pair[0][0], next: pair[1][0] }),
+        None => Ok(()),
     }
 }
 

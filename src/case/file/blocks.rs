@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
+use serde::de::Error;
 use serde::{Deserialize, Serialize};
 
 use super::MeshSource;
@@ -119,11 +120,10 @@ pub(super) struct MeshKeys {
     joined: Option<Vec<Vec<String>>>,
 }
 
-impl TryFrom<MeshKeys> for MeshSource {
-    type Error = String;
-
-    fn try_from(keys: MeshKeys) -> Result<Self, String> {
-        let MeshKeys { nodes, elements, edges, points, blocks, parameters, apart, joined } = keys;
+impl MeshKeys {
+    /// Returns the mesh, given in one of the two ways.
+    pub fn source<E: Error>(self) -> Result<MeshSource, E> {
+        let Self { nodes, elements, edges, points, blocks, parameters, apart, joined } = self;
         let given = |pairs: &[(&'static str, bool)]| pairs.iter().find(|(_, given)| *given).map(|(key, _)| *key);
         let of_nodes = [
             ("nodes", nodes.is_some()),
@@ -136,14 +136,16 @@ impl TryFrom<MeshKeys> for MeshSource {
         match (blocks, given(&of_nodes), given(&of_blocks)) {
             (Some(blocks), None, _) => {
                 let (parameters, joined) = (parameters.unwrap_or_default(), joined.unwrap_or_default());
-                Ok(Self::Blocks(BlocksInput { parameters, blocks, apart: apart.unwrap_or_default(), joined }))
+                Ok(MeshSource::Blocks(BlocksInput { parameters, blocks, apart: apart.unwrap_or_default(), joined }))
             }
-            (Some(_), Some(key), _) => {
-                Err(format!("has both `blocks` and `{key}`: give blocks, or nodes with their elements and edges"))
+            (Some(_), Some(key), _) => Err(E::custom(format_args!(
+                "has both `blocks` and `{key}`: give blocks, or nodes with their elements and edges"
+            ))),
+            (None, _, Some(key)) => {
+                Err(E::custom(format_args!("has `{key}` without `blocks`: it belongs to a mesh of blocks")))
             }
-            (None, _, Some(key)) => Err(format!("has `{key}` without `blocks`: it belongs to a mesh of blocks")),
-            (None, _, None) => Ok(Self::Inline(InlineMesh {
-                nodes: nodes.ok_or("missing field `nodes`")?,
+            (None, _, None) => Ok(MeshSource::Inline(InlineMesh {
+                nodes: nodes.ok_or_else(|| E::missing_field("nodes"))?,
                 elements: elements.unwrap_or_default(),
                 edges: edges.unwrap_or_default(),
                 points: points.unwrap_or_default(),

@@ -6,7 +6,8 @@ use nalgebra::{Matrix2, Matrix4, Vector2};
 
 use super::spatial::plane;
 use super::{
-    CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+    CauchyStress, Flow, InadmissibleStress, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial,
+    Straining, Stretched,
 };
 
 /// Names of the initial stress among the variables of a law.
@@ -255,7 +256,7 @@ impl Material for Imposed {
         self.law.holds_initial_stress()
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         self.law.admits(stress)
     }
 

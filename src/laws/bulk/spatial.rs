@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
 
-use super::{CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, Straining};
+use super::{CauchyStress, Flow, InadmissibleStress, Material, MaterialFailure, MaterialResponse, Straining};
 
 /// Response of a law at F with an out-of-plane stretch.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -246,7 +246,7 @@ impl<L: Spatial> Material for PlaneStress<L> {
         self.law.holds_initial_stress()
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         self.law.admits(stress)
     }
 

@@ -6,7 +6,8 @@ use nalgebra::{Matrix2, Vector2, Vector5};
 
 use super::spatial::{components, plane, positive_stretch};
 use super::{
-    CauchyStress, Flow, Material, MaterialFailure, MaterialResponse, Spatial, Straining, Stretched, positive_jacobian,
+    CauchyStress, Flow, InadmissibleStress, Material, MaterialFailure, MaterialResponse, Spatial, Straining, Stretched,
+    positive_jacobian,
 };
 
 /// Name of the initial pressure of the fluid among the variables of a law, the first of them.
@@ -192,7 +193,7 @@ impl Material for Undrained {
         self.law.holds_initial_stress()
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         self.law.admits(stress)
     }
 

@@ -24,7 +24,7 @@ use crate::laws::parameter::{InvalidParameter, UnknownParameter};
 use crate::mesh::Mesh;
 use crate::mesh::names::nearest;
 use crate::mesh::shape::gauss;
-use crate::model::boundary::Profile;
+use crate::model::boundary::{Profile, check_table};
 
 /// Friction of a contact: a law, or parameters of one, with α_t = α_n/2 by default.
 #[derive(Clone)]
@@ -55,7 +55,7 @@ impl Friction {
     /// let friction = Friction::varying([("along.mu", mu)], |values, alpha_t| {
     ///     Ok(Box::new(Coulomb::new(&CoulombParameters::new(values[0]), alpha_t)?))
     /// });
-    /// # Ok::<(), String>(())
+    /// # Ok::<(), fecontact::model::boundary::InvalidExpression>(())
     /// ```
     pub fn varying<N: Into<String>>(
         profiles: impl IntoIterator<Item = (N, Profile)>,
@@ -186,7 +186,7 @@ impl Friction {
         let place = place.unwrap_or(own);
         let named = |law: Box<dyn FrictionLaw>| match observables::check_names(&law.description()) {
             Ok(()) => Ok(law),
-            Err(message) => Err(ModelError::new("", format!("the names of the law: {message}"))),
+            Err(error) => Err(ModelError::new("", error)),
         };
         law.and_then(named).map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
     }
@@ -264,11 +264,7 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
         Profile::X(table) => ("x", table),
         Profile::Y(table) => ("y", table),
     };
-    let message = format!("the table is empty: give pairs [{name}, value]");
-    refuse_if(table.is_empty(), format!("{place}.{name}"), message)?;
-    let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
-    let message = format!("the coordinates of the table must increase: {} follows {}", pair[1][0], pair[0][0]);
-    Err(ModelError::new(format!("{place}.{name}"), message))
+    check_table(table, name).map_err(|error| ModelError::new(format!("{place}.{name}"), error))
 }
 
 /// Number of quadrature points for the mean of a rate over an increment: exact for polynomials of fifth order.

@@ -38,13 +38,15 @@ impl Place {
     /// Replaces a point by the tag of the node nearest to it; by its position where several mesh files use that tag.
     ///
     /// # Errors
-    /// Returns a message if the node is not unique or too far away.
-    pub fn settled(&self, mesh: &Mesh) -> Result<Self, String> {
+    /// Returns [`ModelError`] at a place of the input if the node is not unique or too far away.
+    pub fn settled(&self, mesh: &Mesh, place: &str) -> Checked<Self> {
         match self {
-            Self::Near(point) => nearest(mesh, *point).map(|node| match tagged(mesh, mesh.node_tags[node])[..] {
-                [_] => Self::Node(mesh.node_tags[node]),
-                _ => Self::Near(mesh.nodes[node].into()),
-            }),
+            Self::Near(point) => {
+                nearest(mesh, *point, place).map(|node| match tagged(mesh, mesh.node_tags[node])[..] {
+                    [_] => Self::Node(mesh.node_tags[node]),
+                    _ => Self::Near(mesh.nodes[node].into()),
+                })
+            }
             _ => Ok(self.clone()),
         }
     }
@@ -52,7 +54,7 @@ impl Place {
     /// It in words; a single node by its tag.
     #[doc(hidden)]
     pub fn in_words(&self, mesh: &Mesh) -> String {
-        self.settled(mesh).map_or_else(|_| self.to_string(), |settled| settled.to_string())
+        self.settled(mesh, "").map_or_else(|_| self.to_string(), |settled| settled.to_string())
     }
 
     /// Its name in the columns of results.
@@ -66,10 +68,10 @@ impl Place {
 }
 
 /// The node nearest to a point, which the adjacent elements must reach.
-fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
+fn nearest(mesh: &Mesh, point: [f64; 2], place: &str) -> Checked<usize> {
     let [x, y] = point.map(number);
     let elements = mesh.elements.iter().map(|element| element.nodes.as_slice());
-    nearest_node(&mesh.nodes[..mesh.own_nodes()], elements, point).map_err(|not_one| match not_one {
+    let message = |not_one| match not_one {
         NotOne::NoPlace => format!("near ({x}, {y}) is no place: give finite numbers"),
         NotOne::NoNodes => "the mesh has no nodes".into(),
         NotOne::Several(both) => {
@@ -81,7 +83,9 @@ fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
             mesh.node_tags[node],
             number(distance)
         ),
-    })
+    };
+    let nearest = nearest_node(&mesh.nodes[..mesh.own_nodes()], elements, point);
+    nearest.map_err(|not_one| ModelError::new(place, message(not_one)))
 }
 
 /// Nodes with a tag: one, unless meshes are joined.
@@ -147,7 +151,7 @@ pub fn dofs_of(nodes: &[usize]) -> impl Iterator<Item = usize> {
 pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     match on {
         Place::Group(name) => Ok(mesh.nodes_of(group(mesh, name, place)?)),
-        Place::Near(point) => Ok(vec![nearest(mesh, *point).map_err(|message| ModelError::new(place, message))?]),
+        Place::Near(point) => Ok(vec![nearest(mesh, *point, place)?]),
         Place::Node(tag) => match tagged(mesh, *tag)[..] {
             [node] => Ok(vec![node]),
             [] => Err(ModelError::new(place, format!("the mesh has no node {tag}"))),

@@ -119,7 +119,7 @@ impl LoadsInForce {
     /// Changes or ends a load.
     fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let (kind, value) = action(load, place)?;
-        let on = load.on.settled(&model.mesh).map_err(|message| ModelError::new(format!("{place}.on"), message))?;
+        let on = load.on.settled(&model.mesh, &format!("{place}.on"))?;
         let key = (on.to_string(), kind);
         // A load that decreases to zero stays until something replaces it.
         let before = self.0.get(&key).filter(|load| kind.fades() || load.entry.value.is_some());

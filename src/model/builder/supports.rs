@@ -28,6 +28,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
+use thiserror::Error;
 
 use super::error::{Checked, ModelError, refuse_if};
 use super::groups::{Place, dofs_of, edges, nodes_at, pressure_shares};
@@ -171,7 +172,7 @@ impl SupportsInForce {
             let given: Vec<Prescribed> = dofs_of(&[node]).filter_map(|dof| all.remove(&dof)).collect();
             let tag = model.mesh.node_tags[node];
             let resolved = resolved(node, given, held)
-                .map_err(|message| ModelError::new(format!("{place}.supports"), format!("node {tag} {message}")))?;
+                .map_err(|why| ModelError::new(format!("{place}.supports"), format!("node {tag} {why}")))?;
             all.extend(resolved.into_iter().map(|support| (support.at.dof, support)));
         }
         Ok(all.into_values().collect())
@@ -435,15 +436,32 @@ fn is_same(a: &Drive, b: &Drive) -> bool {
     }
 }
 
+/// Why the supports of a node contradict each other.
+#[derive(Clone, Copy, Debug, Error)]
+enum Contradiction {
+    #[error("is prescribed by a rotation and constrained along another direction: leave it out of one of the two")]
+    Rotation,
+    #[error("is constrained twice along one direction")]
+    Twice,
+    #[error(
+        "is constrained along two directions that differ by {} degrees, and cannot move at all: put sides that continue smoothly \
+         into one group, leave the node out of one of the two, or give it ux and uy",
+        number(*.0)
+    )]
+    Close(f64),
+    #[error(
+        "is constrained along three directions with contradictory values: two determine its displacement, so leave it out of the \
+         third"
+    )]
+    Three,
+}
+
 /// Supports of a node with the coordinate supports `given` and some inclined directions, or an error.
-fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Prescribed>, String> {
+fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Prescribed>, Contradiction> {
     let mut all: Vec<Inclined> = Vec::new();
     for support in &given {
         let Motion::Displacement(drive, span) = &support.motion else {
-            return Err(
-                "is prescribed by a rotation and constrained along another direction: leave it out of one of the two"
-                    .into(),
-            );
+            return Err(Contradiction::Rotation);
         };
         let direction = support.at.vector();
         all.push(Inclined { share: 1.0, direction, drive: drive.clone(), span: *span });
@@ -458,7 +476,7 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
         check_angles(straight, held, &all)?;
     }
     let d = [&all[0], &all[1]].map(|of| of.direction.transpose());
-    let inverse = Matrix2::from_rows(&d).try_inverse().ok_or("is constrained twice along one direction")?;
+    let inverse = Matrix2::from_rows(&d).try_inverse().ok_or(Contradiction::Twice)?;
     for third in &all[2..] {
         check_agrees([&all[0], &all[1], third], inverse)?;
     }
@@ -472,18 +490,14 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
 }
 
 /// Checks that inclined directions differ sufficiently from each other and from the supported coordinates.
-fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), String> {
+fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), Contradiction> {
     for a in 0..all.len() {
         for b in (a + 1).max(straight)..all.len() {
             let angle = all[a].direction.perp(&all[b].direction).abs().min(1.0).asin().to_degrees();
             let normals = [a, b].iter().all(|k| k.checked_sub(straight).is_some_and(|k| held[k].is_normal));
             let least = if normals { CORNER } else { LEAST_ANGLE };
             if angle < least {
-                return Err(format!(
-                    "is constrained along two directions that differ by {} degrees, and cannot move at all: put sides \
-                     that continue smoothly into one group, leave the node out of one of the two, or give it ux and uy",
-                    number(angle)
-                ));
+                return Err(Contradiction::Close(angle));
             }
         }
     }
@@ -491,7 +505,7 @@ fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), 
 }
 
 /// Checks that a third direction agrees with the first two.
-fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -> Result<(), String> {
+fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -> Result<(), Contradiction> {
     let value = |of: &Inclined| match (&of.drive, &first.drive) {
         (Drive::Constant(value), Drive::Constant(_)) | (Drive::Rate(value), Drive::Rate(_)) => Some(*value),
         _ => None,
@@ -504,9 +518,7 @@ fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -
             return Ok(());
         }
     }
-    Err("is constrained along three directions with contradictory values: two determine its displacement, so leave it \
-         out of the third"
-        .into())
+    Err(Contradiction::Three)
 }
 
 /// Distance from the axis, relative to the model size, within which a node is on the axis.
