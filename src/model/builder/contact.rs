@@ -360,9 +360,17 @@ impl Contact {
         self
     }
 
+    /// The group of a master of mesh edges.
+    pub(super) fn master_group(&self) -> Option<&str> {
+        match &self.master {
+            MasterSide::Group(group) => Some(group),
+            _ => None,
+        }
+    }
+
     /// Whether the slave is its own master (self-contact).
     pub(super) fn is_own(&self) -> bool {
-        matches!(&self.master, MasterSide::Group(group) if *group == self.slave)
+        self.master_group() == Some(&self.slave)
     }
 }
 
@@ -464,7 +472,7 @@ pub fn check_ties(pair: &ContactPair, place: &str) -> Checked<()> {
 
 /// Surfaces of two bodies can be tied, and what moves or presses them otherwise is refused.
 pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
-    let fails = !matches!(contact.master, MasterSide::Group(_)) || contact.is_own();
+    let fails = contact.master_group().is_none() || contact.is_own();
     let message = "is no other group of edges, to which a surface can be tied: constrain it by supports instead";
     refuse_if(fails, format!("{place}.master"), message)?;
     let beside = [

@@ -118,23 +118,16 @@ pub fn check_name(place: &str, name: &str) -> Checked<()> {
         name.len()
     );
     refuse_if(name.len() > LONGEST, place, message)?;
-    match name.chars().find(|c| is_unwritable(*c) || BREAKING.contains(c)) {
-        Some(character) => Err(ModelError::new(
-            place,
-            format!("the name {name:?} has {character:?} in it, which would break the rows of history.csv: rename it"),
-        )),
-        None => Ok(()),
-    }
+    let message =
+        |c| format!("the name {name:?} has {c:?} in it, which would break the rows of history.csv: rename it");
+    let breaking = name.chars().find(|c| is_unwritable(*c) || BREAKING.contains(c));
+    breaking.map_or(Ok(()), |c| Err(ModelError::new(place, message(c))))
 }
 
 /// Checks that a title or unit label is one line of text, as used in figures, pages and stores.
 pub fn check_line(place: &str, text: &str) -> Checked<()> {
-    match text.chars().find(|c| is_unwritable(*c)) {
-        Some(character) => {
-            Err(ModelError::new(place, format!("{text:?} has {character:?} in it: give a line of text, without it")))
-        }
-        None => Ok(()),
-    }
+    let message = |c| format!("{text:?} has {c:?} in it: give a line of text, without it");
+    text.chars().find(|c| is_unwritable(*c)).map_or(Ok(()), |c| Err(ModelError::new(place, message(c))))
 }
 
 /// Error for an unknown body.
@@ -146,8 +139,6 @@ pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str
 /// Checks that no item of one kind is given twice.
 pub fn check_once<'n>(of: &str, mut names: impl Iterator<Item = &'n String>) -> Checked<()> {
     let mut seen = BTreeSet::new();
-    match names.find(|name| !seen.insert(*name)) {
-        Some(name) => Err(ModelError::new(format!("{of}.{name}"), "is given twice: keep one, or rename one")),
-        None => Ok(()),
-    }
+    let message = "is given twice: keep one, or rename one";
+    names.try_for_each(|name| refuse_if(!seen.insert(name), format!("{of}.{name}"), message))
 }

@@ -22,7 +22,7 @@ use crate::laws::friction::{
 };
 use crate::laws::parameter::{InvalidParameter, UnknownParameter};
 use crate::mesh::Mesh;
-use crate::mesh::names::nearest;
+use crate::mesh::names::not_known;
 use crate::mesh::shape::gauss;
 use crate::model::boundary::{Profile, check_table};
 
@@ -34,12 +34,33 @@ pub struct Friction {
     parameters: Option<FrictionParameters>,
     /// Name within the contact, for messages
     name: String,
-    varying: Vec<(String, Profile)>,
+    varying: Vec<Named>,
     law: Arc<LawAt>,
     /// Whether no law was given: the surfaces are tied
     tie: bool,
-    /// Other friction where a profile is positive, the first one that applies, with its name in messages
-    elsewhere: Vec<(String, Profile, Self)>,
+    /// Regions with other friction, of which the first one that applies is used
+    elsewhere: Vec<Region>,
+}
+
+/// A profile with its name within the contact, for messages.
+#[derive(Clone)]
+struct Named {
+    name: String,
+    profile: Profile,
+}
+
+impl Named {
+    /// Returns the value at a reference position, which must be finite; `contact` is its place.
+    fn value(&self, at: Vector2<f64>, contact: &str) -> Checked<f64> {
+        defined(&self.profile, at, &format!("{contact}.{}", self.name))
+    }
+}
+
+/// Friction where a profile is positive.
+#[derive(Clone)]
+struct Region {
+    positive: Named,
+    friction: Friction,
 }
 
 impl Friction {
@@ -61,7 +82,7 @@ impl Friction {
         profiles: impl IntoIterator<Item = (N, Profile)>,
         law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync + 'static,
     ) -> Self {
-        let varying = profiles.into_iter().map(|(name, profile)| (name.into(), profile)).collect();
+        let varying = profiles.into_iter().map(|(name, profile)| Named { name: name.into(), profile }).collect();
         Self {
             parameters: None,
             name: "friction".into(),
@@ -92,7 +113,7 @@ impl Friction {
     /// name profile and friction by `name`, such as `along.law[0]`.
     pub fn in_region(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
         let friction = Self { name: format!("{name}.friction"), ..friction.into() };
-        self.elsewhere.push((format!("{name}.where"), profile, friction));
+        self.elsewhere.push(Region { positive: Named { name: format!("{name}.where"), profile }, friction });
         self
     }
 
@@ -106,11 +127,11 @@ impl Friction {
         default_alpha_t: Option<f64>,
         offsets: Offsets,
     ) -> Checked<(Vec<Arc<ContactLaw>>, Option<LawsInTime>)> {
-        for (name, profile, _) in &self.elsewhere {
+        for Region { positive: Named { name, profile }, .. } in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
         }
-        let all = || std::iter::once(self).chain(self.elsewhere.iter().map(|(.., friction)| friction));
-        for (name, profile) in all().flat_map(|friction| &friction.varying) {
+        let all = || std::iter::once(self).chain(self.elsewhere.iter().map(|region| &region.friction));
+        for Named { name, profile } in all().flat_map(|friction| &friction.varying) {
             check_in_time(profile, &format!("{place}.{name}"))?;
         }
         let (mut laws, mut varying) = (Vec::new(), Vec::new());
@@ -118,14 +139,14 @@ impl Friction {
         for point in points {
             let at = position(point, mesh);
             let mut chosen = (0, self);
-            for (k, (name, profile, friction)) in self.elsewhere.iter().enumerate().rev() {
-                if defined(profile, at, &format!("{place}.{name}"))? > 0.0 {
+            for (k, Region { positive, friction }) in self.elsewhere.iter().enumerate().rev() {
+                if positive.value(at, place)? > 0.0 {
                     chosen = (k + 1, friction);
                 }
             }
             let (number, friction) = chosen;
-            let value = |(name, profile): &(String, Profile)| defined(profile, at, &format!("{place}.{name}"));
-            let values = friction.varying.iter().map(value).collect::<Checked<Vec<_>>>()?;
+            let values = friction.varying.iter().map(|named| named.value(at, place));
+            let values = values.collect::<Checked<Vec<_>>>()?;
             // If a parameter varies in place and time, only points at the same place share a law.
             let place_of = [at.x, at.y].into_iter().filter(|_| friction.varies_in_place_and_time());
             let key = (number, values.iter().copied().chain(place_of).map(f64::to_bits).collect());
@@ -135,7 +156,8 @@ impl Friction {
             }
             point.law = laws.len();
             numbers.insert(key, laws.len());
-            let first = friction.varying.first().map(|(name, _)| format!("{place}.{name} at ({}, {})", at.x, at.y));
+            let first = friction.varying.first();
+            let first = first.map(|Named { name, .. }| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let law = friction.law(&values, default_alpha_t, place, first)?;
             let law = ContactLaw::with_offsets(law, offsets).map_err(|InvalidParameter { name, value, allowed }| {
                 ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
@@ -143,7 +165,7 @@ impl Friction {
             varying.push(friction.in_time(at, default_alpha_t, offsets));
             laws.push(Arc::new(law));
         }
-        let varies = all().flat_map(|friction| &friction.varying).any(|(_, profile)| profile.depends_on_time());
+        let varies = all().flat_map(|friction| &friction.varying).any(|named| named.profile.depends_on_time());
         let during = move |law: usize, span| varying[law].during(span);
         let in_time = varies.then(|| LawsInTime::new(laws.len(), during));
         Ok((laws, in_time))
@@ -154,13 +176,13 @@ impl Friction {
             Profile::Expression(expression) => expression.depends_on_time() && expression.depends_on_position(),
             Profile::Constant(_) | Profile::X(_) | Profile::Y(_) => false,
         };
-        self.varying.iter().any(|(_, profile)| of_both(profile))
+        self.varying.iter().any(|named| of_both(&named.profile))
     }
 
     /// Returns the time-dependent law at a place.
     fn in_time(&self, at: Vector2<f64>, alpha_t: Option<f64>, offsets: Offsets) -> InTime {
         InTime {
-            profiles: self.varying.iter().map(|(_, profile)| profile.clone()).collect(),
+            profiles: self.varying.iter().map(|named| named.profile.clone()).collect(),
             at,
             law: self.law.clone(),
             alpha_t: alpha_t.unwrap_or(f64::NAN),
@@ -179,14 +201,10 @@ impl Friction {
         let law = (self.law)(values, default_alpha_t.unwrap_or(f64::NAN));
         let lacks = law.is_err() && default_alpha_t.is_none() && (self.law)(values, 1.0).is_ok();
         let own = format!("{contact}.{}", self.name);
-        if lacks {
-            let message = "is missing: a slave group of points has no default for it";
-            return Err(ModelError::new(format!("{own}.alpha_t"), message));
-        }
+        refuse_if(lacks, format!("{own}.alpha_t"), "is missing: a slave group of points has no default for it")?;
         let place = place.unwrap_or(own);
-        let named = |law: Box<dyn FrictionLaw>| match observables::check_names(&law.description()) {
-            Ok(()) => Ok(law),
-            Err(error) => Err(ModelError::new("", error)),
+        let named = |law: Box<dyn FrictionLaw>| {
+            observables::check_names(&law.description()).map_err(|error| ModelError::new("", error)).map(|()| law)
         };
         law.and_then(named).map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
     }
@@ -432,14 +450,9 @@ impl JsonSchema for Friction {
 /// Returns the laws with their varying parameters replaced, including an initial structure.
 pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, place: &str) -> Checked<Friction> {
     let Some(parameters) = given.parameters() else {
-        return match along.is_empty() && structure.is_none() {
-            true => Ok(given.clone()),
-            false => {
-                let message =
-                    "is a law from code, of which no parameter is known by name: let it vary by Friction::varying";
-                Err(ModelError::new(format!("{place}.friction"), message))
-            }
-        };
+        let message = "is a law from code, of which no parameter is known by name: let it vary by Friction::varying";
+        let fails = !along.is_empty() || structure.is_some();
+        return refuse_if(fails, format!("{place}.friction"), message).map(|()| given.clone());
     };
     let mut varying = profiles(&along.parameters, "along");
     if let Some(structure) = structure {
@@ -447,7 +460,8 @@ pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, pl
         refuse_if(!parameters.has_structure(), &place, "this friction law has no structure: leave it out")?;
         let message = "is given by `along` already: leave one of them out";
         refuse_if(along.parameters.contains_key("structure"), place, message)?;
-        varying.push(("structure".into(), "initial.structure".into(), structure.clone()));
+        let named = Named { name: "initial.structure".into(), profile: structure.clone() };
+        varying.push(Varying { parameter: "structure".into(), named });
     }
     let mut friction = with_varying(parameters.clone(), varying, place, "friction")?;
     for (k, LawChoice { place: positive, friction: law, along }) in along.law.iter().enumerate() {
@@ -459,11 +473,18 @@ pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, pl
     Ok(friction)
 }
 
-/// Name of a parameter, its place in the contact, and its profile.
-type Varying = (String, String, Profile);
+/// A parameter that varies.
+struct Varying {
+    parameter: String,
+    named: Named,
+}
 
 fn profiles(along: &BTreeMap<String, Profile>, within: &str) -> Vec<Varying> {
-    along.iter().map(|(name, profile)| (name.clone(), format!("{within}.{name}"), profile.clone())).collect()
+    let varying = |(parameter, profile): (&String, &Profile)| {
+        let named = Named { name: format!("{within}.{parameter}"), profile: profile.clone() };
+        Varying { parameter: parameter.clone(), named }
+    };
+    along.iter().map(varying).collect()
 }
 
 /// Returns a law with varying parameters; its place in the contact is `own`.
@@ -476,22 +497,17 @@ fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &s
     }
     // The replaced numbers must be valid as well; any α_t serves for the check.
     parameters.build(1.0).map_err(|error| ModelError::new(format!("{place}.{own}"), error))?;
-    let names: Vec<[String; 2]> =
-        varying.iter().map(|(name, within, _)| [name.clone(), format!("{place}.{within}")]).collect();
-    let profiles: Vec<(String, Profile)> = varying.into_iter().map(|(_, within, profile)| (within, profile)).collect();
+    let profiles: Vec<(String, Profile)> =
+        varying.iter().map(|Varying { named, .. }| (named.name.clone(), named.profile.clone())).collect();
+    let place = place.to_owned();
     Ok(Friction::varying(profiles, move |values, alpha_t| {
         let mut parameters = parameters.clone();
-        for ([name, place], &value) in names.iter().zip(values) {
-            parameters = parameters.with(name, value).map_err(|error| ModelError::new(place, unknown(&error)))?;
+        for (Varying { parameter, named }, &value) in varying.iter().zip(values) {
+            parameters = parameters.with(parameter, value).map_err(|UnknownParameter { name, known }| {
+                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                ModelError::new(format!("{place}.{}", named.name), not_known(&name, &known))
+            })?;
         }
         Ok(parameters.build(alpha_t)?)
     }))
-}
-
-/// Message for an unknown parameter, with the most similar known one.
-fn unknown(UnknownParameter { name, known }: &UnknownParameter) -> String {
-    let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    let meant =
-        nearest(name, known.iter().copied()).map_or(String::from("."), |near| format!("; did you mean `{near}`?"));
-    format!("`{name}` is not known here{meant} Known are `{}`", known.join("`, `"))
 }

@@ -66,15 +66,10 @@ fn check_velocities<'v>(
     given: impl IntoIterator<Item = (&'v String, &'v [f64; 2])>,
     model: &Model,
 ) -> Checked<()> {
-    let radial = |(_, velocity): &(&String, &[f64; 2])| velocity[0] != 0.0;
-    match given.into_iter().find(radial).filter(|_| model.mesh.section.is_axisymmetric()) {
-        Some((name, _)) => {
-            let message =
-                "x is the radius of axisymmetric bodies, along which they cannot move as a whole: give [0, vy]";
-            Err(ModelError::new(format!("{place}.{name}"), message))
-        }
-        None => Ok(()),
-    }
+    let message = "x is the radius of axisymmetric bodies, along which they cannot move as a whole: give [0, vy]";
+    let fails = |velocity: &[f64; 2]| velocity[0] != 0.0 && model.mesh.section.is_axisymmetric();
+    let mut given = given.into_iter();
+    given.try_for_each(|(name, velocity)| refuse_if(fails(velocity), format!("{place}.{name}"), message))
 }
 
 /// Velocities assigned to nodes so far.

@@ -192,10 +192,6 @@ fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
 
 /// Method of a contact of edges; `None` for a point group.
 pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chosen> {
-    let master = match &contact.master {
-        MasterSide::Group(group) => Some(group.as_str()),
-        _ => None,
-    };
     let Contact { slave, method, points, smooth, .. } = contact;
     let asked = Asked {
         method: *method,
@@ -205,7 +201,7 @@ pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chos
         small: contact.tied || contact.sliding == SlidingRange::Small,
         bent: matches!(contact.master, MasterSide::Circle { .. } | MasterSide::Polyline { .. }),
     };
-    contact.area.is_none().then(|| choose([Some(slave), master], asked, mesh))
+    contact.area.is_none().then(|| choose([Some(slave), contact.master_group()], asked, mesh))
 }
 
 /// Slave nodes whose mass is moved away.
@@ -223,7 +219,7 @@ pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
 
 /// Nodes of a mesh master, with the slave edges as their master.
 fn reverse(contact: &Contact, mesh: &Mesh) -> Option<Reverse> {
-    let MasterSide::Group(master) = &contact.master else { return None };
+    let master = contact.master_group()?;
     let [master, slave] = [master, &contact.slave].map(|name| match mesh.group(name) {
         Ok(Group::Edges(edges)) => in_order(&node_lists(edges)),
         _ => Vec::new(),
@@ -276,7 +272,7 @@ fn lone_points(place: &str, contact: &Contact, nodes: &[usize]) -> Checked<Vec<S
 fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) -> Checked<Master> {
     let mesh = &model.mesh;
     let refuse_smooth_if = |fails: bool, why: &str| refuse_if(contact.smooth && fails, format!("{place}.smooth"), why);
-    let MasterSide::Group(group) = &contact.master else {
+    let Some(group) = contact.master_group() else {
         refuse_smooth_if(true, "is for a master of mesh edges, and a rigid body needs none: leave it out")?;
         let shape = contact::shape(&contact.master, &format!("{place}.master"))?;
         return Ok(Master::Rigid(Rigid { shape, body: rigid::of_contact(contact, mesh, place)? }));
@@ -360,7 +356,7 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
         Ok(all.iter().sum::<f64>() / all.len() as f64)
     };
     let slave = side(&contact.slave, "slave")?;
-    let MasterSide::Group(master) = &contact.master else { return Ok(slave) };
+    let Some(master) = contact.master_group() else { return Ok(slave) };
     let master = side(master, "master")?;
     Ok(slave * master / (slave + master))
 }
@@ -434,10 +430,8 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
     }
     let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
     let modulus = |edge: &Edge| model.body_of(edge.element).material.p_wave_modulus();
-    let master = match &contact.master {
-        MasterSide::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
-        _ => &[],
-    };
+    let master = contact.master_group().map(|group| edges(&model.mesh, group, &format!("{place}.master")));
+    let master = master.transpose()?.unwrap_or_default();
     let softest = master.iter().map(modulus).fold(f64::INFINITY, f64::min);
     let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
     Ok(Some(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64))
@@ -501,11 +495,8 @@ pub fn modulus(contact: &Contact, model: &Model) -> f64 {
         _ => None,
     };
     let Some(slave) = compliance(&contact.slave) else { return 0.0 };
-    let master = match &contact.master {
-        MasterSide::Group(group) => compliance(group).unwrap_or(0.0),
-        _ => 0.0,
-    };
-    2.0 / (slave + master)
+    let master = contact.master_group().and_then(compliance);
+    2.0 / (slave + master.unwrap_or(0.0))
 }
 
 /// G/(1 − ν) = 2 G (M − G)/M,   M = λ + 2 G

@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, MasterSide};
+use super::contact::Contact;
 use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
 use super::groups::{Place, group, nodes_at};
 use super::load::Change;
@@ -305,7 +305,7 @@ pub fn add_bodies(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checke
 pub fn of_contact(contact: &Contact, mesh: &Mesh, place: &str) -> Checked<Option<RigidBody>> {
     let Some(name) = &contact.rigid_body else { return Ok(None) };
     let place = format!("{place}.rigid_body");
-    if let MasterSide::Group(group) = &contact.master {
+    if let Some(group) = contact.master_group() {
         let message =
             format!("is for a rigid master, and `{group}` is a group of edges, which move by themselves: leave it out");
         return Err(ModelError::new(place, message));

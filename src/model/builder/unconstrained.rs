@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DVector, Vector2, Vector3};
 
-use super::error::ModelError;
+use super::error::{Checked, ModelError};
 use super::load_step::LoadStep;
 use super::rigid;
 use crate::contact::master::Master;
@@ -34,7 +34,7 @@ use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
 /// Checks that every motion meets stiffness or, in a dynamic step, mass.
-pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
+pub fn check(given: &[LoadStep], model: &Model) -> Checked<()> {
     for (k, step) in model.steps.iter().enumerate() {
         if step.scheme.is_dynamic() || step.rupture.is_some() {
             check_mass(k, step, model)?;
@@ -47,7 +47,7 @@ pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
 }
 
 /// Checks nodes without a body, which have only their supports, springs, dashpots and contact.
-fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
+fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Checked<()> {
     let mut held = vec![false; model.dofs()];
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
     nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
@@ -67,21 +67,16 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
             format!("nothing touches the rigid body `{name}`, and its {key} is free: give it, 0 where it rests");
         return Err(ModelError::new(format!("steps[{k}].supports"), message));
     }
-    match free {
-        Some(dof) => Err(ModelError::new(
-            format!("steps[{k}].supports"),
-            format!(
-                "node {} belongs to no element and is free along {}: constrain it by a support, a spring or contact",
-                model.mesh.node_tags[dof / 2],
-                ["x", "y"][dof % 2]
-            ),
-        )),
-        None => Ok(()),
-    }
+    let Some(dof) = free else { return Ok(()) };
+    let (tag, axis) = (model.mesh.node_tags[dof / 2], ["x", "y"][dof % 2]);
+    let message = format!(
+        "node {tag} belongs to no element and is free along {axis}: constrain it by a support, a spring or contact"
+    );
+    Err(ModelError::new(format!("steps[{k}].supports"), message))
 }
 
 /// Checks that free nodes have mass, from which accelerations follow.
-fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
+fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
     let mut carried = vec![false; model.mesh.nodes.len()];
     let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
@@ -104,13 +99,10 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
         };
         return Err(ModelError::new(place, format!("is missing, but {why}: give one, {motion}")));
     }
-    match free {
-        Some(node) => Err(ModelError::new(
-            "point_masses",
-            format!("node {} belongs to no element, and {why}: give one to its group", model.mesh.node_tags[node]),
-        )),
-        None => Ok(()),
-    }
+    let Some(node) = free else { return Ok(()) };
+    let tag = model.mesh.node_tags[node];
+    let message = format!("node {tag} belongs to no element, and {why}: give one to its group");
+    Err(ModelError::new("point_masses", message))
 }
 
 /// Number of parts of a group up to which motions are checked here; larger groups are left to the solver, which reports free
@@ -123,7 +115,7 @@ const NAMED: f64 = 0.1;
 /// Checks that bodies are constrained in x, y and rotation by supports, springs or dashpots in every static step, directly or
 /// through their coupling with others: contact, shared nodes, periodic sides and platens. Contact counts as constraint in every
 /// direction, and a single shared node as a hinge. A group that touches a rigid body is left to the solver.
-pub fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
+pub fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
     if model.steps.iter().all(|step| step.scheme.is_dynamic()) {
         return Ok(());
     }
