@@ -485,6 +485,13 @@ pub struct Span {
 }
 
 impl Span {
+    /// Evenly spaced times: the start, and `count` more up to the end.
+    pub fn times(self, count: u32) -> impl Iterator<Item = f64> {
+        let Self { start, end } = self;
+        let within = move |k: u32| start + f64::from(k) / f64::from(count) * (end - start);
+        (0..count).map(within).chain([end])
+    }
+
     /// Elapsed fraction of the span, 0 to 1.
     pub fn share(&self, time: f64) -> f64 {
         if self.end > self.start { ((time - self.start) / (self.end - self.start)).clamp(0.0, 1.0) } else { 1.0 }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size, refuse_if};
 use super::friction::{check_profile, defined};
 use super::groups;
-use super::groups::{group, kind};
+use super::groups::{TIMES, group, kind, some_of};
 use super::load_step::LoadStep;
 use crate::laws::bulk::{Imposed, Material, MaterialParameters, Undrained};
 use crate::mesh::section::Section;
@@ -163,12 +163,6 @@ pub fn point_masses(given: &[(String, PointMassInput)], mesh: &Mesh) -> Checked<
 
 /// Tolerance by which a body may extend above the ground surface, relative to its depth: positions are rounded.
 const ROUNDED: f64 = 1e-9;
-
-/// Number of evenly spaced times in a step at which a temperature is checked.
-const TIMES: u32 = 100;
-
-/// Maximum number of nodes of a body at which it is checked.
-const PLACES: usize = 50;
 
 /// Returns the law with the moduli that it has under the mean pressure of the initial stress of its body, over the nodes.
 fn at_initial_pressure(
@@ -358,10 +352,9 @@ pub fn temperatures(
 
 /// Checks that a temperature is finite throughout the step and does not shrink the body to zero size.
 fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: &str, model: &Model) -> Checked<()> {
-    let (nodes, Span { start, end }) = (&model.bodies[body].nodes, amplitude.span);
-    let step = nodes.len().div_ceil(PLACES).max(1);
-    for at in nodes.iter().step_by(step).map(|&node| model.mesh.nodes[node]) {
-        for time in (1..=TIMES).map(|k| start + f64::from(k) / f64::from(TIMES) * (end - start)) {
+    let places = model.bodies[body].nodes.iter().map(|&node| model.mesh.nodes[node]).collect();
+    for at in some_of(places) {
+        for time in amplitude.span.times(TIMES).skip(1) {
             let value = amplitude.value(at, time);
             let stretch = 1.0 + thermal.expansion * (value - thermal.reference);
             if !value.is_finite() || stretch <= 0.0 {

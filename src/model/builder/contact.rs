@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
 use super::friction::{Along, Friction, check_in_time};
+use super::groups::TIMES;
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
-use crate::laws::friction::Dilatancy;
+use crate::laws::friction::{Dilatancy, FrictionParameters};
 use crate::model::Model;
-use crate::model::boundary::{Profile, Span};
+use crate::model::boundary::Profile;
 use crate::model::method::Method;
 use crate::model::written::written;
 
@@ -71,6 +72,7 @@ pub struct Contact {
     pub tied: bool,
     /// Friction law; only surfaces that are tied have none
     #[serde(default = "Friction::tie", skip_serializing_if = "Friction::is_tie")]
+    #[schemars(with = "FrictionParameters")]
     pub friction: Friction,
     /// Dilatancy: opening by plastic slip
     pub dilatancy: Option<Dilatancy>,
@@ -252,114 +254,6 @@ impl Contact {
         Self { tied: true, ..Self::new(name, slave, master, Friction::tie()) }
     }
 
-    /// Sets the normal penalty α_n [F/L³].
-    pub fn alpha_n(mut self, alpha_n: f64) -> Self {
-        self.normal.alpha_n = Some(alpha_n);
-        self
-    }
-
-    /// Makes a rigid master move with a rigid body of the model.
-    pub fn rigid_body(self, name: impl Into<String>) -> Self {
-        Self { rigid_body: Some(name.into()), ..self }
-    }
-
-    /// Sets the contact method.
-    pub fn method(self, method: Method) -> Self {
-        Self { method: Some(method), ..self }
-    }
-
-    /// Sets the number of Gauss points per edge.
-    pub fn points(self, points: usize) -> Self {
-        Self { points: Some(points), ..self }
-    }
-
-    /// Smooths the edges of the master to a curve.
-    pub fn smooth(self) -> Self {
-        Self { smooth: true, ..self }
-    }
-
-    /// Makes it a shrink fit: an initial overlap is applied gradually over the first step.
-    pub fn shrink_fit(self) -> Self {
-        Self { shrink_fit: true, ..self }
-    }
-
-    /// Moves the mass of the slave's nodes away from them, for impact without spurious oscillation.
-    pub fn massless(self) -> Self {
-        Self { massless: true, ..self }
-    }
-
-    /// Sets friction parameters that vary along the slave and in time.
-    pub fn along(self, along: Along) -> Self {
-        Self { along, ..self }
-    }
-
-    /// Sets the largest penetration allowed (augmented Lagrangian method) [L].
-    pub fn penetration(mut self, largest: f64) -> Self {
-        self.normal.penetration = Some(largest);
-        self
-    }
-
-    /// With the traction of what sticks adjusted until no elastic slip is larger (augmented Lagrangian) [L].
-    pub fn stick(self, largest: f64) -> Self {
-        Self { stick: Some(largest), ..self }
-    }
-
-    /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length
-    /// ([`crate::contact::small_sliding`]).
-    pub fn small_sliding(self) -> Self {
-        Self { sliding: SlidingRange::Small, ..self }
-    }
-
-    /// Sets dilatancy: opening by plastic slip.
-    pub fn dilatancy(self, dilatancy: Dilatancy) -> Self {
-        Self { dilatancy: Some(dilatancy), ..self }
-    }
-
-    /// Sets wear by k p per plastic slip [L²/F].
-    pub fn wear(self, k: f64) -> Self {
-        Self { wear: Some(k), ..self }
-    }
-
-    /// Sets the radiation damping in static steps.
-    pub fn radiation(self, radiation: Radiation) -> Self {
-        Self { radiation_damping: radiation, ..self }
-    }
-
-    /// Sets the pressure p_w of a fluid, by reference position and time [F/L²].
-    pub fn fluid_pressure(self, pressure: impl Into<Profile>) -> Self {
-        Self { fluid_pressure: Some(pressure.into()), ..self }
-    }
-
-    /// Sets the tributary area of each point of a point group [L].
-    pub fn area(self, area: f64) -> Self {
-        Self { area: Some(area), ..self }
-    }
-
-    /// Starts the contact closed under a pressure and a traction.
-    pub fn initial(self, pressure: impl Into<Profile>, traction: impl Into<Profile>) -> Self {
-        let (pressure, traction) = (Some(pressure.into()), Some(traction.into()));
-        Self { initial: Some(InitialTractions { pressure, traction, ..InitialTractions::default() }), ..self }
-    }
-
-    /// Starts the contact closed under the tractions of the initial stress of the slave's body.
-    pub fn initial_of_bodies(self) -> Self {
-        Self { initial: Some(InitialTractions { of_bodies: true, ..InitialTractions::default() }), ..self }
-    }
-
-    /// Sets the initial structure 1/R*, by reference position.
-    pub fn structure(mut self, structure: impl Into<Profile>) -> Self {
-        self.initial.get_or_insert_default().structure = Some(structure.into());
-        self
-    }
-
-    /// Declares the initial stress of the bodies to be in equilibrium with the initial tractions.
-    pub fn balanced(mut self) -> Self {
-        if let Some(initial) = &mut self.initial {
-            initial.balanced = true;
-        }
-        self
-    }
-
     /// The group of a master of mesh edges.
     pub(super) fn master_group(&self) -> Option<&str> {
         match &self.master {
@@ -371,6 +265,80 @@ impl Contact {
     /// Whether the slave is its own master (self-contact).
     pub(super) fn is_own(&self) -> bool {
         self.master_group() == Some(&self.slave)
+    }
+}
+
+setters! { contact: Contact;
+    /// Sets the normal penalty α_n [F/L³].
+    alpha_n(alpha_n: f64) { contact.normal.alpha_n = Some(alpha_n); }
+
+    /// Makes a rigid master move with a rigid body of the model.
+    rigid_body(name: impl Into<String>) { contact.rigid_body = Some(name.into()); }
+
+    /// Sets the contact method.
+    method(method: Method) { contact.method = Some(method); }
+
+    /// Sets the number of Gauss points per edge.
+    points(points: usize) { contact.points = Some(points); }
+
+    /// Smooths the edges of the master to a curve.
+    smooth() { contact.smooth = true; }
+
+    /// Makes it a shrink fit: an initial overlap is applied gradually over the first step.
+    shrink_fit() { contact.shrink_fit = true; }
+
+    /// Moves the mass of the slave's nodes away from them, for impact without spurious oscillation.
+    massless() { contact.massless = true; }
+
+    /// Sets friction parameters that vary along the slave and in time.
+    along(along: Along) { contact.along = along; }
+
+    /// Sets the largest penetration allowed (augmented Lagrangian method) [L].
+    penetration(largest: f64) { contact.normal.penetration = Some(largest); }
+
+    /// With the traction of what sticks adjusted until no elastic slip is larger (augmented Lagrangian) [L].
+    stick(largest: f64) { contact.stick = Some(largest); }
+
+    /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length
+    /// ([`crate::contact::small_sliding`]).
+    small_sliding() { contact.sliding = SlidingRange::Small; }
+
+    /// Sets dilatancy: opening by plastic slip.
+    dilatancy(dilatancy: Dilatancy) { contact.dilatancy = Some(dilatancy); }
+
+    /// Sets wear by k p per plastic slip [L²/F].
+    wear(k: f64) { contact.wear = Some(k); }
+
+    /// Sets the radiation damping in static steps.
+    radiation(radiation: Radiation) { contact.radiation_damping = radiation; }
+
+    /// Sets the pressure p_w of a fluid, by reference position and time [F/L²].
+    fluid_pressure(pressure: impl Into<Profile>) { contact.fluid_pressure = Some(pressure.into()); }
+
+    /// Sets the tributary area of each point of a point group [L].
+    area(area: f64) { contact.area = Some(area); }
+
+    /// Starts the contact closed under a pressure and a traction.
+    initial(pressure: impl Into<Profile>, traction: impl Into<Profile>) {
+        let (pressure, traction) = (Some(pressure.into()), Some(traction.into()));
+        contact.initial = Some(InitialTractions { pressure, traction, ..InitialTractions::default() });
+    }
+
+    /// Starts the contact closed under the tractions of the initial stress of the slave's body.
+    initial_of_bodies() {
+        contact.initial = Some(InitialTractions { of_bodies: true, ..InitialTractions::default() });
+    }
+
+    /// Sets the initial structure 1/R*, by reference position.
+    structure(structure: impl Into<Profile>) {
+        contact.initial.get_or_insert_default().structure = Some(structure.into());
+    }
+
+    /// Declares the initial stress of the bodies to be in equilibrium with the initial tractions.
+    balanced() {
+        if let Some(initial) = &mut contact.initial {
+            initial.balanced = true;
+        }
     }
 }
 
@@ -393,8 +361,7 @@ pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model, time: f64) ->
     Err(ModelError::new(format!("{place}.fluid_pressure"), message))
 }
 
-/// Maximum number of times per step at which a fluid pressure is checked before the run, and of all values.
-const LOOKS: usize = 100;
+/// Maximum number of values of fluid pressures that are checked before the run.
 const VALUES: usize = 2_000_000;
 
 /// Checks fluid pressures at evenly spaced times of the steps, as long as their times are certain; times in between are checked
@@ -404,15 +371,13 @@ pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> 
         if !contact.fluid_pressure.as_ref().is_some_and(Profile::depends_on_time) {
             continue;
         }
-        let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, LOOKS);
+        let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, TIMES as usize) as u32;
         for step in &model.steps {
             // Such a step may end immediately, and the times of all later steps are unknown.
             if step.until.is_some() {
                 break;
             }
-            let Span { start, end } = step.span;
-            for look in 1..=looks {
-                let time = if look == looks { end } else { start + (end - start) * look as f64 / looks as f64 };
+            for time in step.span.times(looks).skip(1) {
                 check_fluid(pair, &format!("contacts.{}", contact.name), model, time)?;
             }
         }

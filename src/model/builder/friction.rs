@@ -1,13 +1,12 @@
 //! Friction of a contact: a law, or parameters of laws, some of which vary along the slave and in time (patches that weaken and
 //! recover, onset of creep).
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
 use nalgebra::Vector2;
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -27,7 +26,8 @@ use crate::mesh::shape::gauss;
 use crate::model::boundary::{Profile, check_table};
 
 /// Friction of a contact: a law, or parameters of one, with α_t = α_n/2 by default.
-#[derive(Clone)]
+#[derive(Clone, Deserialize)]
+#[serde(from = "FrictionParameters")]
 #[must_use]
 pub struct Friction {
     /// Parameters as in a case; `None` for a law from code
@@ -344,22 +344,20 @@ pub struct Along {
 }
 
 impl Along {
-    /// Adds a parameter that varies.
-    pub fn parameter(mut self, name: impl Into<String>, profile: impl Into<Profile>) -> Self {
-        self.parameters.insert(name.into(), profile.into());
-        self
-    }
-
-    /// Adds another law on a part of the slave.
-    pub fn law(mut self, law: LawChoice) -> Self {
-        self.law.push(law);
-        self
-    }
-
     /// Whether nothing varies.
     pub fn is_empty(&self) -> bool {
         self.law.is_empty() && self.parameters.is_empty()
     }
+}
+
+setters! { along: Along;
+    /// Adds a parameter that varies.
+    parameter(name: impl Into<String>, profile: impl Into<Profile>) {
+        along.parameters.insert(name.into(), profile.into());
+    }
+
+    /// Adds another law on a part of the slave.
+    law(law: LawChoice) { along.law.push(law); }
 }
 
 /// A law on a part of the slave.
@@ -383,11 +381,12 @@ impl LawChoice {
     pub fn new(place: impl Into<Profile>, friction: impl Into<FrictionParameters>) -> Self {
         Self { place: place.into(), friction: friction.into(), along: BTreeMap::new() }
     }
+}
 
+setters! { choice: LawChoice;
     /// Adds a parameter that varies.
-    pub fn parameter(mut self, name: impl Into<String>, profile: impl Into<Profile>) -> Self {
-        self.along.insert(name.into(), profile.into());
-        self
+    parameter(name: impl Into<String>, profile: impl Into<Profile>) {
+        choice.along.insert(name.into(), profile.into());
     }
 }
 
@@ -424,26 +423,6 @@ impl Serialize for Friction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let lacks = || S::Error::custom("a friction law from code cannot be written as a case: give it by parameters");
         self.parameters().ok_or_else(lacks)?.serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Friction {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        FrictionParameters::deserialize(deserializer).map(Self::from)
-    }
-}
-
-impl JsonSchema for Friction {
-    fn schema_name() -> Cow<'static, str> {
-        FrictionParameters::schema_name()
-    }
-
-    fn schema_id() -> Cow<'static, str> {
-        FrictionParameters::schema_id()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        FrictionParameters::json_schema(generator)
     }
 }
 

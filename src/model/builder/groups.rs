@@ -163,6 +163,18 @@ pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     }
 }
 
+/// Number of evenly spaced times of a step at which a quantity is checked before the run.
+pub const TIMES: u32 = 100;
+
+/// Maximum number of places at which it is checked.
+pub const PLACES: usize = 50;
+
+/// A limited number of places, from end to end.
+pub fn some_of(all: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
+    let step = all.len().div_ceil(PLACES - 1).max(1);
+    all.iter().step_by(step).chain(all.last()).copied().collect()
+}
+
 /// Returns the group of a load that acts on groups only.
 pub fn group_at<'p>(on: &'p Place, place: &str) -> Checked<&'p str> {
     match on {

@@ -218,11 +218,11 @@ impl SpringLoad {
     pub fn new(kx: f64, ky: f64) -> Self {
         Self { kx, ky, driver: None }
     }
+}
 
+setters! { spring: SpringLoad;
     /// Sets the displacement of the far end [L].
-    pub fn driver(self, driver: impl Into<Components>) -> Self {
-        Self { driver: Some(driver.into()), ..self }
-    }
+    driver(driver: impl Into<Components>) { spring.driver = Some(driver.into()); }
 }
 
 /// A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
@@ -247,11 +247,11 @@ impl DashpotLoad {
     pub fn new(cx: f64, cy: f64) -> Self {
         Self { cx, cy, driver: None }
     }
+}
 
+setters! { dashpot: DashpotLoad;
     /// Sets the velocity of the far end [L/T].
-    pub fn driver(self, driver: impl Into<Components>) -> Self {
-        Self { driver: Some(driver.into()), ..self }
-    }
+    driver(driver: impl Into<Components>) { dashpot.driver = Some(driver.into()); }
 }
 
 impl From<SpringLoad> for Change<SpringLoad> {

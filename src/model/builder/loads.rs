@@ -8,7 +8,8 @@ use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError, check_not_negative, refuse_if};
 use super::groups::{
-    Place, absorbers, edge_shares, edges, even_shares, group_at, mass_shares, node_lists, nodes_at, pressure_shares,
+    PLACES, Place, TIMES, absorbers, edge_shares, edges, even_shares, group_at, mass_shares, node_lists, nodes_at,
+    pressure_shares, some_of,
 };
 use super::load::{Change, Components, DashpotLoad, Kind, Load, SpringLoad, Value};
 use super::load_step::LoadStep;
@@ -290,17 +291,11 @@ pub fn check_gravity(radial: Option<&Drive>, place: &str, model: &Model) -> Chec
     Ok(())
 }
 
-/// Number of evenly spaced times of a step at which an expression is checked.
-const TIMES: u32 = 100;
-
-/// Maximum number of places of a group at which it is checked.
-const PLACES: usize = 50;
-
 /// Checks that the expressions of a step are finite at many times and places; errors name their keys.
 pub fn check_defined(place: &str, given: &LoadStep, scheme: Scheme, span: Span, model: &Model) -> Checked<()> {
     // A static step is not evaluated at its start.
-    let first = u32::from(!scheme.is_dynamic());
-    let times = || (first..=TIMES).map(|k| span.start + f64::from(k) / f64::from(TIMES) * (span.end - span.start));
+    let first = usize::from(!scheme.is_dynamic());
+    let times = || span.times(TIMES).skip(first);
     let check = |key: &str, drive: &Drive, places: &[Vector2<f64>]| {
         let undefined =
             |at: &Vector2<f64>| times().find(|time| !drive.value(*at, *time, span, 0.0).is_finite()).map(|t| (t, *at));
@@ -348,6 +343,5 @@ fn positions(on_edges: bool, on: &Place, model: &Model) -> Vec<Vector2<f64>> {
         Place::Group(name) if on_edges => gauss(name).into_iter().flatten().map(|share| share.position).collect(),
         _ => nodes_at(&model.mesh, on, "").into_iter().flatten().map(|node| model.mesh.nodes[node]).collect(),
     };
-    let step = all.len().div_ceil(PLACES - 1).max(1);
-    all.iter().step_by(step).chain(all.last()).copied().collect()
+    some_of(all)
 }

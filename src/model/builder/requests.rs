@@ -61,11 +61,6 @@ impl Gauge {
         Self { name: name.into(), from: Some(from), to: Some(to), number: Some(number), ..Self::default() }
     }
 
-    /// Sets the body, for positions where two bodies touch.
-    pub fn of(self, body: impl Into<String>) -> Self {
-        Self { body: Some(body.into()), ..self }
-    }
-
     /// Names and positions of all points.
     fn points(&self) -> Checked<Vec<(String, Vector2<f64>)>> {
         let (from, to, number) = match (self.at, self.from, self.to, self.number) {
@@ -85,6 +80,11 @@ impl Gauge {
         let at = |k: usize| from * (1.0 - share(k)) + to * share(k);
         Ok((0..number).map(|k| (format!("{}.{}", self.name, k + 1), at(k))).collect())
     }
+}
+
+setters! { gauge: Gauge;
+    /// Sets the body, for positions where two bodies touch.
+    of(body: impl Into<String>) { gauge.body = Some(body.into()); }
 }
 
 /// Builds the gauges of a model.
