@@ -173,12 +173,12 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
 
     let reached = before.map(|before| [before.slip(start), before.pressure(start)]);
     let (slip_place, pressure_place) = (format!("{place}.slip"), format!("{place}.pressure"));
-    let slip = course(&slip_place, phase.slip.as_ref(), reached.map_or(Some(0.0), |[slip, _]| Some(slip)))?;
+    let slip = drive(&slip_place, phase.slip.as_ref(), reached.map_or(Some(0.0), |[slip, _]| Some(slip)))?;
     if let Some([reached, _]) = reached {
         check_continuous(&slip_place, &slip, reached, span)?;
     }
     let reached = reached.map_or(input.initial.pressure, |[_, pressure]| Some(pressure));
-    let pressure = course(&pressure_place, phase.pressure.as_ref(), reached)?;
+    let pressure = drive(&pressure_place, phase.pressure.as_ref(), reached)?;
     if let Some(reached) = reached {
         check_continuous(&pressure_place, &pressure, reached, span)?;
     }
@@ -189,7 +189,7 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
 }
 
 /// Time function of a quantity in a phase, starting from the value `reached`, if that is known.
-fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<PathDrive> {
+fn drive(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<PathDrive> {
     let complain = |message: &str| Err(ModelError::new(place, message));
     let Some(given) = given else {
         return match reached {
@@ -210,8 +210,8 @@ fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<P
     }
 }
 
-fn check_continuous(place: &str, course: &PathDrive, reached: f64, span: Span) -> Checked<()> {
-    let first = course.value(span.start, span);
+fn check_continuous(place: &str, drive: &PathDrive, reached: f64, span: Span) -> Checked<()> {
+    let first = drive.value(span.start, span);
     // Non-finite values are reported later.
     let message = format!("jumps from {reached} to {first} at t = {}: start from the value reached", span.start);
     refuse_if((first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE), place, message)?;

@@ -67,7 +67,7 @@ pub(super) fn add(
 fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut Sums) {
     let (Trial { old, step, time, .. }, at) = (trial, trial.moment());
     for load in &step.loads.dead {
-        for &NodalWeight { node, weight, position } in &load.shares {
+        for &NodalWeight { node, weight, position } in &load.weights {
             loads[2 * node + load.component] += weight * load.amplitude.value(position, at);
         }
     }

@@ -106,7 +106,7 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
 
 fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
     for load in &loads.dead {
-        for &NodalWeight { node, weight, position } in &load.shares {
+        for &NodalWeight { node, weight, position } in &load.weights {
             let mut force = Vector2::zeros();
             force[load.component] = -weight * load.amplitude.value(position, time);
             forces.add(node, force);

@@ -344,7 +344,7 @@ pub struct DeadLoad {
     /// value per unit of `weight`
     pub amplitude: Amplitude,
     /// nodes on which it acts
-    pub shares: Vec<NodalWeight>,
+    pub weights: Vec<NodalWeight>,
 }
 
 /// Fraction of a load at a node.

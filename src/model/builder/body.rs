@@ -370,6 +370,6 @@ fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: 
 }
 
 /// Prescribed temperatures of bodies.
-pub fn in_force(temperatures: &BTreeMap<usize, Amplitude>) -> Vec<Temperature> {
+pub fn prescribed_temperatures(temperatures: &BTreeMap<usize, Amplitude>) -> Vec<Temperature> {
     temperatures.iter().map(|(&body, amplitude)| Temperature { body, amplitude: amplitude.clone() }).collect()
 }

@@ -235,50 +235,50 @@ fn gauss_points<'e>(mesh: &Mesh, edges: &'e [Edge]) -> impl Iterator<Item = Edge
 }
 
 /// Consistent nodal weights of a traction: ∫ N_a w |X'| dξ at the Gauss points.
-pub fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<NodalWeight> {
+pub fn edge_weights(mesh: &Mesh, edges: &[Edge]) -> Vec<NodalWeight> {
     along_edges(mesh, edges, |along| along.norm())
 }
 
 /// Weights of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its
 /// edges.
-pub fn pressure_shares(mesh: &Mesh, edges: &[Edge]) -> [Vec<NodalWeight>; 2] {
+pub fn pressure_weights(mesh: &Mesh, edges: &[Edge]) -> [Vec<NodalWeight>; 2] {
     [along_edges(mesh, edges, |along| -along.y), along_edges(mesh, edges, |along| along.x)]
 }
 
 /// Weights of a total force on edges as a uniform traction: those of a traction divided by ∫ w |X'| dξ.
-pub fn even_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<NodalWeight> {
-    let shares = edge_shares(mesh, edges);
-    let total: f64 = shares.iter().map(|share| share.weight).sum();
-    shares.into_iter().map(|share| NodalWeight { weight: share.weight / total, ..share }).collect()
+pub fn uniform_weights(mesh: &Mesh, edges: &[Edge]) -> Vec<NodalWeight> {
+    let weights = edge_weights(mesh, edges);
+    let total: f64 = weights.iter().map(|share| share.weight).sum();
+    weights.into_iter().map(|share| NodalWeight { weight: share.weight / total, ..share }).collect()
 }
 
 /// ∫ N_a w f(X') dξ at the Gauss points.
 fn along_edges(mesh: &Mesh, edges: &[Edge], f: impl Fn(Vector2<f64>) -> f64) -> Vec<NodalWeight> {
-    let mut shares = Vec::new();
+    let mut weights = Vec::new();
     for EdgePoint { weight, position, along, values, .. } in gauss_points(mesh, edges) {
         let stretch = f(along) * mesh.section.weight(position);
-        shares.extend(values.iter().map(|&(node, n)| NodalWeight { node, weight: weight * n * stretch, position }));
+        weights.extend(values.iter().map(|&(node, n)| NodalWeight { node, weight: weight * n * stretch, position }));
     }
-    shares
+    weights
 }
 
 /// Nodal weights of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
-pub fn mass_shares(model: &Model, name: &str, place: &str) -> Checked<Vec<NodalWeight>> {
+pub fn mass_weights(model: &Model, name: &str, place: &str) -> Checked<Vec<NodalWeight>> {
     let (body, masses) = bodies_and_masses(model, name, place)?;
     let message = format!("gravity needs a mass: give bodies.{name}.material.density");
     refuse_if(masses.is_none() && body.is_some_and(|body| body.material.density() == 0.0), place, message)?;
     let share = |node: usize, weight: f64| NodalWeight { node, weight, position: model.mesh.nodes[node] };
-    let mut shares = Vec::new();
+    let mut weights = Vec::new();
     for &e in body.iter().flat_map(|body| &body.elements) {
         // Row sum: ∫ ρ N_a dV.
         let rows = model.element_mass(e);
         let nodes = model.mesh.elements[e].nodes.iter().enumerate();
-        shares.extend(nodes.map(|(a, &node)| share(node, rows.row(a).sum())));
+        weights.extend(nodes.map(|(a, &node)| share(node, rows.row(a).sum())));
     }
     if let Some(point) = masses {
-        shares.extend(point.nodes.iter().map(|&node| share(node, point.mass)));
+        weights.extend(point.nodes.iter().map(|&node| share(node, point.mass)));
     }
-    Ok(shares)
+    Ok(weights)
 }
 
 /// Nodal parts of an absorbing side.

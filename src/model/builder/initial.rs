@@ -126,10 +126,10 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
     }
     let undeformed = model.mesh.undeformed();
     let closed = pair.start_closed(initial, &undeformed);
-    closed.map_err(|point| faces_nothing(pair, point, model, place))
+    closed.map_err(|point| without_projection(pair, point, model, place))
 }
 
-fn faces_nothing(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {
+fn without_projection(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {
     let at = pair.points[point].at(&model.mesh.undeformed());
     let message =
         format!("the slave point at ({}, {}) has no projection on the master: it cannot carry a pressure", at.x, at.y);
@@ -191,7 +191,7 @@ fn of_bodies(
     let mut initial = Vec::with_capacity(found.len());
     for (point, traction) in found.into_iter().enumerate() {
         let Some(InitialTraction { pressure, traction }) = traction else {
-            return Err(faces_nothing(pair, point, model, &place));
+            return Err(without_projection(pair, point, model, &place));
         };
         if pressure < -ROUNDED * largest || largest == 0.0 && pressure < 0.0 {
             let at = position(&pair.points[point], &model.mesh);

@@ -8,13 +8,13 @@ use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError, check_not_negative, refuse_if};
 use super::groups::{
-    PLACES, Place, TIMES, absorbers, edge_shares, edges, even_shares, group_at, mass_shares, node_lists, nodes_at,
-    pressure_shares, some_of,
+    PLACES, Place, TIMES, absorbers, edge_weights, edges, group_at, mass_weights, node_lists, nodes_at,
+    pressure_weights, some_of, uniform_weights,
 };
 use super::load::{Change, Components, DashpotLoad, Kind, Load, SpringLoad, Value};
 use super::load_step::LoadStep;
 use super::rigid::{of_moment, plate_of_moment};
-use super::supports::frees_nothing;
+use super::supports::nothing_to_end;
 use crate::model::Model;
 use crate::model::boundary::{
     Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, NodalWeight, PlateMoment, Span, Spring,
@@ -125,7 +125,7 @@ impl LoadsInForce {
         // A load that decreases to zero stays until something replaces it.
         let before = self.0.get(&key).filter(|load| kind.fades() || load.entry.value.is_some());
         if value.is_none() && before.is_none() {
-            return Err(frees_nothing(place, &load.on));
+            return Err(nothing_to_end(place, &load.on));
         }
         let before = before.map(|before| before.loads.clone()).unwrap_or_default();
         let loads = Changing { load, place, span, model, before }.made(kind, value)?;
@@ -158,17 +158,17 @@ impl Changing<'_> {
         let Self { load: Load { on, .. }, place, model, .. } = self;
         let (at, components) = (format!("{place}.on"), value.and_then(Value::components));
         let edges = || edges(&model.mesh, group_at(on, place)?, &at);
-        let shares = match kind {
+        let weights = match kind {
             Kind::Pressure | Kind::DeadPressure | Kind::Moment => return self.scalar(kind, value),
             Kind::Spring | Kind::Dashpot => return self.links(value),
             Kind::Absorbing => {
                 let absorbers = if value.is_some() { absorbers(model, edges()?) } else { Vec::new() };
                 return Ok(Loads { absorbers, ..Loads::default() });
             }
-            Kind::Traction => edge_shares(&model.mesh, edges()?),
+            Kind::Traction => edge_weights(&model.mesh, edges()?),
             Kind::Gravity => {
                 check_gravity(components.and_then(|given| given.along(0)), place, model)?;
-                mass_shares(model, group_at(on, place)?, &at)?
+                mass_weights(model, group_at(on, place)?, &at)?
             }
             Kind::Force => {
                 let position = |node: usize| model.mesh.nodes[node];
@@ -177,8 +177,8 @@ impl Changing<'_> {
             }
             Kind::TotalForce => {
                 let edges = edges()?;
-                check_even(components, place)?;
-                even_shares(&model.mesh, edges)
+                check_uniform(components, place)?;
+                uniform_weights(&model.mesh, edges)
             }
         };
         let mut dead = Vec::new();
@@ -187,7 +187,7 @@ impl Changing<'_> {
             let before = self.before.dead.iter().find(|load| load.component == component);
             let before = before.map(|load| load.amplitude.clone());
             let amplitude = amplitude(given, before, &format!("{place}.{}.{name}", kind.key()), self.span)?;
-            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, shares: shares.clone() }));
+            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, weights: weights.clone() }));
         }
         Ok(Loads { dead, ..Loads::default() })
     }
@@ -206,15 +206,15 @@ impl Changing<'_> {
                 loads.pressures.extend(amplitude()?.map(|amplitude| FollowerPressure { amplitude, edges }));
             }
             (Kind::DeadPressure, _) => {
-                let shares = pressure_shares(&model.mesh, edges()?).into_iter().enumerate();
+                let weights = pressure_weights(&model.mesh, edges()?).into_iter().enumerate();
                 let Some(amplitude) = amplitude()? else { return Ok(loads) };
-                let along = |(component, shares)| DeadLoad { component, amplitude: amplitude.clone(), shares };
-                loads.dead.extend(shares.map(along));
+                let along = |(component, weights)| DeadLoad { component, amplitude: amplitude.clone(), weights };
+                loads.dead.extend(weights.map(along));
             }
             (_, Some(body)) => {
                 let (node, weight) = (body.turning, 1.0 / body.radius);
-                let shares = vec![NodalWeight { node, weight, position: model.mesh.nodes[node] }];
-                loads.dead.extend(amplitude()?.map(|amplitude| DeadLoad { component: 0, amplitude, shares }));
+                let weights = vec![NodalWeight { node, weight, position: model.mesh.nodes[node] }];
+                loads.dead.extend(amplitude()?.map(|amplitude| DeadLoad { component: 0, amplitude, weights }));
             }
             (_, None) => {
                 let plate = plate_of_moment(model, on, place)?;
@@ -257,7 +257,7 @@ impl Changing<'_> {
 }
 
 /// Checks that a total force on edges does not vary in space.
-fn check_even(given: Option<&Components>, place: &str) -> Checked<()> {
+fn check_uniform(given: Option<&Components>, place: &str) -> Checked<()> {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
         let message = "is the force on the whole group, which does not vary in space: give it in t, or a traction";
         refuse_if(
@@ -338,7 +338,7 @@ fn drives(given: &LoadStep) -> Vec<(String, bool, &Place, &Drive)> {
 
 /// Places where a drive is evaluated: nodes, or Gauss points of edges; a limited number from end to end.
 fn positions(on_edges: bool, on: &Place, model: &Model) -> Vec<Vector2<f64>> {
-    let gauss = |name: &str| Some(edge_shares(&model.mesh, edges(&model.mesh, name, "").ok()?));
+    let gauss = |name: &str| Some(edge_weights(&model.mesh, edges(&model.mesh, name, "").ok()?));
     let all: Vec<Vector2<f64>> = match on {
         Place::Group(name) if on_edges => gauss(name).into_iter().flatten().map(|share| share.position).collect(),
         _ => nodes_at(&model.mesh, on, "").into_iter().flatten().map(|node| model.mesh.nodes[node]).collect(),

@@ -147,7 +147,7 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Checked<Vec<[usize
 pub fn linkage(given: &[LoadingPlateInput], steps: &[LoadStep], model: &Model) -> Checked<Linkage> {
     let mesh = &model.mesh;
     let tied: BTreeSet<usize> = model.ties.pairs().iter().flat_map(|&(copy, original)| [copy, original]).collect();
-    let mut held = None;
+    let mut supported = None;
     let mut linkage = Linkage::default();
     let mut seen: BTreeSet<(usize, usize)> = BTreeSet::new();
     for (k, (name, plate)) in given.iter().map(LoadingPlateInput::parts).enumerate() {
@@ -176,11 +176,11 @@ pub fn linkage(given: &[LoadingPlateInput], steps: &[LoadStep], model: &Model) -
         }
         match plate {
             Plate::Rigid => {
-                let held = match &held {
-                    Some(held) => held,
-                    None => held.insert(held_nodes(steps, mesh, &place)?),
+                let supported = match &supported {
+                    Some(supported) => supported,
+                    None => supported.insert(supported_nodes(steps, mesh, &place)?),
                 };
-                let leaders = leaders(&nodes, held, mesh, &place)?;
+                let leaders = leaders(&nodes, supported, mesh, &place)?;
                 linkage.followers.extend(rigid(&nodes, leaders, |node| mesh.nodes[node]));
                 linkage.rigid.push(leaders);
             }
@@ -229,19 +229,19 @@ pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize
 }
 
 /// Nodes supported in any step.
-fn held_nodes(steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<BTreeSet<usize>> {
-    let mut held = BTreeSet::new();
+fn supported_nodes(steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<BTreeSet<usize>> {
+    let mut supported = BTreeSet::new();
     for support in steps.iter().flat_map(|step| &step.supports) {
-        held.extend(nodes_at(mesh, &support.on, place)?);
+        supported.extend(nodes_at(mesh, &support.on, place)?);
     }
-    Ok(held)
+    Ok(supported)
 }
 
 /// The supported node of a rigid platen, or its first one, and the one farthest from it.
-fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
-    let held: BTreeSet<usize> = nodes.iter().copied().filter(|node| all_held.contains(node)).collect();
-    if held.len() > 1 {
-        let tags: Vec<u64> = held.iter().take(2).map(|node| mesh.node_tags[*node]).collect();
+fn leaders(nodes: &[usize], all_supported: &BTreeSet<usize>, mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
+    let supported: BTreeSet<usize> = nodes.iter().copied().filter(|node| all_supported.contains(node)).collect();
+    if supported.len() > 1 {
+        let tags: Vec<u64> = supported.iter().take(2).map(|node| mesh.node_tags[*node]).collect();
         let message = format!(
             "rotates, but supports constrain more than one of its nodes, {} and {}: constrain one only, load it by \
              forces, springs and a moment, or prescribe the rotation of the side and leave the plate out",
@@ -252,7 +252,7 @@ fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str
     let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else {
         return Err(ModelError::new(place, "has no nodes"));
     };
-    let a = held.first().copied().unwrap_or(first);
+    let a = supported.first().copied().unwrap_or(first);
     let distance = |node: usize| (mesh.nodes[node] - mesh.nodes[a]).norm();
     let b = nodes.iter().copied().fold(last, |b, node| if distance(node) > distance(b) { node } else { b });
     match distance(b) > 0.0 {

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::body::{check_damping, in_force, temperatures};
+use super::body::{check_damping, prescribed_temperatures, temperatures};
 use super::error::{Checked, ModelError, check_positive, refuse_if};
 use super::groups;
 use super::groups::nodes_at;
@@ -55,7 +55,7 @@ pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
         start: 0.0,
         scheme: Scheme::Static,
         increments: None,
-        in_force: SupportsInForce::default(),
+        supports_in_force: SupportsInForce::default(),
         may_end_early: false,
         damping: model.bodies.iter().map(|body| body.damping).collect(),
         supports: Vec::new(),
@@ -71,7 +71,7 @@ struct Schedule<'m> {
     start: f64,
     scheme: Scheme,
     increments: Option<IncrementSettings>,
-    in_force: SupportsInForce,
+    supports_in_force: SupportsInForce,
     /// whether the last step may end early
     may_end_early: bool,
     damping: Vec<Damping>,
@@ -92,12 +92,12 @@ impl Schedule<'_> {
         self.increments = given.dt.or(self.increments);
         let increments = increments(&format!("{place}.dt"), self.increments, span, scheme)?;
         if std::mem::replace(&mut self.may_end_early, given.until.is_some()) {
-            self.in_force.stay();
+            self.supports_in_force.keep_positions();
         }
         // In dynamics a released reaction vanishes at once.
         let fades = !scheme.is_dynamic();
-        self.in_force.step(&given.supports, place, span, fades, self.model)?;
-        let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
+        self.supports_in_force.step(&given.supports, place, span, fades, self.model)?;
+        let before = std::mem::replace(&mut self.supports, self.supports_in_force.all(place, self.model)?);
         let released = if fades { freed(&before, &self.supports) } else { Vec::new() };
         self.loads.step(&given.loads, place, span, self.model)?;
         self.damp(&given.damping, place)?;
@@ -115,10 +115,10 @@ impl Schedule<'_> {
             supports: self.supports.clone(),
             released,
             loads: self.loads.all(),
-            entries: Entry::of_step(self.in_force.entries().chain(self.loads.entries())),
+            entries: Entry::of_step(self.supports_in_force.entries().chain(self.loads.entries())),
             damping: self.damping.clone(),
             until: None,
-            temperatures: in_force(&self.temperatures),
+            temperatures: prescribed_temperatures(&self.temperatures),
             stabilization,
         };
         step.until = until(place, given, &step, self.model)?;

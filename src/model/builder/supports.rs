@@ -31,7 +31,7 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use super::error::{Checked, ModelError, refuse_if};
-use super::groups::{Place, dofs_of, edges, nodes_at, pressure_shares};
+use super::groups::{Place, dofs_of, edges, nodes_at, pressure_weights};
 use super::load::Change;
 use super::load_step::{Rotation, Support};
 use super::rigid;
@@ -48,14 +48,14 @@ pub struct SupportsInForce {
     /// supports of dofs
     dofs: BTreeMap<usize, Prescribed>,
     /// supports along inclined directions, by node
-    inclined: BTreeMap<usize, Vec<Held>>,
+    inclined: BTreeMap<usize, Vec<InclinedSupport>>,
     /// as the input gave them, by place and key
     entries: BTreeMap<(String, &'static str), Entry>,
 }
 
 /// A node supported along an inclined direction.
 #[derive(Clone)]
-struct Held {
+struct InclinedSupport {
     support: Inclined,
     is_normal: bool,
     /// place in the present step, if given there
@@ -79,7 +79,7 @@ impl SupportsInForce {
                 let motion = displacement(change, &format!("{place}.{key}"), span)?;
                 let dofs = || nodes.iter().map(|node| model.linkage.leading(2 * node + component));
                 if motion.is_none() && !dofs().any(|dof| before.contains_key(&dof)) {
-                    return Err(frees_nothing(&format!("{place}.{key}"), &support.on));
+                    return Err(nothing_to_end(&format!("{place}.{key}"), &support.on));
                 }
                 dofs().for_each(|dof| self.set(dof, motion.as_ref()));
             }
@@ -88,13 +88,13 @@ impl SupportsInForce {
             }
             if let Some((dof, motion)) = rigid::angle(support, &place, span, model)? {
                 if motion.is_none() && !before.contains_key(&dof) {
-                    return Err(frees_nothing(&format!("{place}.angle"), &support.on));
+                    return Err(nothing_to_end(&format!("{place}.angle"), &support.on));
                 }
                 self.set(dof, motion.as_ref());
             }
             if let Some(change) = &support.rotation {
                 if change.given().is_none() && !nodes.iter().any(|node| before.contains_key(&(2 * node))) {
-                    return Err(frees_nothing(&format!("{place}.rotation"), &support.on));
+                    return Err(nothing_to_end(&format!("{place}.rotation"), &support.on));
                 }
                 let first = nodes.first().and_then(|node| before.get(&(2 * node)));
                 let motion = rotation(change, first, &format!("{place}.rotation"), span)?;
@@ -106,7 +106,7 @@ impl SupportsInForce {
             let held = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
             self.dofs.entry(dof).or_insert_with(held);
         }
-        self.hold_axis(place, span, model)
+        self.constrain_axis(place, span, model)
     }
 
     /// Starts a step with the supports in force.
@@ -143,18 +143,18 @@ impl SupportsInForce {
     }
 
     /// Keeps supports at their final position after a step that may have ended early.
-    pub fn stay(&mut self) {
-        let stays = |drive: &mut Drive| {
+    pub fn keep_positions(&mut self) {
+        let keeps = |drive: &mut Drive| {
             if let Drive::Constant(_) | Drive::ByPlace(..) = drive {
                 *drive = Drive::Rate(0.0);
             }
         };
         for support in self.dofs.values_mut() {
             if let Motion::Displacement(drive, _) = &mut support.motion {
-                stays(drive);
+                keeps(drive);
             }
         }
-        self.inclined.values_mut().flatten().for_each(|held| stays(&mut held.support.drive));
+        self.inclined.values_mut().flatten().for_each(|held| keeps(&mut held.support.drive));
     }
 
     /// Prescribes or releases a dof.
@@ -180,7 +180,7 @@ impl SupportsInForce {
 
     /// Constrains nodes on the axis and platens, whose radii are constant, and refuses prescribed radial motion and rotation of
     /// axisymmetric bodies.
-    fn hold_axis(&mut self, place: &str, span: Span, model: &Model) -> Checked<()> {
+    fn constrain_axis(&mut self, place: &str, span: Span, model: &Model) -> Checked<()> {
         if !model.mesh.section.is_axisymmetric() {
             return Ok(());
         }
@@ -316,7 +316,7 @@ fn rotation(
 }
 
 /// Error for a release without a support in force.
-pub fn frees_nothing(place: &str, on: &Place) -> ModelError {
+pub fn nothing_to_end(place: &str, on: &Place) -> ModelError {
     ModelError::new(place, format!("null ends what an earlier step gave, but none gave this on {on}: check the name"))
 }
 
@@ -376,7 +376,7 @@ impl Along<'_> {
             });
             let dof = 2 * self.node + i;
             if motion.is_none() && !in_force.dofs.contains_key(&dof) {
-                return Err(self.nothing_to_free(model));
+                return Err(self.nothing_to_end(model));
             }
             in_force.set(dof, motion.as_ref());
             return Ok(());
@@ -384,13 +384,13 @@ impl Along<'_> {
         let all = in_force.inclined.entry(self.node).or_default();
         let same = all.iter().position(|held| held.support.direction.perp(&self.d).abs() <= PARALLEL);
         let Some(drive) = drive else {
-            let Some(same) = same else { return Err(self.nothing_to_free(model)) };
+            let Some(same) = same else { return Err(self.nothing_to_end(model)) };
             all.remove(same);
             in_force.inclined.retain(|_, all| !all.is_empty());
             return Ok(());
         };
         let toward = |other: &Vector2<f64>| if other.dot(&self.d) < 0.0 { drive.reversed() } else { drive.clone() };
-        let held = |direction, drive| Held {
+        let held = |direction, drive| InclinedSupport {
             support: Inclined { share: 1.0, direction, drive, span },
             is_normal: self.is_normal,
             given: Some(self.key.clone()),
@@ -413,7 +413,7 @@ impl Along<'_> {
         Ok(())
     }
 
-    fn nothing_to_free(&self, model: &Model) -> ModelError {
+    fn nothing_to_end(&self, model: &Model) -> ModelError {
         let tag = model.mesh.node_tags[self.node];
         ModelError::new(
             &self.key,
@@ -457,7 +457,7 @@ enum Contradiction {
 }
 
 /// Supports of a node with the coordinate supports `given` and some inclined directions, or an error.
-fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Prescribed>, Contradiction> {
+fn resolved(node: usize, given: Vec<Prescribed>, held: &[InclinedSupport]) -> Result<Vec<Prescribed>, Contradiction> {
     let mut all: Vec<Inclined> = Vec::new();
     for support in &given {
         let Motion::Displacement(drive, span) = &support.motion else {
@@ -490,7 +490,7 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
 }
 
 /// Checks that inclined directions differ sufficiently from each other and from the supported coordinates.
-fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), Contradiction> {
+fn check_angles(straight: usize, held: &[InclinedSupport], all: &[Inclined]) -> Result<(), Contradiction> {
     for a in 0..all.len() {
         for b in (a + 1).max(straight)..all.len() {
             let angle = all[a].direction.perp(&all[b].direction).abs().min(1.0).asin().to_degrees();
@@ -554,7 +554,7 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
 
 /// ∫ N_a n dS of an edge, node by node; at nodes on the axis in the plane section.
 fn areas(model: &Model, edge: &Edge, axis: Option<f64>) -> Vec<(usize, Vector2<f64>)> {
-    let [x, y] = pressure_shares(&model.mesh, std::slice::from_ref(edge));
+    let [x, y] = pressure_weights(&model.mesh, std::slice::from_ref(edge));
     edge.nodes
         .iter()
         .map(|&node| {

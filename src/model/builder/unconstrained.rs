@@ -48,20 +48,20 @@ pub fn check(given: &[LoadStep], model: &Model) -> Checked<()> {
 
 /// Checks nodes without a body, which have only their supports, springs, dashpots and contact.
 fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Checked<()> {
-    let mut held = vec![false; model.dofs()];
+    let mut constrained = vec![false; model.dofs()];
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
-    nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
+    nodes.for_each(|&node| constrained[2 * node..2 * node + 2].fill(true));
     // Whether contact constrains a node that may separate is left to the solver.
     let rigid = model.contacts.iter().filter_map(|pair| pair.master.rigid_body()).flat_map(RigidBody::nodes);
     let points = model.contacts.iter().flat_map(ContactPair::slave_nodes).chain(rigid);
-    points.for_each(|node| held[2 * node..2 * node + 2].fill(true));
+    points.for_each(|node| constrained[2 * node..2 * node + 2].fill(true));
     let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
-    follow.for_each(|(_, dof)| held[dof] = true);
-    for (node, d) in holding(step) {
+    follow.for_each(|(_, dof)| constrained[dof] = true);
+    for (node, d) in constraints(step) {
         // An inclined direction and its perpendicular count as the dofs whose equations they replace.
-        held[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
+        constrained[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
     }
-    let free = held.iter().position(|held| !held);
+    let free = constrained.iter().position(|constrained| !constrained);
     if let Some((RigidBody { name, .. }, key)) = free.and_then(|dof| rigid::free_motion(&model.mesh, dof)) {
         let message =
             format!("nothing touches the rigid body `{name}`, and its {key} is free: give it, 0 where it rests");
@@ -83,8 +83,8 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
     dense.chain(points).for_each(|&node| carried[node] = true);
     model.mesh.rigid_bodies.iter().for_each(|body| carried[body.turning] = body.inertia > 0.0);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
-    let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
-    let massless = |node: &usize| !(carried[*node] || held(*node));
+    let constrained = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
+    let massless = |node: &usize| !(carried[*node] || constrained(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
         let message = format!("is 0, but {why}: give a density");
@@ -115,7 +115,7 @@ const NAMED: f64 = 0.1;
 /// Checks that bodies are constrained in x, y and rotation by supports, springs or dashpots in every static step, directly or
 /// through their coupling with others: contact, shared nodes, periodic sides and platens. Contact counts as constraint in every
 /// direction, and a single shared node as a hinge. A group that touches a rigid body is left to the solver.
-pub fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
+fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
     if model.steps.iter().all(|step| step.scheme.is_dynamic()) {
         return Ok(());
     }
@@ -123,20 +123,20 @@ pub fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
     let groups = Groups::of(&parts);
     for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()) {
         let Some(free) = groups.free_motion(step) else { continue };
-        let held = if given[k].supports.is_empty() && step.supports.is_empty() {
+        let constrained = if given[k].supports.is_empty() && step.supports.is_empty() {
             "there is no support at all"
         } else {
             "the supports do not constrain it"
         };
         let message =
-            format!("{free}: {held}; a static step needs supports or springs against every rigid-body motion");
+            format!("{free}: {constrained}; a static step needs supports or springs against every rigid-body motion");
         return Err(ModelError::new(format!("steps[{k}].supports"), message));
     }
     Ok(())
 }
 
 /// Nodes and directions constrained by supports, springs and dashpots.
-pub fn holding(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
+fn constraints(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
     let springs = step.loads.springs.iter().map(|spring| spring.dof);
     let absorbers = step.loads.absorbers.iter().flat_map(|absorber| [2 * absorber.node, 2 * absorber.node + 1]);
     let dofs = springs.chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof)).chain(absorbers);
@@ -193,7 +193,7 @@ impl<'m> Groups<'m> {
     /// Describes the unconstrained motion in a step, if there is one.
     fn free_motion(&self, step: &Step) -> Option<String> {
         let mut resisted = self.resisted.clone();
-        holding(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
+        constraints(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
         let mut motions = resisted.iter().zip(&self.members);
         motions.find_map(|(resisted, group)| Some(self.message(group, &resisted.free()?)))
     }
@@ -210,23 +210,23 @@ impl<'m> Groups<'m> {
 }
 
 /// An equation between the motions of parts: coefficients of U, V and Θ of each.
-pub type Row = Vec<(usize, Vector3<f64>)>;
+type Row = Vec<(usize, Vector3<f64>)>;
 
 /// A part: bodies in contact or with two shared nodes, or a node outside all bodies.
-pub struct Part {
+struct Part {
     /// bodies
-    pub bodies: Vec<usize>,
+    bodies: Vec<usize>,
     /// whether it touches a rigid body
-    pub on_rigid: bool,
+    on_rigid: bool,
     nodes: Vec<usize>,
     centre: Vector2<f64>,
     radius: f64,
 }
 
 /// All parts of a model.
-pub struct Parts<'m> {
+struct Parts<'m> {
     /// list of parts
-    pub parts: Vec<Part>,
+    parts: Vec<Part>,
     model: &'m Model,
     /// parts of each node: more than one for a hinge
     of_node: Vec<Vec<usize>>,
@@ -234,7 +234,7 @@ pub struct Parts<'m> {
 
 impl<'m> Parts<'m> {
     /// Finds the parts of a model.
-    pub fn of(model: &'m Model) -> Self {
+    fn of(model: &'m Model) -> Self {
         let owners = owners(model);
         let groups = joined(model, &owners);
         let mut part_of = vec![0; groups.iter().map(Vec::len).sum()];
@@ -256,7 +256,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Names of the bodies of a part, or of its node.
-    pub fn names(&self, part: usize) -> Vec<String> {
+    fn names(&self, part: usize) -> Vec<String> {
         let Part { bodies, nodes, .. } = &self.parts[part];
         match bodies.is_empty() {
             true => nodes.iter().map(|&node| format!("node {}", self.model.mesh.node_tags[node])).collect(),
@@ -265,7 +265,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Σ d·u of nodes and vectors d.
-    pub fn row(&self, terms: &[(usize, Vector2<f64>)]) -> Row {
+    fn row(&self, terms: &[(usize, Vector2<f64>)]) -> Row {
         terms.iter().map(|&(node, d)| self.term(self.of_node[node][0], node, d)).collect()
     }
 
@@ -277,7 +277,7 @@ impl<'m> Parts<'m> {
     }
 
     /// All expressions that are zero in every step.
-    pub fn couplings(&self) -> Vec<Row> {
+    fn couplings(&self) -> Vec<Row> {
         let mut rows = self.of_shape();
         for (node, parts) in self.of_node.iter().enumerate() {
             let hinge = |d: Vector2<f64>, other: usize| vec![self.term(parts[0], node, d), self.term(other, node, -d)];
@@ -378,14 +378,14 @@ const NOTHING_NEW: f64 = 1e-5;
 
 /// Motions resisted by equations: an orthonormal basis.
 #[derive(Clone)]
-pub struct Resisted {
+struct Resisted {
     size: usize,
     basis: Vec<DVector<f64>>,
 }
 
 impl Resisted {
     /// Creates an empty basis for motions with `size` components.
-    pub fn nothing(size: usize) -> Self {
+    fn nothing(size: usize) -> Self {
         Self { size, basis: Vec::new() }
     }
 
@@ -400,7 +400,7 @@ impl Resisted {
     }
 
     /// Adds one more equation, with terms of the given size.
-    pub fn add(&mut self, row: DVector<f64>, size: f64) {
+    fn add(&mut self, row: DVector<f64>, size: f64) {
         if self.basis.len() == self.size {
             return;
         }
@@ -412,7 +412,7 @@ impl Resisted {
     }
 
     /// A unit motion without resistance.
-    pub fn free(&self) -> Option<DVector<f64>> {
+    fn free(&self) -> Option<DVector<f64>> {
         if self.basis.len() == self.size {
             return None;
         }
