@@ -7,7 +7,7 @@ use crate::case::file::Case;
 use crate::model::boundary::Drive;
 use crate::model::builder::Place;
 use crate::model::step::{Entry, Until};
-use crate::model::text::{count, number};
+use crate::model::text::{count, number, vector};
 use crate::model::{Damping, Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 
@@ -17,10 +17,8 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
         let mut own = step_lines(step);
-        own.extend(input.velocity.iter().map(|(name, velocity)| {
-            let [vx, vy] = velocity.map(number);
-            format!("{name}: initial velocity ({vx}, {vy})")
-        }));
+        let launched = input.velocity.iter();
+        own.extend(launched.map(|(name, velocity)| format!("{name}: initial velocity {}", vector(*velocity))));
         own.extend(input.damping.iter().map(|(name, Damping { mass, retardation })| {
             format!("damping of {name} from this step on: mass {}, stiffness {}", number(*mass), number(*retardation))
         }));

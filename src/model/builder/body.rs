@@ -19,7 +19,7 @@ use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{Formulation, SolidElement, consistent_mass};
 use crate::model::imposed::{InitialStress, PoreFluid, Temperature, Thermal};
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 use crate::model::{Body, Damping, Model, PointMass};
 
 /// A body.
@@ -203,11 +203,7 @@ fn undrained(
         let (at, place) = (mesh.nodes[node], format!("{place}.pressure"));
         let value = defined(pressure, at, &place)?;
         if cavitation.is_some_and(|least| value < least) {
-            let message = format!(
-                "is {value} at ({}, {}), below cavitation: raise one or lower the other",
-                number(at.x),
-                number(at.y)
-            );
+            let message = format!("is {value} at {}, below cavitation: raise one or lower the other", vector(at));
             return Err(ModelError::new(place, message));
         }
     }
@@ -316,9 +312,9 @@ pub fn check_stiffness(
     let Some((largest, node)) = found.filter(|(largest, _)| !material.is_linear() && *largest >= shear) else {
         return Ok(());
     };
-    let [largest, shear, x, y] = [largest, shear, mesh.nodes[node].x, mesh.nodes[node].y].map(number);
+    let ([largest, shear], at) = ([largest, shear].map(number), vector(mesh.nodes[node]));
     let message = format!(
-        "reaches {largest} at ({x}, {y}), and the shear modulus is {shear}: too much for a body at rest; check the \
+        "reaches {largest} at {at}, and the shear modulus is {shear}: too much for a body at rest; check the \
          units, or take material linear, which superposes stresses without limit"
     );
     Err(ModelError::new(place, message))
@@ -358,10 +354,10 @@ fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: 
             let value = amplitude.value(at, time);
             let stretch = 1.0 + thermal.expansion * (value - thermal.reference);
             if !value.is_finite() || stretch <= 0.0 {
-                let [value, time, x, y] = [value, time, at.x, at.y].map(number);
+                let ([value, time], at) = ([value, time].map(number), vector(at));
                 let cause = if stretch <= 0.0 { ", at which the body has no volume left" } else { "" };
                 let message =
-                    format!("is {value} at t = {time}, (x, y) = ({x}, {y}){cause}: check temperature and expansion");
+                    format!("is {value} at t = {time}, (x, y) = {at}{cause}: check temperature and expansion");
                 return Err(ModelError::new(place, message));
             }
         }

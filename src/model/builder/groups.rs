@@ -11,7 +11,7 @@ use super::error::{Checked, ModelError, no_body, refuse_if};
 use crate::mesh::nearest::{NotOne, nearest as nearest_node};
 use crate::mesh::{Edge, Group, Mesh, shape};
 use crate::model::boundary::{Absorber, NodalWeight};
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 use crate::model::written::written;
 use crate::model::{Body, Model, PointMass};
 
@@ -69,17 +69,17 @@ impl Place {
 
 /// The node nearest to a point, which the adjacent elements must reach.
 fn nearest(mesh: &Mesh, point: [f64; 2], place: &str) -> Checked<usize> {
-    let [x, y] = point.map(number);
+    let at = vector(point);
     let elements = mesh.elements.iter().map(|element| element.nodes.as_slice());
     let message = |not_one| match not_one {
-        NotOne::NoPlace => format!("near ({x}, {y}) is no place: give finite numbers"),
+        NotOne::NoPlace => format!("near {at} is no place: give finite numbers"),
         NotOne::NoNodes => "the mesh has no nodes".into(),
         NotOne::Several(both) => {
             let [tag, other] = both.map(|node| mesh.node_tags[node]);
-            format!("nodes {tag} and {other} are equally near to ({x}, {y}): name one as {{\"node\": {tag}}}")
+            format!("nodes {tag} and {other} are equally near to {at}: name one as {{\"node\": {tag}}}")
         }
         NotOne::Far { node, distance } => format!(
-            "no node is near ({x}, {y}): the nearest, {}, lies {} away, farther than the size of the elements there",
+            "no node is near {at}: the nearest, {}, lies {} away, farther than the size of the elements there",
             mesh.node_tags[node],
             number(distance)
         ),

@@ -15,7 +15,7 @@ use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::scheme::Scheme;
-use crate::model::text::number;
+use crate::model::text::vector;
 
 /// Tolerance by which an initial traction may exceed the strength μ p: numbers are given with a few digits.
 const ROUNDED: f64 = 1e-9;
@@ -225,8 +225,8 @@ pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
             let [xx, yy, xy, zz] = stress.at(at, in_plate);
             let stress = CauchyStress { xx, yy, zz, xy };
             body.material.admits(&stress).map_err(|why| {
-                let [x, y] = [at.x, at.y].map(number);
-                ModelError::new(format!("bodies.{}.initial_stress", body.name), format!("at ({x}, {y}) it {why}"))
+                let place = format!("bodies.{}.initial_stress", body.name);
+                ModelError::new(place, format!("at {} it {why}", vector(at)))
             })?;
         }
         model.solids[e].start_under(total.into_iter());

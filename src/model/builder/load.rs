@@ -179,8 +179,8 @@ impl Components {
 
 impl Display for Components {
     fn fmt(&self, f: &mut Formatter) -> Written {
-        let [x, y] = [&self.x, &self.y].map(|part| part.as_ref().map_or("0".into(), Drive::to_string));
-        write!(f, "({x}, {y})")
+        let part = |part: &Option<Drive>| part.as_ref().map_or("0".into(), Drive::to_string);
+        write!(f, "({}, {})", part(&self.x), part(&self.y))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::model::Damping;
 use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::ForceComponent;
-use crate::model::text::number;
+use crate::model::text::vector;
 
 /// Default relative tolerance of the force that ends a step.
 #[doc(hidden)]
@@ -222,7 +222,7 @@ pub struct Rotation {
 
 impl Display for Rotation {
     fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
-        write!(f, "{} about ({})", self.angle, self.about.map(number).join(", "))
+        write!(f, "{} about {}", self.angle, vector(self.about))
     }
 }
 

@@ -21,7 +21,7 @@ use crate::model::boundary::{
 };
 use crate::model::scheme::Scheme;
 use crate::model::step::Entry;
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 
 /// Maximum number of successive changes of a load that varies in space within its steps, each depending on the previous one.
 const MOST_REMEMBERED: usize = 1000;
@@ -302,8 +302,8 @@ pub fn check_defined(place: &str, given: &LoadStep, scheme: Scheme, span: Span, 
         match places.iter().find_map(undefined) {
             None => Ok(()),
             Some((time, at)) => {
-                let [time, x, y] = [time, at.x, at.y].map(number);
-                let message = format!("has no finite value at t = {time}, (x, y) = ({x}, {y}): check the expression");
+                let (time, at) = (number(time), vector(at));
+                let message = format!("has no finite value at t = {time}, (x, y) = {at}: check the expression");
                 Err(ModelError::new(format!("{place}.{key}"), message))
             }
         }

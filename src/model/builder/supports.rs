@@ -40,7 +40,7 @@ use crate::model::Model;
 use crate::model::boundary::{Amplitude, Drive, NodalWeight, Span};
 use crate::model::step::Entry;
 use crate::model::support::{Direction, Inclined, Motion, Prescribed};
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 
 /// Supports in force.
 #[derive(Clone, Default)]
@@ -129,7 +129,7 @@ impl SupportsInForce {
         let turned = |change: &Change<Rotation>| ("rotation", change.given().map(Rotation::to_string));
         for (key, value) in motions.chain(support.rotation.as_ref().map(turned)) {
             let on = match support.along.filter(|_| key == "u") {
-                Some(direction) => format!("{place} along ({})", direction.map(number).join(", ")),
+                Some(direction) => format!("{place} along {}", vector(direction)),
                 None => place.clone(),
             };
             let entry = Entry { is_load: false, on: on.clone(), kind: key.into(), value, kept: false, fades };
@@ -418,10 +418,8 @@ impl Along<'_> {
         ModelError::new(
             &self.key,
             format!(
-                "null ends what an earlier step gave, but none gave node {tag} a support along ({}, {}): check place and \
-                 direction",
-                number(self.d.x),
-                number(self.d.y)
+                "null ends what an earlier step gave, but none gave node {tag} a support along {}: check place and direction",
+                vector(self.d)
             ),
         )
     }
