@@ -60,7 +60,7 @@ use crate::model::method::{Asked, Chosen, Method, choose};
 pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
     check_allowed(contacts, &model.mesh)?;
     let mut pairs = contacts.iter().map(|contact| pair(contact, model, regime)).collect::<Checked<Vec<_>>>()?;
-    unseen(contacts, &mut pairs, model);
+    undetected(contacts, &mut pairs, model);
     Ok(pairs)
 }
 
@@ -445,7 +445,7 @@ pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
 
 /// Finds surface nodes of the slave's bodies that are not on the slave and initially outside a rigid master, whose penetration
 /// would not be detected.
-pub fn unseen(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
+fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
     // Several contacts may belong to the same bodies.
     let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
     for (contact, pair) in contacts.iter().zip(pairs) {
