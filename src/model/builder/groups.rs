@@ -191,10 +191,11 @@ pub fn body(model: &Model, name: &str, place: &str) -> Checked<usize> {
     names().position(|known| known == name).ok_or_else(|| no_body(name, names(), place))
 }
 
-/// Returns a body, or point masses, by name: one of the two, or both.
+/// Returns a body, or point masses, by name: one of the two, or both; `purpose` is part of the message if there is none.
 pub fn bodies_and_masses<'m>(
     model: &'m Model,
     name: &str,
+    purpose: &str,
     place: &str,
 ) -> Checked<(Option<&'m Body>, Option<&'m PointMass>)> {
     let body = model.bodies.iter().find(|body| body.name == name);
@@ -205,7 +206,7 @@ pub fn bodies_and_masses<'m>(
     let bodies = model.bodies.iter().map(|body| body.name.as_str());
     let known: Vec<&str> = bodies.chain(model.point_masses.iter().map(|point| point.name.as_str())).collect();
     let known = if known.is_empty() { "none at all".into() } else { known.join(", ") };
-    Err(ModelError::new(place, format!("there is no body or point mass `{name}`; there are {known}")))
+    Err(ModelError::new(place, format!("there is no body or point mass `{name}`{purpose}; there are {known}")))
 }
 
 /// A Gauss point of an edge.
@@ -264,7 +265,7 @@ fn along_edges(mesh: &Mesh, edges: &[Edge], f: impl Fn(Vector2<f64>) -> f64) -> 
 
 /// Nodal weights of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
 pub fn mass_weights(model: &Model, name: &str, place: &str) -> Checked<Vec<NodalWeight>> {
-    let (body, masses) = bodies_and_masses(model, name, place)?;
+    let (body, masses) = bodies_and_masses(model, name, ", on which gravity acts", place)?;
     let message = format!("gravity needs a mass: give bodies.{name}.material.density");
     refuse_if(masses.is_none() && body.is_some_and(|body| body.material.density() == 0.0), place, message)?;
     let share = |node: usize, weight: f64| NodalWeight { node, weight, position: model.mesh.nodes[node] };

@@ -52,7 +52,7 @@ pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Ch
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in &step.velocity {
         let place = format!("{place}.{name}");
-        let (body, masses) = groups::bodies_and_masses(model, name, &place)?;
+        let (body, masses) = groups::bodies_and_masses(model, name, "", &place)?;
         let nodes = body.map(|body| &body.nodes).or(masses.map(|masses| &masses.nodes));
         given.give(place, nodes.map_or(&[], Vec::as_slice), *value)?;
     }
