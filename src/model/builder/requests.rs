@@ -140,12 +140,6 @@ fn coordinates(model: &Model, element: usize, place: Vector2<f64>) -> Option<[f6
     let (kind, origin) = (element.kind, model.mesh.nodes[element.nodes[0]]);
     let nodes: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| model.mesh.nodes[node] - origin).collect();
     let place = place - origin;
-    let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
-    nodes.iter().for_each(|x| (low, high) = (low.inf(x), high.sup(x)));
-    let size = (high - low).max();
-    if (0..2).any(|i| place[i] < low[i] - BULGE * size || place[i] > high[i] + BULGE * size) {
-        return None;
-    }
     let mut at = Vector2::from(kind.centre());
     for _ in 0..ITERATIONS {
         let x: Vector2<f64> = nodes.iter().zip(kind.values(at.into())).map(|(x, n)| x * n).sum();

@@ -97,29 +97,22 @@ pub fn ties(periodic: &[[String; 2]], plates: &[Vec<usize>], mesh: &Mesh) -> Che
 
 /// Pairs each node of one side with the node of the other at the offset of the sides' centers.
 fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Checked<Vec<[usize; 2]>> {
-    let complain = |message: String| ModelError::new(place, message);
-    let side = |name: &String| mesh.group(name).map(|group| mesh.nodes_of(group));
-    let [first, second] =
-        [side(&names[0]).map_err(|e| complain(e.to_string()))?, side(&names[1]).map_err(|e| complain(e.to_string()))?];
-    if first.len() != second.len() {
-        return Err(complain(format!(
-            "`{}` has {} nodes and `{}` has {}: the nodes of periodic sides must match",
-            names[0],
-            first.len(),
-            names[1],
-            second.len()
-        )));
-    }
+    let [side, opposite] = names;
+    let [first, second] = [group(mesh, side, place)?, group(mesh, opposite, place)?].map(|group| mesh.nodes_of(group));
+    let (one, other) = (first.len(), second.len());
+    let message =
+        format!("`{side}` has {one} nodes and `{opposite}` has {other}: the nodes of periodic sides must match");
+    refuse_if(one != other, place, message)?;
     let middle =
         |nodes: &[usize]| nodes.iter().map(|&node| mesh.nodes[node]).sum::<Vector2<f64>>() / nodes.len() as f64;
     let period = middle(&second) - middle(&first);
     let near = ROUNDED * period.norm();
-    if mesh.section.is_axisymmetric() && period.x.abs() > near {
-        return Err(complain("axisymmetric bodies can be periodic along y only, the axis".into()));
-    }
+    let message = "axisymmetric bodies can be periodic along y only, the axis";
+    refuse_if(mesh.section.is_axisymmetric() && period.x.abs() > near, place, message)?;
     if let Some(shared) = first.iter().find(|node| second.binary_search(node).is_ok()) {
         let tag = mesh.node_tags[*shared];
-        return Err(complain(format!("node {tag} is on both sides: periodic sides must have nodes of their own")));
+        let message = format!("node {tag} is on both sides: periodic sides must have nodes of their own");
+        return Err(ModelError::new(place, message));
     }
     // Along the sides, the order of partners agrees except for round-off; sorting by one coordinate limits the candidates.
     let mut by_x: Vec<(f64, usize)> = second.iter().map(|&node| (mesh.nodes[node].x, node)).collect();
@@ -133,11 +126,12 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Checked<Vec<[usize
     let paired = |&node: &usize| {
         partner(node).map(|other| [node, other]).map_err(|expected| {
             let (tag, at) = (mesh.node_tags[node], mesh.nodes[node]);
-            complain(format!(
-                "node {tag} of `{}` at ({}, {}) has no partner on `{}`, where one should lie at ({}, {}): the nodes of \
-                 periodic sides must match",
-                names[0], at.x, at.y, names[1], expected.x, expected.y
-            ))
+            let message = format!(
+                "node {tag} of `{side}` at ({}, {}) has no partner on `{opposite}`, where one should lie at ({}, {}): the nodes \
+                 of periodic sides must match",
+                at.x, at.y, expected.x, expected.y
+            );
+            ModelError::new(place, message)
         })
     };
     first.iter().map(paired).collect()
@@ -158,22 +152,18 @@ pub fn linkage(given: &[LoadingPlateInput], steps: &[LoadStep], model: &Model) -
             Plate::Rigid => [true, true],
         };
         let place = format!("plates[{k}]");
-        let refused = |message: String| Err(ModelError::new(&place, message));
         let nodes = mesh.nodes_of(group(mesh, name, &place)?);
         let dofs = || nodes.iter().flat_map(|node| (0..2).filter(|i| components[*i]).map(|i| (*node, i)));
         if let Some((node, _)) = dofs().find(|dof| tied.contains(&dof.0) || seen.contains(dof)) {
-            return refused(format!(
-                "node {} is tied to others already, by a periodic side or another plate: leave it out of one of the \
-                 two",
-                mesh.node_tags[node]
-            ));
+            let tag = mesh.node_tags[node];
+            let message = format!(
+                "node {tag} is tied to others already, by a periodic side or another plate: leave it out of one of the two"
+            );
+            return Err(ModelError::new(place, message));
         }
         seen.extend(dofs());
-        if mesh.section.is_axisymmetric() && components[0] {
-            return refused(
-                "x is the radius of axisymmetric bodies: plates there have equal uy, or translate together".into(),
-            );
-        }
+        let message = "x is the radius of axisymmetric bodies: plates there have equal uy, or translate together";
+        refuse_if(mesh.section.is_axisymmetric() && components[0], &place, message)?;
         match plate {
             Plate::Rigid => {
                 let supported = match &supported {
@@ -240,15 +230,13 @@ fn supported_nodes(steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<BTre
 /// The supported node of a rigid platen, or its first one, and the one farthest from it.
 fn leaders(nodes: &[usize], all_supported: &BTreeSet<usize>, mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
     let supported: BTreeSet<usize> = nodes.iter().copied().filter(|node| all_supported.contains(node)).collect();
-    if supported.len() > 1 {
-        let tags: Vec<u64> = supported.iter().take(2).map(|node| mesh.node_tags[*node]).collect();
-        let message = format!(
-            "rotates, but supports constrain more than one of its nodes, {} and {}: constrain one only, load it by \
-             forces, springs and a moment, or prescribe the rotation of the side and leave the plate out",
-            tags[0], tags[1]
-        );
-        return Err(ModelError::new(place, message));
-    }
+    let tags: Vec<String> = supported.iter().take(2).map(|node| mesh.node_tags[*node].to_string()).collect();
+    let message = format!(
+        "rotates, but supports constrain more than one of its nodes, {}: constrain one only, load it by forces, springs and a \
+         moment, or prescribe the rotation of the side and leave the plate out",
+        tags.join(" and ")
+    );
+    refuse_if(supported.len() > 1, place, message)?;
     let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else {
         return Err(ModelError::new(place, "has no nodes"));
     };
