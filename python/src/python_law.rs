@@ -49,8 +49,8 @@ pub fn register_law(name: &str, call: Bound<PyAny>, variables: Vec<(String, f64)
     let (variables, call, own): (&'static [_], _, Arc<str>) = (Vec::leak(names), Arc::new(call), name.into());
     let (parameters, alpha_t) = (BTreeMap::new(), 1.0);
     let law = PythonLaw { name: own.clone(), call: call.clone(), parameters, alpha_t, variables, initial };
-    if let Err(message) = observables::check_names(&law.description()) {
-        return bad(message);
+    if let Err(error) = observables::check_names(&law.description()) {
+        return bad(error.to_string());
     }
     register(name, move |parameters, alpha_t| {
         let (name, call, parameters) = (own.clone(), call.clone(), parameters.clone());

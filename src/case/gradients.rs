@@ -16,7 +16,7 @@ use super::resolved::resolved;
 use crate::contact::pair::ContactPair;
 use crate::mesh::Mesh;
 use crate::mesh::names::nearest;
-use crate::model::builder::{Checked, ModelError};
+use crate::model::builder::{Checked, ModelError, refuse_if};
 use crate::model::scheme::Scheme;
 use crate::model::{Model, Step};
 use crate::output::checkpoint::MeshPrint;
@@ -63,17 +63,13 @@ impl Differentiated<'_> {
 
     fn neighbours_on(&self, mesh: &Mesh) -> Checked<Neighbours> {
         let places = &self.case.gradients;
-        if self.begins_with {
-            let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
-            return Err(ModelError::new("gradients", message));
-        }
+        let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
+        refuse_if(self.begins_with, "gradients", message)?;
         self.model.steps.iter().try_for_each(check_step)?;
         let defaults: Value = serde_json::from_str(&resolved(self.case, self.model)).unwrap_or_default();
         let one = |(k, place): (usize, &String)| {
             let at = format!("gradients[{k}]");
-            if places[..k].contains(place) {
-                return Err(ModelError::new(at, format!("`{place}` is given twice: keep one")));
-            }
+            refuse_if(places[..k].contains(place), &at, format_args!("`{place}` is given twice: keep one"))?;
             self.parameter(place, &defaults, mesh)
                 .map_err(|message| ModelError::new(at, format!("`{place}`: {message}")))
         };

@@ -12,7 +12,7 @@ use super::error::CaseError;
 use super::schema::schema_of;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
-use crate::model::builder::{Checked, ModelError, check_line, check_positive};
+use crate::model::builder::{Checked, ModelError, check_line, check_positive, refuse_if};
 use crate::run::law::{LawTest, PathDrive, Phase, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure along which it is driven.
@@ -129,8 +129,7 @@ fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
         }
         _ => ModelError::new("friction", error),
     })?;
-    let named = observables::check_names(&law.description());
-    named.map_err(|message| ModelError::new("friction", format!("the names of the law: {message}")))?;
+    observables::check_names(&law.description()).map_err(|error| ModelError::new("friction", error))?;
     Ok(law.controlled().unwrap_or(law))
 }
 
@@ -142,14 +141,12 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
     let traction = input.initial.traction;
     let pressure = pressure.max(0.0);
     let strength = law.description().starting_limit(pressure);
-    if traction.abs() > strength * (1.0 + SAME) {
-        let message = format!(
-            "is {traction}, above the initial strength mu p = {} · {pressure} = {strength}: lower it, or raise the \
-             pressure or the structure",
-            observables::value(law, "mu", &at_rest)
-        );
-        return Err(ModelError::new("initial.traction", message));
-    }
+    let message = format!(
+        "is {traction}, above the initial strength mu p = {} · {pressure} = {strength}: lower it, or raise the \
+         pressure or the structure",
+        observables::value(law, "mu", &at_rest)
+    );
+    refuse_if(traction.abs() > strength * (1.0 + SAME), "initial.traction", message)?;
     Ok(law.initial_state(pressure, traction))
 }
 
@@ -176,12 +173,12 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
 
     let reached = before.map(|before| [before.slip(start), before.pressure(start)]);
     let (slip_place, pressure_place) = (format!("{place}.slip"), format!("{place}.pressure"));
-    let slip = course(&slip_place, phase.slip.as_ref(), reached.map_or(Some(0.0), |[slip, _]| Some(slip)))?;
+    let slip = drive(&slip_place, phase.slip.as_ref(), reached.map_or(Some(0.0), |[slip, _]| Some(slip)))?;
     if let Some([reached, _]) = reached {
         check_continuous(&slip_place, &slip, reached, span)?;
     }
     let reached = reached.map_or(input.initial.pressure, |[_, pressure]| Some(pressure));
-    let pressure = course(&pressure_place, phase.pressure.as_ref(), reached)?;
+    let pressure = drive(&pressure_place, phase.pressure.as_ref(), reached)?;
     if let Some(reached) = reached {
         check_continuous(&pressure_place, &pressure, reached, span)?;
     }
@@ -192,7 +189,7 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
 }
 
 /// Time function of a quantity in a phase, starting from the value `reached`, if that is known.
-fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<PathDrive> {
+fn drive(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<PathDrive> {
     let complain = |message: &str| Err(ModelError::new(place, message));
     let Some(given) = given else {
         return match reached {
@@ -213,13 +210,11 @@ fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<P
     }
 }
 
-fn check_continuous(place: &str, course: &PathDrive, reached: f64, span: Span) -> Checked<()> {
-    let first = course.value(span.start, span);
+fn check_continuous(place: &str, drive: &PathDrive, reached: f64, span: Span) -> Checked<()> {
+    let first = drive.value(span.start, span);
     // Non-finite values are reported later.
-    if (first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE) {
-        let message = format!("jumps from {reached} to {first} at t = {}: start from the value reached", span.start);
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!("jumps from {reached} to {first} at t = {}: start from the value reached", span.start);
+    refuse_if((first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE), place, message)?;
     Ok(())
 }
 
@@ -249,15 +244,10 @@ fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
 fn check_dt(place: &str, dt: f64, span: Span) -> Checked<()> {
     check_positive(place, dt, "")?;
     let steps = (span.end - span.start) / dt;
-    if steps > MOST_STEPS {
-        let message =
-            format!("is {dt:e}: that makes {steps:.1e} steps in a phase, and at most {MOST_STEPS:e} are allowed");
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!("is {dt:e}: that makes {steps:.1e} steps in a phase, and at most {MOST_STEPS:e} are allowed");
+    refuse_if(steps > MOST_STEPS, place, message)?;
     let least = SHORTEST_STEP * span.end.abs().max(span.start.abs());
-    if dt < least {
-        let message = format!("is {dt:e}: at the time {:e} steps below {least:.1e} are lost in round-off", span.end);
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!("is {dt:e}: at the time {:e} steps below {least:.1e} are lost in round-off", span.end);
+    refuse_if(dt < least, place, message)?;
     Ok(())
 }

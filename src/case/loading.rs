@@ -8,7 +8,7 @@ use super::error::CaseError;
 use super::file::Case;
 use super::read;
 use crate::model::boundary::Span;
-use crate::model::builder::{Checked, Load, LoadsInForce, ModelError};
+use crate::model::builder::{Checked, Load, LoadsInForce, refuse_if};
 use crate::run::Simulation;
 
 /// Loads of the current step, with the changes of its caller.
@@ -23,10 +23,8 @@ impl LoadChanges {
     /// Returns the loads of a case in the current step of its run, with the caller's changes `before`.
     fn of(case: &Case, simulation: &Simulation, before: Option<&Self>) -> Checked<Self> {
         let model = simulation.model();
-        if simulation.has_ended_early() {
-            let message = "cannot be set after a step that `until` ended early: set it in the steps";
-            return Err(ModelError::new("load", message));
-        }
+        let message = "cannot be set after a step that `until` ended early: set it in the steps";
+        refuse_if(simulation.has_ended_early(), "load", message)?;
         let step = simulation.step_number();
         if let Some(before) = before.filter(|before| before.step == step) {
             return Ok(before.clone());
@@ -59,9 +57,8 @@ fn changed(
     by: f64,
 ) -> Checked<()> {
     let now = simulation.state().time;
-    if !(by >= now && by.is_finite()) {
-        return Err(ModelError::new("by", format!("is {by}: must not be before the current time, {now}")));
-    }
+    let message = format!("is {by}: must not be before the current time, {now}");
+    refuse_if(!(by >= now && by.is_finite()), "by", message)?;
     let load: Load = read::input(document)?;
     let mut changed = LoadChanges::of(case, simulation, loading.as_ref())?;
     changed.in_force.change_within(&load, "load", Span { start: now, end: by }, simulation.model())?;

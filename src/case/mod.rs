@@ -21,7 +21,7 @@ use serde_json::Value;
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, MeshError, gmsh};
 use crate::model::Model;
-use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_line, check_positive};
+use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_line, check_positive, refuse_if};
 pub use again::Opened;
 pub use error::CaseError;
 use file::{Case, MeshSource, blocks};
@@ -62,14 +62,10 @@ pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError
 }
 
 fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
-    if case.begin_with.is_some() {
-        return Err(ModelError::new("begin_with", "another case must be opened first: see case::Opened"));
-    }
+    refuse_if(case.begin_with.is_some(), "begin_with", "another case must be opened first: see case::Opened")?;
     let model = builder(case, mesh)?.build()?;
-    if case.output.every == Some(0) {
-        let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
-        return Err(ModelError::new("output.every", message));
-    }
+    let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
+    refuse_if(case.output.every == Some(0), "output.every", message)?;
     if let Some(minutes) = case.output.checkpoint.filter(|minutes| !(*minutes >= 0.0 && minutes.is_finite())) {
         return Err(ModelError::new("output.checkpoint", format!("is {minutes}: must be minutes, or null for none")));
     }

@@ -21,7 +21,7 @@ use serde_json::{Map, Value};
 use serde_path_to_error::{Path as KeyPath, Segment};
 
 use super::error::CaseError;
-use crate::mesh::names::{in_line, nearest};
+use crate::mesh::names::{in_line, not_known};
 use crate::model::builder::ModelError;
 
 /// Largest size of a case file; large meshes have files of their own [MiB].
@@ -389,14 +389,11 @@ fn unknown(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     let name = quoted.next().unwrap_or_default();
     let known: Vec<&str> = quoted.collect();
-    let name_shown = clipped(name);
-    if known.is_empty() {
-        return format!("`{name_shown}` is not known here: leave it out, this object takes no further keys");
+    let name = clipped(name);
+    match known.is_empty() {
+        true => format!("`{name}` is not known here: leave it out, this object takes no further keys"),
+        false => not_known(&name, &known),
     }
-    let meant =
-        nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-    let stop = if meant.is_empty() { "." } else { "" };
-    format!("`{name_shown}` is not known here{meant}{stop} Known are `{}`", known.join("`, `"))
 }
 
 fn plain_found(found: &str) -> String {

@@ -12,6 +12,5 @@ pub(super) fn default_folder(path: &Path) -> PathBuf {
 
 /// Locks the output folder and prepares it.
 pub(super) fn claim(folder: &Path, inputs: &[PathBuf], outputs: &[&str], goes_on: bool) -> Result<Folder, Failure> {
-    let bad = |(path, cause): (PathBuf, String)| Failure::BadInput(format!("{}: --out: {cause}", path.display()));
-    Folder::claim(folder, inputs, outputs, goes_on).map_err(bad)
+    Folder::claim(folder, inputs, outputs, goes_on).map_err(|error| Failure::BadInput(error.to_string()))
 }

@@ -19,6 +19,13 @@ pub fn nearest<'n>(name: &str, known: impl DoubleEndedIterator<Item = &'n str>) 
     known.rev().filter(near).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
 }
 
+/// Message for an unknown name, with the one that was probably meant, and all that are known.
+pub fn not_known(name: &str, known: &[&str]) -> String {
+    let meant = nearest(name, known.iter().copied());
+    let meant = meant.map_or_else(|| ".".into(), |near| format!("; did you mean `{near}`?"));
+    format!("`{name}` is not known here{meant} Known are `{}`", known.join("`, `"))
+}
+
 /// Makes a text safe for a terminal: escapes control characters and those that change the writing direction; keeps line breaks.
 pub fn printable(text: &str) -> Cow<'_, str> {
     spelled(text, |c| c != '\n' && steers(c))

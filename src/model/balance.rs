@@ -8,7 +8,7 @@
 
 use nalgebra::Vector2;
 
-use super::boundary::Loads;
+use super::boundary::{Loads, NodalWeight};
 use super::element::{Memory, follower_pressure};
 use super::text::number;
 use super::{Body, Model, Step};
@@ -79,7 +79,7 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
     let mut forces = Forces { sum: vec![0.0; model.dofs()], magnitude: vec![0.0; model.dofs()] };
     let initial = model.initial_memory();
     for e in 0..model.solids.len() {
-        let body = &model.bodies[model.body_of_element[e]];
+        let body = model.body_of(e);
         if !body.is_stressed() {
             continue;
         }
@@ -106,7 +106,7 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
 
 fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
     for load in &loads.dead {
-        for &(node, weight, position) in &load.shares {
+        for &NodalWeight { node, weight, position } in &load.weights {
             let mut force = Vector2::zeros();
             force[load.component] = -weight * load.amplitude.value(position, time);
             forces.add(node, force);

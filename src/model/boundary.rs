@@ -1,11 +1,15 @@
 //! Variation of prescribed quantities in time and space, and loads. Supports are in [`super::support`]. Moments in time and
 //! step spans are also defined here.
 
+use std::fmt::{Display, Formatter};
+
 use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
-pub use super::expression::Expression;
+pub use super::expression::{Expression, InvalidExpression};
+use super::text::{count, number};
 use super::written::written;
 
 /// Prescribed quantity as a function of time and position.
@@ -160,33 +164,34 @@ impl From<f64> for Drive {
     }
 }
 
+impl Display for Drive {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        match self {
+            Self::Constant(value) => f.write_str(&number(*value)),
+            Self::Expression(expression) => write!(f, "\"{}\"", expression.as_ref()),
+            Self::Rate(rate) => write!(f, "at the rate {}", number(*rate)),
+            Self::Table(table) => write!(f, "by a table of {}", count(table.len(), "time")),
+            Self::ByPlace(_, table) => write!(f, "by a table of {}", count(table.len(), "place")),
+        }
+    }
+}
+
 impl Drive {
     /// Checks that its numbers are finite and the coordinates of its table ascend.
     ///
     /// # Errors
-    /// Returns the error and its remedy if they do not.
-    pub fn check(&self) -> Result<(), String> {
-        let numbers: &[f64] = match self {
-            Self::Constant(value) | Self::Rate(value) => &[*value],
-            Self::Table(table) if table.is_empty() => return Err("the table is empty: give pairs [time, value]".into()),
-            Self::ByPlace(_, table) if table.is_empty() => {
-                return Err("the table is empty: give pairs [coordinate, value]".into());
-            }
-            Self::Table(table) | Self::ByPlace(_, table) => table.as_flattened(),
-            Self::Expression(_) => &[],
+    /// Returns [`InvalidValues`] if they do not.
+    pub fn check(&self) -> Result<(), InvalidValues> {
+        let (numbers, table) = match self {
+            Self::Constant(value) | Self::Rate(value) => (&[*value][..], None),
+            Self::Table(table) => (table.as_flattened(), Some((table, "time"))),
+            Self::ByPlace(_, table) => (table.as_flattened(), Some((table, "coordinate"))),
+            Self::Expression(_) => (&[][..], None),
         };
         if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
-            return Err(format!("is {value}: must be a finite number"));
+            return Err(InvalidValues::NotFinite(*value));
         }
-        let (table, kind, may_jump) = match self {
-            Self::Table(table) => (table, "times", false),
-            Self::ByPlace(_, table) => (table, "coordinates", true),
-            _ => return Ok(()),
-        };
-        match table.windows(2).find(|pair| pair[1][0] < pair[0][0] || pair[1][0] == pair[0][0] && !may_jump) {
-            Some(pair) => Err(format!("the {kind} of the table must increase: {} follows {}", pair[1][0], pair[0][0])),
-            None => Ok(()),
-        }
+        table.map_or(Ok(()), |(table, argument)| check_table(table, argument))
     }
 
     /// Whether it varies in space.
@@ -241,6 +246,38 @@ impl Drive {
             Self::Expression(expression) => expression.value(position, time),
             Self::ByPlace(along, table) => start + (interpolate(table, position[*along]) - start) * span.share(time),
         }
+    }
+}
+
+/// Numbers that define no variation.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InvalidValues {
+    /// A number is infinite or none
+    #[error("is {0}: must be a finite number")]
+    NotFinite(f64),
+    /// A table has no pairs; its argument
+    #[error("the table is empty: give pairs [{0}, value]")]
+    Empty(&'static str),
+    /// The arguments of a table do not ascend
+    #[error("the {} of the table must increase: {next} follows {before}", if *argument == "time" { "times" } else { "coordinates" })]
+    Descending {
+        /// its argument
+        argument: &'static str,
+        /// one of them
+        before: f64,
+        /// the next one
+        next: f64,
+    },
+}
+
+/// Checks that a table has pairs with ascending arguments; the same coordinate twice is a jump, and there is none in time.
+pub fn check_table(table: &[[f64; 2]], argument: &'static str) -> Result<(), InvalidValues> {
+    let descends = |pair: &&[[f64; 2]]| pair[1][0] < pair[0][0] || argument == "time" && pair[1][0] == pair[0][0];
+    match table.windows(2).find(descends) {
+        _ if table.is_empty() => Err(InvalidValues::Empty(argument)),
+        Some(pair) => Err(InvalidValues::Descending { argument, before: pair[0][0], next: pair[1][0] }),
+        None => Ok(()),
     }
 }
 
@@ -306,8 +343,20 @@ pub struct DeadLoad {
     pub component: usize,
     /// value per unit of `weight`
     pub amplitude: Amplitude,
-    /// (node, weight, reference position for the amplitude)
-    pub shares: Vec<(usize, f64, Vector2<f64>)>,
+    /// nodes on which it acts
+    pub weights: Vec<NodalWeight>,
+}
+
+/// Fraction of a load at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct NodalWeight {
+    /// node
+    pub node: usize,
+    /// force per value of the load: a length or an area of edges, a mass, or 1
+    pub weight: f64,
+    /// reference position at which the load is evaluated
+    pub position: Vector2<f64>,
 }
 
 /// Follower pressure on edges.
@@ -436,6 +485,13 @@ pub struct Span {
 }
 
 impl Span {
+    /// Evenly spaced times: the start, and `count` more up to the end.
+    pub fn times(self, count: u32) -> impl Iterator<Item = f64> {
+        let Self { start, end } = self;
+        let within = move |k: u32| start + f64::from(k) / f64::from(count) * (end - start);
+        (0..count).map(within).chain([end])
+    }
+
     /// Elapsed fraction of the span, 0 to 1.
     pub fn share(&self, time: f64) -> f64 {
         if self.end > self.start { ((time - self.start) / (self.end - self.start)).clamp(0.0, 1.0) } else { 1.0 }

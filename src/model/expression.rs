@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
+use thiserror::Error;
 
 use crate::mesh::names::{in_line, nearest};
 
@@ -21,6 +22,11 @@ const LONGEST_EXPRESSION: usize = 1000;
 
 /// Maximum depth of the stack of values.
 const DEPTH: usize = 32;
+
+/// Text that is no expression, or one without a finite value: the reason, and a remedy.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct InvalidExpression(String);
 
 /// A parsed expression in x, y and t: operations on a stack of values.
 #[derive(Clone, Debug)]
@@ -61,8 +67,8 @@ impl Expression {
     /// Parses an expression.
     ///
     /// # Errors
-    /// Returns a message with a mark below the position that cannot be read.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    /// Returns [`InvalidExpression`] with a mark below the position that cannot be read.
+    pub fn parse(text: &str) -> Result<Self, InvalidExpression> {
         Self::parse_in(text, &PLACE)
     }
 
@@ -70,9 +76,13 @@ impl Expression {
     ///
     /// # Errors
     /// The same as for [`Expression::parse`]; also if it has no finite value.
-    pub fn constant(text: &str, names: &[&str], numbers: &[f64]) -> Result<f64, String> {
+    pub fn constant(text: &str, names: &[&str], numbers: &[f64]) -> Result<f64, InvalidExpression> {
         let value = Self::parse_in(text, names)?.evaluate(numbers);
-        if value.is_finite() { Ok(value) } else { Err(format!("\"{text}\" is {value}: must be finite")) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(InvalidExpression(format!("\"{text}\" is {value}: must be finite")))
+        }
     }
 
     /// Reason why a variable cannot have this name, if any.
@@ -80,9 +90,10 @@ impl Expression {
         refused_name(name)
     }
 
-    fn parse_in(text: &str, variables: &[&str]) -> Result<Self, String> {
+    fn parse_in(text: &str, variables: &[&str]) -> Result<Self, InvalidExpression> {
         if text.len() > LONGEST_EXPRESSION {
-            return Err(format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table"));
+            let message = format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table");
+            return Err(InvalidExpression(message));
         }
         let operations = Reader::read(text, variables)?;
         let mut height = 0;
@@ -92,7 +103,9 @@ impl Expression {
         });
         match heights.max() {
             Some(most) if most <= DEPTH as isize => Ok(Self { text: text.into(), operations: operations.into() }),
-            _ => Err(format!("\"{text}\" cannot be read: it has more than {DEPTH} levels of brackets: use a table")),
+            _ => Err(InvalidExpression(format!(
+                "\"{text}\" cannot be read: it has more than {DEPTH} levels of brackets: use a table"
+            ))),
         }
     }
 
@@ -144,9 +157,9 @@ impl Expression {
 }
 
 impl FromStr for Expression {
-    type Err = String;
+    type Err = InvalidExpression;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, InvalidExpression> {
         Self::parse(text)
     }
 }
@@ -247,13 +260,13 @@ type Read<T> = Result<T, (usize, String)>;
 
 impl<'t> Reader<'t> {
     /// Returns the operations in their order.
-    pub fn read(text: &'t str, variables: &'t [&'t str]) -> Result<Vec<Operation>, String> {
+    pub fn read(text: &'t str, variables: &'t [&'t str]) -> Result<Vec<Operation>, InvalidExpression> {
         let mut reader = Self { text, variables, at: 0, operations: Vec::new() };
         let read = reader.sum().and_then(|()| match reader.next() {
             None => Ok(()),
             Some(c) => Err((reader.at, reader.unexpected(c))),
         });
-        read.map_err(|(at, what)| marked(text, at, &what))?;
+        read.map_err(|(at, what)| InvalidExpression(marked(text, at, &what)))?;
         Ok(reader.operations)
     }
 

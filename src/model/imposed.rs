@@ -150,7 +150,7 @@ impl Model {
     pub fn initial_memory(&self) -> Vec<f64> {
         let mut memory = vec![0.0; self.memories.total()];
         for (e, own) in self.memories.each_mut(&mut memory).enumerate() {
-            let body = &self.bodies[self.body_of_element[e]];
+            let body = self.body_of(e);
             let stress_at = |at| body.initial_stress.as_ref().map(|stress| stress.at(at, self.mesh.section.is_plate()));
             let count = body.material.description().variables.len().max(1);
             for (point, at) in own.chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
@@ -191,9 +191,7 @@ impl Model {
     /// Work of a temperature change on an element in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: the change of
     /// the stored energy at constant displacement [F·L].
     pub fn heating(&self, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
-        let (Some((count, rise)), Some(thermal)) =
-            (self.rises(element), self.bodies[self.body_of_element[element]].thermal)
-        else {
+        let (Some((count, rise)), Some(thermal)) = (self.rises(element), self.body_of(element).thermal) else {
             return 0.0;
         };
         let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
@@ -205,7 +203,7 @@ impl Model {
 
     /// Number of variables of an element's material at a point, and the index of T − T₀; `None` without thermal expansion.
     fn rises(&self, element: usize) -> Option<(usize, usize)> {
-        let body = &self.bodies[self.body_of_element[element]];
+        let body = self.body_of(element);
         let count = body.material.description().variables.len();
         body.thermal.map(|_| (count, count - TEMPERATURE.len()))
     }

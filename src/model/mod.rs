@@ -163,6 +163,11 @@ impl Model {
         self.mesh.displaced(displacement)
     }
 
+    /// Body of an element.
+    pub fn body_of(&self, element: usize) -> &Body {
+        &self.bodies[self.body_of_element[element]]
+    }
+
     /// Damping of a body in a step.
     pub fn damping(&self, step: &Step, body: usize) -> Damping {
         step.damping.get(body).copied().unwrap_or(self.bodies[body].damping)
@@ -197,7 +202,7 @@ impl Model {
 
     /// Consistent mass matrix of an element, the same for both directions [M].
     pub fn element_mass(&self, element: usize) -> DMatrix<f64> {
-        self.consistent(element, self.bodies[self.body_of_element[element]].material.description().density)
+        self.consistent(element, self.body_of(element).material.description().density)
     }
 
     /// ∫ N_a N_b dV of an element, in accordance with its mass [L³].
@@ -214,7 +219,7 @@ impl Model {
 
     /// Lumped mass of each node of an element [M].
     pub fn element_lumped_mass(&self, element: usize) -> DVector<f64> {
-        self.lumped(element, self.bodies[self.body_of_element[element]].material.description().density)
+        self.lumped(element, self.body_of(element).material.description().density)
     }
 
     /// Volume of the lumped mass of each node of an element [L³].

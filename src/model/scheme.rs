@@ -173,6 +173,21 @@ impl Scheme {
         !matches!(self, Self::Static | Self::QuasiDynamic { .. })
     }
 
+    /// Whether it takes central differences.
+    pub fn is_explicit(self) -> bool {
+        matches!(self, Self::Explicit { .. })
+    }
+
+    /// Whether it is quasi-dynamic.
+    pub fn is_quasi_dynamic(self) -> bool {
+        matches!(self, Self::QuasiDynamic { .. })
+    }
+
+    /// Whether increments are explicit, with or without inertia.
+    pub fn is_integrated_explicitly(self) -> bool {
+        self.is_explicit() || self.is_quasi_dynamic()
+    }
+
     /// Coefficients of the scheme; `None` for statics and central differences.
     pub fn coefficients(self) -> Option<Coefficients> {
         match self {

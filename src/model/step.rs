@@ -71,6 +71,9 @@ pub struct Step {
     pub launch: Vec<(usize, [f64; 2])>,
     /// loads, springs and dashpots
     pub loads: Loads,
+    /// supports and loads as the input gave them: those that the step ends, then those in force in it
+    #[doc(hidden)]
+    pub entries: Vec<Entry>,
     /// prescribed temperatures of bodies
     #[doc(hidden)]
     pub temperatures: Vec<Temperature>,
@@ -85,8 +88,42 @@ pub struct Step {
     pub stabilization: Vec<f64>,
 }
 
+/// A support or load of the input, in words.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct Entry {
+    /// whether it is a load, and not a support
+    pub is_load: bool,
+    /// place
+    pub on: String,
+    /// kind, such as `ux` or `dead pressure`
+    pub kind: String,
+    /// value as last given; `None` if it was ended
+    pub value: Option<String>,
+    /// whether this was in an earlier step
+    pub kept: bool,
+    /// whether it decreases to zero over the step that ends it, and does not end at once
+    pub fades: bool,
+}
+
+impl Entry {
+    /// Those of a step, in the order of [`Step::entries`], supports before loads, each by place and kind.
+    pub fn of_step<'e>(all: impl Iterator<Item = &'e Self>) -> Vec<Self> {
+        let mut entries: Vec<Self> = all.filter(|entry| entry.value.is_some() || !entry.kept).cloned().collect();
+        let order =
+            |Self { value, is_load, on, kind, .. }: &Self| (value.is_some(), *is_load, on.clone(), kind.clone());
+        entries.sort_by_cached_key(order);
+        entries
+    }
+}
+
 #[doc(hidden)]
 impl Step {
+    /// Whether some of its increments are explicit, or may be.
+    pub fn may_be_explicit(&self) -> bool {
+        self.rupture.is_some() || self.scheme.is_explicit()
+    }
+
     /// The step shifted in time, including everything that begins with it or later.
     #[must_use]
     pub fn moved(mut self, to: &impl Fn(Span) -> Span) -> Self {

@@ -10,6 +10,11 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// Formats a position or another vector: (x, y).
+pub fn vector(of: impl Into<[f64; 2]>) -> String {
+    format!("({})", of.into().map(number).join(", "))
+}
+
 /// Formats a count with its noun.
 pub fn count(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })

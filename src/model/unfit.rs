@@ -75,7 +75,7 @@ fn alone(model: &Model) -> Option<String> {
         |e: &usize| model.solids[*e].formulation() == Formulation::Reduced && edges(*e).all(|edge| times[&edge] == 1);
     let lonely: Vec<usize> = (0..elements.len()).filter(is_alone).collect();
     let &first = lonely.first()?;
-    let body = &model.bodies[model.body_of_element[first]].name;
+    let body = &model.body_of(first).name;
     let [x, y] = [0, 1].map(|k| {
         let nodes = &elements[first].nodes;
         number(nodes.iter().map(|&node| model.mesh.nodes[node][k]).sum::<f64>() / nodes.len() as f64)

@@ -19,8 +19,8 @@ pub trait Written: Sized {
     /// Returns the value from a text.
     ///
     /// # Errors
-    /// Returns a message if it cannot be read.
-    fn text(text: &str) -> Result<Self, String>;
+    /// Returns an error with a message if it cannot be read.
+    fn text<E: Error>(text: &str) -> Result<Self, E>;
 
     /// Returns the value from a list, if lists are allowed.
     ///
@@ -73,7 +73,7 @@ impl<'de, T: Written> Visitor<'de> for Forms<T> {
     }
 
     fn visit_str<E: Error>(self, value: &str) -> Result<T, E> {
-        T::text(value).map_err(E::custom)
+        T::text(value)
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, entries: A) -> Result<T, A::Error> {
@@ -118,8 +118,8 @@ macro_rules! written {
                 Some(Self::$number(value))
             })?
 
-            fn text(text: &str) -> Result<Self, String> {
-                text.parse().map(Self::$text).map_err(|error| error.to_string())
+            fn text<E: serde::de::Error>(text: &str) -> Result<Self, E> {
+                text.parse().map(Self::$text).map_err(E::custom)
             }
 
             fn object<'de, D: serde::Deserializer<'de>>($object: D) -> Result<Self, D::Error> {

@@ -18,6 +18,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// Creates a new file in place of an earlier one.
 ///
@@ -185,12 +186,34 @@ struct Holder {
     since: u64,
 }
 
+/// A folder, or a file in it, because of which results cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}: --out: {cause}", path.display())]
+pub struct FolderError {
+    /// the folder or file
+    pub path: PathBuf,
+    /// reason and remedy
+    pub cause: String,
+}
+
+impl FolderError {
+    /// Creates an error about a folder or file.
+    pub fn new(path: &Path, cause: impl ToString) -> Self {
+        Self { path: path.to_owned(), cause: cause.to_string() }
+    }
+
+    /// Creates the error of a folder or file that cannot be written.
+    pub fn unwritable(path: &Path, cause: impl std::fmt::Display) -> Self {
+        Self::new(path, format_args!("results cannot be written here: {cause}"))
+    }
+}
+
 impl Lock {
     /// Locks a folder.
     ///
     /// # Errors
-    /// Returns a message that names the holder of the lock, or the reason why it cannot be written.
-    pub fn take(folder: &Path) -> Result<Self, String> {
+    /// Returns [`FolderError`] that names the holder of the lock, or the reason why it cannot be written.
+    pub fn take(folder: &Path) -> Result<Self, FolderError> {
         Self::beating(folder, BEAT)
     }
 
@@ -198,10 +221,11 @@ impl Lock {
     ///
     /// # Errors
     /// The same as for [`take`](Self::take).
-    pub fn beating(folder: &Path, beat: Duration) -> Result<Self, String> {
+    pub fn beating(folder: &Path, beat: Duration) -> Result<Self, FolderError> {
         let path = folder.join(LOCK);
-        let message = |cause: io::Error| format!("results cannot be written here: {LOCK}: {cause}");
-        let mut file = open_lock(&path).map_err(message)?;
+        let cannot = |cause: io::Error| FolderError::unwritable(folder, format_args!("{LOCK}: {cause}"));
+        let busy = |holder: Option<&Holder>| FolderError::new(folder, busy(holder));
+        let mut file = open_lock(&path).map_err(cannot)?;
         let me = Holder::this();
         let holder = Holder::read(&mut file);
         match (file.try_lock(), &holder) {
@@ -210,13 +234,13 @@ impl Lock {
             (_, Some(holder)) if holder.computer != me.computer => {
                 let silent = silent_for(&file);
                 if silent <= LEFT_BEHIND {
-                    return Err(elsewhere(holder, silent));
+                    return Err(FolderError::new(folder, elsewhere(holder, silent)));
                 }
                 // A previous holder that is still active detects the replaced file and stops.
                 if same(&path, &file) {
-                    fs::remove_file(&path).map_err(message)?;
+                    fs::remove_file(&path).map_err(cannot)?;
                 }
-                file = open_lock(&path).map_err(message)?;
+                file = open_lock(&path).map_err(cannot)?;
                 if let Err(TryLockError::WouldBlock) = file.try_lock() {
                     return Err(busy(Holder::read(&mut file).as_ref()));
                 }
@@ -234,7 +258,7 @@ impl Lock {
         let written = write(&mut file);
         let heart = Heart::of(&file, beat);
         let lock = Self { path, file, _heart: heart };
-        written.map_err(message)?;
+        written.map_err(cannot)?;
         match lock.is_there() {
             true => Ok(lock),
             // The previous holder has just ended and removed it.

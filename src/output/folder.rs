@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::files::Lock;
+use super::files::{FolderError, Lock};
 use super::summary::SUMMARY;
 use super::{checkpoint, files, gradients, report, store};
 use crate::run::error::Error;
@@ -70,26 +70,21 @@ impl Folder {
     /// results are removed, unless the run continues them.
     ///
     /// # Errors
-    /// Returns the path that prevents it, and the reason.
-    pub fn claim(path: &Path, inputs: &[PathBuf], outputs: &[&str], goes_on: bool) -> Result<Self, (PathBuf, String)> {
-        let cannot = |what: &Path, cause: &dyn std::fmt::Display| {
-            (what.to_owned(), format!("results cannot be written here: {cause}"))
-        };
+    /// Returns [`FolderError`] with the path that prevents it, and the reason.
+    pub fn claim(path: &Path, inputs: &[PathBuf], outputs: &[&str], goes_on: bool) -> Result<Self, FolderError> {
         if let Some(input) = inputs.iter().find(|input| is_written(input, path, outputs)) {
-            return Err((
-                input.clone(),
-                "is an input of this run, which would overwrite it: choose another --out".into(),
-            ));
+            let cause = "is an input of this run, which would overwrite it: choose another --out";
+            return Err(FolderError::new(input, cause));
         }
         let made = !path.exists();
-        std::fs::create_dir_all(path).map_err(|cause| cannot(path, &cause))?;
-        let claimed = Lock::take(path).map_err(|cause| (path.to_owned(), cause)).and_then(|lock| {
+        std::fs::create_dir_all(path).map_err(|cause| FolderError::unwritable(path, cause))?;
+        let claimed = Lock::take(path).and_then(|lock| {
             let earlier = earlier(path)?;
             in_the_way(path, outputs, &earlier)?;
             let mut files: Vec<String> = outputs.iter().map(|name| (*name).into()).collect();
             match goes_on {
                 true => files.extend(earlier.into_iter().filter(|name| !outputs.contains(&name.as_str()))),
-                false => clear(path, &earlier).map_err(|(file, cause)| cannot(&file, &cause))?,
+                false => clear(path, &earlier).map_err(|(file, cause)| FolderError::unwritable(&file, cause))?,
             }
             Ok(Self { path: path.to_owned(), lock, files })
         });
@@ -125,12 +120,12 @@ fn is_written(input: &Path, folder: &Path, outputs: &[&str]) -> bool {
 }
 
 /// Files written by earlier runs, according to their summary; empty without one.
-fn earlier(folder: &Path) -> Result<Vec<String>, (PathBuf, String)> {
+fn earlier(folder: &Path) -> Result<Vec<String>, FolderError> {
     let path = folder.join(SUMMARY);
     if path.symlink_metadata().is_err() {
         return Ok(Vec::new());
     }
-    let foreign = || (path.clone(), "was not written by an earlier run: move it, or choose another --out".to_string());
+    let foreign = || FolderError::new(&path, "was not written by an earlier run: move it, or choose another --out");
     if !path.symlink_metadata().is_ok_and(|known| known.is_file()) {
         return Err(foreign());
     }
@@ -142,9 +137,9 @@ fn earlier(folder: &Path) -> Result<Vec<String>, (PathBuf, String)> {
 }
 
 /// Refuses output paths at which something other than earlier results exists.
-fn in_the_way(folder: &Path, outputs: &[&str], earlier: &[String]) -> Result<(), (PathBuf, String)> {
-    let strange =
-        |path: PathBuf| Err((path, "is in the way: no earlier run wrote it; move it, or choose another --out".into()));
+fn in_the_way(folder: &Path, outputs: &[&str], earlier: &[String]) -> Result<(), FolderError> {
+    let cause = "is in the way: no earlier run wrote it; move it, or choose another --out";
+    let strange = |path: PathBuf| Err(FolderError::new(&path, cause));
     for name in outputs {
         let path = folder.join(name.trim_end_matches('/'));
         let Ok(known) = path.symlink_metadata() else { continue };

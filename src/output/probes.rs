@@ -119,7 +119,7 @@ fn values(model: &Model, state: &State, stencils: &[Stencil]) -> Values {
 
 fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (solid, u) = (&model.solids[e], model.mesh.vectors(e, &state.displacement));
-    let material = &*model.bodies[model.body_of_element[e]].material;
+    let material = &*model.body_of(e).material;
     let strain = |f: &Matrix2<f64>| {
         let gradient = f - Matrix2::identity();
         let square = if material.description().is_linear { Matrix2::zeros() } else { gradient.transpose() * gradient };

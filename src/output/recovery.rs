@@ -239,7 +239,7 @@ pub fn shown_names(model: &Model) -> Vec<&'static str> {
 /// Stress and logarithmic strain at the quadrature points of an element, as [`Stencil::sum`] takes them.
 fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
-    let (material, memory) = (&*model.bodies[model.body_of_element[e]].material, model.memories.of(e, &state.memory));
+    let (material, memory) = (&*model.body_of(e).material, model.memories.of(e, &state.memory));
     let both = solid.stresses(material, memory, &u).and_then(|stresses| {
         let strains = solid.log_strains(material, memory, &u)?;
         Ok(stresses
@@ -254,7 +254,7 @@ fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
 /// What the law of an element shows at its quadrature points, as [`Stencil::sum`] takes it.
 fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
-    let material = &*model.bodies[model.body_of_element[e]].material;
+    let material = &*model.body_of(e).material;
     let found = solid.shown(material, model.memories.of(e, &state.memory), &u);
     found.unwrap_or_else(|_| vec![0.0; material.description().shown.len() * solid.quadrature_points()])
 }

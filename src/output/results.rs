@@ -19,7 +19,7 @@
 use std::path::{Path, PathBuf};
 
 use super::vtu;
-pub use super::vtu::Array;
+pub use super::vtu::{Array, Unreadable};
 
 /// A listed frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,21 +52,22 @@ pub struct Grid {
 /// Returns the frames listed by `NAME.pvd`, in order of time; `None` if there is no such file.
 ///
 /// # Errors
-/// Returns a description of the defect if the file cannot be read.
-pub fn frames(folder: &Path, name: &str) -> Result<Option<Vec<Frame>>, String> {
+/// Returns [`Unreadable`] if the file cannot be read.
+pub fn frames(folder: &Path, name: &str) -> Result<Option<Vec<Frame>>, Unreadable> {
     let file = format!("{name}.pvd");
     let path = folder.join(&file);
     if !path.is_file() {
         return Ok(None);
     }
-    let text = std::fs::read_to_string(&path).map_err(|cause| format!("{file} cannot be read: {cause}"))?;
+    let text = std::fs::read_to_string(&path).map_err(|cause| Unreadable(format!("{file} cannot be read: {cause}")))?;
     let listed = text.split("<DataSet ").skip(1).map(|entry| {
         let of = |key: &str| entry.split_once(&format!("{key}=\""))?.1.split('"').next();
         let (time, file) = (of("timestep")?.parse().ok()?, of("file")?);
         Some(Frame { time, file: file.into() }).filter(|frame| frame.time.is_finite() && below(&frame.file))
     });
-    let mut frames: Vec<Frame> =
-        listed.collect::<Option<_>>().ok_or_else(|| format!("{file} lists a frame without a time or a file"))?;
+    let mut frames: Vec<Frame> = listed
+        .collect::<Option<_>>()
+        .ok_or_else(|| Unreadable(format!("{file} lists a frame without a time or a file")))?;
     frames.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(Some(frames))
 }
@@ -80,20 +81,23 @@ impl Grid {
     /// Reads a VTU file.
     ///
     /// # Errors
-    /// Returns a description of the defect if the file cannot be read.
-    pub fn read(path: &Path) -> Result<Self, String> {
+    /// Returns [`Unreadable`] if the file cannot be read.
+    pub fn read(path: &Path) -> Result<Self, Unreadable> {
+        let unreadable = |why: &str| Unreadable(why.into());
         if !path.is_file() {
-            return Err("is missing".into());
+            return Err(unreadable("is missing"));
         }
-        let file = std::fs::read_to_string(path).map_err(|cause| format!("cannot be read: {cause}"))?;
+        let file = std::fs::read_to_string(path).map_err(|cause| Unreadable(format!("cannot be read: {cause}")))?;
         let arrays = |section: &str| vtu::arrays(&file, section);
         let (places, mut cells) = (arrays("Points")?, arrays("Cells")?);
         let mut numbers = |name: &str| {
             let array = cells.iter_mut().find(|array| array.name == name);
-            array.map(|array| std::mem::take(&mut array.values)).ok_or_else(|| format!("has no array `{name}`"))
+            array
+                .map(|array| std::mem::take(&mut array.values))
+                .ok_or_else(|| Unreadable(format!("has no array `{name}`")))
         };
         let whole = |numbers: Vec<f64>| numbers.into_iter().map(|number| number as u32).collect();
-        let places = places.into_iter().next().ok_or("has no points")?.values;
+        let places = places.into_iter().next().ok_or_else(|| unreadable("has no points"))?.values;
         let grid = Self {
             points: places.chunks_exact(3).map(|x| [x[0], x[1]]).collect(),
             connectivity: whole(numbers("connectivity")?),
@@ -102,7 +106,7 @@ impl Grid {
             at_points: arrays("PointData")?,
             at_cells: arrays("CellData")?,
         };
-        grid.is_whole().then_some(grid).ok_or_else(|| "has arrays that do not fit its points and cells".into())
+        grid.is_whole().then_some(grid).ok_or_else(|| unreadable("has arrays that do not fit its points and cells"))
     }
 
     /// Whether all arrays have the required length.

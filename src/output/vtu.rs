@@ -22,6 +22,7 @@ use base64::engine::general_purpose::STANDARD;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use nalgebra::Vector2;
+use thiserror::Error;
 
 use super::files;
 use crate::mesh::shape::ElementKind;
@@ -202,27 +203,35 @@ pub struct Array {
     pub values: Vec<f64>,
 }
 
+/// A file of results that cannot be read: the reason.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Unreadable(pub(super) String);
+
 /// The arrays in a section of a file; none where there is no such section.
 ///
 /// # Errors
-/// What is wrong with them.
-pub fn arrays(file: &str, section: &str) -> Result<Vec<Array>, String> {
+/// Returns [`Unreadable`] with what is wrong with them.
+pub fn arrays(file: &str, section: &str) -> Result<Vec<Array>, Unreadable> {
     let Some((_, rest)) = file.split_once(&format!("<{section}>")) else { return Ok(Vec::new()) };
-    let (inside, _) = rest.split_once(&format!("</{section}>")).ok_or_else(|| format!("ends within <{section}>"))?;
+    let (inside, _) =
+        rest.split_once(&format!("</{section}>")).ok_or_else(|| Unreadable(format!("ends within <{section}>")))?;
     inside.split("<DataArray ").skip(1).map(read).collect()
 }
 
 /// The array that follows the beginning of its tag.
-fn read(text: &str) -> Result<Array, String> {
+fn read(text: &str) -> Result<Array, Unreadable> {
     let parts = || {
         let (tag, rest) = text.split_once('>')?;
         let of = |key: &str| tag.split_once(&format!("{key}=\""))?.1.split('"').next();
         let (kind, name, components) = (of("type")?, of("Name")?, of("NumberOfComponents")?.parse().ok()?);
         Some((kind, name, components, rest.split_once("</DataArray>")?.0.trim()))
     };
-    let (kind, name, components, packed) = parts().ok_or("has an array without an end, or a name")?;
-    let bytes = decode(packed).ok_or_else(|| format!("has an array `{name}` that is damaged"))?;
-    let values = numbers(kind, &bytes).ok_or_else(|| format!("has an array `{name}` of an unknown type"))?;
+    let (kind, name, components, packed) =
+        parts().ok_or_else(|| Unreadable("has an array without an end, or a name".into()))?;
+    let bytes = decode(packed).ok_or_else(|| Unreadable(format!("has an array `{name}` that is damaged")))?;
+    let values =
+        numbers(kind, &bytes).ok_or_else(|| Unreadable(format!("has an array `{name}` of an unknown type")))?;
     Ok(Array { name: name.into(), components, values })
 }
 

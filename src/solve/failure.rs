@@ -206,7 +206,7 @@ pub fn limit(step: &Step, state: &State, cause: &IncrementFailure) -> String {
 fn growing_loads(step: &Step, time: f64) -> Vec<String> {
     let loads = &step.loads;
     let dead = loads.dead.iter().filter_map(|load| {
-        let place = load.shares.first()?.2;
+        let place = load.weights.first()?.position;
         Some((["load along x", "load along y"][load.component], &load.amplitude, place))
     });
     let pressures = loads.pressures.iter().map(|load| ("pressure", &load.amplitude, Vector2::zeros()));

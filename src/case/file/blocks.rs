@@ -4,12 +4,13 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
+use serde::de::Error;
 use serde::{Deserialize, Serialize};
 
 use super::MeshSource;
 use crate::mesh::{Block, BlockError, BlockKind, Blocks, Grading, InlineMesh};
 use crate::model::boundary::Expression;
-use crate::model::builder::{Checked, ModelError};
+use crate::model::builder::{Checked, ModelError, refuse_if};
 use crate::model::written::written;
 
 /// A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements. Blocks of one body
@@ -119,11 +120,10 @@ pub(super) struct MeshKeys {
     joined: Option<Vec<Vec<String>>>,
 }
 
-impl TryFrom<MeshKeys> for MeshSource {
-    type Error = String;
-
-    fn try_from(keys: MeshKeys) -> Result<Self, String> {
-        let MeshKeys { nodes, elements, edges, points, blocks, parameters, apart, joined } = keys;
+impl MeshKeys {
+    /// Returns the mesh, given in one of the two ways.
+    pub fn source<E: Error>(self) -> Result<MeshSource, E> {
+        let Self { nodes, elements, edges, points, blocks, parameters, apart, joined } = self;
         let given = |pairs: &[(&'static str, bool)]| pairs.iter().find(|(_, given)| *given).map(|(key, _)| *key);
         let of_nodes = [
             ("nodes", nodes.is_some()),
@@ -136,14 +136,16 @@ impl TryFrom<MeshKeys> for MeshSource {
         match (blocks, given(&of_nodes), given(&of_blocks)) {
             (Some(blocks), None, _) => {
                 let (parameters, joined) = (parameters.unwrap_or_default(), joined.unwrap_or_default());
-                Ok(Self::Blocks(BlocksInput { parameters, blocks, apart: apart.unwrap_or_default(), joined }))
+                Ok(MeshSource::Blocks(BlocksInput { parameters, blocks, apart: apart.unwrap_or_default(), joined }))
             }
-            (Some(_), Some(key), _) => {
-                Err(format!("has both `blocks` and `{key}`: give blocks, or nodes with their elements and edges"))
+            (Some(_), Some(key), _) => Err(E::custom(format_args!(
+                "has both `blocks` and `{key}`: give blocks, or nodes with their elements and edges"
+            ))),
+            (None, _, Some(key)) => {
+                Err(E::custom(format_args!("has `{key}` without `blocks`: it belongs to a mesh of blocks")))
             }
-            (None, _, Some(key)) => Err(format!("has `{key}` without `blocks`: it belongs to a mesh of blocks")),
-            (None, _, None) => Ok(Self::Inline(InlineMesh {
-                nodes: nodes.ok_or("missing field `nodes`")?,
+            (None, _, None) => Ok(MeshSource::Inline(InlineMesh {
+                nodes: nodes.ok_or_else(|| E::missing_field("nodes"))?,
                 elements: elements.unwrap_or_default(),
                 edges: edges.unwrap_or_default(),
                 points: points.unwrap_or_default(),
@@ -247,10 +249,8 @@ impl Parameters<'_> {
     /// An integer, within the round-off of its expression.
     fn count(&self, amount: &Amount, place: &str) -> Checked<usize> {
         let value = self.value(amount, place)?;
-        if !(value > 0.5 && value < 1e15 && (value - value.round()).abs() <= 1e-9 * value) {
-            let message = format!("is {value}: must be a whole number, 1 or more, such as \"round(L/h)\" gives");
-            return Err(ModelError::new(place, message));
-        }
+        let message = format!("is {value}: must be a whole number, 1 or more, such as \"round(L/h)\" gives");
+        refuse_if(!(value > 0.5 && value < 1e15 && (value - value.round()).abs() <= 1e-9 * value), place, message)?;
         Ok(value.round() as usize)
     }
 

@@ -109,7 +109,7 @@ pub enum MeshSource {
 impl Written for MeshSource {
     const EXPECTING: &'static str = "the path of a mesh file, a list of such paths, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
 
-    fn text(text: &str) -> Result<Self, String> {
+    fn text<E: Error>(text: &str) -> Result<Self, E> {
         Ok(Self::File(text.into()))
     }
 
@@ -118,7 +118,7 @@ impl Written for MeshSource {
     }
 
     fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-        MeshKeys::deserialize(object)?.try_into().map_err(D::Error::custom)
+        MeshKeys::deserialize(object)?.source()
     }
 }
 

@@ -20,6 +20,7 @@ use super::{CaseError, Opened};
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint, Unusable};
 use crate::output::events;
+use crate::output::files::FolderError;
 use crate::output::folder::Folder;
 use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
@@ -41,8 +42,8 @@ pub enum Refused {
     #[error(transparent)]
     Case(#[from] CaseError),
     /// Results cannot be written to the folder.
-    #[error("{}: --out: {}", .0.display(), .1)]
-    Folder(PathBuf, String),
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// There is nothing to resume from.
     #[error("{}: --resume: {}", .0.display(), .1)]
     Checkpoint(PathBuf, checkpoint::Unusable),
@@ -153,8 +154,7 @@ impl Job {
     fn claim(opened: Opened, model: Arc<Model>, saved: Option<SavedRun>, place: &Path) -> Result<Self, Refused> {
         let inputs: Vec<PathBuf> = opened.inputs.iter().cloned().chain([opened.path.clone()]).collect();
         let outputs = files(&opened.case, &model);
-        let folder = Folder::claim(place, &inputs, &outputs, opened.resumes());
-        let folder = folder.map_err(|(path, cause)| Refused::Folder(path, cause))?;
+        let folder = Folder::claim(place, &inputs, &outputs, opened.resumes())?;
         Ok(Self { opened, model, folder, saved, damage: None, begins_anew: false })
     }
 

@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, default_over, regime};
 use crate::model::method::{Chosen, Method};
-use crate::model::text::{count, number};
+use crate::model::text::{count, number, vector};
 use crate::model::warnings::{farthest, gaps};
 use crate::output::warnings::several_answers;
 
@@ -189,16 +189,15 @@ fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
 }
 
 fn master(input: &Contact) -> String {
-    let pair = |v: [f64; 2]| v.map(number).join(", ");
     match &input.master {
         MasterSide::Group(group) if *group == input.slave => "itself".into(),
         MasterSide::Group(group) => group.clone(),
         MasterSide::Plane { point, normal } => {
-            format!("the rigid plane through ({}) with the normal ({})", pair(*point), pair(*normal))
+            format!("the rigid plane through {} with the normal {}", vector(*point), vector(*normal))
         }
         MasterSide::Circle { centre, radius, hole } => {
             let kind = if *hole { "hole" } else { "disk" };
-            format!("the rigid {kind} of radius {} about ({})", number(*radius), pair(*centre))
+            format!("the rigid {kind} of radius {} about {}", number(*radius), vector(*centre))
         }
         MasterSide::Polyline { points } => format!("the rigid polyline through {}", count(points.len(), "point")),
     }

@@ -14,7 +14,7 @@ use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
 use crate::model::builder::{BodyInput, BulkLaw, Formulation, LoadingPlateInput, Plate, RigidBodyInput};
 use crate::model::imposed::{InitialStress, PoreFluid, Thermal};
-use crate::model::text::{count, number};
+use crate::model::text::{count, number, vector};
 use crate::model::{Damping, Model, PointMass};
 use crate::output::fields::Selection;
 use crate::output::fronts::ArrivalInput;
@@ -146,9 +146,8 @@ fn bodies(case: &Case) -> Vec<String> {
         [name.clone(), format!("{}{slopes}{element}{damping}{imposed}", parameters(&input.material, "model", &[]))]
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
-    for (name, [vx, vy]) in &case.initial_velocity {
-        lines.push(format!("{name}: initial velocity ({}, {})", number(*vx), number(*vy)));
-    }
+    let velocities = case.initial_velocity.iter();
+    lines.extend(velocities.map(|(name, velocity)| format!("{name}: initial velocity {}", vector(*velocity))));
     lines
 }
 
@@ -209,7 +208,7 @@ fn plates(case: &Case, model: &Model) -> Vec<String> {
 fn rigid_bodies(case: &Case) -> Vec<String> {
     let row = |(name, RigidBodyInput { reference, inertia }): (&String, &RigidBodyInput)| {
         let inertia = inertia.map_or(String::new(), |inertia| format!(", moment of inertia {}", number(inertia)));
-        format!("{name}: reference point ({}){inertia}", reference.map(number).join(", "))
+        format!("{name}: reference point {}{inertia}", vector(*reference))
     };
     case.rigid_bodies.iter().map(row).collect()
 }
@@ -217,7 +216,7 @@ fn rigid_bodies(case: &Case) -> Vec<String> {
 fn point_masses(case: &Case, model: &Model) -> Vec<String> {
     let row = |point: &PointMass| {
         let velocity = case.point_masses[&point.name].velocity;
-        let start = velocity.map(|[vx, vy]| format!(", initial velocity ({}, {})", number(vx), number(vy)));
+        let start = velocity.map(|velocity| format!(", initial velocity {}", vector(velocity)));
         let mass = format!("mass {} at {}", number(point.mass), count(point.nodes.len(), "node"));
         [point.name.clone(), mass + &start.unwrap_or_default()]
     };

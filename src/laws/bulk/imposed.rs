@@ -6,8 +6,8 @@ use nalgebra::{Matrix2, Matrix4, Vector2};
 
 use super::spatial::plane;
 use super::{
-    CauchyStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining,
-    Stretched,
+    CauchyStress, InadmissibleStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress,
+    Spatial, Straining, Stretched,
 };
 
 /// Names of the initial stress among the variables of a law.
@@ -227,7 +227,7 @@ impl Material for Imposed {
         Some(Arc::new(Self { law: self.law.at_pressure(pressure)?, ..self.clone() }))
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         self.law.admits(stress)
     }
 

@@ -254,6 +254,11 @@ pub enum MaterialFailure {
     },
 }
 
+/// A stress that a law cannot begin with: why, and what to do.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct InadmissibleStress(pub String);
+
 /// How the volume of a body changes while it yields: what its elements must be able to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -336,7 +341,7 @@ pub trait Material: Debug + Send + Sync {
     ///
     /// # Errors
     /// Why it cannot, and what to do.
-    fn admits(&self, _stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, _stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         Ok(())
     }
 

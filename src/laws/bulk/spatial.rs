@@ -8,7 +8,9 @@
 
 use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
 
-use super::{CauchyStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining};
+use super::{
+    CauchyStress, InadmissibleStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining,
+};
 
 /// Response of a law at F with an out-of-plane stretch.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -214,7 +216,7 @@ impl<L: Spatial> Material for PlaneStress<L> {
         self.law.initial_state(position, stress, variables);
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         self.law.admits(stress)
     }
 

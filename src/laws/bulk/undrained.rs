@@ -6,8 +6,8 @@ use nalgebra::{Matrix2, Vector2, Vector5};
 
 use super::spatial::{components, plane, positive_stretch};
 use super::{
-    CauchyStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, Spatial, Straining, Stretched,
-    positive_jacobian,
+    CauchyStress, InadmissibleStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, Spatial,
+    Straining, Stretched, positive_jacobian,
 };
 
 /// Name of the initial pressure of the fluid among the variables of a law, the first of them.
@@ -164,7 +164,7 @@ impl Material for Undrained {
         Some(Arc::new(Self { law: self.law.at_pressure(pressure)?, ..self.clone() }))
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         self.law.admits(stress)
     }
 

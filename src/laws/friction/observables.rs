@@ -1,5 +1,7 @@
 //! Observables of friction in the output, in addition to those of all laws; their names come from the laws.
 
+use thiserror::Error;
+
 use super::state::MOST_VARIABLES;
 use super::{Description, FrictionLaw, FrictionState};
 
@@ -45,41 +47,51 @@ const TAKEN: [&str; 28] = [
 /// Maximum length of a name; combined with that of its contact it is a file name.
 const LONGEST: usize = 64;
 
+/// Names of a law that outputs cannot use: the reason, and a remedy.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("the names of the law: {0}")]
+#[doc(hidden)]
+pub struct InvalidNames(String);
+
 /// Checks that the names of a law are valid for columns, arrays and files, and differ from other names. They must differ in
 /// more than capitalization, since some systems ignore it in file names.
 ///
 /// # Errors
-/// Returns a message with the invalid name and a remedy.
+/// Returns [`InvalidNames`] with the invalid name and a remedy.
 #[doc(hidden)]
-pub fn check_names(description: &Description) -> Result<(), String> {
+pub fn check_names(description: &Description) -> Result<(), InvalidNames> {
     let Description { variables, opening, .. } = description;
     if variables.len() > MOST_VARIABLES {
-        return Err(format!("it has {} variables: at most {MOST_VARIABLES} are allowed", variables.len()));
+        let message = format!("it has {} variables: at most {MOST_VARIABLES} are allowed", variables.len());
+        return Err(InvalidNames(message));
     }
     if let Some(name) = opening.iter().find(|name| !OF_OPENING.contains(name)) {
         let [dilation, wear] = OF_OPENING;
-        return Err(format!("an opening has no part `{name}`: outputs show `{dilation}` and `{wear}`"));
+        return Err(InvalidNames(format!("an opening has no part `{name}`: outputs show `{dilation}` and `{wear}`")));
     }
     check_each(variables)?;
     check_each(description.observables())
 }
 
-fn check_each(names: &[&str]) -> Result<(), String> {
+fn check_each(names: &[&str]) -> Result<(), InvalidNames> {
+    let refused = |message: String| Err(InvalidNames(message));
     for (k, name) in names.iter().enumerate() {
         let fits = name.starts_with(char::is_alphabetic) && name.chars().all(|c| c.is_alphanumeric() || c == '_');
         if !fits || name.len() > LONGEST {
-            return Err(format!(
+            return refused(format!(
                 "the name {name:?} of a variable must begin with a letter and contain only letters, digits and _, at \
                  most {LONGEST} bytes: columns and files of the results are named by it"
             ));
         }
         if TAKEN.iter().any(|taken| taken.eq_ignore_ascii_case(name)) {
-            return Err(format!("a variable cannot be named `{name}`: the results already use that name; rename it"));
+            return refused(format!(
+                "a variable cannot be named `{name}`: the results already use that name; rename it"
+            ));
         }
         let always =
             ALWAYS.iter().map(|(always, _)| always).find(|always| *always != name && always.eq_ignore_ascii_case(name));
         if let Some(other) = always.or_else(|| names[..k].iter().find(|other| other.eq_ignore_ascii_case(name))) {
-            return Err(format!("the names `{other}` and `{name}` differ at most in capitals: rename one"));
+            return refused(format!("the names `{other}` and `{name}` differ at most in capitals: rename one"));
         }
     }
     Ok(())

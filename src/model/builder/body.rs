@@ -8,18 +8,18 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size};
+use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size, refuse_if};
 use super::friction::{check_profile, defined};
 use super::groups;
-use super::groups::{group, kind};
+use super::groups::{TIMES, group, kind, some_of};
 use super::load_step::LoadStep;
-use super::section;
 use crate::laws::bulk::{Imposed, Material, MaterialParameters, Undrained};
+use crate::mesh::section::Section;
 use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{Formulation, SolidElement, consistent_mass};
 use crate::model::imposed::{InitialStress, PoreFluid, Temperature, Thermal};
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 use crate::model::{Body, Damping, Model, PointMass};
 
 /// A body.
@@ -93,7 +93,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             Some(fluid) => undrained(material, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?,
             None => material,
         };
-        let material = section::material(material, *element == Formulation::FBar, mesh.section, &place)?;
+        let material = in_section(material, *element == Formulation::FBar, mesh.section, &place)?;
         check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.description().p_wave_modulus)?;
         check_damping(*damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
@@ -131,10 +131,8 @@ pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> 
     let Damping { mass, retardation } = damping;
     check_not_negative(&format!("{place}.mass"), mass)?;
     check_not_negative(&format!("{place}.stiffness"), retardation)?;
-    if mass > 0.0 && material.description().density == 0.0 {
-        let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
-        return Err(ModelError::new(format!("{place}.mass"), message));
-    }
+    let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
+    refuse_if(mass > 0.0 && material.description().density == 0.0, format!("{place}.mass"), message)?;
     Ok(())
 }
 
@@ -166,12 +164,6 @@ pub fn point_masses(given: &[(String, PointMassInput)], mesh: &Mesh) -> Checked<
 /// Tolerance by which a body may extend above the ground surface, relative to its depth: positions are rounded.
 const ROUNDED: f64 = 1e-9;
 
-/// Number of evenly spaced times in a step at which a temperature is checked.
-const TIMES: u32 = 100;
-
-/// Maximum number of nodes of a body at which it is checked.
-const PLACES: usize = 50;
-
 /// Returns the law with the moduli that it has under the mean pressure of the initial stress of its body, over the nodes.
 fn at_initial_pressure(
     law: Arc<dyn Material>,
@@ -196,22 +188,13 @@ fn undrained(
     mesh: &Mesh,
     place: &str,
 ) -> Checked<Arc<dyn Material>> {
-    let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}{key}"), message));
     let PoreFluid { bulk_modulus, porosity, pressure, cavitation } = fluid;
     check_positive(&format!("{place}.bulk_modulus"), *bulk_modulus, " (2.2e9 Pa of water)")?;
-    if !(*porosity > 0.0 && *porosity < 1.0) {
-        return refused(
-            ".porosity",
-            format!("is {porosity}: it must be above 0 and below 1, e/(1 + e) of a void ratio e"),
-        );
-    }
+    let message = format!("is {porosity}: it must be above 0 and below 1, e/(1 + e) of a void ratio e");
+    refuse_if(!(*porosity > 0.0 && *porosity < 1.0), format!("{place}.porosity"), message)?;
     check_size(place, "the stiffness bulk_modulus/porosity", fluid.modulus())?;
-    if mesh.section.is_plate() {
-        return refused(
-            "",
-            "is not for plane stress: a fluid leaves a plate through its faces; take plane strain".into(),
-        );
-    }
+    let message = "is not for plane stress: a fluid leaves a plate through its faces; take plane strain";
+    refuse_if(mesh.section.is_plate(), place, message)?;
     check_profile(pressure, &format!("{place}.pressure"))?;
     if let Some(least) = cavitation {
         check_finite(&format!("{place}.cavitation"), [*least])?;
@@ -220,22 +203,38 @@ fn undrained(
         let (at, place) = (mesh.nodes[node], format!("{place}.pressure"));
         let value = defined(pressure, at, &place)?;
         if cavitation.is_some_and(|least| value < least) {
-            let message = format!(
-                "is {value} at ({}, {}), below cavitation: raise one or lower the other",
-                number(at.x),
-                number(at.y)
-            );
+            let message = format!("is {value} at {}, below cavitation: raise one or lower the other", vector(at));
             return Err(ModelError::new(place, message));
         }
     }
-    if law.description().is_linear && cavitation.is_some() {
-        return refused(".cavitation", "is not for the material linear: take hencky, or leave it out".into());
-    }
-    match Undrained::new(law, fluid.modulus(), *cavitation) {
-        Some(law) => Ok(Arc::new(law)),
-        None => refused("", "needs a law with an out-of-plane stretch: take another material, or leave it out".into()),
+    let message = "is not for the material linear: take hencky, or leave it out";
+    refuse_if(law.description().is_linear && cavitation.is_some(), format!("{place}.cavitation"), message)?;
+    let undrained = Undrained::new(law, fluid.modulus(), *cavitation);
+    Ok(Arc::new(undrained.ok_or_else(|| ModelError::new(place, NEEDS_STRETCH))?))
+}
+
+/// Returns the law of a body in a section.
+fn in_section(given: Arc<dyn Material>, f_bar: bool, section: Section, place: &str) -> Checked<Arc<dyn Material>> {
+    let refused = |key: &str, message: &str| Err(ModelError::new(format!("{place}.{key}"), message));
+    match section {
+        Section::PlaneStress { .. } if f_bar => refused(
+            "element",
+            "f_bar is not needed in plane stress, where the thickness is free to change and elements do not lock for \
+             nu near 1/2: leave it out",
+        ),
+        Section::PlaneStress { .. } => match given.plane_stress() {
+            Some(law) => Ok(law.into()),
+            None => refused("material", "does not support plane stress: take another law, or plane strain"),
+        },
+        Section::Axisymmetric if given.spatial().is_none() => {
+            refused("material", "does not support the hoop stretch of axisymmetric bodies: take another law")
+        }
+        Section::Axisymmetric | Section::PlaneStrain | Section::Graded { .. } => Ok(given),
     }
 }
+
+/// What is added to the deformation of a law must have an out-of-plane part.
+const NEEDS_STRETCH: &str = "needs a law with an out-of-plane stretch: take another material, or leave it out";
 
 /// Returns the law of a body with initial stress and thermal expansion.
 pub fn with_imposed(
@@ -252,19 +251,13 @@ pub fn with_imposed(
     if !stressed && thermal.is_none() {
         return Ok(given);
     }
-    match Imposed::new(given, stressed, thermal.map(|thermal| thermal.expansion)) {
-        Some(imposed) => Ok(Arc::new(imposed)),
-        None => {
-            let key = if stressed { "initial_stress" } else { "thermal" };
-            let message = "needs a law with an out-of-plane stretch: take another material, or leave it out";
-            Err(ModelError::new(format!("{place}.{key}"), message))
-        }
-    }
+    let key = if stressed { "initial_stress" } else { "thermal" };
+    let imposed = Imposed::new(given, stressed, thermal.map(|thermal| thermal.expansion));
+    Ok(Arc::new(imposed.ok_or_else(|| ModelError::new(format!("{place}.{key}"), NEEDS_STRETCH))?))
 }
 
 /// Checks an initial stress: finite throughout the body, ground below its surface, and no out-of-plane stress in plane stress.
 pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place: &str) -> Checked<()> {
-    let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}.{key}"), message));
     match stress {
         InitialStress::Geostatic { surface, weight, k0 } => {
             for (key, value) in [("surface", surface), ("weight", weight), ("K0", k0)] {
@@ -274,24 +267,16 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
             check_positive(&format!("{place}.geostatic.weight"), *weight, along_y)?;
             check_not_negative(&format!("{place}.geostatic.K0"), *k0)?;
             let top = nodes.iter().map(|&node| mesh.nodes[node].y).fold(f64::NEG_INFINITY, f64::max);
-            if top > surface + ROUNDED * mesh.diagonal() {
-                let message = format!(
-                    "is {}, and the body reaches up to y = {}: ground lies below its surface, so give the level of its top or \
-                     above",
-                    number(*surface),
-                    number(top)
-                );
-                return refused("geostatic.surface", message);
-            }
-            Ok(())
+            let [level, reached] = [*surface, top].map(number);
+            let message = format!(
+                "is {level}, and the body reaches up to y = {reached}: ground lies below its surface, so give the level of its \
+                 top or above"
+            );
+            refuse_if(top > surface + ROUNDED * mesh.diagonal(), format!("{place}.geostatic.surface"), message)
         }
         InitialStress::Components { xx, yy, xy, zz } => {
-            if zz.is_none() && !mesh.section.is_plate() {
-                return refused(
-                    "components.zz",
-                    "is missing: give the out-of-plane stress as well, 0 if there is none".into(),
-                );
-            }
+            let message = "is missing: give the out-of-plane stress as well, 0 if there is none";
+            refuse_if(zz.is_none() && !mesh.section.is_plate(), format!("{place}.components.zz"), message)?;
             let given = [("xx", xx), ("yy", yy), ("xy", xy)].into_iter().chain(zz.as_ref().map(|zz| ("zz", zz)));
             for (key, profile) in given {
                 let place = format!("{place}.components.{key}");
@@ -328,9 +313,9 @@ pub fn check_stiffness(
     else {
         return Ok(());
     };
-    let [largest, shear, x, y] = [largest, shear, mesh.nodes[node].x, mesh.nodes[node].y].map(number);
+    let ([largest, shear], at) = ([largest, shear].map(number), vector(mesh.nodes[node]));
     let message = format!(
-        "reaches {largest} at ({x}, {y}), and the shear modulus is {shear}: too much for a body at rest; check the \
+        "reaches {largest} at {at}, and the shear modulus is {shear}: too much for a body at rest; check the \
          units, or take material linear, which superposes stresses without limit"
     );
     Err(ModelError::new(place, message))
@@ -364,17 +349,16 @@ pub fn temperatures(
 
 /// Checks that a temperature is finite throughout the step and does not shrink the body to zero size.
 fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: &str, model: &Model) -> Checked<()> {
-    let (nodes, Span { start, end }) = (&model.bodies[body].nodes, amplitude.span);
-    let step = nodes.len().div_ceil(PLACES).max(1);
-    for at in nodes.iter().step_by(step).map(|&node| model.mesh.nodes[node]) {
-        for time in (1..=TIMES).map(|k| start + f64::from(k) / f64::from(TIMES) * (end - start)) {
+    let places = model.bodies[body].nodes.iter().map(|&node| model.mesh.nodes[node]).collect();
+    for at in some_of(places) {
+        for time in amplitude.span.times(TIMES).skip(1) {
             let value = amplitude.value(at, time);
             let stretch = 1.0 + thermal.expansion * (value - thermal.reference);
             if !value.is_finite() || stretch <= 0.0 {
-                let [value, time, x, y] = [value, time, at.x, at.y].map(number);
+                let ([value, time], at) = ([value, time].map(number), vector(at));
                 let cause = if stretch <= 0.0 { ", at which the body has no volume left" } else { "" };
                 let message =
-                    format!("is {value} at t = {time}, (x, y) = ({x}, {y}){cause}: check temperature and expansion");
+                    format!("is {value} at t = {time}, (x, y) = {at}{cause}: check temperature and expansion");
                 return Err(ModelError::new(place, message));
             }
         }
@@ -383,6 +367,6 @@ fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: 
 }
 
 /// Prescribed temperatures of bodies.
-pub fn in_force(temperatures: &BTreeMap<usize, Amplitude>) -> Vec<Temperature> {
+pub fn prescribed_temperatures(temperatures: &BTreeMap<usize, Amplitude>) -> Vec<Temperature> {
     temperatures.iter().map(|(&body, amplitude)| Temperature { body, amplitude: amplitude.clone() }).collect()
 }

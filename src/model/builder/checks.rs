@@ -5,12 +5,14 @@
 use std::collections::BTreeSet;
 
 use super::contact::Contact;
-use super::error::{Checked, ModelError, check_positive};
-use super::schedule::MOST_INCREMENTS;
+use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
+use super::supports::axis;
 use crate::contact::pair::ContactPair;
+use crate::mesh::Mesh;
+use crate::mesh::section::Section;
 use crate::model::boundary::{Amplitude, Drive, Span};
-use crate::model::scheme::Scheme;
 use crate::model::support::{Inclined, Motion, Prescribed};
+use crate::model::text::number;
 use crate::model::{Model, NewtonSettings, Step};
 
 /// Maximum accepted limit of Newton iterations.
@@ -21,64 +23,42 @@ const LOOSEST: f64 = 1e-2;
 
 /// Checks the stopping criteria of Newton's method.
 pub fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
-    if !(newton.tolerance > 0.0 && newton.tolerance <= LOOSEST) {
-        let message = format!(
-            "is {}: must be above 0 and at most {LOOSEST}, the fraction of the forces that may be out of balance (1e-8 \
-             is the default)",
-            newton.tolerance
-        );
-        return Err(ModelError::new("newton.tolerance", message));
-    }
-    if !(1..=MOST_ITERATIONS).contains(&newton.max_iterations) {
-        let message = format!("is {}: must be 1 to {MOST_ITERATIONS}", newton.max_iterations);
-        return Err(ModelError::new("newton.max_iterations", message));
-    }
+    let message = format!(
+        "is {}: must be above 0 and at most {LOOSEST}, the fraction of the forces that may be out of balance (1e-8 \
+         is the default)",
+        newton.tolerance
+    );
+    refuse_if(!(newton.tolerance > 0.0 && newton.tolerance <= LOOSEST), "newton.tolerance", message)?;
+    let message = format!("is {}: must be 1 to {MOST_ITERATIONS}", newton.max_iterations);
+    refuse_if(!(1..=MOST_ITERATIONS).contains(&newton.max_iterations), "newton.max_iterations", message)?;
     Ok(newton)
 }
 
-/// Checks the interval of the results of explicit steps.
-pub fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
-    let otherwise = " (leave it out for a hundredth of each explicit step)";
-    check_positive("output.interval", interval.unwrap_or(1.0), otherwise).map(|()| interval)
-}
-
-/// Checks the number of result rows of explicit steps, one per interval.
-pub fn check_rows(model: &Model) -> Checked<()> {
-    let Some(interval) = model.requests.interval else { return Ok(()) };
-    let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
-    let time: f64 = model.steps.iter().filter(explicit).map(|step| step.span.end - step.span.start).sum();
-    let rows = time / interval;
-    match rows <= MOST_INCREMENTS {
-        true => Ok(()),
-        false => {
+/// Checks that a thickness is positive and axisymmetric bodies do not cross the axis.
+pub fn check_section(mesh: &Mesh) -> Checked<()> {
+    match mesh.section {
+        Section::PlaneStress { thickness } => {
+            check_positive("section.plane_stress.thickness", thickness, "")?;
+            check_size("section.plane_stress", "thickness", thickness)
+        }
+        Section::Axisymmetric => {
+            let inside = axis(mesh).map_or(0.0, |near| -near);
+            let Some(node) = (0..mesh.nodes.len()).find(|&node| mesh.nodes[node].x < inside) else { return Ok(()) };
+            let (tag, at) = (mesh.node_tags[node], mesh.nodes[node]);
             let message = format!(
-                "is {interval:e}: that makes {rows:.1e} rows of results, at most {MOST_INCREMENTS:e} are allowed"
+                "is axisymmetric about x = 0, and node {tag} lies at x = {}: x is the radius, so move the mesh to x >= 0 and \
+                 model one side of the axis",
+                number(at.x)
             );
-            Err(ModelError::new("output.interval", message))
+            Err(ModelError::new("section", message))
         }
+        Section::PlaneStrain | Section::Graded { .. } => Ok(()),
     }
-}
-
-/// Checks the output times of fields: within the steps, ascending.
-pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
-    let (start, end) =
-        steps.first().zip(steps.last()).map_or((0.0, 0.0), |(first, last)| (first.span.start, last.span.end));
-    for (k, time) in times.iter().enumerate() {
-        let refused = |message: String| Err(ModelError::new(format!("output.times[{k}]"), message));
-        if !(*time > start && *time <= end) {
-            return refused(format!("is {time}: must be after {start} and not after {end}, the end of the last step"));
-        }
-        if k > 0 && *time <= times[k - 1] {
-            return refused(format!("is {time}, but {} comes before it: times must increase", times[k - 1]));
-        }
-    }
-    Ok(times)
 }
 
 /// Checks combinations of schemes and contact: explicit steps solve no equations, and can neither augment pressures nor
 /// determine the position of massless nodes. In Wilson-θ, equilibrium and its multipliers lie beyond the increment.
 pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
-    let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
     let augmented = model.contacts.iter().find_map(|pair| match (pair.penetration, pair.stick) {
         (Some(_), _) => Some((&pair.name, "normal.penetration", "alpha_n")),
         (None, Some(_)) => Some((&pair.name, "stick", "alpha_t")),
@@ -94,7 +74,7 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
         );
         return refused(name, key, message);
     }
-    let Some(Step { name: step, .. }) = model.steps.iter().find(explicit) else { return Ok(()) };
+    let Some(Step { name: step, .. }) = model.steps.iter().find(|step| step.may_be_explicit()) else { return Ok(()) };
     if let Some(contact) = contacts.iter().find(|contact| contact.massless) {
         let message = format!("the explicit step `{step}` needs the mass of every node: leave it out");
         return refused(&contact.name, "massless", message);
@@ -111,17 +91,15 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
 /// rate by traction, and time functions that are linear within a step.
 pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
     let steps = model.steps.iter().enumerate();
-    for (k, step) in steps.filter(|(_, step)| matches!(step.scheme, Scheme::QuasiDynamic { .. })) {
+    for (k, step) in steps.filter(|(_, step)| step.scheme.is_quasi_dynamic()) {
         let place = format!("steps[{k}]");
-        let of_scheme = |message: String| Err(ModelError::new(format!("{place}.scheme"), message));
-        if model.contacts.is_empty() {
-            return of_scheme("quasi_dynamic integrates the slip of contacts, and there is none".into());
-        }
+        let scheme = format!("{place}.scheme");
+        let message = "quasi_dynamic integrates the slip of contacts, and there is none";
+        refuse_if(model.contacts.is_empty(), &scheme, message)?;
         if let Some(body) = model.bodies.iter().find(|body| !body.material.description().is_linear) {
-            return of_scheme(format!(
-                "quasi_dynamic takes linear bodies, and `{}` is not: take material linear",
-                body.name
-            ));
+            let message =
+                format!("quasi_dynamic takes linear bodies, and `{}` is not: take material linear", body.name);
+            return Err(ModelError::new(scheme, message));
         }
         if let Some(body) = model.bodies.iter().find(|body| body.is_imposed()) {
             let key = match (&body.initial_stress, &body.pore_fluid) {
@@ -133,9 +111,8 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
                            balanced), on top of whose stress the run counts";
             return Err(ModelError::new(format!("bodies.{}.{key}", body.name), message));
         }
-        if !(model.plates.is_empty() && model.linkage.is_empty()) {
-            return Err(ModelError::new("plates", "are not for quasi_dynamic steps: drive the side by supports"));
-        }
+        let message = "are not for quasi_dynamic steps: drive the side by supports";
+        refuse_if(!(model.plates.is_empty() && model.linkage.is_empty()), "plates", message)?;
         if let Some(body) = model.mesh.rigid_bodies.first() {
             let message = "is not for quasi_dynamic steps: leave it out, and move the body by supports";
             return Err(ModelError::new(format!("rigid_bodies.{}", body.name), message));
@@ -149,34 +126,22 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
 }
 
 fn check_contact(pair: &ContactPair) -> Checked<()> {
-    let refused =
-        |key: &str, message: &str| Err(ModelError::new(format!("contacts.{}{key}", pair.name), message.to_string()));
-    if pair.small.is_none() {
-        return refused(".sliding", "is finite, and quasi_dynamic steps need small");
-    }
-    if pair.radiation == 0.0 {
-        return refused(".radiation_damping", "is missing: without it slip in quasi_dynamic steps has no bound");
-    }
-    if pair.penetration.is_some() {
-        return refused(".normal.penetration", "is not for quasi_dynamic steps: leave it out, and raise alpha_n");
-    }
-    if pair.fluid.is_some() {
-        return refused(
-            ".fluid_pressure",
-            "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with \
-             radiation_damping",
-        );
-    }
-    if let Some(name) = pair.laws.iter().find_map(|law| law.description.opening.first()) {
-        let key = if *name == "wear" { ".wear" } else { ".dilatancy" };
-        return refused(key, "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out");
-    }
-    if pair.laws.iter().any(|law| law.law.rates().is_none()) {
-        let message = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take \
-                       rate_and_state or prescribed, or static steps with radiation_damping and dt.error";
-        return refused(".friction", message);
-    }
-    Ok(())
+    let refuse_if = |fails: bool, key: &str, why: &str| refuse_if(fails, format!("contacts.{}.{key}", pair.name), why);
+    refuse_if(pair.small.is_none(), "sliding", "is finite, and quasi_dynamic steps need small")?;
+    let why = "is missing: without it slip in quasi_dynamic steps has no bound";
+    refuse_if(pair.radiation == 0.0, "radiation_damping", why)?;
+    let why = "is not for quasi_dynamic steps: leave it out, and raise alpha_n";
+    refuse_if(pair.penetration.is_some(), "normal.penetration", why)?;
+    let why =
+        "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with radiation_damping";
+    refuse_if(pair.fluid.is_some(), "fluid_pressure", why)?;
+    let opening = pair.laws.iter().find_map(|law| law.description.opening.first());
+    let key = if opening == Some(&"wear") { "wear" } else { "dilatancy" };
+    let why = "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out";
+    refuse_if(opening.is_some(), key, why)?;
+    let why = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take rate_and_state or \
+               prescribed, or static steps with radiation_damping and dt.error";
+    refuse_if(pair.laws.iter().any(|law| law.law.rates().is_none()), "friction", why)
 }
 
 /// Checks that every point is a node opposite a node or a rigid body, and that no node is used twice.
@@ -223,28 +188,23 @@ fn check_supports(place: &str, step: &Step, model: &Model) -> Checked<()> {
         .collect();
     for Prescribed { at, motion } in &step.supports {
         let node = at.node();
-        let refused = |message: &str| {
-            let tag = model.mesh.node_tags[node];
-            Err(ModelError::new(format!("{place}.supports"), format!("node {tag}: {message}")))
+        let refuse_if = |fails: bool, why: &str| {
+            refuse_if(fails, format!("{place}.supports"), format_args!("node {}: {why}", model.mesh.node_tags[node]))
         };
-        if at_contacts.contains(&node) {
-            return refused(
-                "in quasi_dynamic steps no node of a contact is supported: let the supports end before it, and friction \
-                 (law prescribed) say how it slips",
-            );
-        }
+        let why = "in quasi_dynamic steps no node of a contact is supported: let the supports end before it, and friction (law \
+                   prescribed) say how it slips";
+        refuse_if(at_contacts.contains(&node), why)?;
+        let turns = matches!(motion, Motion::Rotation { .. });
+        refuse_if(turns, "quasi_dynamic steps have no rotating supports")?;
         let is_even = match motion {
-            Motion::Rotation { .. } => return refused("quasi_dynamic steps have no rotating supports"),
+            Motion::Rotation { .. } => false,
             Motion::Displacement(drive, span) => is_even(drive, *span, step.span),
             Motion::Inclined(parts) => {
                 parts.iter().all(|Inclined { drive, span, .. }| is_even(drive, *span, step.span))
             }
         };
-        if !is_even {
-            return refused(
-                "supports vary linearly within a quasi_dynamic step: give a value or a rate, and one step per kink",
-            );
-        }
+        let why = "supports vary linearly within a quasi_dynamic step: give a value or a rate, and one step per kink";
+        refuse_if(!is_even, why)?;
     }
     Ok(())
 }
@@ -252,24 +212,16 @@ fn check_supports(place: &str, step: &Step, model: &Model) -> Checked<()> {
 /// Checks that loads vary linearly and do not depend on rates or the deformation.
 fn check_loads(place: &str, step: &Step) -> Checked<()> {
     let loads = &step.loads;
-    let refused = |message: &str| Err(ModelError::new(format!("{place}.loads"), message.to_string()));
-    if !(loads.dashpots.is_empty() && loads.absorbers.is_empty()) {
-        return refused("dashpots and absorbing sides are not for quasi_dynamic steps: end them by null");
-    }
-    if !loads.pressures.is_empty() {
-        return refused(
-            "pressures rotate with the surface, and are not for quasi_dynamic steps: take a dead_pressure or a \
-             traction",
-        );
-    }
+    let place = format!("{place}.loads");
+    let why = "dashpots and absorbing sides are not for quasi_dynamic steps: end them by null";
+    refuse_if(!(loads.dashpots.is_empty() && loads.absorbers.is_empty()), &place, why)?;
+    let why =
+        "pressures rotate with the surface, and are not for quasi_dynamic steps: take a dead_pressure or a traction";
+    refuse_if(!loads.pressures.is_empty(), &place, why)?;
     let of_springs = loads.springs.iter().filter_map(|spring| spring.driver.as_ref());
     let mut amplitudes = loads.dead.iter().map(|load| &load.amplitude).chain(of_springs);
-    if amplitudes.any(|Amplitude { drive, span, .. }| !is_even(drive, *span, step.span)) {
-        return refused(
-            "loads vary linearly within a quasi_dynamic step: give a value or a rate, and one step per kink",
-        );
-    }
-    Ok(())
+    let why = "loads vary linearly within a quasi_dynamic step: give a value or a rate, and one step per kink";
+    refuse_if(amplitudes.any(|Amplitude { drive, span, .. }| !is_even(drive, *span, step.span)), place, why)
 }
 
 /// Whether a drive is linear in time within a step.

@@ -4,14 +4,14 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::along::Along;
-use super::error::{Checked, ModelError, check_finite, check_positive};
-use super::friction::{Friction, check_in_time};
+use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
+use super::friction::{Along, Friction, check_in_time};
+use super::groups::TIMES;
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
-use crate::laws::friction::Dilatancy;
+use crate::laws::friction::{Dilatancy, FrictionParameters};
 use crate::model::Model;
-use crate::model::boundary::{Profile, Span};
+use crate::model::boundary::Profile;
 use crate::model::method::Method;
 use crate::model::written::written;
 
@@ -72,6 +72,7 @@ pub struct Contact {
     pub tied: bool,
     /// Friction law; only surfaces that are tied have none
     #[serde(default = "Friction::tie", skip_serializing_if = "Friction::is_tie")]
+    #[schemars(with = "FrictionParameters")]
     pub friction: Friction,
     /// Dilatancy: opening by plastic slip
     pub dilatancy: Option<Dilatancy>,
@@ -253,117 +254,91 @@ impl Contact {
         Self { tied: true, ..Self::new(name, slave, master, Friction::tie()) }
     }
 
-    /// Sets the normal penalty α_n [F/L³].
-    pub fn alpha_n(mut self, alpha_n: f64) -> Self {
-        self.normal.alpha_n = Some(alpha_n);
-        self
-    }
-
-    /// Makes a rigid master move with a rigid body of the model.
-    pub fn rigid_body(self, name: impl Into<String>) -> Self {
-        Self { rigid_body: Some(name.into()), ..self }
-    }
-
-    /// Sets the contact method.
-    pub fn method(self, method: Method) -> Self {
-        Self { method: Some(method), ..self }
-    }
-
-    /// Sets the number of Gauss points per edge.
-    pub fn points(self, points: usize) -> Self {
-        Self { points: Some(points), ..self }
-    }
-
-    /// Smooths the edges of the master to a curve.
-    pub fn smooth(self) -> Self {
-        Self { smooth: true, ..self }
-    }
-
-    /// Makes it a shrink fit: an initial overlap is applied gradually over the first step.
-    pub fn shrink_fit(self) -> Self {
-        Self { shrink_fit: true, ..self }
-    }
-
-    /// Moves the mass of the slave's nodes away from them, for impact without spurious oscillation.
-    pub fn massless(self) -> Self {
-        Self { massless: true, ..self }
-    }
-
-    /// Sets friction parameters that vary along the slave and in time.
-    pub fn along(self, along: Along) -> Self {
-        Self { along, ..self }
-    }
-
-    /// Sets the largest penetration allowed (augmented Lagrangian method) [L].
-    pub fn penetration(mut self, largest: f64) -> Self {
-        self.normal.penetration = Some(largest);
-        self
-    }
-
-    /// With the traction of what sticks adjusted until no elastic slip is larger (augmented Lagrangian) [L].
-    pub fn stick(self, largest: f64) -> Self {
-        Self { stick: Some(largest), ..self }
-    }
-
-    /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length
-    /// ([`crate::contact::small_sliding`]).
-    pub fn small_sliding(self) -> Self {
-        Self { sliding: SlidingRange::Small, ..self }
-    }
-
-    /// Sets dilatancy: opening by plastic slip.
-    pub fn dilatancy(self, dilatancy: Dilatancy) -> Self {
-        Self { dilatancy: Some(dilatancy), ..self }
-    }
-
-    /// Sets wear by k p per plastic slip [L²/F].
-    pub fn wear(self, k: f64) -> Self {
-        Self { wear: Some(k), ..self }
-    }
-
-    /// Sets the radiation damping in static steps.
-    pub fn radiation(self, radiation: Radiation) -> Self {
-        Self { radiation_damping: radiation, ..self }
-    }
-
-    /// Sets the pressure p_w of a fluid, by reference position and time [F/L²].
-    pub fn fluid_pressure(self, pressure: impl Into<Profile>) -> Self {
-        Self { fluid_pressure: Some(pressure.into()), ..self }
-    }
-
-    /// Sets the tributary area of each point of a point group [L].
-    pub fn area(self, area: f64) -> Self {
-        Self { area: Some(area), ..self }
-    }
-
-    /// Starts the contact closed under a pressure and a traction.
-    pub fn initial(self, pressure: impl Into<Profile>, traction: impl Into<Profile>) -> Self {
-        let (pressure, traction) = (Some(pressure.into()), Some(traction.into()));
-        Self { initial: Some(InitialTractions { pressure, traction, ..InitialTractions::default() }), ..self }
-    }
-
-    /// Starts the contact closed under the tractions of the initial stress of the slave's body.
-    pub fn initial_of_bodies(self) -> Self {
-        Self { initial: Some(InitialTractions { of_bodies: true, ..InitialTractions::default() }), ..self }
-    }
-
-    /// Sets the initial structure 1/R*, by reference position.
-    pub fn structure(mut self, structure: impl Into<Profile>) -> Self {
-        self.initial.get_or_insert_default().structure = Some(structure.into());
-        self
-    }
-
-    /// Declares the initial stress of the bodies to be in equilibrium with the initial tractions.
-    pub fn balanced(mut self) -> Self {
-        if let Some(initial) = &mut self.initial {
-            initial.balanced = true;
+    /// The group of a master of mesh edges.
+    pub(super) fn master_group(&self) -> Option<&str> {
+        match &self.master {
+            MasterSide::Group(group) => Some(group),
+            _ => None,
         }
-        self
     }
 
     /// Whether the slave is its own master (self-contact).
     pub(super) fn is_own(&self) -> bool {
-        matches!(&self.master, MasterSide::Group(group) if *group == self.slave)
+        self.master_group() == Some(&self.slave)
+    }
+}
+
+setters! { contact: Contact;
+    /// Sets the normal penalty α_n [F/L³].
+    alpha_n(alpha_n: f64) { contact.normal.alpha_n = Some(alpha_n); }
+
+    /// Makes a rigid master move with a rigid body of the model.
+    rigid_body(name: impl Into<String>) { contact.rigid_body = Some(name.into()); }
+
+    /// Sets the contact method.
+    method(method: Method) { contact.method = Some(method); }
+
+    /// Sets the number of Gauss points per edge.
+    points(points: usize) { contact.points = Some(points); }
+
+    /// Smooths the edges of the master to a curve.
+    smooth() { contact.smooth = true; }
+
+    /// Makes it a shrink fit: an initial overlap is applied gradually over the first step.
+    shrink_fit() { contact.shrink_fit = true; }
+
+    /// Moves the mass of the slave's nodes away from them, for impact without spurious oscillation.
+    massless() { contact.massless = true; }
+
+    /// Sets friction parameters that vary along the slave and in time.
+    along(along: Along) { contact.along = along; }
+
+    /// Sets the largest penetration allowed (augmented Lagrangian method) [L].
+    penetration(largest: f64) { contact.normal.penetration = Some(largest); }
+
+    /// With the traction of what sticks adjusted until no elastic slip is larger (augmented Lagrangian) [L].
+    stick(largest: f64) { contact.stick = Some(largest); }
+
+    /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length
+    /// ([`crate::contact::small_sliding`]).
+    small_sliding() { contact.sliding = SlidingRange::Small; }
+
+    /// Sets dilatancy: opening by plastic slip.
+    dilatancy(dilatancy: Dilatancy) { contact.dilatancy = Some(dilatancy); }
+
+    /// Sets wear by k p per plastic slip [L²/F].
+    wear(k: f64) { contact.wear = Some(k); }
+
+    /// Sets the radiation damping in static steps.
+    radiation(radiation: Radiation) { contact.radiation_damping = radiation; }
+
+    /// Sets the pressure p_w of a fluid, by reference position and time [F/L²].
+    fluid_pressure(pressure: impl Into<Profile>) { contact.fluid_pressure = Some(pressure.into()); }
+
+    /// Sets the tributary area of each point of a point group [L].
+    area(area: f64) { contact.area = Some(area); }
+
+    /// Starts the contact closed under a pressure and a traction.
+    initial(pressure: impl Into<Profile>, traction: impl Into<Profile>) {
+        let (pressure, traction) = (Some(pressure.into()), Some(traction.into()));
+        contact.initial = Some(InitialTractions { pressure, traction, ..InitialTractions::default() });
+    }
+
+    /// Starts the contact closed under the tractions of the initial stress of the slave's body.
+    initial_of_bodies() {
+        contact.initial = Some(InitialTractions { of_bodies: true, ..InitialTractions::default() });
+    }
+
+    /// Sets the initial structure 1/R*, by reference position.
+    structure(structure: impl Into<Profile>) {
+        contact.initial.get_or_insert_default().structure = Some(structure.into());
+    }
+
+    /// Declares the initial stress of the bodies to be in equilibrium with the initial tractions.
+    balanced() {
+        if let Some(initial) = &mut contact.initial {
+            initial.balanced = true;
+        }
     }
 }
 
@@ -386,8 +361,7 @@ pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model, time: f64) ->
     Err(ModelError::new(format!("{place}.fluid_pressure"), message))
 }
 
-/// Maximum number of times per step at which a fluid pressure is checked before the run, and of all values.
-const LOOKS: usize = 100;
+/// Maximum number of values of fluid pressures that are checked before the run.
 const VALUES: usize = 2_000_000;
 
 /// Checks fluid pressures at evenly spaced times of the steps, as long as their times are certain; times in between are checked
@@ -397,15 +371,13 @@ pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> 
         if !contact.fluid_pressure.as_ref().is_some_and(Profile::depends_on_time) {
             continue;
         }
-        let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, LOOKS);
+        let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, TIMES as usize) as u32;
         for step in &model.steps {
             // Such a step may end immediately, and the times of all later steps are unknown.
             if step.until.is_some() {
                 break;
             }
-            let Span { start, end } = step.span;
-            for look in 1..=looks {
-                let time = if look == looks { end } else { start + (end - start) * look as f64 / looks as f64 };
+            for time in step.span.times(looks).skip(1) {
                 check_fluid(pair, &format!("contacts.{}", contact.name), model, time)?;
             }
         }
@@ -426,9 +398,7 @@ pub fn shape(side: &MasterSide, place: &str) -> Checked<Shape> {
         MasterSide::Polyline { points } => {
             let place = format!("{place}.polyline.points");
             check_finite(&place, points.iter().flatten().copied())?;
-            if points.len() < 2 {
-                return Err(ModelError::new(place, format!("has {} points: must have two or more", points.len())));
-            }
+            refuse_if(points.len() < 2, &place, format_args!("has {} points: must have two or more", points.len()))?;
             if let Some(k) = points.windows(2).position(|pair| pair[0] == pair[1]) {
                 let message = format!("points {} and {} are the same: leave one out", k, k + 1);
                 return Err(ModelError::new(place, message));
@@ -446,4 +416,44 @@ fn plane(point: [f64; 2], normal: [f64; 2], place: &str) -> Checked<Shape> {
         return Err(ModelError::new(format!("{place}.plane.normal"), message));
     };
     Ok(Shape::Plane(Plane { point: Vector2::from(point), normal }))
+}
+
+/// A tie holds by itself, whatever the pressure: it takes no friction, and any other contact needs one.
+pub fn check_has_friction(contact: &Contact, place: &str) -> Checked<()> {
+    let message = match (contact.tied, contact.friction.is_tie()) {
+        (true, false) => "is for surfaces that slide, and these are tied: leave it out",
+        (false, true) => "is missing: give the law, such as {\"law\": \"coulomb\", \"mu\": 0.3}, or \"tied\": true",
+        _ => return Ok(()),
+    };
+    Err(ModelError::new(format!("{place}.friction"), message))
+}
+
+/// Some point must face the master.
+pub fn check_ties(pair: &ContactPair, place: &str) -> Checked<()> {
+    let faces = pair.small.iter().flat_map(|small| &small.points).any(Option::is_some);
+    let message = "ties nothing: no point of the slave has a projection on the master; check the groups named and their positions";
+    refuse_if(!faces, format!("{place}.tied"), message)
+}
+
+/// Surfaces of two bodies can be tied, and what moves or presses them otherwise is refused.
+pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
+    let fails = contact.master_group().is_none() || contact.is_own();
+    let message = "is no other group of edges, to which a surface can be tied: constrain it by supports instead";
+    refuse_if(fails, format!("{place}.master"), message)?;
+    let beside = [
+        ("area", contact.area.is_some()),
+        ("smooth", contact.smooth),
+        ("normal.penetration", contact.normal.penetration.is_some()),
+        ("stick", contact.stick.is_some()),
+        ("shrink_fit", contact.shrink_fit),
+        ("massless", contact.massless),
+        ("dilatancy", contact.dilatancy.is_some()),
+        ("wear", contact.wear.is_some()),
+        ("radiation_damping", contact.radiation_damping != Radiation::OfBodies(false)),
+        ("fluid_pressure", contact.fluid_pressure.is_some()),
+        ("along", !contact.along.is_empty()),
+        ("initial", contact.initial.is_some()),
+    ];
+    let message = "has no meaning for surfaces that are tied: leave it out";
+    beside.into_iter().try_for_each(|(key, given)| refuse_if(given, format!("{place}.{key}"), message))
 }

@@ -33,6 +33,11 @@ impl ModelError {
     }
 }
 
+/// Refuses the input at a place if it fails a check.
+pub fn refuse_if(fails: bool, place: impl Into<String>, message: impl ToString) -> Checked<()> {
+    if fails { Err(ModelError::new(place, message)) } else { Ok(()) }
+}
+
 /// Parameter of a law; its place is completed by the owner of the law.
 impl From<InvalidParameter> for ModelError {
     fn from(error: InvalidParameter) -> Self {
@@ -45,36 +50,28 @@ const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
 /// Checks that a stiffness, mass or area can be squared.
 pub fn check_size(place: &str, name: &str, value: f64) -> Checked<()> {
-    if STIFFNESSES.contains(&value) {
-        return Ok(());
-    }
     let (low, high) = (STIFFNESSES.start(), STIFFNESSES.end());
     let message = format!("{name} is {value:.6e}: it must lie between {low:e} and {high:e}; choose other units");
-    Err(ModelError::new(place, message))
+    refuse_if(!STIFFNESSES.contains(&value), place, message)
 }
 
 /// Checks that a number is positive; `besides` is added to the message.
 pub fn check_positive(place: &str, value: f64, besides: &str) -> Checked<()> {
-    match value > 0.0 && value.is_finite() {
-        true => Ok(()),
-        false => Err(ModelError::new(place, format!("is {value}: must be positive{besides}"))),
-    }
+    let fails = !(value > 0.0 && value.is_finite());
+    refuse_if(fails, place, format_args!("is {value}: must be positive{besides}"))
 }
 
 /// Checks that a number is zero or positive.
 pub fn check_not_negative(place: &str, value: f64) -> Checked<()> {
-    match value >= 0.0 && value.is_finite() {
-        true => Ok(()),
-        false => Err(ModelError::new(place, format!("is {value}: must be zero or positive"))),
-    }
+    let fails = !(value >= 0.0 && value.is_finite());
+    refuse_if(fails, place, format_args!("is {value}: must be zero or positive"))
 }
 
 /// Checks that numbers are finite.
 pub fn check_finite(place: &str, values: impl IntoIterator<Item = f64>) -> Checked<()> {
-    match values.into_iter().find(|value| !value.is_finite()) {
-        Some(value) => Err(ModelError::new(place, format!("is {value}: must be a finite number"))),
-        None => Ok(()),
-    }
+    let mut values = values.into_iter();
+    values
+        .try_for_each(|value| refuse_if(!value.is_finite(), place, format_args!("is {value}: must be a finite number")))
 }
 
 /// Maximum length of a name [bytes]; combined with a quantity, it is a column of a table and the name of a file.
@@ -113,35 +110,24 @@ impl Builder {
 
 /// Checks that a name can be used in a CSV file.
 pub fn check_name(place: &str, name: &str) -> Checked<()> {
-    if name.trim().is_empty() {
-        return Err(ModelError::new(place, format!("the name {name:?} is empty: results are found by it")));
-    }
-    if name.len() > LONGEST {
-        let start: String = name.chars().take(SHOWN).collect();
-        let message = format!(
-            "the name {start:?}… is {} bytes long: results are filed under it; take at most {LONGEST} (letters beyond ASCII \
-             count for 2 to 4)",
-            name.len()
-        );
-        return Err(ModelError::new(place, message));
-    }
-    match name.chars().find(|c| is_unwritable(*c) || BREAKING.contains(c)) {
-        Some(character) => Err(ModelError::new(
-            place,
-            format!("the name {name:?} has {character:?} in it, which would break the rows of history.csv: rename it"),
-        )),
-        None => Ok(()),
-    }
+    refuse_if(name.trim().is_empty(), place, format_args!("the name {name:?} is empty: results are found by it"))?;
+    let start: String = name.chars().take(SHOWN).collect();
+    let message = format!(
+        "the name {start:?}… is {} bytes long: results are filed under it; take at most {LONGEST} (letters beyond ASCII \
+         count for 2 to 4)",
+        name.len()
+    );
+    refuse_if(name.len() > LONGEST, place, message)?;
+    let message =
+        |c| format!("the name {name:?} has {c:?} in it, which would break the rows of history.csv: rename it");
+    let breaking = name.chars().find(|c| is_unwritable(*c) || BREAKING.contains(c));
+    breaking.map_or(Ok(()), |c| Err(ModelError::new(place, message(c))))
 }
 
 /// Checks that a title or unit label is one line of text, as used in figures, pages and stores.
 pub fn check_line(place: &str, text: &str) -> Checked<()> {
-    match text.chars().find(|c| is_unwritable(*c)) {
-        Some(character) => {
-            Err(ModelError::new(place, format!("{text:?} has {character:?} in it: give a line of text, without it")))
-        }
-        None => Ok(()),
-    }
+    let message = |c| format!("{text:?} has {c:?} in it: give a line of text, without it");
+    text.chars().find(|c| is_unwritable(*c)).map_or(Ok(()), |c| Err(ModelError::new(place, message(c))))
 }
 
 /// Error for an unknown body.
@@ -153,8 +139,6 @@ pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str
 /// Checks that no item of one kind is given twice.
 pub fn check_once<'n>(of: &str, mut names: impl Iterator<Item = &'n String>) -> Checked<()> {
     let mut seen = BTreeSet::new();
-    match names.find(|name| !seen.insert(*name)) {
-        Some(name) => Err(ModelError::new(format!("{of}.{name}"), "is given twice: keep one, or rename one")),
-        None => Ok(()),
-    }
+    let message = "is given twice: keep one, or rename one";
+    names.try_for_each(|name| refuse_if(!seen.insert(name), format!("{of}.{name}"), message))
 }

@@ -1,14 +1,17 @@
-//! Input of friction, independent of the contact: uniform, or varying along the slave.
-//!
-//! Parameters may vary in time: patches that weaken and recover, onset of creep.
+//! Friction of a contact: a law, or parameters of laws, some of which vary along the slave and in time (patches that weaken and
+//! recover, onset of creep).
 
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
 use nalgebra::Vector2;
+use schemars::JsonSchema;
+use serde::de::{MapAccess, Visitor};
+use serde::ser::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::error::{Checked, ModelError};
+use super::error::{Checked, ModelError, refuse_if};
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
@@ -16,25 +19,48 @@ use crate::laws::friction::{
     PrescribedSlipParameters, RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, Tie,
     observables,
 };
-use crate::laws::parameter::InvalidParameter;
+use crate::laws::parameter::{InvalidParameter, UnknownParameter};
 use crate::mesh::Mesh;
+use crate::mesh::names::not_known;
 use crate::mesh::shape::gauss;
-use crate::model::boundary::Profile;
+use crate::model::boundary::{Profile, check_table};
 
 /// Friction of a contact: a law, or parameters of one, with α_t = α_n/2 by default.
-#[derive(Clone)]
+#[derive(Clone, Deserialize)]
+#[serde(from = "FrictionParameters")]
 #[must_use]
 pub struct Friction {
     /// Parameters as in a case; `None` for a law from code
     parameters: Option<FrictionParameters>,
     /// Name within the contact, for messages
     name: String,
-    varying: Vec<(String, Profile)>,
+    varying: Vec<Named>,
     law: Arc<LawAt>,
     /// Whether no law was given: the surfaces are tied
     tie: bool,
-    /// Other friction where a profile is positive, the first one that applies, with its name in messages
-    elsewhere: Vec<(String, Profile, Self)>,
+    /// Regions with other friction, of which the first one that applies is used
+    elsewhere: Vec<Region>,
+}
+
+/// A profile with its name within the contact, for messages.
+#[derive(Clone)]
+struct Named {
+    name: String,
+    profile: Profile,
+}
+
+impl Named {
+    /// Returns the value at a reference position, which must be finite; `contact` is its place.
+    fn value(&self, at: Vector2<f64>, contact: &str) -> Checked<f64> {
+        defined(&self.profile, at, &format!("{contact}.{}", self.name))
+    }
+}
+
+/// Friction where a profile is positive.
+#[derive(Clone)]
+struct Region {
+    positive: Named,
+    friction: Friction,
 }
 
 impl Friction {
@@ -50,13 +76,13 @@ impl Friction {
     /// let friction = Friction::varying([("along.mu", mu)], |values, alpha_t| {
     ///     Ok(Box::new(Coulomb::new(&CoulombParameters::new(values[0]), alpha_t)?))
     /// });
-    /// # Ok::<(), String>(())
+    /// # Ok::<(), fecontact::model::boundary::InvalidExpression>(())
     /// ```
     pub fn varying<N: Into<String>>(
         profiles: impl IntoIterator<Item = (N, Profile)>,
         law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync + 'static,
     ) -> Self {
-        let varying = profiles.into_iter().map(|(name, profile)| (name.into(), profile)).collect();
+        let varying = profiles.into_iter().map(|(name, profile)| Named { name: name.into(), profile }).collect();
         Self {
             parameters: None,
             name: "friction".into(),
@@ -87,7 +113,7 @@ impl Friction {
     /// name profile and friction by `name`, such as `along.law[0]`.
     pub fn in_region(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
         let friction = Self { name: format!("{name}.friction"), ..friction.into() };
-        self.elsewhere.push((format!("{name}.where"), profile, friction));
+        self.elsewhere.push(Region { positive: Named { name: format!("{name}.where"), profile }, friction });
         self
     }
 
@@ -101,11 +127,11 @@ impl Friction {
         default_alpha_t: Option<f64>,
         offsets: Offsets,
     ) -> Checked<(Vec<Arc<ContactLaw>>, Option<LawsInTime>)> {
-        for (name, profile, _) in &self.elsewhere {
+        for Region { positive: Named { name, profile }, .. } in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
         }
-        let all = || std::iter::once(self).chain(self.elsewhere.iter().map(|(.., friction)| friction));
-        for (name, profile) in all().flat_map(|friction| &friction.varying) {
+        let all = || std::iter::once(self).chain(self.elsewhere.iter().map(|region| &region.friction));
+        for Named { name, profile } in all().flat_map(|friction| &friction.varying) {
             check_in_time(profile, &format!("{place}.{name}"))?;
         }
         let (mut laws, mut varying) = (Vec::new(), Vec::new());
@@ -113,14 +139,14 @@ impl Friction {
         for point in points {
             let at = position(point, mesh);
             let mut chosen = (0, self);
-            for (k, (name, profile, friction)) in self.elsewhere.iter().enumerate().rev() {
-                if defined(profile, at, &format!("{place}.{name}"))? > 0.0 {
+            for (k, Region { positive, friction }) in self.elsewhere.iter().enumerate().rev() {
+                if positive.value(at, place)? > 0.0 {
                     chosen = (k + 1, friction);
                 }
             }
             let (number, friction) = chosen;
-            let value = |(name, profile): &(String, Profile)| defined(profile, at, &format!("{place}.{name}"));
-            let values = friction.varying.iter().map(value).collect::<Checked<Vec<_>>>()?;
+            let values = friction.varying.iter().map(|named| named.value(at, place));
+            let values = values.collect::<Checked<Vec<_>>>()?;
             // If a parameter varies in place and time, only points at the same place share a law.
             let place_of = [at.x, at.y].into_iter().filter(|_| friction.varies_in_place_and_time());
             let key = (number, values.iter().copied().chain(place_of).map(f64::to_bits).collect());
@@ -130,7 +156,8 @@ impl Friction {
             }
             point.law = laws.len();
             numbers.insert(key, laws.len());
-            let first = friction.varying.first().map(|(name, _)| format!("{place}.{name} at ({}, {})", at.x, at.y));
+            let first = friction.varying.first();
+            let first = first.map(|Named { name, .. }| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let law = friction.law(&values, default_alpha_t, place, first)?;
             let law = ContactLaw::with_offsets(law, offsets).map_err(|InvalidParameter { name, value, allowed }| {
                 ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
@@ -138,7 +165,7 @@ impl Friction {
             varying.push(friction.in_time(at, default_alpha_t, offsets));
             laws.push(Arc::new(law));
         }
-        let varies = all().flat_map(|friction| &friction.varying).any(|(_, profile)| profile.depends_on_time());
+        let varies = all().flat_map(|friction| &friction.varying).any(|named| named.profile.depends_on_time());
         let during = move |law: usize, span| varying[law].during(span);
         let in_time = varies.then(|| LawsInTime::new(laws.len(), during));
         Ok((laws, in_time))
@@ -149,13 +176,13 @@ impl Friction {
             Profile::Expression(expression) => expression.depends_on_time() && expression.depends_on_position(),
             Profile::Constant(_) | Profile::X(_) | Profile::Y(_) => false,
         };
-        self.varying.iter().any(|(_, profile)| of_both(profile))
+        self.varying.iter().any(|named| of_both(&named.profile))
     }
 
     /// Returns the time-dependent law at a place.
     fn in_time(&self, at: Vector2<f64>, alpha_t: Option<f64>, offsets: Offsets) -> InTime {
         InTime {
-            profiles: self.varying.iter().map(|(_, profile)| profile.clone()).collect(),
+            profiles: self.varying.iter().map(|named| named.profile.clone()).collect(),
             at,
             law: self.law.clone(),
             alpha_t: alpha_t.unwrap_or(f64::NAN),
@@ -174,14 +201,10 @@ impl Friction {
         let law = (self.law)(values, default_alpha_t.unwrap_or(f64::NAN));
         let lacks = law.is_err() && default_alpha_t.is_none() && (self.law)(values, 1.0).is_ok();
         let own = format!("{contact}.{}", self.name);
-        if lacks {
-            let message = "is missing: a slave group of points has no default for it";
-            return Err(ModelError::new(format!("{own}.alpha_t"), message));
-        }
+        refuse_if(lacks, format!("{own}.alpha_t"), "is missing: a slave group of points has no default for it")?;
         let place = place.unwrap_or(own);
-        let named = |law: Box<dyn FrictionLaw>| match observables::check_names(&law.description()) {
-            Ok(()) => Ok(law),
-            Err(message) => Err(ModelError::new("", format!("the names of the law: {message}"))),
+        let named = |law: Box<dyn FrictionLaw>| {
+            observables::check_names(&law.description()).map_err(|error| ModelError::new("", error)).map(|()| law)
         };
         law.and_then(named).map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
     }
@@ -245,31 +268,21 @@ pub fn defined(profile: &Profile, at: Vector2<f64>, place: &str) -> Checked<f64>
 
 /// Checks that a profile does not depend on time, and that the coordinates of a table ascend.
 pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
-    if profile.depends_on_time() {
-        return Err(ModelError::new(place, "the time t has no meaning here: the variables are x and y"));
-    }
+    refuse_if(profile.depends_on_time(), place, "the time t has no meaning here: the variables are x and y")?;
     check_in_time(profile, place)
 }
 
 /// Checks that the coordinates of a table ascend, and that a parameter of the initial state does not depend on time.
 pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
     let parameter = place.rsplit('.').next().unwrap_or_default();
-    if profile.depends_on_time() && OF_THE_START.contains(&parameter) {
-        let message = format!("{parameter} is constant in time at each point: the variables are x and y, and not t");
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!("{parameter} is constant in time at each point: the variables are x and y, and not t");
+    refuse_if(profile.depends_on_time() && OF_THE_START.contains(&parameter), place, message)?;
     let (name, table) = match profile {
         Profile::Constant(_) | Profile::Expression(_) => return Ok(()),
         Profile::X(table) => ("x", table),
         Profile::Y(table) => ("y", table),
     };
-    if table.is_empty() {
-        let message = format!("the table is empty: give pairs [{name}, value]");
-        return Err(ModelError::new(format!("{place}.{name}"), message));
-    }
-    let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
-    let message = format!("the coordinates of the table must increase: {} follows {}", pair[1][0], pair[0][0]);
-    Err(ModelError::new(format!("{place}.{name}"), message))
+    check_table(table, name).map_err(|error| ModelError::new(format!("{place}.{name}"), error))
 }
 
 /// Number of quadrature points for the mean of a rate over an increment: exact for polynomials of fifth order.
@@ -314,4 +327,166 @@ impl InTime {
         }
         ContactLaw::with_offsets(law, self.offsets).map_err(|_| LawFailure::Undefined { time })
     }
+}
+
+/// Friction parameters that vary along the slave and in time: expressions may depend on x, y and the run time t.
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
+#[non_exhaustive]
+#[must_use]
+pub struct Along {
+    /// Other laws than `friction` on parts of the slave; where several apply, the first one is used
+    #[schemars(default)]
+    pub law: Vec<LawChoice>,
+    /// Parameters of `friction`, by name: they replace the numbers given there. A rate is averaged over an increment,
+    /// any other parameter takes its value at the end. Those of the start (structure, theta) and alpha_t do not vary in time
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, Profile>,
+}
+
+impl Along {
+    /// Whether nothing varies.
+    pub fn is_empty(&self) -> bool {
+        self.law.is_empty() && self.parameters.is_empty()
+    }
+}
+
+setters! { along: Along;
+    /// Adds a parameter that varies.
+    parameter(name: impl Into<String>, profile: impl Into<Profile>) {
+        along.parameters.insert(name.into(), profile.into());
+    }
+
+    /// Adds another law on a part of the slave.
+    law(law: LawChoice) { along.law.push(law); }
+}
+
+/// A law on a part of the slave.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+#[must_use]
+pub struct LawChoice {
+    /// The law applies where this expression is positive
+    #[serde(rename = "where")]
+    pub place: Profile,
+    /// Friction law
+    pub friction: FrictionParameters,
+    /// Parameters that vary along the slave and in time, by name
+    #[serde(default)]
+    pub along: BTreeMap<String, Profile>,
+}
+
+impl LawChoice {
+    /// Creates the choice of a law where a profile is positive.
+    pub fn new(place: impl Into<Profile>, friction: impl Into<FrictionParameters>) -> Self {
+        Self { place: place.into(), friction: friction.into(), along: BTreeMap::new() }
+    }
+}
+
+setters! { choice: LawChoice;
+    /// Adds a parameter that varies.
+    parameter(name: impl Into<String>, profile: impl Into<Profile>) {
+        choice.along.insert(name.into(), profile.into());
+    }
+}
+
+impl<'de> Deserialize<'de> for Along {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Entries)
+    }
+}
+
+/// Reads entry by entry, so that an error is reported with its place.
+struct Entries;
+
+impl<'de> Visitor<'de> for Entries {
+    type Value = Along;
+
+    fn expecting(&self, formatter: &mut Formatter) -> std::fmt::Result {
+        formatter.write_str("parameters of the friction law by name")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Along, A::Error> {
+        let mut along = Along::default();
+        while let Some(name) = entries.next_key::<String>()? {
+            match name.as_str() {
+                "law" => along.law = entries.next_value()?,
+                _ => drop(along.parameters.insert(name, entries.next_value()?)),
+            }
+        }
+        Ok(along)
+    }
+}
+
+/// Friction is written as the parameters of its law; a law from code cannot be written.
+impl Serialize for Friction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let lacks = || S::Error::custom("a friction law from code cannot be written as a case: give it by parameters");
+        self.parameters().ok_or_else(lacks)?.serialize(serializer)
+    }
+}
+
+/// Returns the laws with their varying parameters replaced, including an initial structure.
+pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, place: &str) -> Checked<Friction> {
+    let Some(parameters) = given.parameters() else {
+        let message = "is a law from code, of which no parameter is known by name: let it vary by Friction::varying";
+        let fails = !along.is_empty() || structure.is_some();
+        return refuse_if(fails, format!("{place}.friction"), message).map(|()| given.clone());
+    };
+    let mut varying = profiles(&along.parameters, "along");
+    if let Some(structure) = structure {
+        let place = format!("{place}.initial.structure");
+        refuse_if(!parameters.has_structure(), &place, "this friction law has no structure: leave it out")?;
+        let message = "is given by `along` already: leave one of them out";
+        refuse_if(along.parameters.contains_key("structure"), place, message)?;
+        let named = Named { name: "initial.structure".into(), profile: structure.clone() };
+        varying.push(Varying { parameter: "structure".into(), named });
+    }
+    let mut friction = with_varying(parameters.clone(), varying, place, "friction")?;
+    for (k, LawChoice { place: positive, friction: law, along }) in along.law.iter().enumerate() {
+        let name = format!("along.law[{k}]");
+        let varying = profiles(along, &format!("{name}.along"));
+        let other = with_varying(law.clone(), varying, place, &format!("{name}.friction"))?;
+        friction = friction.in_region(&name, positive.clone(), other);
+    }
+    Ok(friction)
+}
+
+/// A parameter that varies.
+struct Varying {
+    parameter: String,
+    named: Named,
+}
+
+fn profiles(along: &BTreeMap<String, Profile>, within: &str) -> Vec<Varying> {
+    let varying = |(parameter, profile): (&String, &Profile)| {
+        let named = Named { name: format!("{within}.{parameter}"), profile: profile.clone() };
+        Varying { parameter: parameter.clone(), named }
+    };
+    along.iter().map(varying).collect()
+}
+
+/// Returns a law with varying parameters; its place in the contact is `own`.
+fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &str, own: &str) -> Checked<Friction> {
+    if let Some(message) = parameters.unknown() {
+        return Err(ModelError::new(format!("{place}.{own}.name"), message));
+    }
+    if varying.is_empty() {
+        return Ok(parameters.into());
+    }
+    // The replaced numbers must be valid as well; any α_t serves for the check.
+    parameters.build(1.0).map_err(|error| ModelError::new(format!("{place}.{own}"), error))?;
+    let profiles: Vec<(String, Profile)> =
+        varying.iter().map(|Varying { named, .. }| (named.name.clone(), named.profile.clone())).collect();
+    let place = place.to_owned();
+    Ok(Friction::varying(profiles, move |values, alpha_t| {
+        let mut parameters = parameters.clone();
+        for (Varying { parameter, named }, &value) in varying.iter().zip(values) {
+            parameters = parameters.with(parameter, value).map_err(|UnknownParameter { name, known }| {
+                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                ModelError::new(format!("{place}.{}", named.name), not_known(&name, &known))
+            })?;
+        }
+        Ok(parameters.build(alpha_t)?)
+    }))
 }

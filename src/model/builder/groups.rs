@@ -1,17 +1,19 @@
-//! Groups and nodes of the mesh by name.
+//! Groups, nodes and bodies by name, and the nodal weights of a load on a group.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter, Result as Written};
 
+use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, check_name, no_body};
+use super::error::{Checked, ModelError, no_body, refuse_if};
 use crate::mesh::nearest::{NotOne, nearest as nearest_node};
-use crate::mesh::{Edge, Group, Mesh};
-use crate::model::text::number;
+use crate::mesh::{Edge, Group, Mesh, shape};
+use crate::model::boundary::{Absorber, NodalWeight};
+use crate::model::text::{number, vector};
 use crate::model::written::written;
-use crate::model::{Model, WatchedSet};
+use crate::model::{Body, Model, PointMass};
 
 /// A group or a single node.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -36,15 +38,23 @@ impl Place {
     /// Replaces a point by the tag of the node nearest to it; by its position where several mesh files use that tag.
     ///
     /// # Errors
-    /// Returns a message if the node is not unique or too far away.
-    pub fn settled(&self, mesh: &Mesh) -> Result<Self, String> {
+    /// Returns [`ModelError`] at a place of the input if the node is not unique or too far away.
+    pub fn settled(&self, mesh: &Mesh, place: &str) -> Checked<Self> {
         match self {
-            Self::Near(point) => nearest(mesh, *point).map(|node| match tagged(mesh, mesh.node_tags[node])[..] {
-                [_] => Self::Node(mesh.node_tags[node]),
-                _ => Self::Near(mesh.nodes[node].into()),
-            }),
+            Self::Near(point) => {
+                nearest(mesh, *point, place).map(|node| match tagged(mesh, mesh.node_tags[node])[..] {
+                    [_] => Self::Node(mesh.node_tags[node]),
+                    _ => Self::Near(mesh.nodes[node].into()),
+                })
+            }
             _ => Ok(self.clone()),
         }
+    }
+
+    /// It in words; a single node by its tag.
+    #[doc(hidden)]
+    pub fn in_words(&self, mesh: &Mesh) -> String {
+        self.settled(mesh, "").map_or_else(|_| self.to_string(), |settled| settled.to_string())
     }
 
     /// Its name in the columns of results.
@@ -58,22 +68,24 @@ impl Place {
 }
 
 /// The node nearest to a point, which the adjacent elements must reach.
-fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
-    let [x, y] = point.map(number);
+fn nearest(mesh: &Mesh, point: [f64; 2], place: &str) -> Checked<usize> {
+    let at = vector(point);
     let elements = mesh.elements.iter().map(|element| element.nodes.as_slice());
-    nearest_node(&mesh.nodes[..mesh.own_nodes()], elements, point).map_err(|not_one| match not_one {
-        NotOne::NoPlace => format!("near ({x}, {y}) is no place: give finite numbers"),
+    let message = |not_one| match not_one {
+        NotOne::NoPlace => format!("near {at} is no place: give finite numbers"),
         NotOne::NoNodes => "the mesh has no nodes".into(),
         NotOne::Several(both) => {
             let [tag, other] = both.map(|node| mesh.node_tags[node]);
-            format!("nodes {tag} and {other} are equally near to ({x}, {y}): name one as {{\"node\": {tag}}}")
+            format!("nodes {tag} and {other} are equally near to {at}: name one as {{\"node\": {tag}}}")
         }
         NotOne::Far { node, distance } => format!(
-            "no node is near ({x}, {y}): the nearest, {}, lies {} away, farther than the size of the elements there",
+            "no node is near {at}: the nearest, {}, lies {} away, farther than the size of the elements there",
             mesh.node_tags[node],
             number(distance)
         ),
-    })
+    };
+    let nearest = nearest_node(&mesh.nodes[..mesh.own_nodes()], elements, point);
+    nearest.map_err(|not_one| ModelError::new(place, message(not_one)))
 }
 
 /// Nodes with a tag: one, unless meshes are joined.
@@ -130,11 +142,16 @@ pub fn node_lists(edges: &[Edge]) -> Vec<Vec<usize>> {
     edges.iter().map(|edge| edge.nodes.clone()).collect()
 }
 
+/// Dofs of nodes.
+pub fn dofs_of(nodes: &[usize]) -> impl Iterator<Item = usize> {
+    nodes.iter().flat_map(|node| [2 * node, 2 * node + 1])
+}
+
 /// Nodes at a place.
 pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     match on {
         Place::Group(name) => Ok(mesh.nodes_of(group(mesh, name, place)?)),
-        Place::Near(point) => Ok(vec![nearest(mesh, *point).map_err(|message| ModelError::new(place, message))?]),
+        Place::Near(point) => Ok(vec![nearest(mesh, *point, place)?]),
         Place::Node(tag) => match tagged(mesh, *tag)[..] {
             [node] => Ok(vec![node]),
             [] => Err(ModelError::new(place, format!("the mesh has no node {tag}"))),
@@ -144,6 +161,18 @@ pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
             }
         },
     }
+}
+
+/// Number of evenly spaced times of a step at which a quantity is checked before the run.
+pub const TIMES: u32 = 100;
+
+/// Maximum number of places at which it is checked.
+pub const PLACES: usize = 50;
+
+/// A limited number of places, from end to end.
+pub fn some_of(all: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
+    let step = all.len().div_ceil(PLACES - 1).max(1);
+    all.iter().step_by(step).chain(all.last()).copied().collect()
 }
 
 /// Returns the group of a load that acts on groups only.
@@ -162,35 +191,111 @@ pub fn body(model: &Model, name: &str, place: &str) -> Checked<usize> {
     names().position(|known| known == name).ok_or_else(|| no_body(name, names(), place))
 }
 
-/// Returns the watched groups and nodes, each once, and all rigid bodies.
-pub fn watched(places: &[Place], model: &Model) -> Checked<Vec<WatchedSet>> {
-    let mut seen = BTreeSet::new();
-    let mut sets = Vec::with_capacity(places.len());
-    for (k, on) in places.iter().enumerate() {
-        let (place, name) = (format!("watch[{k}]"), on.column());
-        check_name(&place, &name)?;
-        if !seen.insert(name.clone()) {
-            return Err(ModelError::new(place, format!("`{name}` is watched already: name it once")));
-        }
-        sets.push(watched_set(model, on, &place)?);
+/// Returns a body, or point masses, by name: one of the two, or both; `purpose` is part of the message if there is none.
+pub fn bodies_and_masses<'m>(
+    model: &'m Model,
+    name: &str,
+    purpose: &str,
+    place: &str,
+) -> Checked<(Option<&'m Body>, Option<&'m PointMass>)> {
+    let body = model.bodies.iter().find(|body| body.name == name);
+    let masses = model.point_masses.iter().find(|point| point.name == name);
+    if body.is_some() || masses.is_some() {
+        return Ok((body, masses));
     }
-    for body in model.mesh.rigid_bodies.iter().filter(|body| !seen.contains(&body.name)) {
-        sets.push(watched_set(model, &Place::Group(body.name.clone()), "rigid_bodies")?);
-    }
-    Ok(sets)
+    let bodies = model.bodies.iter().map(|body| body.name.as_str());
+    let known: Vec<&str> = bodies.chain(model.point_masses.iter().map(|point| point.name.as_str())).collect();
+    let known = if known.is_empty() { "none at all".into() } else { known.join(", ") };
+    Err(ModelError::new(place, format!("there is no body or point mass `{name}`{purpose}; there are {known}")))
 }
 
-/// Returns a watched set. Reactions of copies belong to their originals; the displacement of a platen counts with every node.
-fn watched_set(model: &Model, on: &Place, place: &str) -> Checked<WatchedSet> {
-    let nodes = nodes_at(&model.mesh, on, place)?;
-    let edges = match on {
-        Place::Group(name) => match group(&model.mesh, name, place)? {
-            Group::Edges(edges) => edges.clone(),
-            _ => Vec::new(),
-        },
-        _ => Vec::new(),
-    };
-    let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
-    let nodes = if model.plates.is_empty() { model.ties.originals(nodes) } else { nodes };
-    Ok(WatchedSet { name: on.column(), nodes, edges, held })
+/// A Gauss point of an edge.
+struct EdgePoint<'e> {
+    edge: &'e Edge,
+    /// weight of the quadrature, w
+    weight: f64,
+    /// X
+    position: Vector2<f64>,
+    /// X' = dX/dξ
+    along: Vector2<f64>,
+    /// nodes with N_a
+    values: Vec<(usize, f64)>,
+}
+
+fn gauss_points<'e>(mesh: &Mesh, edges: &'e [Edge]) -> impl Iterator<Item = EdgePoint<'e>> {
+    edges.iter().flat_map(move |edge| {
+        let nodes = &edge.nodes;
+        shape::gauss(nodes.len()).into_iter().map(move |(xi, weight)| {
+            let values = nodes.iter().copied().zip(shape::edge_values(nodes.len(), xi)).collect::<Vec<_>>();
+            let slopes = nodes.iter().copied().zip(shape::edge_derivatives(nodes.len(), xi));
+            let position = values.iter().map(|&(node, n)| mesh.nodes[node] * n).sum();
+            let along = slopes.map(|(node, n)| mesh.nodes[node] * n).sum();
+            EdgePoint { edge, weight, position, along, values }
+        })
+    })
+}
+
+/// Consistent nodal weights of a traction: ∫ N_a w |X'| dξ at the Gauss points.
+pub fn edge_weights(mesh: &Mesh, edges: &[Edge]) -> Vec<NodalWeight> {
+    along_edges(mesh, edges, |along| along.norm())
+}
+
+/// Weights of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its
+/// edges.
+pub fn pressure_weights(mesh: &Mesh, edges: &[Edge]) -> [Vec<NodalWeight>; 2] {
+    [along_edges(mesh, edges, |along| -along.y), along_edges(mesh, edges, |along| along.x)]
+}
+
+/// Weights of a total force on edges as a uniform traction: those of a traction divided by ∫ w |X'| dξ.
+pub fn uniform_weights(mesh: &Mesh, edges: &[Edge]) -> Vec<NodalWeight> {
+    let weights = edge_weights(mesh, edges);
+    let total: f64 = weights.iter().map(|share| share.weight).sum();
+    weights.into_iter().map(|share| NodalWeight { weight: share.weight / total, ..share }).collect()
+}
+
+/// ∫ N_a w f(X') dξ at the Gauss points.
+fn along_edges(mesh: &Mesh, edges: &[Edge], f: impl Fn(Vector2<f64>) -> f64) -> Vec<NodalWeight> {
+    let mut weights = Vec::new();
+    for EdgePoint { weight, position, along, values, .. } in gauss_points(mesh, edges) {
+        let stretch = f(along) * mesh.section.weight(position);
+        weights.extend(values.iter().map(|&(node, n)| NodalWeight { node, weight: weight * n * stretch, position }));
+    }
+    weights
+}
+
+/// Nodal weights of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
+pub fn mass_weights(model: &Model, name: &str, place: &str) -> Checked<Vec<NodalWeight>> {
+    let (body, masses) = bodies_and_masses(model, name, ", on which gravity acts", place)?;
+    let message = format!("gravity needs a mass: give bodies.{name}.material.density");
+    refuse_if(masses.is_none() && body.is_some_and(|body| body.material.description().density == 0.0), place, message)?;
+    let share = |node: usize, weight: f64| NodalWeight { node, weight, position: model.mesh.nodes[node] };
+    let mut weights = Vec::new();
+    for &e in body.iter().flat_map(|body| &body.elements) {
+        // Row sum: ∫ ρ N_a dV.
+        let rows = model.element_mass(e);
+        let nodes = model.mesh.elements[e].nodes.iter().enumerate();
+        weights.extend(nodes.map(|(a, &node)| share(node, rows.row(a).sum())));
+    }
+    if let Some(point) = masses {
+        weights.extend(point.nodes.iter().map(|&node| share(node, point.mass)));
+    }
+    Ok(weights)
+}
+
+/// Nodal parts of an absorbing side.
+pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
+    let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
+    for EdgePoint { edge, weight, position, along, values } in gauss_points(&model.mesh, edges) {
+        let material = &*model.body_of(edge.element).material;
+        let impedance = |modulus: f64| (modulus * material.description().density).sqrt();
+        let s = along.normalize();
+        let n = Vector2::new(s.y, -s.x);
+        let resistance = n * n.transpose() * impedance(material.description().p_wave_modulus)
+            + s * s.transpose() * impedance(material.description().shear_modulus);
+        for (node, value) in values {
+            let share = weight * value * along.norm() * model.mesh.section.weight(position);
+            *total.entry(node).or_default() += resistance * share;
+        }
+    }
+    total.into_iter().map(|(node, coefficients)| Absorber { node, coefficients }).collect()
 }

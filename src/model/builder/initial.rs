@@ -6,17 +6,16 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::body::PointMassInput;
 use super::contact::{Contact, InitialTractions};
-use super::error::{Checked, ModelError, check_finite};
+use super::error::{Checked, ModelError, check_finite, refuse_if};
 use super::friction::{check_profile, defined, position};
 use super::groups;
 use super::load_step::LoadStep;
-use super::section::check_velocities;
 use crate::contact::pair::{ContactPair, InitialTraction};
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::scheme::Scheme;
-use crate::model::text::number;
+use crate::model::text::vector;
 
 /// Tolerance by which an initial traction may exceed the strength μ p: numbers are given with a few digits.
 const ROUNDED: f64 = 1e-9;
@@ -27,6 +26,7 @@ pub fn velocities(
     masses: &[(String, PointMassInput)],
     model: &Model,
 ) -> Checked<Vec<f64>> {
+    check_velocities("initial_velocity", of_bodies.iter().map(|(name, value)| (name, value)), model)?;
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in of_bodies {
         let place = format!("initial_velocity.{name}");
@@ -46,25 +46,30 @@ pub fn velocities(
 /// Returns the velocities assigned to nodes at the start of a step [L/T].
 pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Checked<Vec<(usize, [f64; 2])>> {
     let place = format!("{place}.velocity");
-    if !step.velocity.is_empty() && !scheme.is_dynamic() {
-        return Err(ModelError::new(place, "is for dynamic and explicit steps: a static one has no velocities"));
-    }
+    let message = "is for dynamic and explicit steps: a static one has no velocities";
+    refuse_if(!step.velocity.is_empty() && !scheme.is_dynamic(), &place, message)?;
     check_velocities(&place, &step.velocity, model)?;
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in &step.velocity {
         let place = format!("{place}.{name}");
-        let body = model.bodies.iter().find(|body| body.name == *name).map(|body| &body.nodes);
-        let points = model.point_masses.iter().find(|point| point.name == *name).map(|point| &point.nodes);
-        let Some(nodes) = body.or(points) else {
-            let known = model.bodies.iter().map(|body| body.name.as_str());
-            let known: Vec<&str> = known.chain(model.point_masses.iter().map(|point| point.name.as_str())).collect();
-            let message = format!("there is no body or point mass `{name}`; there are {}", known.join(", "));
-            return Err(ModelError::new(place, message));
-        };
-        given.give(place, nodes, *value)?;
+        let (body, masses) = groups::bodies_and_masses(model, name, "", &place)?;
+        let nodes = body.map(|body| &body.nodes).or(masses.map(|masses| &masses.nodes));
+        given.give(place, nodes.map_or(&[], Vec::as_slice), *value)?;
     }
     tied(&place, &given.velocity, model)?;
     Ok(given.velocity.into_iter().enumerate().filter_map(|(node, velocity)| Some((node, velocity?))).collect())
+}
+
+/// Refuses radial initial velocities in axisymmetry.
+fn check_velocities<'v>(
+    place: &str,
+    given: impl IntoIterator<Item = (&'v String, &'v [f64; 2])>,
+    model: &Model,
+) -> Checked<()> {
+    let message = "x is the radius of axisymmetric bodies, along which they cannot move as a whole: give [0, vy]";
+    let fails = |velocity: &[f64; 2]| velocity[0] != 0.0 && model.mesh.section.is_axisymmetric();
+    let mut given = given.into_iter();
+    given.try_for_each(|(name, velocity)| refuse_if(fails(velocity), format!("{place}.{name}"), message))
 }
 
 /// Velocities assigned to nodes so far.
@@ -121,10 +126,10 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
     }
     let undeformed = model.mesh.undeformed();
     let closed = pair.start_closed(initial, &undeformed);
-    closed.map_err(|point| faces_nothing(pair, point, model, place))
+    closed.map_err(|point| without_projection(pair, point, model, place))
 }
 
-fn faces_nothing(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {
+fn without_projection(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {
     let at = pair.points[point].at(&model.mesh.undeformed());
     let message =
         format!("the slave point at ({}, {}) has no projection on the master: it cannot carry a pressure", at.x, at.y);
@@ -167,9 +172,8 @@ fn of_bodies(
     }
     let place = format!("{place}.of_bodies");
     let refused = |message: String| Err(ModelError::new(place.clone(), message));
-    if given.balanced {
-        return refused("counts the stress of the bodies, and balanced would count it again: leave one out".into());
-    }
+    let message = "counts the stress of the bodies, and balanced would count it again: leave one out";
+    refuse_if(given.balanced, &place, message)?;
     let Some(Group::Edges(edges)) = model.mesh.groups.get(slave) else {
         return refused("needs a slave of edges: give pressure and traction".into());
     };
@@ -187,7 +191,7 @@ fn of_bodies(
     let mut initial = Vec::with_capacity(found.len());
     for (point, traction) in found.into_iter().enumerate() {
         let Some(InitialTraction { pressure, traction }) = traction else {
-            return Err(faces_nothing(pair, point, model, &place));
+            return Err(without_projection(pair, point, model, &place));
         };
         if pressure < -ROUNDED * largest || largest == 0.0 && pressure < 0.0 {
             let at = position(&pair.points[point], &model.mesh);
@@ -206,7 +210,7 @@ fn of_bodies(
 /// Lets the elements start under the initial stress of their bodies, which must be one that their laws can have.
 pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
     for e in 0..model.solids.len() {
-        let body = &model.bodies[model.body_of_element[e]];
+        let body = model.body_of(e);
         let in_plate = model.mesh.section.is_plate();
         if body.initial_stress.is_none() && body.material.description().holds_initial_stress {
             body.material.admits(&CauchyStress::default()).map_err(|why| {
@@ -221,8 +225,8 @@ pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
             let [xx, yy, xy, zz] = stress.at(at, in_plate);
             let stress = CauchyStress { xx, yy, zz, xy };
             body.material.admits(&stress).map_err(|why| {
-                let [x, y] = [at.x, at.y].map(number);
-                ModelError::new(format!("bodies.{}.initial_stress", body.name), format!("at ({x}, {y}) it {why}"))
+                let place = format!("bodies.{}.initial_stress", body.name);
+                ModelError::new(place, format!("at {} it {why}", vector(at)))
             })?;
         }
         model.solids[e].start_under(total.into_iter());

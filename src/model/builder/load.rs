@@ -1,10 +1,13 @@
 //! Input of loads, and their changes by a step.
 
+use std::fmt::{Display, Formatter, Result as Written};
+
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::groups::Place;
 use crate::model::boundary::Drive;
+use crate::model::text::number;
 
 /// A load: exactly one kind per entry. It replaces the load of the same kind and place of an earlier step.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -49,30 +52,111 @@ pub struct Load {
     pub absorbing: Option<Change<bool>>,
 }
 
-/// The single action of a load.
-#[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
-pub enum Action<'l> {
-    /// `pressure`
-    Pressure(Option<&'l Drive>),
-    /// `dead_pressure`
-    DeadPressure(Option<&'l Drive>),
-    /// `traction`
-    Traction(Option<&'l Components>),
-    /// `gravity`
-    Gravity(Option<&'l Components>),
-    /// `force`
-    Force(Option<&'l Components>),
-    /// `total_force`
-    TotalForce(Option<&'l Components>),
-    /// `moment`
-    Moment(Option<&'l Drive>),
-    /// `spring`
-    Spring(Option<&'l SpringLoad>),
-    /// `dashpot`
-    Dashpot(Option<&'l DashpotLoad>),
-    /// `absorbing`, true or false
-    Absorbing(bool),
+/// Kind of a load; a load replaces an earlier one of the same kind at the same place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// follower pressure
+    Pressure,
+    /// pressure on reference edges
+    DeadPressure,
+    /// traction on reference edges
+    Traction,
+    /// acceleration of gravity
+    Gravity,
+    /// force on every node
+    Force,
+    /// resultant on edges
+    TotalForce,
+    /// springs
+    Spring,
+    /// dashpots
+    Dashpot,
+    /// absorbing side
+    Absorbing,
+    /// moment
+    Moment,
+}
+
+impl Kind {
+    /// Key of the input.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure",
+            Self::DeadPressure => "dead_pressure",
+            Self::Traction => "traction",
+            Self::Gravity => "gravity",
+            Self::Force => "force",
+            Self::TotalForce => "total_force",
+            Self::Spring => "spring",
+            Self::Dashpot => "dashpot",
+            Self::Absorbing => "absorbing",
+            Self::Moment => "moment",
+        }
+    }
+
+    /// Whether a load that ends decreases to zero over the step, and does not end at once.
+    pub fn fades(self) -> bool {
+        !matches!(self, Self::Spring | Self::Dashpot | Self::Absorbing)
+    }
+
+    /// Whether it acts on edges, at whose Gauss points it is evaluated.
+    fn is_evaluated_on_edges(self) -> bool {
+        matches!(self, Self::Pressure | Self::DeadPressure | Self::Traction)
+    }
+}
+
+/// What a load gives.
+#[derive(Clone, Copy)]
+pub enum Value<'l> {
+    /// one drive
+    Scalar(&'l Drive),
+    /// components
+    Vector(&'l Components),
+    /// a spring
+    Spring(&'l SpringLoad),
+    /// a dashpot
+    Dashpot(&'l DashpotLoad),
+    /// an absorbing side, which has no value
+    Absorbing,
+}
+
+impl<'l> Value<'l> {
+    /// Its components, or those of its driver.
+    pub fn components(self) -> Option<&'l Components> {
+        match self {
+            Self::Vector(components) => Some(components),
+            Self::Spring(SpringLoad { driver, .. }) | Self::Dashpot(DashpotLoad { driver, .. }) => driver.as_ref(),
+            Self::Scalar(_) | Self::Absorbing => None,
+        }
+    }
+
+    /// Its drives, with their keys within the key of the load.
+    pub fn drives(self) -> Vec<(&'static str, &'l Drive)> {
+        let keys = match self {
+            Self::Scalar(drive) => return vec![("", drive)],
+            Self::Vector(_) => [".x", ".y"],
+            _ => [".driver.x", ".driver.y"],
+        };
+        let along = |i: usize| Some((keys[i], self.components()?.along(i)?));
+        (0..2).filter_map(along).collect()
+    }
+}
+
+impl Display for Value<'_> {
+    fn fmt(&self, f: &mut Formatter) -> Written {
+        match self {
+            Self::Scalar(drive) => drive.fmt(f),
+            Self::Vector(components) => components.fmt(f),
+            Self::Spring(SpringLoad { kx, ky, .. }) => write!(f, "kx {}, ky {}", number(*kx), number(*ky)),
+            Self::Dashpot(DashpotLoad { cx, cy, .. }) => write!(f, "cx {}, cy {}", number(*cx), number(*cy)),
+            Self::Absorbing => f.write_str("rho c_p and rho c_s of its body"),
+        }?;
+        match self {
+            Self::Spring(SpringLoad { driver: Some(driver), .. }) => write!(f, ", far end displaced by {driver}"),
+            Self::Dashpot(DashpotLoad { driver: Some(driver), .. }) => write!(f, ", far end moving with {driver}"),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Components of a vector; default: zero.
@@ -90,6 +174,13 @@ impl Components {
     /// The component along x (0) or y (1).
     pub fn along(&self, component: usize) -> Option<&Drive> {
         if component == 0 { self.x.as_ref() } else { self.y.as_ref() }
+    }
+}
+
+impl Display for Components {
+    fn fmt(&self, f: &mut Formatter) -> Written {
+        let part = |part: &Option<Drive>| part.as_ref().map_or("0".into(), Drive::to_string);
+        write!(f, "({}, {})", part(&self.x), part(&self.y))
     }
 }
 
@@ -127,11 +218,11 @@ impl SpringLoad {
     pub fn new(kx: f64, ky: f64) -> Self {
         Self { kx, ky, driver: None }
     }
+}
 
+setters! { spring: SpringLoad;
     /// Sets the displacement of the far end [L].
-    pub fn driver(self, driver: impl Into<Components>) -> Self {
-        Self { driver: Some(driver.into()), ..self }
-    }
+    driver(driver: impl Into<Components>) { spring.driver = Some(driver.into()); }
 }
 
 /// A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
@@ -156,11 +247,11 @@ impl DashpotLoad {
     pub fn new(cx: f64, cy: f64) -> Self {
         Self { cx, cy, driver: None }
     }
+}
 
+setters! { dashpot: DashpotLoad;
     /// Sets the velocity of the far end [L/T].
-    pub fn driver(self, driver: impl Into<Components>) -> Self {
-        Self { driver: Some(driver.into()), ..self }
-    }
+    driver(driver: impl Into<Components>) { dashpot.driver = Some(driver.into()); }
 }
 
 impl From<SpringLoad> for Change<SpringLoad> {
@@ -207,23 +298,34 @@ impl Load {
         }
     }
 
-    /// Returns the action if exactly one is given; it has no value if it ends the load.
-    #[doc(hidden)]
-    pub fn action(&self) -> Option<Action<'_>> {
-        let given = [
-            self.pressure.as_ref().map(|change| Action::Pressure(change.given())),
-            self.dead_pressure.as_ref().map(|change| Action::DeadPressure(change.given())),
-            self.traction.as_ref().map(|change| Action::Traction(change.given())),
-            self.gravity.as_ref().map(|change| Action::Gravity(change.given())),
-            self.force.as_ref().map(|change| Action::Force(change.given())),
-            self.total_force.as_ref().map(|change| Action::TotalForce(change.given())),
-            self.moment.as_ref().map(|change| Action::Moment(change.given())),
-            self.spring.as_ref().map(|change| Action::Spring(change.given())),
-            self.dashpot.as_ref().map(|change| Action::Dashpot(change.given())),
-            self.absorbing.as_ref().map(|change| Action::Absorbing(change.given() == Some(&true))),
+    /// Returns what it gives if it is exactly one: the kind, and the value unless the load ends.
+    pub(super) fn action(&self) -> Option<(Kind, Option<Value<'_>>)> {
+        let scalars =
+            [(Kind::Pressure, &self.pressure), (Kind::DeadPressure, &self.dead_pressure), (Kind::Moment, &self.moment)];
+        let vectors = [
+            (Kind::Traction, &self.traction),
+            (Kind::Gravity, &self.gravity),
+            (Kind::Force, &self.force),
+            (Kind::TotalForce, &self.total_force),
         ];
-        let mut given = given.into_iter().flatten();
+        let spring = self.spring.as_ref().map(|change| (Kind::Spring, change.given().map(Value::Spring)));
+        let dashpot = self.dashpot.as_ref().map(|change| (Kind::Dashpot, change.given().map(Value::Dashpot)));
+        let absorbs = |change: &Change<bool>| (change.given() == Some(&true)).then_some(Value::Absorbing);
+        let absorbing = self.absorbing.as_ref().map(|change| (Kind::Absorbing, absorbs(change)));
+        let scalars = scalars.map(|(kind, change)| Some((kind, change.as_ref()?.given().map(Value::Scalar))));
+        let vectors = vectors.map(|(kind, change)| Some((kind, change.as_ref()?.given().map(Value::Vector))));
+        let mut given = scalars.into_iter().chain(vectors).chain([spring, dashpot, absorbing]).flatten();
         given.next().filter(|_| given.next().is_none())
+    }
+
+    /// Its drives with their keys, and whether each is evaluated on edges.
+    pub(super) fn drives(&self) -> impl Iterator<Item = (String, bool, &Drive)> {
+        let given = self.action().and_then(|(kind, value)| Some((kind, value?)));
+        let drives = given.map(|(kind, value)| value.drives().into_iter().map(move |drive| (kind, drive)));
+        drives
+            .into_iter()
+            .flatten()
+            .map(|(kind, (within, drive))| (format!("{}{within}", kind.key()), kind.is_evaluated_on_edges(), drive))
     }
 
     /// Creates a follower pressure on edges, positive toward the body [F/L²]; [`Change::End`] reduces it to zero over the step.

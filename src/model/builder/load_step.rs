@@ -1,6 +1,7 @@
 //! Input of a load step, which inherits from the previous step. Its loads are in [`super::load`].
 
 use std::collections::BTreeMap;
+use std::fmt::{Display, Formatter};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ use crate::model::Damping;
 use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::ForceComponent;
+use crate::model::text::vector;
 
 /// Default relative tolerance of the force that ends a step.
 #[doc(hidden)]
@@ -94,21 +96,15 @@ impl From<f64> for IncrementSettings {
     }
 }
 
-impl IncrementSettings {
+setters! { settings: IncrementSettings;
     /// Sets the shortest increment [T].
-    pub fn min(self, min: f64) -> Self {
-        Self { min: Some(min), ..self }
-    }
+    min(min: f64) { settings.min = Some(min); }
 
     /// Sets the longest increment [T].
-    pub fn max(self, max: f64) -> Self {
-        Self { max: Some(max), ..self }
-    }
+    max(max: f64) { settings.max = Some(max); }
 
     /// Sets the error control: the estimated error per increment [L].
-    pub fn error(self, error: f64) -> Self {
-        Self { error: Some(error), ..self }
-    }
+    error(error: f64) { settings.error = Some(error); }
 }
 
 /// Automatic switch of a step to explicit integration and back. An increment in which a contact point slips faster than
@@ -136,11 +132,9 @@ impl From<f64> for RuptureSettings {
     }
 }
 
-impl RuptureSettings {
+setters! { settings: RuptureSettings;
     /// Sets explicit increments as a fraction of the longest stable one [-].
-    pub fn safety(self, safety: f64) -> Self {
-        Self { safety, ..self }
-    }
+    safety(safety: f64) { settings.safety = safety; }
 }
 
 /// A reaction that ends a step: displacement control up to a force. The increment in which the force passes its value
@@ -226,47 +220,47 @@ pub struct Rotation {
     pub angle: Drive,
 }
 
+impl Display for Rotation {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        write!(f, "{} about {}", self.angle, vector(self.about))
+    }
+}
+
 impl Support {
     /// Creates a support at a place without prescribed displacements.
     pub fn on(place: impl Into<Place>) -> Self {
         Self { on: place.into(), ux: None, uy: None, along: None, u: None, un: None, rotation: None, angle: None }
     }
 
-    /// Returns its displacements, with their keys.
-    #[doc(hidden)]
-    pub fn displacements(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
-        let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un)];
+    /// Returns its motions but for a rotation about a point, with their keys.
+    pub(super) fn motions(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
+        let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un), ("angle", &self.angle)];
         all.into_iter().filter_map(|(key, change)| Some((key, change.as_ref()?)))
     }
+}
 
+setters! { support: Support;
     /// Sets the displacement in x: a value is reached at the end of the step, [`Change::End`] releases it [L].
-    pub fn ux(self, ux: impl Into<Change<Drive>>) -> Self {
-        Self { ux: Some(ux.into()), ..self }
-    }
+    ux(ux: impl Into<Change<Drive>>) { support.ux = Some(ux.into()); }
 
     /// Sets the displacement in y [L].
-    pub fn uy(self, uy: impl Into<Change<Drive>>) -> Self {
-        Self { uy: Some(uy.into()), ..self }
-    }
+    uy(uy: impl Into<Change<Drive>>) { support.uy = Some(uy.into()); }
 
     /// Sets the displacement along a direction, which need not be of unit length [L].
-    pub fn along(self, direction: [f64; 2], u: impl Into<Change<Drive>>) -> Self {
-        Self { along: Some(direction), u: Some(u.into()), ..self }
+    along(direction: [f64; 2], u: impl Into<Change<Drive>>) {
+        support.along = Some(direction);
+        support.u = Some(u.into());
     }
 
     /// Sets the displacement along the normal of a side, positive out of the body [L].
-    pub fn un(self, un: impl Into<Change<Drive>>) -> Self {
-        Self { un: Some(un.into()), ..self }
-    }
+    un(un: impl Into<Change<Drive>>) { support.un = Some(un.into()); }
 
     /// Sets the rotation of a rigid body about its reference point, counter-clockwise [rad].
-    pub fn angle(self, angle: impl Into<Change<Drive>>) -> Self {
-        Self { angle: Some(angle.into()), ..self }
-    }
+    angle(angle: impl Into<Change<Drive>>) { support.angle = Some(angle.into()); }
 
     /// Sets a rotation about a point, counter-clockwise [rad].
-    pub fn rotation(self, about: [f64; 2], angle: impl Into<Drive>) -> Self {
-        Self { rotation: Some(Change::To(Rotation { about, angle: angle.into() })), ..self }
+    rotation(about: [f64; 2], angle: impl Into<Drive>) {
+        support.rotation = Some(Change::To(Rotation { about, angle: angle.into() }));
     }
 }
 
@@ -276,67 +270,48 @@ impl LoadStep {
         Self { name: name.into(), duration, ..Self::default() }
     }
 
-    /// Sets the time scheme.
-    pub fn scheme(self, scheme: Scheme) -> Self {
-        Self { scheme: Some(scheme), ..self }
-    }
-
-    /// Sets the increments: a first Δt, or all settings [T].
-    pub fn dt(self, increments: impl Into<IncrementSettings>) -> Self {
-        Self { dt: Some(increments.into()), ..self }
-    }
-
-    /// Constrains bodies until contact closes, by dashpots that decrease to zero over this static step. Their initial
-    /// coefficient equals this fraction of the bodies' stiffness for a motion over the duration of the step; 1e-3 is a good
-    /// start [-].
-    pub fn stabilize(self, share: f64) -> Self {
-        Self { stabilize: Some(share), ..self }
-    }
-
-    /// Switches to explicit integration while a contact slips faster than a slip rate [L/T]; or all settings.
-    pub fn rupture(self, rupture: impl Into<RuptureSettings>) -> Self {
-        Self { rupture: Some(rupture.into()), ..self }
-    }
-
-    /// Sets the damping of a body from this step on.
-    pub fn damping(mut self, body: impl Into<String>, damping: Damping) -> Self {
-        self.damping.insert(body.into(), damping);
-        self
-    }
-
-    /// Ends the step early when the reaction at a place reaches a value, within a relative tolerance of 1e-6 [F].
-    pub fn until(self, on: impl Into<Place>, part: ForceComponent, value: f64) -> Self {
-        let [fx, fy, force] =
-            [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));
-        Self { until: Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: UNTIL_TOLERANCE }), ..self }
-    }
-
-    /// Assigns a velocity to a body, or to point masses, at the start of the step: a launch after settling [L/T].
-    pub fn launch(mut self, name: impl Into<String>, velocity: [f64; 2]) -> Self {
-        self.velocity.insert(name.into(), velocity);
-        self
-    }
-
-    /// Sets the temperature of a body: a value is reached at the end of the step [Θ].
-    pub fn temperature(mut self, body: impl Into<String>, temperature: impl Into<BodyTemperature>) -> Self {
-        self.temperature.insert(body.into(), temperature.into());
-        self
-    }
-
-    /// Adds a support.
-    pub fn support(mut self, support: Support) -> Self {
-        self.supports.push(support);
-        self
-    }
-
     /// Fixes a place.
     pub fn fix(self, place: impl Into<Place>) -> Self {
         self.support(Support::on(place).ux(0.0).uy(0.0))
     }
+}
+
+setters! { step: LoadStep;
+    /// Sets the time scheme.
+    scheme(scheme: Scheme) { step.scheme = Some(scheme); }
+
+    /// Sets the increments: a first Δt, or all settings [T].
+    dt(increments: impl Into<IncrementSettings>) { step.dt = Some(increments.into()); }
+
+    /// Constrains bodies until contact closes, by dashpots that decrease to zero over this static step. Their initial
+    /// coefficient equals this fraction of the bodies' stiffness for a motion over the duration of the step; 1e-3 is a good
+    /// start [-].
+    stabilize(share: f64) { step.stabilize = Some(share); }
+
+    /// Switches to explicit integration while a contact slips faster than a slip rate [L/T]; or all settings.
+    rupture(rupture: impl Into<RuptureSettings>) { step.rupture = Some(rupture.into()); }
+
+    /// Sets the damping of a body from this step on.
+    damping(body: impl Into<String>, damping: Damping) { step.damping.insert(body.into(), damping); }
+
+    /// Ends the step early when the reaction at a place reaches a value, within a relative tolerance of 1e-6 [F].
+    until(on: impl Into<Place>, part: ForceComponent, value: f64) {
+        let [fx, fy, force] =
+            [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));
+        step.until = Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: UNTIL_TOLERANCE });
+    }
+
+    /// Assigns a velocity to a body, or to point masses, at the start of the step: a launch after settling [L/T].
+    launch(name: impl Into<String>, velocity: [f64; 2]) { step.velocity.insert(name.into(), velocity); }
+
+    /// Sets the temperature of a body: a value is reached at the end of the step [Θ].
+    temperature(body: impl Into<String>, temperature: impl Into<BodyTemperature>) {
+        step.temperature.insert(body.into(), temperature.into());
+    }
+
+    /// Adds a support.
+    support(support: Support) { step.supports.push(support); }
 
     /// Adds a load.
-    pub fn load(mut self, load: Load) -> Self {
-        self.loads.push(load);
-        self
-    }
+    load(load: Load) { step.loads.push(load); }
 }

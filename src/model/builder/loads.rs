@@ -6,19 +6,22 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use super::error::{Checked, ModelError, check_not_negative};
-use super::groups::{Place, edges, group_at, node_lists, nodes_at};
-use super::load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
+use super::error::{Checked, ModelError, check_not_negative, refuse_if};
+use super::groups::{
+    PLACES, Place, TIMES, absorbers, edge_weights, edges, group_at, mass_weights, node_lists, nodes_at,
+    pressure_weights, some_of, uniform_weights,
+};
+use super::load::{Change, Components, DashpotLoad, Kind, Load, SpringLoad, Value};
 use super::load_step::LoadStep;
-use super::plates::plate_of_moment;
-use super::rigid;
-use super::section::check_gravity;
-use super::shares::{Share, absorbers, edge_shares, even_shares, mass_shares, pressure_shares};
-use super::supports::frees_nothing;
+use super::rigid::{of_moment, plate_of_moment};
+use super::supports::nothing_to_end;
 use crate::model::Model;
-use crate::model::boundary::{Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, PlateMoment, Span, Spring};
+use crate::model::boundary::{
+    Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, NodalWeight, PlateMoment, Span, Spring,
+};
 use crate::model::scheme::Scheme;
-use crate::model::text::number;
+use crate::model::step::Entry;
+use crate::model::text::{number, vector};
 
 /// Maximum number of successive changes of a load that varies in space within its steps, each depending on the previous one.
 const MOST_REMEMBERED: usize = 1000;
@@ -49,44 +52,13 @@ const MOST_REMEMBERED: usize = 1000;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Default)]
-pub struct LoadsInForce(BTreeMap<(String, Kind), Loads>);
+pub struct LoadsInForce(BTreeMap<(String, Kind), InForce>);
 
-/// Kind of a load, which replaces an earlier one of the same kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
-    Pressure,
-    DeadPressure,
-    Traction,
-    Gravity,
-    Force,
-    TotalForce,
-    Spring,
-    Dashpot,
-    Absorbing,
-    Moment,
-}
-
-/// Returns the kind of an action, and whether it ends the load.
-fn kind(action: Action) -> (Kind, bool) {
-    match action {
-        Action::Pressure(given) => (Kind::Pressure, given.is_none()),
-        Action::DeadPressure(given) => (Kind::DeadPressure, given.is_none()),
-        Action::Traction(given) => (Kind::Traction, given.is_none()),
-        Action::Gravity(given) => (Kind::Gravity, given.is_none()),
-        Action::Force(given) => (Kind::Force, given.is_none()),
-        Action::TotalForce(given) => (Kind::TotalForce, given.is_none()),
-        Action::Spring(given) => (Kind::Spring, given.is_none()),
-        Action::Dashpot(given) => (Kind::Dashpot, given.is_none()),
-        Action::Absorbing(absorbs) => (Kind::Absorbing, !absorbs),
-        Action::Moment(given) => (Kind::Moment, given.is_none()),
-    }
-}
-
-/// Returns the single action of a load.
-fn action<'l>(load: &'l Load, place: &str) -> Checked<Action<'l>> {
-    let message = "must give exactly one of pressure, dead_pressure, traction, gravity, force, total_force, moment, spring, dashpot, \
-                   absorbing";
-    load.action().ok_or_else(|| ModelError::new(place, message))
+/// A load in force, or one that was ended.
+#[derive(Clone)]
+struct InForce {
+    loads: Loads,
+    entry: Entry,
 }
 
 impl LoadsInForce {
@@ -97,11 +69,16 @@ impl LoadsInForce {
     pub fn of_step(number: usize, given: &[LoadStep], model: &Model) -> Checked<Self> {
         let mut in_force = Self::default();
         for (k, (given, step)) in given.iter().zip(&model.steps).enumerate().take(number + 1) {
-            for (j, load) in given.loads.iter().enumerate() {
-                in_force.change(load, &format!("steps[{k}].loads[{j}]"), step.span, model)?;
-            }
+            in_force.step(&given.loads, &format!("steps[{k}]"), step.span, model)?;
         }
         Ok(in_force)
+    }
+
+    /// Goes on to the next step, with its loads.
+    pub(super) fn step(&mut self, given: &[Load], place: &str, span: Span, model: &Model) -> Checked<()> {
+        self.0.values_mut().for_each(|load| load.entry.kept = true);
+        let mut given = given.iter().enumerate();
+        given.try_for_each(|(k, load)| self.change(load, &format!("{place}.loads[{k}]"), span, model))
     }
 
     /// Changes or ends a load from the start of a span within a step on.
@@ -109,13 +86,11 @@ impl LoadsInForce {
     /// # Errors
     /// Returns the same errors as for a step.
     pub fn change_within(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
-        let key = (
-            load.on.settled(&model.mesh).unwrap_or_else(|_| load.on.clone()).to_string(),
-            kind(action(load, place)?).0,
-        );
-        for before in self.0.get_mut(&key).into_iter().flat_map(Loads::amplitudes) {
-            *before = before.settled(span.start);
-            if before.chain().count() > MOST_REMEMBERED {
+        let on = load.on.in_words(&model.mesh);
+        let before = self.0.get_mut(&(on, action(load, place)?.0));
+        for amplitude in before.into_iter().flat_map(|before| before.loads.amplitudes()) {
+            *amplitude = amplitude.settled(span.start);
+            if amplitude.chain().count() > MOST_REMEMBERED {
                 let message = "was changed too often for one that varies in space: give it as an expression in t";
                 return Err(ModelError::new(place, message));
             }
@@ -126,42 +101,47 @@ impl LoadsInForce {
     /// Returns all loads.
     pub fn all(&self) -> Loads {
         let mut all = Loads::default();
-        for load in self.0.values() {
-            all.dead.extend(load.dead.iter().cloned());
-            all.pressures.extend(load.pressures.iter().cloned());
-            all.springs.extend(load.springs.iter().cloned());
-            all.dashpots.extend(load.dashpots.iter().cloned());
-            all.absorbers.extend(load.absorbers.iter().cloned());
-            all.moments.extend(load.moments.iter().cloned());
+        for InForce { loads, .. } in self.0.values() {
+            all.dead.extend(loads.dead.iter().cloned());
+            all.pressures.extend(loads.pressures.iter().cloned());
+            all.springs.extend(loads.springs.iter().cloned());
+            all.dashpots.extend(loads.dashpots.iter().cloned());
+            all.absorbers.extend(loads.absorbers.iter().cloned());
+            all.moments.extend(loads.moments.iter().cloned());
         }
         all
     }
 
+    /// The loads of the present step as the input gave them.
+    pub(super) fn entries(&self) -> impl Iterator<Item = &Entry> {
+        self.0.values().map(|load| &load.entry)
+    }
+
     /// Changes or ends a load.
-    pub(super) fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
-        let action = action(load, place)?;
-        let (kind, ends) = kind(action);
-        let on = load.on.settled(&model.mesh).map_err(|message| ModelError::new(format!("{place}.on"), message))?;
+    fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
+        let (kind, value) = action(load, place)?;
+        let on = load.on.settled(&model.mesh, &format!("{place}.on"))?;
         let key = (on.to_string(), kind);
-        if ends && !self.0.contains_key(&key) {
-            return Err(frees_nothing(place, &load.on));
-        }
-        let before = self.0.remove(&key).unwrap_or_default();
-        let made = Changing { load, place, span, model, before }.made(action)?;
         // A load that decreases to zero stays until something replaces it.
-        if !(ends && matches!(kind, Kind::Spring | Kind::Dashpot | Kind::Absorbing)) {
-            self.0.insert(key, made);
+        let before = self.0.get(&key).filter(|load| kind.fades() || load.entry.value.is_some());
+        if value.is_none() && before.is_none() {
+            return Err(nothing_to_end(place, &load.on));
         }
+        let before = before.map(|before| before.loads.clone()).unwrap_or_default();
+        let loads = Changing { load, place, span, model, before }.made(kind, value)?;
+        let name = if kind == Kind::Absorbing { "absorbing side".into() } else { kind.key().replace('_', " ") };
+        let value = value.map(|value| value.to_string());
+        let entry = Entry { is_load: true, on: key.0.clone(), kind: name, value, kept: false, fades: kind.fades() };
+        self.0.insert(key, InForce { loads, entry });
         Ok(())
     }
 }
 
-/// A spring or dashpot.
-struct Link<'l> {
-    key: &'static str,
-    /// coefficients along x and y with their keys
-    values: [(&'static str, f64); 2],
-    driver: &'l Option<Components>,
+/// Returns kind and value of a load, which gives exactly one.
+fn action<'l>(load: &'l Load, place: &str) -> Checked<(Kind, Option<Value<'l>>)> {
+    let message = "must give exactly one of pressure, dead_pressure, traction, gravity, force, total_force, moment, spring, dashpot, \
+                   absorbing";
+    load.action().ok_or_else(|| ModelError::new(place, message))
 }
 
 /// A load that changes in a step.
@@ -174,149 +154,117 @@ struct Changing<'m> {
 }
 
 impl Changing<'_> {
-    fn made(self, action: Action) -> Checked<Loads> {
+    fn made(self, kind: Kind, value: Option<Value>) -> Checked<Loads> {
         let Self { load: Load { on, .. }, place, model, .. } = self;
-        let at = format!("{place}.on");
-        match action {
-            Action::Pressure(given) => self.pressure(given),
-            Action::DeadPressure(given) => {
-                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                self.dead_pressure(given, pressure_shares(&model.mesh, edges))
+        let (at, components) = (format!("{place}.on"), value.and_then(Value::components));
+        let edges = || edges(&model.mesh, group_at(on, place)?, &at);
+        let weights = match kind {
+            Kind::Pressure | Kind::DeadPressure | Kind::Moment => return self.scalar(kind, value),
+            Kind::Spring | Kind::Dashpot => return self.links(value),
+            Kind::Absorbing => {
+                let absorbers = if value.is_some() { absorbers(model, edges()?) } else { Vec::new() };
+                return Ok(Loads { absorbers, ..Loads::default() });
             }
-            Action::Traction(given) => {
-                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                let shares = edge_shares(&model.mesh, edges);
-                self.dead("traction", given, [shares.clone(), shares])
+            Kind::Traction => edge_weights(&model.mesh, edges()?),
+            Kind::Gravity => {
+                check_gravity(components.and_then(|given| given.along(0)), place, model)?;
+                mass_weights(model, group_at(on, place)?, &at)?
             }
-            Action::Gravity(given) => {
-                check_gravity(given.and_then(|given| given.along(0)), place, model)?;
-                let shares = mass_shares(model, group_at(on, place)?, &at)?;
-                self.dead("gravity", given, [shares.clone(), shares])
+            Kind::Force => {
+                let position = |node: usize| model.mesh.nodes[node];
+                let nodes = nodes_at(&model.mesh, on, &at)?.into_iter();
+                nodes.map(|node| NodalWeight { node, weight: 1.0, position: position(node) }).collect()
             }
-            Action::Force(given) => {
-                let nodes = nodes_at(&model.mesh, on, &at)?;
-                let shares: Vec<Share> = nodes.into_iter().map(|node| (node, 1.0, model.mesh.nodes[node])).collect();
-                self.dead("force", given, [shares.clone(), shares])
+            Kind::TotalForce => {
+                let edges = edges()?;
+                check_uniform(components, place)?;
+                uniform_weights(&model.mesh, edges)
             }
-            Action::TotalForce(given) => {
-                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                check_even(given, place)?;
-                let shares = even_shares(&model.mesh, edges);
-                self.dead("total_force", given, [shares.clone(), shares])
-            }
-            Action::Moment(given) => self.moment(given),
-            Action::Spring(given) => self.springs(given),
-            Action::Dashpot(given) => self.dashpots(given),
-            Action::Absorbing(absorbs) => {
-                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                let absorbers = if absorbs { absorbers(model, edges) } else { Vec::new() };
-                Ok(Loads { absorbers, ..Loads::default() })
-            }
-        }
-    }
-
-    fn pressure(self, given: Option<&Drive>) -> Checked<Loads> {
-        let Self { load, place, span, model, before } = self;
-        let edges = node_lists(edges(&model.mesh, group_at(&load.on, place)?, &format!("{place}.on"))?);
-        let before = before.pressures.into_iter().next().map(|load| load.amplitude);
-        let amplitude = amplitude(given, before, &format!("{place}.pressure"), span)?;
-        let pressures = amplitude.map(|amplitude| FollowerPressure { amplitude, edges }).into_iter().collect();
-        Ok(Loads { pressures, ..Loads::default() })
-    }
-
-    fn dead_pressure(self, given: Option<&Drive>, shares: [Vec<Share>; 2]) -> Checked<Loads> {
-        let Self { place, span, before, .. } = self;
-        let before = before.dead.into_iter().next().map(|load| load.amplitude);
-        let Some(amplitude) = amplitude(given, before, &format!("{place}.dead_pressure"), span)? else {
-            return Ok(Loads::default());
         };
-        let along = |(component, shares)| DeadLoad { component, amplitude: amplitude.clone(), shares };
-        Ok(Loads { dead: shares.into_iter().enumerate().map(along).collect(), ..Loads::default() })
-    }
-
-    fn dead(self, key: &str, given: Option<&Components>, shares: [Vec<Share>; 2]) -> Checked<Loads> {
-        let Self { place, span, before, .. } = self;
         let mut dead = Vec::new();
-        for (component, (name, shares)) in ["x", "y"].into_iter().zip(shares).enumerate() {
-            let given = given.and_then(|given| given.along(component));
-            let before = before.dead.iter().find(|load| load.component == component).map(|load| load.amplitude.clone());
-            let amplitude = amplitude(given, before, &format!("{place}.{key}.{name}"), span)?;
-            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, shares }));
+        for (component, name) in ["x", "y"].into_iter().enumerate() {
+            let given = components.and_then(|given| given.along(component));
+            let before = self.before.dead.iter().find(|load| load.component == component);
+            let before = before.map(|load| load.amplitude.clone());
+            let amplitude = amplitude(given, before, &format!("{place}.{}.{name}", kind.key()), self.span)?;
+            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, weights: weights.clone() }));
         }
         Ok(Loads { dead, ..Loads::default() })
     }
 
-    fn moment(self, given: Option<&Drive>) -> Checked<Loads> {
-        let Self { load, place, span, model, before } = self;
-        if let Some(body) = rigid::of_moment(&load.on, model) {
-            let before = before.dead.into_iter().next().map(|load| load.amplitude);
-            let amplitude = amplitude(given, before, &format!("{place}.moment"), span)?;
-            let shares = vec![(body.turning, 1.0 / body.radius, model.mesh.nodes[body.turning])];
-            let dead = amplitude.map(|amplitude| DeadLoad { component: 0, amplitude, shares });
-            return Ok(Loads { dead: dead.into_iter().collect(), ..Loads::default() });
+    /// A load with a single amplitude.
+    fn scalar(mut self, kind: Kind, value: Option<Value>) -> Checked<Loads> {
+        let Self { load: Load { on, .. }, place, span, model, .. } = self;
+        let before = self.before.amplitudes().next().cloned();
+        let given = value.and_then(|value| value.drives().into_iter().next());
+        let amplitude = || amplitude(given.map(|(_, drive)| drive), before, &format!("{place}.{}", kind.key()), span);
+        let edges = || edges(&model.mesh, group_at(on, place)?, &format!("{place}.on"));
+        let mut loads = Loads::default();
+        match (kind, of_moment(on, model)) {
+            (Kind::Pressure, _) => {
+                let edges = node_lists(edges()?);
+                loads.pressures.extend(amplitude()?.map(|amplitude| FollowerPressure { amplitude, edges }));
+            }
+            (Kind::DeadPressure, _) => {
+                let weights = pressure_weights(&model.mesh, edges()?).into_iter().enumerate();
+                let Some(amplitude) = amplitude()? else { return Ok(loads) };
+                let along = |(component, weights)| DeadLoad { component, amplitude: amplitude.clone(), weights };
+                loads.dead.extend(weights.map(along));
+            }
+            (_, Some(body)) => {
+                let (node, weight) = (body.turning, 1.0 / body.radius);
+                let weights = vec![NodalWeight { node, weight, position: model.mesh.nodes[node] }];
+                loads.dead.extend(amplitude()?.map(|amplitude| DeadLoad { component: 0, amplitude, weights }));
+            }
+            (_, None) => {
+                let plate = plate_of_moment(model, on, place)?;
+                loads.moments.extend(amplitude()?.map(|amplitude| PlateMoment { plate, amplitude }));
+            }
         }
-        let plate = plate_of_moment(model, &load.on, place)?;
-        let before = before.moments.into_iter().next().map(|moment| moment.amplitude);
-        let amplitude = amplitude(given, before, &format!("{place}.moment"), span)?;
-        let moments = amplitude.map(|amplitude| PlateMoment { plate, amplitude }).into_iter().collect();
-        Ok(Loads { moments, ..Loads::default() })
+        Ok(loads)
     }
 
-    fn springs(self, given: Option<&SpringLoad>) -> Checked<Loads> {
-        let link = given.map(|given| Link {
-            key: "spring",
-            values: [("kx", given.kx), ("ky", given.ky)],
-            driver: &given.driver,
-        });
-        let before = |component: usize| self.before.springs.iter().find(|spring| spring.dof % 2 == component);
-        let links = self.links(link, |component| before(component)?.driver.clone())?;
-        let springs = links.into_iter().map(|(dof, stiffness, driver)| Spring { dof, stiffness, driver }).collect();
-        Ok(Loads { springs, ..Loads::default() })
-    }
-
-    fn dashpots(self, given: Option<&DashpotLoad>) -> Checked<Loads> {
-        let link = given.map(|given| Link {
-            key: "dashpot",
-            values: [("cx", given.cx), ("cy", given.cy)],
-            driver: &given.driver,
-        });
-        let before = |component: usize| self.before.dashpots.iter().find(|dashpot| dashpot.dof % 2 == component);
-        let links = self.links(link, |component| before(component)?.driver.clone())?;
-        let dashpots =
-            links.into_iter().map(|(dof, coefficient, driver)| Dashpot { dof, coefficient, driver }).collect();
-        Ok(Loads { dashpots, ..Loads::default() })
-    }
-
-    /// Dof, coefficient and driver of every spring or dashpot with a nonzero coefficient.
-    fn links(
-        &self,
-        given: Option<Link>,
-        before: impl Fn(usize) -> Option<Amplitude>,
-    ) -> Checked<Vec<(usize, f64, Option<Amplitude>)>> {
-        let nodes = nodes_at(&self.model.mesh, &self.load.on, &format!("{}.on", self.place))?;
-        let Some(Link { key, values, driver }) = given else { return Ok(Vec::new()) };
-        let mut links = Vec::new();
-        for (component, (name, coefficient)) in values.into_iter().enumerate() {
-            check_not_negative(&format!("{}.{key}.{name}", self.place), coefficient)?;
+    /// Springs or dashpots with a nonzero coefficient at every node.
+    fn links(self, value: Option<Value>) -> Checked<Loads> {
+        let Self { load: Load { on, .. }, place, span, model, before } = self;
+        let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
+        let (key, coefficients) = match value {
+            Some(Value::Spring(SpringLoad { kx, ky, .. })) => ("spring", [("kx", *kx), ("ky", *ky)]),
+            Some(Value::Dashpot(DashpotLoad { cx, cy, .. })) => ("dashpot", [("cx", *cx), ("cy", *cy)]),
+            _ => return Ok(Loads::default()),
+        };
+        let springs = before.springs.iter().map(|spring| (spring.dof, &spring.driver));
+        let dashpots = before.dashpots.iter().map(|dashpot| (dashpot.dof, &dashpot.driver));
+        let before: Vec<_> = springs.chain(dashpots).collect();
+        let mut loads = Loads::default();
+        for (component, (name, coefficient)) in coefficients.into_iter().enumerate() {
+            check_not_negative(&format!("{place}.{key}.{name}"), coefficient)?;
             if coefficient == 0.0 {
                 continue;
             }
-            let drive = driver.as_ref().and_then(|driver| driver.along(component));
-            let place = format!("{}.{key}.driver", self.place);
-            let driver = amplitude(drive, before(component), &place, self.span)?;
-            links.extend(nodes.iter().map(|node| (2 * node + component, coefficient, driver.clone())));
+            let drive = value.and_then(Value::components).and_then(|driver| driver.along(component));
+            let before = before.iter().find(|(dof, _)| dof % 2 == component).and_then(|(_, driver)| (*driver).clone());
+            let driver = amplitude(drive, before, &format!("{place}.{key}.driver"), span)?;
+            for dof in nodes.iter().map(|node| 2 * node + component) {
+                match key {
+                    "spring" => loads.springs.push(Spring { dof, stiffness: coefficient, driver: driver.clone() }),
+                    _ => loads.dashpots.push(Dashpot { dof, coefficient, driver: driver.clone() }),
+                }
+            }
         }
-        Ok(links)
+        Ok(loads)
     }
 }
 
 /// Checks that a total force on edges does not vary in space.
-fn check_even(given: Option<&Components>, place: &str) -> Checked<()> {
+fn check_uniform(given: Option<&Components>, place: &str) -> Checked<()> {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
-        if given.and_then(|given| given.along(component)).is_some_and(Drive::depends_on_position) {
-            let message = "is the force on the whole group, which does not vary in space: give it in t, or a traction";
-            return Err(ModelError::new(format!("{place}.total_force.{name}"), message));
-        }
+        let message = "is the force on the whole group, which does not vary in space: give it in t, or a traction";
+        refuse_if(
+            given.and_then(|given| given.along(component)).is_some_and(Drive::depends_on_position),
+            format!("{place}.total_force.{name}"),
+            message,
+        )?;
     }
     Ok(())
 }
@@ -335,32 +283,34 @@ fn amplitude(given: Option<&Drive>, before: Option<Amplitude>, place: &str, span
     Ok(Some(Amplitude { drive, span, before: before.map(Box::new) }))
 }
 
-/// Number of evenly spaced times of a step at which an expression is checked.
-const TIMES: u32 = 100;
-
-/// Maximum number of places of a group at which it is checked.
-const PLACES: usize = 50;
+/// Refuses radial gravity in axisymmetry.
+pub fn check_gravity(radial: Option<&Drive>, place: &str, model: &Model) -> Checked<()> {
+    let none = matches!(radial, None | Some(Drive::Constant(0.0)));
+    let message = "x is the radius of axisymmetric bodies, and gravity has no such direction: give y alone";
+    refuse_if(!none && model.mesh.section.is_axisymmetric(), format!("{place}.gravity.x"), message)?;
+    Ok(())
+}
 
 /// Checks that the expressions of a step are finite at many times and places; errors name their keys.
 pub fn check_defined(place: &str, given: &LoadStep, scheme: Scheme, span: Span, model: &Model) -> Checked<()> {
     // A static step is not evaluated at its start.
-    let first = u32::from(!scheme.is_dynamic());
-    let times = || (first..=TIMES).map(|k| span.start + f64::from(k) / f64::from(TIMES) * (span.end - span.start));
+    let first = usize::from(!scheme.is_dynamic());
+    let times = || span.times(TIMES).skip(first);
     let check = |key: &str, drive: &Drive, places: &[Vector2<f64>]| {
         let undefined =
             |at: &Vector2<f64>| times().find(|time| !drive.value(*at, *time, span, 0.0).is_finite()).map(|t| (t, *at));
         match places.iter().find_map(undefined) {
             None => Ok(()),
             Some((time, at)) => {
-                let [time, x, y] = [time, at.x, at.y].map(number);
-                let message = format!("has no finite value at t = {time}, (x, y) = ({x}, {y}): check the expression");
+                let (time, at) = (number(time), vector(at));
+                let message = format!("has no finite value at t = {time}, (x, y) = {at}: check the expression");
                 Err(ModelError::new(format!("{place}.{key}"), message))
             }
         }
     };
-    for (key, on, drive) in drives(given) {
+    for (key, on_edges, on, drive) in drives(given) {
         if let Drive::Expression(expression) = drive {
-            let mut places = positions(key.ends_with("pressure") || key.contains(".traction."), on, model);
+            let mut places = positions(on_edges, on, model);
             places.truncate(if expression.depends_on_position() { PLACES } else { 1 });
             check(&key, drive, &places)?;
         }
@@ -368,51 +318,30 @@ pub fn check_defined(place: &str, given: &LoadStep, scheme: Scheme, span: Span, 
     Ok(())
 }
 
-/// All drives of a step, with their keys and places.
-fn drives(given: &LoadStep) -> Vec<(String, &Place, &Drive)> {
+/// All drives of a step, with their keys and places, and whether they are evaluated on edges.
+fn drives(given: &LoadStep) -> Vec<(String, bool, &Place, &Drive)> {
     let mut drives = Vec::new();
     for (k, support) in given.supports.iter().enumerate() {
-        let motions = support.displacements().filter_map(|(key, change)| Some((key, change.given()?)));
+        let motions = support.motions().filter_map(|(key, change)| Some((key, change.given()?)));
         let turned =
             support.rotation.as_ref().and_then(Change::given).map(|rotation| ("rotation.angle", &rotation.angle));
-        drives.extend(motions.chain(turned).map(|(key, drive)| (format!("supports[{k}].{key}"), &support.on, drive)));
+        let key = |key| format!("supports[{k}].{key}");
+        drives.extend(motions.chain(turned).map(|(own, drive)| (key(own), false, &support.on, drive)));
     }
     for (k, load) in given.loads.iter().enumerate() {
-        let actions = load.action().map(actions).into_iter().flatten();
-        drives.extend(actions.map(|(key, drive)| (format!("loads[{k}].{key}"), &load.on, drive)));
+        drives.extend(
+            load.drives().map(|(key, on_edges, drive)| (format!("loads[{k}].{key}"), on_edges, &load.on, drive)),
+        );
     }
     drives
 }
 
-/// Drives of a load with their keys.
-fn actions(action: Action<'_>) -> Vec<(String, &Drive)> {
-    let alone = |key: &str, drive| Option::into_iter(drive).map(|drive| (key.to_string(), drive)).collect();
-    match action {
-        Action::Pressure(drive) => alone("pressure", drive),
-        Action::DeadPressure(drive) => alone("dead_pressure", drive),
-        Action::Moment(drive) => alone("moment", drive),
-        Action::Traction(given) => vector("traction", given),
-        Action::Gravity(given) => vector("gravity", given),
-        Action::Force(given) => vector("force", given),
-        Action::TotalForce(given) => vector("total_force", given),
-        Action::Spring(given) => vector("spring.driver", given.and_then(|spring| spring.driver.as_ref())),
-        Action::Dashpot(given) => vector("dashpot.driver", given.and_then(|dashpot| dashpot.driver.as_ref())),
-        Action::Absorbing(_) => Vec::new(),
-    }
-}
-
-fn vector<'a>(key: &str, components: Option<&'a Components>) -> Vec<(String, &'a Drive)> {
-    let along = |(component, name): (usize, &str)| Some((format!("{key}.{name}"), components?.along(component)?));
-    ["x", "y"].into_iter().enumerate().filter_map(along).collect()
-}
-
 /// Places where a drive is evaluated: nodes, or Gauss points of edges; a limited number from end to end.
 fn positions(on_edges: bool, on: &Place, model: &Model) -> Vec<Vector2<f64>> {
-    let gauss = |name: &str| Some(edge_shares(&model.mesh, edges(&model.mesh, name, "").ok()?));
+    let gauss = |name: &str| Some(edge_weights(&model.mesh, edges(&model.mesh, name, "").ok()?));
     let all: Vec<Vector2<f64>> = match on {
-        Place::Group(name) if on_edges => gauss(name).into_iter().flatten().map(|(_, _, at)| at).collect(),
+        Place::Group(name) if on_edges => gauss(name).into_iter().flatten().map(|share| share.position).collect(),
         _ => nodes_at(&model.mesh, on, "").into_iter().flatten().map(|node| model.mesh.nodes[node]).collect(),
     };
-    let step = all.len().div_ceil(PLACES - 1).max(1);
-    all.iter().step_by(step).chain(all.last()).copied().collect()
+    some_of(all)
 }

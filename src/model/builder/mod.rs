@@ -30,7 +30,20 @@
 //! A load step inherits scheme, increments, supports and loads from the previous one. Errors are reported with their
 //! place, in the terms of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
-mod along;
+/// Methods that change one thing of an input and return it, for chains: `setters! { contact: Contact; area(area: f64) { … } }`.
+macro_rules! setters {
+    ($self:ident: $type:ty; $($(#[$doc:meta])* $name:ident($($argument:ident: $of:ty),*) { $($change:tt)* })*) => {
+        impl $type {
+            $($(#[$doc])*
+            pub fn $name(self, $($argument: $of),*) -> Self {
+                let mut $self = self;
+                $($change)*
+                $self
+            })*
+        }
+    };
+}
+
 mod body;
 mod checks;
 mod contact;
@@ -42,31 +55,25 @@ mod load;
 mod load_step;
 mod loads;
 mod pair;
-mod plates;
-mod probes;
+mod requests;
 mod rigid;
 pub(crate) mod schedule;
-mod section;
-mod shares;
-mod supported;
 mod supports;
-mod tied;
+mod unconstrained;
 
-pub use along::{Along, LawChoice};
 pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
-pub(crate) use error::{check_line, check_positive};
-pub use friction::Friction;
+pub(crate) use error::{check_line, check_positive, refuse_if};
+pub use friction::{Along, Friction, LawChoice};
 pub use groups::Place;
-pub use load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
+pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
 pub use loads::LoadsInForce;
 pub(crate) use pair::evaluation;
 pub use pair::{default_alpha_t, default_over};
-pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
-pub use probes::Gauge;
-pub use rigid::RigidBodyInput;
+pub use requests::Gauge;
+pub use rigid::{LoadingPlateInput, MovingPlateInput, Plate, RigidBodyInput};
 pub use schedule::{Regime, regime};
 
 use crate::laws::bulk::Material;
@@ -108,20 +115,15 @@ impl Model {
     }
 }
 
-impl Builder {
+setters! { builder: Builder;
     /// Sets the title, in one line.
-    pub fn title(self, title: impl Into<String>) -> Self {
-        Self { title: title.into(), ..self }
-    }
+    title(title: impl Into<String>) { builder.title = title.into(); }
 
     /// Sets the kind of plane section; default: that of the mesh, plane strain.
-    pub fn section(mut self, section: Section) -> Self {
-        self.mesh.section = section;
-        self
-    }
+    section(section: Section) { builder.mesh.section = section; }
 
     /// Adds a body: the material of a group of elements.
-    pub fn body(mut self, name: impl Into<String>, material: impl Into<Box<dyn Material>>) -> Self {
+    body(name: impl Into<String>, material: impl Into<Box<dyn Material>>) {
         let material = BulkLaw::FromCode(material.into().into());
         let body = BodyInput {
             material,
@@ -131,10 +133,74 @@ impl Builder {
             pore_fluid: None,
             thermal: None,
         };
-        self.bodies.push((name.into(), body));
-        self
+        builder.bodies.push((name.into(), body));
     }
 
+    /// Adds a point mass at every node of a group, in addition to the mass of a body there [M].
+    point_mass(group: impl Into<String>, mass: f64) {
+        builder.point_masses.push((group.into(), PointMassInput { mass, velocity: None }));
+    }
+
+    /// Adds a point mass with an initial velocity at every node of a group [M], [L/T].
+    moving_point_mass(group: impl Into<String>, mass: f64, velocity: [f64; 2]) {
+        builder.point_masses.push((group.into(), PointMassInput { mass, velocity: Some(velocity) }));
+    }
+
+    /// Adds periodic sides: two groups with matching nodes and equal displacements.
+    periodic(side: impl Into<String>, other: impl Into<String>) {
+        builder.periodic.push([side.into(), other.into()]);
+    }
+
+    /// Adds a loading platen: all nodes of a group have the same displacement, as if glued to a rigid platen that does not
+    /// rotate. Loads on one of them act on the platen.
+    plate(group: impl Into<String>) { builder.plates.push(LoadingPlateInput::Group(group.into())); }
+
+    /// Adds a loading platen with another kind of motion.
+    plate_moving(group: impl Into<String>, moves: Plate) {
+        builder.plates.push(LoadingPlateInput::Moving(MovingPlateInput { on: group.into(), moves }));
+    }
+
+    /// Adds a rigid body with its reference point, for contacts with a moving rigid master ([`Contact::rigid_body`]) and
+    /// supports `on` its name [L].
+    rigid_body(name: impl Into<String>, reference: [f64; 2]) {
+        builder.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: None }));
+    }
+
+    /// Adds a rigid body that may rotate freely, with its centre of mass [L] and its moment of inertia about it [M L²]; its
+    /// mass is a [point mass](Self::point_mass) with its name.
+    free_rigid_body(name: impl Into<String>, reference: [f64; 2], inertia: f64) {
+        builder.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
+    }
+
+    /// Adds a contact.
+    contact(contact: Contact) { builder.contacts.push(contact); }
+
+    /// Sets the initial velocity of a body [L/T].
+    initial_velocity(body: impl Into<String>, velocity: [f64; 2]) {
+        builder.velocities.push((body.into(), velocity));
+    }
+
+    /// Adds the next load step.
+    step(step: LoadStep) { builder.steps.push(step); }
+
+    /// Watches a group or single node: its mean displacement and reaction are reported.
+    watch(on: impl Into<Place>) { builder.watch.push(on.into()); }
+
+    /// Sets the stopping criteria of Newton's method; default: tolerance 1e-8 and 25 iterations.
+    newton(newton: NewtonSettings) { builder.newton = newton; }
+
+    /// Adds a gauge: a point, or points along a line, at which motion, strain and stress are evaluated.
+    probe(gauge: Gauge) { builder.gauges.push(gauge); }
+
+    /// Sets output times of fields, at which increments end [T].
+    times(times: impl Into<Vec<f64>>) { builder.times = times.into(); }
+
+    /// Sets the minimum time between two rows of the history of implicit steps, and the interval of the results of explicit
+    /// ones; default: all increments, and a hundredth of each explicit step [T].
+    interval(interval: f64) { builder.interval = Some(interval); }
+}
+
+impl Builder {
     /// Selects F-bar elements (mean dilatation of the centre) for a body, which do not lock for ν → ½: Q4 only.
     pub fn f_bar(self, body: impl Into<String>) -> Self {
         self.change(body, |body| body.element = Formulation::FBar)
@@ -175,105 +241,14 @@ impl Builder {
         self
     }
 
-    /// Adds a point mass at every node of a group, in addition to the mass of a body there [M].
-    pub fn point_mass(mut self, group: impl Into<String>, mass: f64) -> Self {
-        self.point_masses.push((group.into(), PointMassInput { mass, velocity: None }));
-        self
-    }
-
-    /// Adds a point mass with an initial velocity at every node of a group [M], [L/T].
-    pub fn moving_point_mass(mut self, group: impl Into<String>, mass: f64, velocity: [f64; 2]) -> Self {
-        self.point_masses.push((group.into(), PointMassInput { mass, velocity: Some(velocity) }));
-        self
-    }
-
-    /// Adds periodic sides: two groups with matching nodes and equal displacements.
-    pub fn periodic(mut self, side: impl Into<String>, other: impl Into<String>) -> Self {
-        self.periodic.push([side.into(), other.into()]);
-        self
-    }
-
-    /// Adds a loading platen: all nodes of a group have the same displacement, as if glued to a rigid platen that does not
-    /// rotate. Loads on one of them act on the platen.
-    pub fn plate(mut self, group: impl Into<String>) -> Self {
-        self.plates.push(LoadingPlateInput::Group(group.into()));
-        self
-    }
-
-    /// Adds a loading platen with another kind of motion.
-    pub fn plate_moving(mut self, group: impl Into<String>, moves: Plate) -> Self {
-        self.plates.push(LoadingPlateInput::Moving(MovingPlateInput { on: group.into(), moves }));
-        self
-    }
-
-    /// Adds a rigid body with its reference point, for contacts with a moving rigid master ([`Contact::rigid_body`]) and
-    /// supports `on` its name [L].
-    pub fn rigid_body(mut self, name: impl Into<String>, reference: [f64; 2]) -> Self {
-        self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: None }));
-        self
-    }
-
-    /// Adds a rigid body that may rotate freely, with its centre of mass [L] and its moment of inertia about it [M L²]; its
-    /// mass is a [point mass](Self::point_mass) with its name.
-    pub fn free_rigid_body(mut self, name: impl Into<String>, reference: [f64; 2], inertia: f64) -> Self {
-        self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
-        self
-    }
-
-    /// Adds a contact.
-    pub fn contact(mut self, contact: Contact) -> Self {
-        self.contacts.push(contact);
-        self
-    }
-
-    /// Sets the initial velocity of a body [L/T].
-    pub fn initial_velocity(mut self, body: impl Into<String>, velocity: [f64; 2]) -> Self {
-        self.velocities.push((body.into(), velocity));
-        self
-    }
-
-    /// Adds the next load step.
-    pub fn step(mut self, step: LoadStep) -> Self {
-        self.steps.push(step);
-        self
-    }
-
-    /// Watches a group or single node: its mean displacement and reaction are reported.
-    pub fn watch(mut self, on: impl Into<Place>) -> Self {
-        self.watch.push(on.into());
-        self
-    }
-
-    /// Sets the stopping criteria of Newton's method; default: tolerance 1e-8 and 25 iterations.
-    pub fn newton(self, newton: NewtonSettings) -> Self {
-        Self { newton, ..self }
-    }
-
-    /// Adds a gauge: a point, or points along a line, at which motion, strain and stress are evaluated.
-    pub fn probe(mut self, gauge: Gauge) -> Self {
-        self.gauges.push(gauge);
-        self
-    }
-
-    /// Sets output times of fields, at which increments end [T].
-    pub fn times(self, times: impl Into<Vec<f64>>) -> Self {
-        Self { times: times.into(), ..self }
-    }
-
-    /// Sets the minimum time between two rows of the history of implicit steps, and the interval of the results of explicit
-    /// ones; default: all increments, and a hundredth of each explicit step [T].
-    pub fn interval(self, interval: f64) -> Self {
-        Self { interval: Some(interval), ..self }
-    }
-
     /// Builds the model.
     ///
     /// # Errors
     /// Returns [`ModelError`] with place, value and remedy if the input is invalid.
     pub fn build(mut self) -> Checked<Model> {
         self.check_names()?;
-        section::check(&self.mesh)?;
-        rigid::add(&self.rigid_bodies, &mut self.mesh)?;
+        checks::check_section(&self.mesh)?;
+        rigid::add_bodies(&self.rigid_bodies, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
         let mut model = Model {
@@ -295,33 +270,28 @@ impl Builder {
             aids: Default::default(),
             newton: checks::checked_newton(self.newton)?,
             prestress: Vec::new(),
-            requests: OutputRequests { interval: checks::checked_interval(self.interval)?, ..Default::default() },
+            requests: OutputRequests { interval: requests::checked_interval(self.interval)?, ..Default::default() },
         };
         initial::start_under_stresses(&mut model)?;
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
-        model.plates = plates::plates(&self.plates, &model.mesh)?;
-        model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;
+        model.plates = rigid::plates(&self.plates, &model.mesh)?;
+        model.ties = rigid::ties(&self.periodic, &model.plates, &model.mesh)?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
-        model.linkage = plates::linkage(&self.plates, &self.steps, &model)?;
+        model.linkage = rigid::linkage(&self.plates, &self.steps, &model)?;
         let regime = schedule::regime(&self.steps);
         model.contacts = pair::pairs(&self.contacts, &model, regime)?;
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, regime)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
-        section::check_velocities(
-            "initial_velocity",
-            self.velocities.iter().map(|(name, value)| (name, value)),
-            &model,
-        )?;
         model.initial_velocity = initial::velocities(&self.velocities, &self.point_masses, &model)?;
-        model.requests.watch = groups::watched(&self.watch, &model)?;
-        model.requests.times = checks::checked_times(self.times, &model.steps)?;
-        model.requests.probes = probes::probes(&self.gauges, &model)?;
+        model.requests.watch = requests::watched(&self.watch, &model)?;
+        model.requests.times = requests::checked_times(self.times, &model.steps)?;
+        model.requests.probes = requests::probes(&self.gauges, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
-        checks::check_rows(&model)?;
+        requests::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;
         contact::check_fluids_in_time(&self.contacts, &model)?;
-        supported::check(&self.steps, &model)?;
+        unconstrained::check(&self.steps, &model)?;
         Ok(model)
     }
 }

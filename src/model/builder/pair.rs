@@ -38,11 +38,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
-use super::error::{Checked, ModelError, check_positive, check_size};
+use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
-use super::{along, contact, initial, rigid, tied};
+use super::{contact, friction, initial, rigid};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
@@ -60,7 +60,7 @@ use crate::model::method::{Asked, Chosen, Method, choose};
 pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
     check_allowed(contacts, &model.mesh)?;
     let mut pairs = contacts.iter().map(|contact| pair(contact, model, regime)).collect::<Checked<Vec<_>>>()?;
-    unseen(contacts, &mut pairs, model);
+    undetected(contacts, &mut pairs, model);
     Ok(pairs)
 }
 
@@ -75,8 +75,8 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model, regime)?;
     let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
     let structure = contact.initial.as_ref().and_then(|initial| initial.structure.as_ref());
-    tied::check_friction(contact, &place)?;
-    let friction = along::friction(&contact.friction, &contact.along, structure, &place)?;
+    contact::check_has_friction(contact, &place)?;
+    let friction = friction::friction(&contact.friction, &contact.along, structure, &place)?;
     let (laws, in_time) = friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
     for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
@@ -104,15 +104,13 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         master,
     };
     if contact.tied {
-        tied::check(contact, &place)?;
+        contact::check_tied(contact, &place)?;
         pair.tie(contact.sliding == SlidingRange::Small, &model.mesh.undeformed());
-        tied::check_feet(&pair, &place)?;
+        contact::check_ties(&pair, &place)?;
     } else if contact.sliding == SlidingRange::Small {
-        if contact.is_own() {
-            let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \
-                           take finite sliding, or name the two parts that touch as slave and master";
-            return Err(ModelError::new(format!("{place}.sliding"), message));
-        }
+        let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \
+                       take finite sliding, or name the two parts that touch as slave and master";
+        refuse_if(contact.is_own(), format!("{place}.sliding"), message)?;
         pair.slide_little(&model.mesh.undeformed());
     }
     check_stick(&pair, &place)?;
@@ -158,10 +156,8 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
         initial::close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
     }
     if contact.shrink_fit {
-        if contact.initial.is_some() {
-            let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
-            return Err(ModelError::new(format!("{place}.shrink_fit"), message));
-        }
+        let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
+        refuse_if(contact.initial.is_some(), format!("{place}.shrink_fit"), message)?;
         pair.start_fitting(&model.mesh.undeformed());
     }
     Ok(())
@@ -178,11 +174,9 @@ fn check_allowed(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
         for (key, allowed) in keys.into_iter().filter_map(|(key, allowed)| Some((key, allowed?))) {
             let place = format!("contacts.{}.{key}", contact.name);
             check_positive(&place, allowed, " (leave it out for the plain penalty)")?;
-            if allowed < least {
-                let message =
-                    format!("is {allowed:e}: gaps of this model have round-off of {least:.1e}; allow more than that");
-                return Err(ModelError::new(place, message));
-            }
+            let message =
+                format!("is {allowed:e}: gaps of this model have round-off of {least:.1e}; allow more than that");
+            refuse_if(allowed < least, place, message)?;
         }
     }
     Ok(())
@@ -190,20 +184,14 @@ fn check_allowed(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
 
 /// Elastic slip that is a part of the law cannot be taken away.
 fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
-    if pair.stick.is_none() || pair.laws.iter().any(|law| law.description.stiffness_is_penalty) {
-        return Ok(());
-    }
+    let has_penalty = pair.laws.iter().any(|law| law.description.stiffness_is_penalty);
     let message = "is for laws whose alpha_t is a penalty (coulomb, adhesion, slip_weakening), and here elastic slip is part of the law, \
                    or there is no friction: leave it out";
-    Err(ModelError::new(format!("{place}.stick"), message))
+    refuse_if(pair.stick.is_some() && !has_penalty, format!("{place}.stick"), message)
 }
 
 /// Method of a contact of edges; `None` for a point group.
 pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chosen> {
-    let master = match &contact.master {
-        MasterSide::Group(group) => Some(group.as_str()),
-        _ => None,
-    };
     let Contact { slave, method, points, smooth, .. } = contact;
     let asked = Asked {
         method: *method,
@@ -213,7 +201,7 @@ pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chos
         small: contact.tied || contact.sliding == SlidingRange::Small,
         bent: matches!(contact.master, MasterSide::Circle { .. } | MasterSide::Polyline { .. }),
     };
-    contact.area.is_none().then(|| choose([Some(slave), master], asked, mesh))
+    contact.area.is_none().then(|| choose([Some(slave), contact.master_group()], asked, mesh))
 }
 
 /// Slave nodes whose mass is moved away.
@@ -221,10 +209,8 @@ pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
     let mut massless = vec![false; mesh.nodes.len()];
     for contact in contacts.iter().filter(|contact| contact.massless) {
         let place = format!("contacts.{}", contact.name);
-        if contact.area.is_some() {
-            let message = "is for a slave group of edges, whose elements have the mass: leave it out";
-            return Err(ModelError::new(format!("{place}.massless"), message));
-        }
+        let message = "is for a slave group of edges, whose elements have the mass: leave it out";
+        refuse_if(contact.area.is_some(), format!("{place}.massless"), message)?;
         let slave = edges(mesh, &contact.slave, &format!("{place}.slave"))?;
         slave.iter().flat_map(|edge| &edge.nodes).for_each(|&node| massless[node] = true);
     }
@@ -233,7 +219,7 @@ pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
 
 /// Nodes of a mesh master, with the slave edges as their master.
 fn reverse(contact: &Contact, mesh: &Mesh) -> Option<Reverse> {
-    let MasterSide::Group(master) = &contact.master else { return None };
+    let master = contact.master_group()?;
     let [master, slave] = [master, &contact.slave].map(|name| match mesh.group(name) {
         Ok(Group::Edges(edges)) => in_order(&node_lists(edges)),
         _ => Vec::new(),
@@ -259,9 +245,7 @@ fn slave_points(
         let message = format!("`{name}` is a group of edges, which have lengths of their own: leave the area out");
         return Err(ModelError::new(format!("{place}.area"), message));
     };
-    if !(2..=4).contains(&points) {
-        return Err(ModelError::new(format!("{place}.points"), format!("is {points}: must be 2, 3 or 4")));
-    }
+    refuse_if(!(2..=4).contains(&points), format!("{place}.points"), format_args!("is {points}: must be 2, 3 or 4"))?;
     Ok(match method {
         Method::NodeToSegment if mesh.section.is_axisymmetric() => (nodal_points_of_rings(&edges), None),
         Method::NodeToSegment => (nodal_points(&edges), None),
@@ -287,11 +271,9 @@ fn lone_points(place: &str, contact: &Contact, nodes: &[usize]) -> Checked<Vec<S
 
 fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) -> Checked<Master> {
     let mesh = &model.mesh;
-    let refused = |why: &str| Err(ModelError::new(format!("{place}.smooth"), why));
-    let MasterSide::Group(group) = &contact.master else {
-        if contact.smooth {
-            return refused("is for a master of mesh edges, and a rigid body needs none: leave it out");
-        }
+    let refuse_smooth_if = |fails: bool, why: &str| refuse_if(contact.smooth && fails, format!("{place}.smooth"), why);
+    let Some(group) = contact.master_group() else {
+        refuse_smooth_if(true, "is for a master of mesh edges, and a rigid body needs none: leave it out")?;
         let shape = contact::shape(&contact.master, &format!("{place}.master"))?;
         return Ok(Master::Rigid(Rigid { shape, body: rigid::of_contact(contact, mesh, place)? }));
     };
@@ -307,12 +289,10 @@ fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) 
     if !contact.smooth {
         return Ok(Master::Mesh(surface));
     }
-    if contact.method == Some(Method::Mortar) {
-        return refused("is not for mortar, which averages the gap: leave it out, or take gauss_to_segment");
-    }
-    if master.iter().any(|edge| edge.nodes.len() > 2) {
-        return refused("is for straight edges, and the master has quadratic ones: leave it out");
-    }
+    let why = "is not for mortar, which averages the gap: leave it out, or take gauss_to_segment";
+    refuse_smooth_if(contact.method == Some(Method::Mortar), why)?;
+    let why = "is for straight edges, and the master has quadratic ones: leave it out";
+    refuse_smooth_if(master.iter().any(|edge| edge.nodes.len() > 2), why)?;
     Ok(Master::Mesh(surface.smoothed(&mesh.nodes)))
 }
 
@@ -358,12 +338,10 @@ pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> 
 
 /// η by (2), averaged over the edges of each side.
 fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked<f64> {
-    if contact.area.is_some() {
-        let message = "has no default for a slave group of points, behind which there is no body: give a number";
-        return Err(ModelError::new(at, message));
-    }
+    let message = "has no default for a slave group of points, behind which there is no body: give a number";
+    refuse_if(contact.area.is_some(), at, message)?;
     let impedance = |edge: &Edge| {
-        let body = &model.bodies[model.body_of_element[edge.element]];
+        let body = model.body_of(edge.element);
         let (density, modulus) = (body.material.description().density, body.material.description().shear_modulus);
         if density > 0.0 {
             return Ok((density * modulus).sqrt());
@@ -378,7 +356,7 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
         Ok(all.iter().sum::<f64>() / all.len() as f64)
     };
     let slave = side(&contact.slave, "slave")?;
-    let MasterSide::Group(master) = &contact.master else { return Ok(slave) };
+    let Some(master) = contact.master_group() else { return Ok(slave) };
     let master = side(master, "master")?;
     Ok(slave * master / (slave + master))
 }
@@ -451,11 +429,9 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
         return Ok(None);
     }
     let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
-    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.description().p_wave_modulus;
-    let master = match &contact.master {
-        MasterSide::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
-        _ => &[],
-    };
+    let modulus = |edge: &Edge| model.body_of(edge.element).material.description().p_wave_modulus;
+    let master = contact.master_group().map(|group| edges(&model.mesh, group, &format!("{place}.master")));
+    let master = master.transpose()?.unwrap_or_default();
     let softest = master.iter().map(modulus).fold(f64::INFINITY, f64::min);
     let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
     Ok(Some(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64))
@@ -469,7 +445,7 @@ pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
 
 /// Finds surface nodes of the slave's bodies that are not on the slave and initially outside a rigid master, whose penetration
 /// would not be detected.
-pub fn unseen(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
+fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
     // Several contacts may belong to the same bodies.
     let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
     for (contact, pair) in contacts.iter().zip(pairs) {
@@ -513,17 +489,14 @@ fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
 pub fn modulus(contact: &Contact, model: &Model) -> f64 {
     let compliance = |name: &str| match model.mesh.group(name) {
         Ok(Group::Edges(edges)) => {
-            let of = |element: usize| 1.0 / plane(&*model.bodies[model.body_of_element[element]].material);
+            let of = |element: usize| 1.0 / plane(&*model.body_of(element).material);
             edges.iter().map(|edge| of(edge.element)).reduce(f64::max)
         }
         _ => None,
     };
     let Some(slave) = compliance(&contact.slave) else { return 0.0 };
-    let master = match &contact.master {
-        MasterSide::Group(group) => compliance(group).unwrap_or(0.0),
-        _ => 0.0,
-    };
-    2.0 / (slave + master)
+    let master = contact.master_group().and_then(compliance);
+    2.0 / (slave + master.unwrap_or(0.0))
 }
 
 /// G/(1 − ν) = 2 G (M − G)/M,   M = λ + 2 G

@@ -6,22 +6,19 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::body::{check_damping, in_force, temperatures};
-use super::error::{Checked, ModelError, check_positive};
+use super::body::{check_damping, prescribed_temperatures, temperatures};
+use super::error::{Checked, ModelError, check_positive, refuse_if};
 use super::groups;
 use super::groups::nodes_at;
 use super::initial::launch;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UNTIL_TOLERANCE, UntilSettings};
-use super::loads;
-use super::loads::LoadsInForce;
-use super::rigid;
-use super::section::hold_axis;
-use super::supports::{InForce, freed, supports};
+use super::loads::{LoadsInForce, check_defined};
+use super::supports::{SupportsInForce, freed};
 use crate::contact::pair::ContactPair;
 use crate::mesh::rigid::RigidBody;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::scheme::Scheme;
-use crate::model::step::{ForceComponent, Until};
+use crate::model::step::{Entry, ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
@@ -40,9 +37,8 @@ pub enum Regime {
 /// The regime of a run of these steps.
 #[doc(hidden)]
 pub fn regime(steps: &[LoadStep]) -> Regime {
-    let explicit = |scheme: Scheme| matches!(scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. });
     let any = |is: &dyn Fn(Scheme) -> bool| steps.iter().any(|step| step.scheme.is_some_and(is));
-    if any(&explicit) || steps.iter().any(|step| step.rupture.is_some()) {
+    if any(&Scheme::is_integrated_explicitly) || steps.iter().any(|step| step.rupture.is_some()) {
         Regime::Explicit
     } else if any(&Scheme::is_dynamic) {
         Regime::Dynamic
@@ -53,15 +49,13 @@ pub fn regime(steps: &[LoadStep]) -> Regime {
 
 /// Builds the steps of a run.
 pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
-    if given.is_empty() {
-        return Err(ModelError::new("steps", "is empty: give at least one step"));
-    }
+    refuse_if(given.is_empty(), "steps", "is empty: give at least one step")?;
     let mut schedule = Schedule {
         model,
         start: 0.0,
         scheme: Scheme::Static,
         increments: None,
-        in_force: InForce::default(),
+        supports_in_force: SupportsInForce::default(),
         may_end_early: false,
         damping: model.bodies.iter().map(|body| body.damping).collect(),
         supports: Vec::new(),
@@ -77,7 +71,7 @@ struct Schedule<'m> {
     start: f64,
     scheme: Scheme,
     increments: Option<IncrementSettings>,
-    in_force: InForce,
+    supports_in_force: SupportsInForce,
     /// whether the last step may end early
     may_end_early: bool,
     damping: Vec<Damping>,
@@ -98,23 +92,17 @@ impl Schedule<'_> {
         self.increments = given.dt.or(self.increments);
         let increments = increments(&format!("{place}.dt"), self.increments, span, scheme)?;
         if std::mem::replace(&mut self.may_end_early, given.until.is_some()) {
-            self.in_force.stay();
+            self.supports_in_force.keep_positions();
         }
-        supports(&mut self.in_force, &given.supports, place, span, self.model)?;
-        for dof in rigid::still(self.model) {
-            let held = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
-            self.in_force.dofs.entry(dof).or_insert_with(held);
-        }
-        hold_axis(&mut self.in_force.dofs, place, span, self.model)?;
-        let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
         // In dynamics a released reaction vanishes at once.
-        let released = if scheme.is_dynamic() { Vec::new() } else { freed(&before, &self.supports) };
-        for (k, load) in given.loads.iter().enumerate() {
-            self.loads.change(load, &format!("{place}.loads[{k}]"), span, self.model)?;
-        }
+        let fades = !scheme.is_dynamic();
+        self.supports_in_force.step(&given.supports, place, span, fades, self.model)?;
+        let before = std::mem::replace(&mut self.supports, self.supports_in_force.all(place, self.model)?);
+        let released = if fades { freed(&before, &self.supports) } else { Vec::new() };
+        self.loads.step(&given.loads, place, span, self.model)?;
         self.damp(&given.damping, place)?;
         temperatures(&mut self.temperatures, given, place, span, self.model)?;
-        loads::check_defined(place, given, scheme, span, self.model)?;
+        check_defined(place, given, scheme, span, self.model)?;
         let stabilization = stabilization(&format!("{place}.stabilize"), given, scheme, self.model)?;
         let increments = if stabilization.is_empty() { increments } else { increments.at_most(0.5 * given.duration) };
         let mut step = Step {
@@ -127,9 +115,10 @@ impl Schedule<'_> {
             supports: self.supports.clone(),
             released,
             loads: self.loads.all(),
+            entries: Entry::of_step(self.supports_in_force.entries().chain(self.loads.entries())),
             damping: self.damping.clone(),
             until: None,
-            temperatures: in_force(&self.temperatures),
+            temperatures: prescribed_temperatures(&self.temperatures),
             stabilization,
         };
         step.until = until(place, given, &step, self.model)?;
@@ -160,7 +149,7 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     let duration = span.end - span.start;
     let given = given.unwrap_or(IncrementSettings::from(0.1 * duration));
     let least = SHORTEST_INCREMENT * span.end;
-    let quasi_dynamic = matches!(scheme, Scheme::QuasiDynamic { .. });
+    let quasi_dynamic = scheme.is_quasi_dynamic();
     let (default_min, default_max) = match given.error {
         None if quasi_dynamic => (least, given.initial.max(0.1 * duration)),
         None => (1e-3 * given.initial, given.initial),
@@ -171,19 +160,19 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     check_positive(&format!("{place}.initial"), given.initial, "")?;
     check_positive(&format!("{place}.error"), given.error.unwrap_or(1.0), "")?;
     check_bounds(place, [min, max], span, scheme)?;
-    if given.initial > max || given.initial < min {
-        let message = format!("initial = {} must lie between min = {min} and max = {max}", given.initial);
-        return Err(ModelError::new(place, message));
-    }
-    if given.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none() {
-        let message = match scheme {
-            Scheme::Explicit { .. } => "explicit takes the longest stable increments: leave error out",
-            Scheme::QuasiDynamic { .. } => "quasi_dynamic has a tolerance of its own: leave error out",
-            Scheme::Wilson { .. } => "wilson has no error estimate: take newmark, hht or generalized_alpha",
-            _ => "newmark with beta near 1/6 has no error estimate: take another beta",
-        };
-        return Err(ModelError::new(format!("{place}.error"), message));
-    }
+    let message = format!("initial = {} must lie between min = {min} and max = {max}", given.initial);
+    refuse_if(given.initial > max || given.initial < min, place, message)?;
+    let message = match scheme {
+        Scheme::Explicit { .. } => "explicit takes the longest stable increments: leave error out",
+        Scheme::QuasiDynamic { .. } => "quasi_dynamic has a tolerance of its own: leave error out",
+        Scheme::Wilson { .. } => "wilson has no error estimate: take newmark, hht or generalized_alpha",
+        _ => "newmark with beta near 1/6 has no error estimate: take another beta",
+    };
+    refuse_if(
+        given.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none(),
+        format!("{place}.error"),
+        message,
+    )?;
     Ok(increments)
 }
 
@@ -192,39 +181,29 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
 pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Scheme) -> Checked<()> {
     check_positive(&format!("{place}.min"), min, "")?;
     check_positive(&format!("{place}.max"), max, "")?;
-    if min > max {
-        let message = format!("min = {min} is above max = {max}: increments must have room between them");
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!("min = {min} is above max = {max}: increments must have room between them");
+    refuse_if(min > max, place, message)?;
     let (end, least, duration) = (left.end, SHORTEST_INCREMENT * left.end, left.end - left.start);
-    if min < least {
-        // If the two are equal, max was given.
-        let name = if min < max { "min" } else { "max" };
-        let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
-        return Err(ModelError::new(format!("{place}.{name}"), message));
-    }
+    // If the two are equal, max was given.
+    let name = if min < max { "min" } else { "max" };
+    let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
+    refuse_if(min < least, format!("{place}.{name}"), message)?;
     let count = duration / max;
-    if count > MOST_INCREMENTS && !matches!(scheme, Scheme::Explicit { .. }) {
-        let message = format!(
-            "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and at most \
-             {MOST_INCREMENTS:e} are allowed: make them longer"
-        );
-        return Err(ModelError::new(place, message));
-    }
+    let message = format!(
+        "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and at most \
+         {MOST_INCREMENTS:e} are allowed: make them longer"
+    );
+    refuse_if(count > MOST_INCREMENTS && !scheme.is_explicit(), place, message)?;
     Ok(())
 }
 
 /// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.
 pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Model) -> Checked<Vec<f64>> {
     let Some(share) = given.stabilize else { return Ok(Vec::new()) };
-    if !(share > 0.0 && share <= 1.0) {
-        let message =
-            format!("is {share}: must be a fraction of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
-        return Err(ModelError::new(place, message));
-    }
-    if scheme != Scheme::Static {
-        return Err(ModelError::new(place, "is for static steps: in a dynamic one inertia constrains the bodies"));
-    }
+    let message =
+        format!("is {share}: must be a fraction of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
+    refuse_if(!(share > 0.0 && share <= 1.0), place, message)?;
+    refuse_if(scheme != Scheme::Static, place, "is for static steps: in a dynamic one inertia constrains the bodies")?;
     let mut coefficients = vec![0.0; model.dofs()];
     for body in &model.bodies {
         let coefficient = share * body.material.description().p_wave_modulus * given.duration / body.nodes.len() as f64;
@@ -255,23 +234,13 @@ fn softest(model: &Model, rigid: &RigidBody) -> f64 {
 pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: &Model) -> Checked<Option<Rupture>> {
     let Some(RuptureSettings { slip_rate, safety }) = given else { return Ok(None) };
     check_positive(&format!("{place}.slip_rate"), slip_rate, "")?;
-    if matches!(step.scheme, Scheme::Explicit { .. }) {
-        return Err(ModelError::new(place, "is for static and implicit steps: this one is explicit throughout"));
-    }
-    if matches!(step.scheme, Scheme::QuasiDynamic { .. }) {
-        return Err(ModelError::new(
-            place,
-            "is for static and implicit steps: this one follows slip at any rate by itself",
-        ));
-    }
-    if model.contacts.is_empty() {
-        return Err(ModelError::new(place, "needs a contact that may slip: leave it out"));
-    }
-    if model.bodies.is_empty() {
-        let cause = "needs a body: fast slip ends when it stays slow for the time in which a shear wave crosses the \
-                     bodies; use a dynamic scheme under error control (`dt.error`)";
-        return Err(ModelError::new(place, cause));
-    }
+    refuse_if(step.scheme.is_explicit(), place, "is for static and implicit steps: this one is explicit throughout")?;
+    let message = "is for static and implicit steps: this one follows slip at any rate by itself";
+    refuse_if(step.scheme.is_quasi_dynamic(), place, message)?;
+    refuse_if(model.contacts.is_empty(), place, "needs a contact that may slip: leave it out")?;
+    let cause = "needs a body: fast slip ends when it stays slow for the time in which a shear wave crosses the \
+                 bodies; use a dynamic scheme under error control (`dt.error`)";
+    refuse_if(model.bodies.is_empty(), place, cause)?;
     let scheme = Scheme::Explicit { safety };
     scheme.check().map_err(|error| ModelError::new(place, error))?;
     let slowest =
@@ -291,21 +260,14 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
     let Some(given_until) = &given.until else { return Ok(None) };
     let UntilSettings { on, tolerance, .. } = given_until;
     let (place, tolerance) = (format!("{place}.until"), *tolerance);
-    let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}{key}"), message));
-    let Some((part, value)) = given_until.part() else {
-        return refused("", "must give exactly one of fx, fy and force".into());
-    };
-    if !value.is_finite() || part == ForceComponent::Magnitude && value < 0.0 {
-        let kind =
-            if part == ForceComponent::Magnitude { "zero or positive, the size of a force" } else { "a finite number" };
-        return refused(&format!(".{}", part.name()), format!("is {value}: must be {kind}"));
-    }
-    if !(tolerance > 0.0 && tolerance <= LOOSEST) {
-        return refused(
-            ".tolerance",
-            format!("is {tolerance}: must be above 0 and at most {LOOSEST}; {UNTIL_TOLERANCE:e} is the default"),
-        );
-    }
+    let part = given_until.part();
+    let (part, value) = part.ok_or_else(|| ModelError::new(&place, "must give exactly one of fx, fy and force"))?;
+    let is_size = part == ForceComponent::Magnitude;
+    let kind = if is_size { "zero or positive, the size of a force" } else { "a finite number" };
+    let fails = !value.is_finite() || is_size && value < 0.0;
+    refuse_if(fails, format!("{place}.{}", part.name()), format_args!("is {value}: must be {kind}"))?;
+    let message = format!("is {tolerance}: must be above 0 and at most {LOOSEST}; {UNTIL_TOLERANCE:e} is the default");
+    refuse_if(!(tolerance > 0.0 && tolerance <= LOOSEST), format!("{place}.tolerance"), message)?;
     let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
     let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
     let along = |i: usize| {
@@ -317,34 +279,23 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
         ForceComponent::Y => (along(1), " along y"),
         ForceComponent::Magnitude => (along(0) || along(1), ""),
     };
-    if !has {
-        let message = format!(
-            "{on} has no support{axis} in this step, and no reaction: name the side that is moved or supported"
-        );
-        return refused(".on", message);
-    }
+    let message =
+        format!("{on} has no support{axis} in this step, and no reaction: name the side that is moved or supported");
+    refuse_if(!has, format!("{place}.on"), message)?;
     check_step(&place, given, step, model)?;
     Ok(Some(Until { on: on.to_string(), held, part, value, tolerance }))
 }
 
 /// Checks settings that refer to the whole step.
 fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<()> {
-    let refused = |message: &str| Err(ModelError::new(place, message));
-    if matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. }) {
-        return refused("ends static and implicit steps only: leave it out, and give the step its time");
-    }
-    if given.rupture.is_some() {
-        return refused(
-            "and rupture cannot be combined: fast slip is integrated explicitly, without increments that could be cut \
-             back",
-        );
-    }
-    if given.stabilize.is_some() || !step.released.is_empty() {
-        return refused(
-            "may end the step early, and what fades over the step (stabilize, or the reaction of supports released by \
-             null) would be left: let it fade in an earlier step",
-        );
-    }
+    let message = "ends static and implicit steps only: leave it out, and give the step its time";
+    refuse_if(step.scheme.is_integrated_explicitly(), place, message)?;
+    let message = "and rupture cannot be combined: fast slip is integrated explicitly, without increments that could be cut \
+                   back";
+    refuse_if(given.rupture.is_some(), place, message)?;
+    let message = "may end the step early, and what fades over the step (stabilize, or the reaction of supports released by null) \
+                   would be left: let it fade in an earlier step";
+    refuse_if(given.stabilize.is_some() || !step.released.is_empty(), place, message)?;
     check_ramps(place, step, model)
 }
 

@@ -28,61 +28,190 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
+use thiserror::Error;
 
-use super::error::{Checked, ModelError};
-use super::groups::{Place, edges, nodes_at};
+use super::error::{Checked, ModelError, refuse_if};
+use super::groups::{Place, dofs_of, edges, nodes_at, pressure_weights};
 use super::load::Change;
 use super::load_step::{Rotation, Support};
-use super::plates::check_support;
 use super::rigid;
-use super::section;
-use super::shares::pressure_shares;
-use crate::mesh::Edge;
+use crate::mesh::{Edge, Mesh};
 use crate::model::Model;
-use crate::model::boundary::{Amplitude, Drive, Span};
+use crate::model::boundary::{Amplitude, Drive, NodalWeight, Span};
+use crate::model::step::Entry;
 use crate::model::support::{Direction, Inclined, Motion, Prescribed};
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 
-/// Adds the supports of a step to those in force, replacing those given again.
-pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Span, model: &Model) -> Checked<()> {
-    let before = in_force.clone();
-    in_force.begin(span);
-    for (k, support) in given.iter().enumerate() {
-        let place = format!("{place}.supports[{k}]");
-        let nodes = nodes_at(&model.mesh, &support.on, &format!("{place}.on"))?;
-        let nodes: Vec<usize> = nodes.into_iter().map(|node| model.ties.original(node)).collect();
-        check_directions(support, &place)?;
-        rigid::check_support(support, &place, &model.mesh)?;
-        check_on_plates(support, &nodes, model, &place)?;
-        check_support(support, &nodes, model, &place)?;
-        for (key, component, change) in [("ux", 0, &support.ux), ("uy", 1, &support.uy)] {
-            let Some(change) = change else { continue };
-            let motion = displacement(change, &format!("{place}.{key}"), span)?;
-            let dofs = || nodes.iter().map(|node| model.linkage.leading(2 * node + component));
-            if motion.is_none() && !dofs().any(|dof| before.dofs.contains_key(&dof)) {
-                return Err(frees_nothing(&format!("{place}.{key}"), &support.on));
+/// Supports in force.
+#[derive(Clone, Default)]
+pub struct SupportsInForce {
+    /// supports of dofs
+    dofs: BTreeMap<usize, Prescribed>,
+    /// supports along inclined directions, by node
+    inclined: BTreeMap<usize, Vec<InclinedSupport>>,
+    /// as the input gave them, by place and key
+    entries: BTreeMap<(String, &'static str), Entry>,
+}
+
+/// A node supported along an inclined direction.
+#[derive(Clone)]
+struct InclinedSupport {
+    support: Inclined,
+    is_normal: bool,
+    /// place in the present step, if given there
+    given: Option<String>,
+}
+
+impl SupportsInForce {
+    /// Goes on to the next step, whose supports replace or end those in force; `fades`: whether reactions decrease to zero then.
+    pub fn step(&mut self, given: &[Support], place: &str, span: Span, fades: bool, model: &Model) -> Checked<()> {
+        let before = self.dofs.clone();
+        self.begin(span);
+        for (k, support) in given.iter().enumerate() {
+            let place = format!("{place}.supports[{k}]");
+            let nodes = nodes_at(&model.mesh, &support.on, &format!("{place}.on"))?;
+            let nodes: Vec<usize> = nodes.into_iter().map(|node| model.ties.original(node)).collect();
+            check_directions(support, &place)?;
+            rigid::check_support(support, &place, &model.mesh)?;
+            check_on_plates(support, &nodes, model, &place)?;
+            for (key, component, change) in [("ux", 0, &support.ux), ("uy", 1, &support.uy)] {
+                let Some(change) = change else { continue };
+                let motion = displacement(change, &format!("{place}.{key}"), span)?;
+                let dofs = || nodes.iter().map(|node| model.linkage.leading(2 * node + component));
+                if motion.is_none() && !dofs().any(|dof| before.contains_key(&dof)) {
+                    return Err(nothing_to_end(&format!("{place}.{key}"), &support.on));
+                }
+                dofs().for_each(|dof| self.set(dof, motion.as_ref()));
             }
-            dofs().for_each(|dof| in_force.set(dof, motion.as_ref()));
-        }
-        for along in inclined(support, &nodes, &place, model)? {
-            along.change(in_force, span, model)?;
-        }
-        if let Some((dof, motion)) = rigid::angle(support, &place, span, model)? {
-            if motion.is_none() && !before.dofs.contains_key(&dof) {
-                return Err(frees_nothing(&format!("{place}.angle"), &support.on));
+            for along in inclined(support, &nodes, &place, model)? {
+                along.change(self, span, model)?;
             }
-            in_force.set(dof, motion.as_ref());
+            if let Some((dof, motion)) = rigid::angle(support, &place, span, model)? {
+                if motion.is_none() && !before.contains_key(&dof) {
+                    return Err(nothing_to_end(&format!("{place}.angle"), &support.on));
+                }
+                self.set(dof, motion.as_ref());
+            }
+            if let Some(change) = &support.rotation {
+                if change.given().is_none() && !nodes.iter().any(|node| before.contains_key(&(2 * node))) {
+                    return Err(nothing_to_end(&format!("{place}.rotation"), &support.on));
+                }
+                let first = nodes.first().and_then(|node| before.get(&(2 * node)));
+                let motion = rotation(change, first, &format!("{place}.rotation"), span)?;
+                dofs_of(&nodes).for_each(|dof| self.set(dof, motion.as_ref()));
+            }
+            self.enter(support, fades, model);
         }
-        let Some(change) = &support.rotation else { continue };
-        let held = nodes.iter().any(|node| before.dofs.contains_key(&(2 * node)));
-        if change.given().is_none() && !held {
-            return Err(frees_nothing(&format!("{place}.rotation"), &support.on));
+        for dof in rigid::still(model) {
+            let held = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
+            self.dofs.entry(dof).or_insert_with(held);
         }
-        let first = nodes.first().and_then(|node| before.dofs.get(&(2 * node)));
-        let motion = rotation(change, first, &format!("{place}.rotation"), span)?;
-        nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]).for_each(|dof| in_force.set(dof, motion.as_ref()));
+        self.constrain_axis(place, span, model)
     }
-    Ok(())
+
+    /// Starts a step with the supports in force.
+    fn begin(&mut self, span: Span) {
+        for support in self.dofs.values_mut() {
+            if let Motion::Displacement(_, own) = &mut support.motion {
+                *own = span;
+            }
+        }
+        for held in self.inclined.values_mut().flatten() {
+            (held.support.span, held.given) = (span, None);
+        }
+        self.entries.values_mut().for_each(|entry| entry.kept = true);
+    }
+
+    /// Enters a support as the input gives it.
+    fn enter(&mut self, support: &Support, fades: bool, model: &Model) {
+        let place = support.on.in_words(&model.mesh);
+        let motions = support.motions().map(|(key, change)| (key, change.given().map(Drive::to_string)));
+        let turned = |change: &Change<Rotation>| ("rotation", change.given().map(Rotation::to_string));
+        for (key, value) in motions.chain(support.rotation.as_ref().map(turned)) {
+            let on = match support.along.filter(|_| key == "u") {
+                Some(direction) => format!("{place} along {}", vector(direction)),
+                None => place.clone(),
+            };
+            let entry = Entry { is_load: false, on: on.clone(), kind: key.into(), value, kept: false, fades };
+            self.entries.insert((on, key), entry);
+        }
+    }
+
+    /// The supports of the present step as the input gave them.
+    pub fn entries(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.values()
+    }
+
+    /// Keeps supports at their final position after a step that may have ended early.
+    pub fn keep_positions(&mut self) {
+        let keeps = |drive: &mut Drive| {
+            if let Drive::Constant(_) | Drive::ByPlace(..) = drive {
+                *drive = Drive::Rate(0.0);
+            }
+        };
+        for support in self.dofs.values_mut() {
+            if let Motion::Displacement(drive, _) = &mut support.motion {
+                keeps(drive);
+            }
+        }
+        self.inclined.values_mut().flatten().for_each(|held| keeps(&mut held.support.drive));
+    }
+
+    /// Prescribes or releases a dof.
+    fn set(&mut self, dof: usize, motion: Option<&Motion>) {
+        match motion {
+            Some(motion) => self.dofs.insert(dof, Prescribed { at: dof.into(), motion: motion.clone() }),
+            None => self.dofs.remove(&dof),
+        };
+    }
+
+    /// All supports of a step, `place`, ascending by dof.
+    pub fn all(&self, place: &str, model: &Model) -> Checked<Vec<Prescribed>> {
+        let mut all = self.dofs.clone();
+        for (&node, held) in &self.inclined {
+            let given: Vec<Prescribed> = dofs_of(&[node]).filter_map(|dof| all.remove(&dof)).collect();
+            let tag = model.mesh.node_tags[node];
+            let resolved = resolved(node, given, held)
+                .map_err(|why| ModelError::new(format!("{place}.supports"), format!("node {tag} {why}")))?;
+            all.extend(resolved.into_iter().map(|support| (support.at.dof, support)));
+        }
+        Ok(all.into_values().collect())
+    }
+
+    /// Constrains nodes on the axis and platens, whose radii are constant, and refuses prescribed radial motion and rotation of
+    /// axisymmetric bodies.
+    fn constrain_axis(&mut self, place: &str, span: Span, model: &Model) -> Checked<()> {
+        if !model.mesh.section.is_axisymmetric() {
+            return Ok(());
+        }
+        let turns = |support: &&Prescribed| matches!(support.motion, Motion::Rotation { .. });
+        let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
+        refuse_if(self.dofs.values().any(|support| turns(&support)), format!("{place}.supports"), message)?;
+        let rigid = model.mesh.rigid_bodies.iter().map(|body| body.reference);
+        let (x, axis) = (&model.mesh.nodes, axis(&model.mesh));
+        let on_axis = (0..x.len()).filter(|&node| axis.is_some_and(|near| x[node].x <= near));
+        for node in on_axis.chain(model.plates.iter().flatten().copied()).chain(rigid) {
+            let dof = 2 * model.ties.original(node);
+            let held = Prescribed::displacement(dof, Drive::Constant(0.0), span);
+            let given = self.dofs.entry(dof).or_insert(held);
+            let rests = |drive: &Drive| matches!(drive, Drive::Constant(0.0) | Drive::Rate(0.0));
+            if matches!(&given.motion, Motion::Displacement(drive, _) if rests(drive)) {
+                continue;
+            }
+            let message = match model.mesh.rigid_bodies.iter().find(|body| body.reference == node) {
+                Some(body) => {
+                    format!("the rigid body `{}` moves along y alone in axisymmetry: leave its ux out", body.name)
+                }
+                None => format!(
+                    "node {} lies on the axis or on a plate, and keeps its radius: ux is 0 there; leave it out of the group that is \
+                     moved",
+                    model.mesh.node_tags[node]
+                ),
+            };
+            return Err(ModelError::new(format!("{place}.supports"), message));
+        }
+        Ok(())
+    }
 }
 
 /// Prescribed inclined directions and normals of a support, node by node.
@@ -93,10 +222,8 @@ fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Mode
         displacement(change, &key, Span::default())?;
         let d = Vector2::from(*direction);
         let size = d.amax();
-        if !(size > 0.0 && size.is_finite()) {
-            let message = format!("is [{}, {}]: give a direction [x, y] that is not zero", d.x, d.y);
-            return Err(ModelError::new(format!("{place}.along"), message));
-        }
+        let message = format!("is [{}, {}]: give a direction [x, y] that is not zero", d.x, d.y);
+        refuse_if(!(size > 0.0 && size.is_finite()), format!("{place}.along"), message)?;
         let d = (d / size).normalize();
         all.extend(nodes.iter().map(|&node| Along { node, d, change, is_normal: false, key: key.clone() }));
     }
@@ -134,26 +261,35 @@ fn check_directions(support: &Support, place: &str) -> Checked<()> {
     }
 }
 
-/// Checks that a support on a platen does not vary from node to node, since a platen moves as a whole.
+/// Checks that a support on a platen moves it as a whole.
 fn check_on_plates(support: &Support, nodes: &[usize], model: &Model, place: &str) -> Checked<()> {
-    let on_plate =
-        |node: &usize| model.plates.iter().any(|plate| plate.iter().any(|own| model.ties.original(*own) == *node));
-    let linked = |node: &usize| model.linkage.plates.iter().any(|(plate, _)| plate.binary_search(node).is_ok());
-    let on_plate = |node: &usize| on_plate(node) || linked(node);
-    let Some(node) = nodes.iter().find(|node| on_plate(node)) else { return Ok(()) };
-    let refused = |key: &str, message: &str| {
-        let tag = model.mesh.node_tags[*node];
-        Err(ModelError::new(format!("{place}.{key}"), format!("node {tag} is one of a plate, {message}")))
+    let as_one = |node: &usize| model.plates.iter().flatten().any(|own| model.ties.original(*own) == *node);
+    let linked = |node: &usize, to: &dyn Fn([bool; 2]) -> bool| {
+        let own = |(plate, components): &(Vec<usize>, _)| to(*components) && plate.binary_search(node).is_ok();
+        model.linkage.plates.iter().any(own)
     };
-    if let Some(Change::To(_)) = support.rotation {
-        return refused("rotation", "which does not rotate: give ux and uy");
-    }
-    for (key, change) in support.displacements() {
-        if change.given().is_some_and(Drive::depends_on_position) {
+    let tag = |node: &usize| model.mesh.node_tags[*node];
+    if let Some(node) = nodes.iter().find(|node| as_one(node) || linked(node, &|_| true)) {
+        let refused = |key: &str, why: &str| {
+            Err(ModelError::new(format!("{place}.{key}"), format!("node {} is one of a plate, {why}", tag(node))))
+        };
+        if let Some(Change::To(_)) = support.rotation {
+            return refused("rotation", "which does not rotate: give ux and uy");
+        }
+        let varies = |(_, change): &(_, &Change<Drive>)| change.given().is_some_and(Drive::depends_on_position);
+        if let Some((key, _)) = support.motions().find(varies) {
             return refused(key, "which moves as a whole: give it in t alone");
         }
     }
-    Ok(())
+    let is_inclined = support.along.is_some() || support.un.is_some();
+    let cannot = |components: [bool; 2]| support.rotation.is_some() || is_inclined && components != [true; 2];
+    match nodes.iter().find(|node| linked(node, &cannot)) {
+        Some(node) => {
+            let message = format!("node {} belongs to a plate with tied displacements: give ux and uy", tag(node));
+            Err(ModelError::new(place, message))
+        }
+        None => Ok(()),
+    }
 }
 
 fn displacement(change: &Change<Drive>, place: &str, span: Span) -> Checked<Option<Motion>> {
@@ -180,7 +316,7 @@ fn rotation(
 }
 
 /// Error for a release without a support in force.
-pub fn frees_nothing(place: &str, on: &Place) -> ModelError {
+pub fn nothing_to_end(place: &str, on: &Place) -> ModelError {
     ModelError::new(place, format!("null ends what an earlier step gave, but none gave this on {on}: check the name"))
 }
 
@@ -196,24 +332,6 @@ pub const CORNER: f64 = 45.0;
 /// Relative tolerance by which a third direction at a node may deviate from the other two.
 const ROUNDED: f64 = 1e-9;
 
-/// Supports in force.
-#[derive(Clone, Default)]
-pub struct InForce {
-    /// supports of dofs
-    pub dofs: BTreeMap<usize, Prescribed>,
-    /// supports along inclined directions, by node
-    inclined: BTreeMap<usize, Vec<Held>>,
-}
-
-/// A node supported along an inclined direction.
-#[derive(Clone)]
-struct Held {
-    support: Inclined,
-    is_normal: bool,
-    /// place in the present step, if given there
-    given: Option<String>,
-}
-
 /// A support along d at a node.
 pub struct Along<'s> {
     /// node
@@ -226,56 +344,6 @@ pub struct Along<'s> {
     pub is_normal: bool,
     /// place in the input
     pub key: String,
-}
-
-impl InForce {
-    /// Starts a step with the supports in force.
-    pub fn begin(&mut self, span: Span) {
-        for support in self.dofs.values_mut() {
-            if let Motion::Displacement(_, own) = &mut support.motion {
-                *own = span;
-            }
-        }
-        for held in self.inclined.values_mut().flatten() {
-            (held.support.span, held.given) = (span, None);
-        }
-    }
-
-    /// Keeps supports at their final position after a step that may have ended early.
-    pub fn stay(&mut self) {
-        let stays = |drive: &mut Drive| {
-            if let Drive::Constant(_) | Drive::ByPlace(..) = drive {
-                *drive = Drive::Rate(0.0);
-            }
-        };
-        for support in self.dofs.values_mut() {
-            if let Motion::Displacement(drive, _) = &mut support.motion {
-                stays(drive);
-            }
-        }
-        self.inclined.values_mut().flatten().for_each(|held| stays(&mut held.support.drive));
-    }
-
-    /// Prescribes or releases a dof.
-    pub fn set(&mut self, dof: usize, motion: Option<&Motion>) {
-        match motion {
-            Some(motion) => self.dofs.insert(dof, Prescribed { at: dof.into(), motion: motion.clone() }),
-            None => self.dofs.remove(&dof),
-        };
-    }
-
-    /// All supports of a step, `place`, ascending by dof.
-    pub fn all(&self, place: &str, model: &Model) -> Checked<Vec<Prescribed>> {
-        let mut all = self.dofs.clone();
-        for (&node, held) in &self.inclined {
-            let given: Vec<Prescribed> = [2 * node, 2 * node + 1].iter().filter_map(|dof| all.remove(dof)).collect();
-            let tag = model.mesh.node_tags[node];
-            let resolved = resolved(node, given, held)
-                .map_err(|message| ModelError::new(format!("{place}.supports"), format!("node {tag} {message}")))?;
-            all.extend(resolved.into_iter().map(|support| (support.at.dof, support)));
-        }
-        Ok(all.into_values().collect())
-    }
 }
 
 /// Directions that were supported and are free from now on.
@@ -299,7 +367,7 @@ pub fn freed(before: &[Prescribed], now: &[Prescribed]) -> Vec<Direction> {
 
 impl Along<'_> {
     /// Puts it into force, or ends it. Along a coordinate it is a support of that dof.
-    pub fn change(&self, in_force: &mut InForce, span: Span, model: &Model) -> Checked<()> {
+    pub fn change(&self, in_force: &mut SupportsInForce, span: Span, model: &Model) -> Checked<()> {
         let drive = self.change.given();
         if let Some(i) = (0..2).find(|&i| self.d[1 - i].abs() <= PARALLEL) {
             let motion = drive.map(|drive| {
@@ -308,7 +376,7 @@ impl Along<'_> {
             });
             let dof = 2 * self.node + i;
             if motion.is_none() && !in_force.dofs.contains_key(&dof) {
-                return Err(self.nothing_to_free(model));
+                return Err(self.nothing_to_end(model));
             }
             in_force.set(dof, motion.as_ref());
             return Ok(());
@@ -316,13 +384,13 @@ impl Along<'_> {
         let all = in_force.inclined.entry(self.node).or_default();
         let same = all.iter().position(|held| held.support.direction.perp(&self.d).abs() <= PARALLEL);
         let Some(drive) = drive else {
-            let Some(same) = same else { return Err(self.nothing_to_free(model)) };
+            let Some(same) = same else { return Err(self.nothing_to_end(model)) };
             all.remove(same);
             in_force.inclined.retain(|_, all| !all.is_empty());
             return Ok(());
         };
         let toward = |other: &Vector2<f64>| if other.dot(&self.d) < 0.0 { drive.reversed() } else { drive.clone() };
-        let held = |direction, drive| Held {
+        let held = |direction, drive| InclinedSupport {
             support: Inclined { share: 1.0, direction, drive, span },
             is_normal: self.is_normal,
             given: Some(self.key.clone()),
@@ -345,15 +413,13 @@ impl Along<'_> {
         Ok(())
     }
 
-    fn nothing_to_free(&self, model: &Model) -> ModelError {
+    fn nothing_to_end(&self, model: &Model) -> ModelError {
         let tag = model.mesh.node_tags[self.node];
         ModelError::new(
             &self.key,
             format!(
-                "null ends what an earlier step gave, but none gave node {tag} a support along ({}, {}): check place and \
-                 direction",
-                number(self.d.x),
-                number(self.d.y)
+                "null ends what an earlier step gave, but none gave node {tag} a support along {}: check place and direction",
+                vector(self.d)
             ),
         )
     }
@@ -368,15 +434,32 @@ fn is_same(a: &Drive, b: &Drive) -> bool {
     }
 }
 
+/// Why the supports of a node contradict each other.
+#[derive(Clone, Copy, Debug, Error)]
+enum Contradiction {
+    #[error("is prescribed by a rotation and constrained along another direction: leave it out of one of the two")]
+    Rotation,
+    #[error("is constrained twice along one direction")]
+    Twice,
+    #[error(
+        "is constrained along two directions that differ by {} degrees, and cannot move at all: put sides that continue smoothly \
+         into one group, leave the node out of one of the two, or give it ux and uy",
+        number(*.0)
+    )]
+    Close(f64),
+    #[error(
+        "is constrained along three directions with contradictory values: two determine its displacement, so leave it out of the \
+         third"
+    )]
+    Three,
+}
+
 /// Supports of a node with the coordinate supports `given` and some inclined directions, or an error.
-fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Prescribed>, String> {
+fn resolved(node: usize, given: Vec<Prescribed>, held: &[InclinedSupport]) -> Result<Vec<Prescribed>, Contradiction> {
     let mut all: Vec<Inclined> = Vec::new();
     for support in &given {
         let Motion::Displacement(drive, span) = &support.motion else {
-            return Err(
-                "is prescribed by a rotation and constrained along another direction: leave it out of one of the two"
-                    .into(),
-            );
+            return Err(Contradiction::Rotation);
         };
         let direction = support.at.vector();
         all.push(Inclined { share: 1.0, direction, drive: drive.clone(), span: *span });
@@ -391,7 +474,7 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
         check_angles(straight, held, &all)?;
     }
     let d = [&all[0], &all[1]].map(|of| of.direction.transpose());
-    let inverse = Matrix2::from_rows(&d).try_inverse().ok_or("is constrained twice along one direction")?;
+    let inverse = Matrix2::from_rows(&d).try_inverse().ok_or(Contradiction::Twice)?;
     for third in &all[2..] {
         check_agrees([&all[0], &all[1], third], inverse)?;
     }
@@ -405,18 +488,14 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
 }
 
 /// Checks that inclined directions differ sufficiently from each other and from the supported coordinates.
-fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), String> {
+fn check_angles(straight: usize, held: &[InclinedSupport], all: &[Inclined]) -> Result<(), Contradiction> {
     for a in 0..all.len() {
         for b in (a + 1).max(straight)..all.len() {
             let angle = all[a].direction.perp(&all[b].direction).abs().min(1.0).asin().to_degrees();
             let normals = [a, b].iter().all(|k| k.checked_sub(straight).is_some_and(|k| held[k].is_normal));
             let least = if normals { CORNER } else { LEAST_ANGLE };
             if angle < least {
-                return Err(format!(
-                    "is constrained along two directions that differ by {} degrees, and cannot move at all: put sides \
-                     that continue smoothly into one group, leave the node out of one of the two, or give it ux and uy",
-                    number(angle)
-                ));
+                return Err(Contradiction::Close(angle));
             }
         }
     }
@@ -424,7 +503,7 @@ fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), 
 }
 
 /// Checks that a third direction agrees with the first two.
-fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -> Result<(), String> {
+fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -> Result<(), Contradiction> {
     let value = |of: &Inclined| match (&of.drive, &first.drive) {
         (Drive::Constant(value), Drive::Constant(_)) | (Drive::Rate(value), Drive::Rate(_)) => Some(*value),
         _ => None,
@@ -437,9 +516,15 @@ fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -
             return Ok(());
         }
     }
-    Err("is constrained along three directions with contradictory values: two determine its displacement, so leave it \
-         out of the third"
-        .into())
+    Err(Contradiction::Three)
+}
+
+/// Distance from the axis, relative to the model size, within which a node is on the axis.
+const ON_AXIS: f64 = 1e-12;
+
+/// Radius up to which a node of axisymmetric bodies is on the axis; `None` in other sections.
+pub fn axis(mesh: &Mesh) -> Option<f64> {
+    mesh.section.is_axisymmetric().then(|| ON_AXIS * mesh.diagonal())
 }
 
 /// Outward unit normals of the body, node by node; the sides of a periodic model share those of their nodes.
@@ -451,7 +536,7 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
         ));
     };
     let edges = edges(&model.mesh, name, place)?;
-    let axis = section::axis(&model.mesh);
+    let axis = axis(&model.mesh);
     let mut at_node: BTreeMap<(usize, usize), Vec<Vector2<f64>>> = BTreeMap::new();
     for edge in edges {
         for (node, area) in areas(model, edge, axis) {
@@ -467,14 +552,15 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
 
 /// ∫ N_a n dS of an edge, node by node; at nodes on the axis in the plane section.
 fn areas(model: &Model, edge: &Edge, axis: Option<f64>) -> Vec<(usize, Vector2<f64>)> {
-    let [x, y] = pressure_shares(&model.mesh, std::slice::from_ref(edge));
+    let [x, y] = pressure_weights(&model.mesh, std::slice::from_ref(edge));
     edge.nodes
         .iter()
         .map(|&node| {
             let on_axis = axis.is_some_and(|near| model.mesh.nodes[node].x <= near);
             let weight = |at: Vector2<f64>| if on_axis { model.mesh.section.weight(at) } else { 1.0 };
-            let sum = |shares: &[(usize, f64, Vector2<f64>)]| -> f64 {
-                shares.iter().filter(|share| share.0 == node).map(|(_, share, at)| -share / weight(*at)).sum()
+            let sum = |shares: &[NodalWeight]| -> f64 {
+                let own = shares.iter().filter(|share| share.node == node);
+                own.map(|share| -share.weight / weight(share.position)).sum()
             };
             (node, Vector2::new(sum(&x), sum(&y)))
         })

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::table::{Pack, Packed};
 use crate::laws::bulk::principal_values;
 use crate::output::quantities::OF_YIELDING;
-use crate::output::results::{Array, Frame, Grid, frames};
+use crate::output::results::{Array, Frame, Grid, Unreadable, frames};
 use crate::output::store::STORE;
 use crate::output::store::read::StoredContact;
 
@@ -83,7 +83,7 @@ impl Series {
             let shown = chosen.len();
             notes.push(format!("{name}.pvd: {shown} of {} frames are shown: the page holds no more", listed.len()));
         }
-        let all: Vec<(Frame, Result<Grid, String>)> = chosen.par_iter().map(read).collect();
+        let all: Vec<(Frame, Result<Grid, Unreadable>)> = chosen.par_iter().map(read).collect();
         let mut series = Self { frames: Vec::new() };
         for (frame, grid) in all {
             match grid {

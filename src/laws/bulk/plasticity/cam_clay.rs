@@ -7,7 +7,7 @@ use super::{
     Elasticity, Elastoplastic, LogarithmicBulk, ONE, ROUND_OFF, ReturnMap, Returned, SHOWN, deviator, double_dot,
     in_axes,
 };
-use crate::laws::bulk::{CauchyStress, Flow, Lame, MaterialFailure};
+use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Constants of [`CamClay`].
@@ -441,14 +441,14 @@ impl ReturnMap for CamClay {
         };
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         let p = stress.pressure() + 0.0;
         match p > 0.0 {
             true => Ok(()),
-            false => Err(format!(
+            false => Err(InadmissibleStress(format!(
                 "has a mean pressure of {p:.6}, and cam_clay has its stiffness and strength from pressure: give an initial stress \
                  that compresses it, at a free surface by a surcharge"
-            )),
+            ))),
         }
     }
 

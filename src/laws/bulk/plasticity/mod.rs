@@ -23,8 +23,8 @@ use nalgebra::{Matrix4, Vector2, Vector3, Vector4};
 
 use super::spatial::{Stretched, positive_stretch};
 use super::{
-    CauchyStress, Flow, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress, Spatial,
-    Straining, positive_jacobian,
+    CauchyStress, Flow, InadmissibleStress, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse,
+    PlaneStress, Spatial, Straining, positive_jacobian,
 };
 use crate::laws::parameter::{InvalidParameter, require_not_negative};
 use axes::Axes;
@@ -105,7 +105,7 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
     ///
     /// # Errors
     /// Why it cannot, and what to do.
-    fn admits(&self, _stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, _stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         Ok(())
     }
 
@@ -388,7 +388,7 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
         Some(Arc::new(Self { law, ..self.clone() }))
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), String> {
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
         self.law.admits(stress)?;
         let CauchyStress { xx, yy, zz, xy } = *stress;
         let (tensor, mut history) = (Vector4::new(xx, yy, zz, xy), vec![0.0; self.names.len() - HISTORY]);
@@ -397,7 +397,10 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
         let f = self.law.yield_indicator(&tensor, &history);
         match f <= WRITTEN * tensor.amax() {
             true => Ok(()),
-            false => Err(format!("is beyond the yield surface, f = {f:.6e} > 0: {}", self.law.beyond(stress))),
+            false => {
+                let why = format!("is beyond the yield surface, f = {f:.6e} > 0: {}", self.law.beyond(stress));
+                Err(InadmissibleStress(why))
+            }
         }
     }
 

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DVector, Vector2, Vector3};
 
-use super::error::ModelError;
+use super::error::{Checked, ModelError};
 use super::load_step::LoadStep;
 use super::rigid;
 use crate::contact::master::Master;
@@ -34,7 +34,7 @@ use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
 /// Checks that every motion meets stiffness or, in a dynamic step, mass.
-pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
+pub fn check(given: &[LoadStep], model: &Model) -> Checked<()> {
     for (k, step) in model.steps.iter().enumerate() {
         if step.scheme.is_dynamic() || step.rupture.is_some() {
             check_mass(k, step, model)?;
@@ -47,41 +47,36 @@ pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
 }
 
 /// Checks nodes without a body, which have only their supports, springs, dashpots and contact.
-fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
-    let mut held = vec![false; model.dofs()];
+fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Checked<()> {
+    let mut constrained = vec![false; model.dofs()];
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
-    nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
+    nodes.for_each(|&node| constrained[2 * node..2 * node + 2].fill(true));
     // Whether contact constrains a node that may separate is left to the solver.
     let rigid = model.contacts.iter().filter_map(|pair| pair.master.rigid_body()).flat_map(RigidBody::nodes);
     let points = model.contacts.iter().flat_map(ContactPair::slave_nodes).chain(rigid);
-    points.for_each(|node| held[2 * node..2 * node + 2].fill(true));
+    points.for_each(|node| constrained[2 * node..2 * node + 2].fill(true));
     let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
-    follow.for_each(|(_, dof)| held[dof] = true);
-    for (node, d) in holding(step) {
+    follow.for_each(|(_, dof)| constrained[dof] = true);
+    for (node, d) in constraints(step) {
         // An inclined direction and its perpendicular count as the dofs whose equations they replace.
-        held[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
+        constrained[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
     }
-    let free = held.iter().position(|held| !held);
+    let free = constrained.iter().position(|constrained| !constrained);
     if let Some((RigidBody { name, .. }, key)) = free.and_then(|dof| rigid::free_motion(&model.mesh, dof)) {
         let message =
             format!("nothing touches the rigid body `{name}`, and its {key} is free: give it, 0 where it rests");
         return Err(ModelError::new(format!("steps[{k}].supports"), message));
     }
-    match free {
-        Some(dof) => Err(ModelError::new(
-            format!("steps[{k}].supports"),
-            format!(
-                "node {} belongs to no element and is free along {}: constrain it by a support, a spring or contact",
-                model.mesh.node_tags[dof / 2],
-                ["x", "y"][dof % 2]
-            ),
-        )),
-        None => Ok(()),
-    }
+    let Some(dof) = free else { return Ok(()) };
+    let (tag, axis) = (model.mesh.node_tags[dof / 2], ["x", "y"][dof % 2]);
+    let message = format!(
+        "node {tag} belongs to no element and is free along {axis}: constrain it by a support, a spring or contact"
+    );
+    Err(ModelError::new(format!("steps[{k}].supports"), message))
 }
 
 /// Checks that free nodes have mass, from which accelerations follow.
-fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
+fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
     let mut carried = vec![false; model.mesh.nodes.len()];
     let dense =
         model.bodies.iter().filter(|body| body.material.description().density > 0.0).flat_map(|body| &body.nodes);
@@ -89,8 +84,8 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     dense.chain(points).for_each(|&node| carried[node] = true);
     model.mesh.rigid_bodies.iter().for_each(|body| carried[body.turning] = body.inertia > 0.0);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
-    let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
-    let massless = |node: &usize| !(carried[*node] || held(*node));
+    let constrained = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
+    let massless = |node: &usize| !(carried[*node] || constrained(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
         let message = format!("is 0, but {why}: give a density");
@@ -105,13 +100,10 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
         };
         return Err(ModelError::new(place, format!("is missing, but {why}: give one, {motion}")));
     }
-    match free {
-        Some(node) => Err(ModelError::new(
-            "point_masses",
-            format!("node {} belongs to no element, and {why}: give one to its group", model.mesh.node_tags[node]),
-        )),
-        None => Ok(()),
-    }
+    let Some(node) = free else { return Ok(()) };
+    let tag = model.mesh.node_tags[node];
+    let message = format!("node {tag} belongs to no element, and {why}: give one to its group");
+    Err(ModelError::new("point_masses", message))
 }
 
 /// Number of parts of a group up to which motions are checked here; larger groups are left to the solver, which reports free
@@ -124,7 +116,7 @@ const NAMED: f64 = 0.1;
 /// Checks that bodies are constrained in x, y and rotation by supports, springs or dashpots in every static step, directly or
 /// through their coupling with others: contact, shared nodes, periodic sides and platens. Contact counts as constraint in every
 /// direction, and a single shared node as a hinge. A group that touches a rigid body is left to the solver.
-pub fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
+fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
     if model.steps.iter().all(|step| step.scheme.is_dynamic()) {
         return Ok(());
     }
@@ -132,20 +124,20 @@ pub fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelErro
     let groups = Groups::of(&parts);
     for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()) {
         let Some(free) = groups.free_motion(step) else { continue };
-        let held = if given[k].supports.is_empty() && step.supports.is_empty() {
+        let constrained = if given[k].supports.is_empty() && step.supports.is_empty() {
             "there is no support at all"
         } else {
             "the supports do not constrain it"
         };
         let message =
-            format!("{free}: {held}; a static step needs supports or springs against every rigid-body motion");
+            format!("{free}: {constrained}; a static step needs supports or springs against every rigid-body motion");
         return Err(ModelError::new(format!("steps[{k}].supports"), message));
     }
     Ok(())
 }
 
 /// Nodes and directions constrained by supports, springs and dashpots.
-pub fn holding(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
+fn constraints(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
     let springs = step.loads.springs.iter().map(|spring| spring.dof);
     let absorbers = step.loads.absorbers.iter().flat_map(|absorber| [2 * absorber.node, 2 * absorber.node + 1]);
     let dofs = springs.chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof)).chain(absorbers);
@@ -202,7 +194,7 @@ impl<'m> Groups<'m> {
     /// Describes the unconstrained motion in a step, if there is one.
     fn free_motion(&self, step: &Step) -> Option<String> {
         let mut resisted = self.resisted.clone();
-        holding(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
+        constraints(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
         let mut motions = resisted.iter().zip(&self.members);
         motions.find_map(|(resisted, group)| Some(self.message(group, &resisted.free()?)))
     }
@@ -219,23 +211,23 @@ impl<'m> Groups<'m> {
 }
 
 /// An equation between the motions of parts: coefficients of U, V and Θ of each.
-pub type Row = Vec<(usize, Vector3<f64>)>;
+type Row = Vec<(usize, Vector3<f64>)>;
 
 /// A part: bodies in contact or with two shared nodes, or a node outside all bodies.
-pub struct Part {
+struct Part {
     /// bodies
-    pub bodies: Vec<usize>,
+    bodies: Vec<usize>,
     /// whether it touches a rigid body
-    pub on_rigid: bool,
+    on_rigid: bool,
     nodes: Vec<usize>,
     centre: Vector2<f64>,
     radius: f64,
 }
 
 /// All parts of a model.
-pub struct Parts<'m> {
+struct Parts<'m> {
     /// list of parts
-    pub parts: Vec<Part>,
+    parts: Vec<Part>,
     model: &'m Model,
     /// parts of each node: more than one for a hinge
     of_node: Vec<Vec<usize>>,
@@ -243,7 +235,7 @@ pub struct Parts<'m> {
 
 impl<'m> Parts<'m> {
     /// Finds the parts of a model.
-    pub fn of(model: &'m Model) -> Self {
+    fn of(model: &'m Model) -> Self {
         let owners = owners(model);
         let groups = joined(model, &owners);
         let mut part_of = vec![0; groups.iter().map(Vec::len).sum()];
@@ -265,7 +257,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Names of the bodies of a part, or of its node.
-    pub fn names(&self, part: usize) -> Vec<String> {
+    fn names(&self, part: usize) -> Vec<String> {
         let Part { bodies, nodes, .. } = &self.parts[part];
         match bodies.is_empty() {
             true => nodes.iter().map(|&node| format!("node {}", self.model.mesh.node_tags[node])).collect(),
@@ -274,7 +266,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Σ d·u of nodes and vectors d.
-    pub fn row(&self, terms: &[(usize, Vector2<f64>)]) -> Row {
+    fn row(&self, terms: &[(usize, Vector2<f64>)]) -> Row {
         terms.iter().map(|&(node, d)| self.term(self.of_node[node][0], node, d)).collect()
     }
 
@@ -286,7 +278,7 @@ impl<'m> Parts<'m> {
     }
 
     /// All expressions that are zero in every step.
-    pub fn couplings(&self) -> Vec<Row> {
+    fn couplings(&self) -> Vec<Row> {
         let mut rows = self.of_shape();
         for (node, parts) in self.of_node.iter().enumerate() {
             let hinge = |d: Vector2<f64>, other: usize| vec![self.term(parts[0], node, d), self.term(other, node, -d)];
@@ -387,14 +379,14 @@ const NOTHING_NEW: f64 = 1e-5;
 
 /// Motions resisted by equations: an orthonormal basis.
 #[derive(Clone)]
-pub struct Resisted {
+struct Resisted {
     size: usize,
     basis: Vec<DVector<f64>>,
 }
 
 impl Resisted {
     /// Creates an empty basis for motions with `size` components.
-    pub fn nothing(size: usize) -> Self {
+    fn nothing(size: usize) -> Self {
         Self { size, basis: Vec::new() }
     }
 
@@ -409,7 +401,7 @@ impl Resisted {
     }
 
     /// Adds one more equation, with terms of the given size.
-    pub fn add(&mut self, row: DVector<f64>, size: f64) {
+    fn add(&mut self, row: DVector<f64>, size: f64) {
         if self.basis.len() == self.size {
             return;
         }
@@ -421,7 +413,7 @@ impl Resisted {
     }
 
     /// A unit motion without resistance.
-    pub fn free(&self) -> Option<DVector<f64>> {
+    fn free(&self) -> Option<DVector<f64>> {
         if self.basis.len() == self.size {
             return None;
         }

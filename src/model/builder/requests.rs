@@ -1,4 +1,6 @@
-//! Gauges: from positions to elements.
+//! Output requests: watched sets, gauges and times of results.
+//!
+//! The element of a gauge follows from its position.
 
 use std::collections::BTreeSet;
 
@@ -6,11 +8,13 @@ use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError};
-use super::{error, groups};
+use super::error::{Checked, ModelError, check_name, check_positive, refuse_if};
+use super::groups::{Place, body, group, nodes_at};
+use super::schedule::MOST_INCREMENTS;
+use crate::mesh::Group;
 use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::shape::ElementKind;
-use crate::model::{Model, Probe};
+use crate::model::{Model, Probe, Step, WatchedSet};
 
 /// A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; positions are undeformed ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -57,11 +61,6 @@ impl Gauge {
         Self { name: name.into(), from: Some(from), to: Some(to), number: Some(number), ..Self::default() }
     }
 
-    /// Sets the body, for positions where two bodies touch.
-    pub fn of(self, body: impl Into<String>) -> Self {
-        Self { body: Some(body.into()), ..self }
-    }
-
     /// Names and positions of all points.
     fn points(&self) -> Checked<Vec<(String, Vector2<f64>)>> {
         let (from, to, number) = match (self.at, self.from, self.to, self.number) {
@@ -72,19 +71,20 @@ impl Gauge {
                 return Err(ModelError::new(format!("probes.{}", self.name), message));
             }
         };
-        if !(2..=MOST).contains(&number) {
-            let message = format!("is {number}: a line has 2 to {MOST} points (one alone is given by `at`)");
-            return Err(ModelError::new(format!("probes.{}.number", self.name), message));
-        }
+        let message = format!("is {number}: a line has 2 to {MOST} points (one alone is given by `at`)");
+        refuse_if(!(2..=MOST).contains(&number), format!("probes.{}.number", self.name), message)?;
         let [from, to] = [Vector2::from(from), Vector2::from(to)];
-        if from == to {
-            let message = format!("is ({}, {}), the start of the line: its points would coincide", to.x, to.y);
-            return Err(ModelError::new(format!("probes.{}.to", self.name), message));
-        }
+        let message = format!("is ({}, {}), the start of the line: its points would coincide", to.x, to.y);
+        refuse_if(from == to, format!("probes.{}.to", self.name), message)?;
         let share = |k: usize| k as f64 / (number - 1) as f64;
         let at = |k: usize| from * (1.0 - share(k)) + to * share(k);
         Ok((0..number).map(|k| (format!("{}.{}", self.name, k + 1), at(k))).collect())
     }
+}
+
+setters! { gauge: Gauge;
+    /// Sets the body, for positions where two bodies touch.
+    of(body: impl Into<String>) { gauge.body = Some(body.into()); }
 }
 
 /// Builds the gauges of a model.
@@ -99,12 +99,11 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     let reaches = Tree::new((0..model.solids.len()).map(|element| reach(model, element)));
     for gauge in gauges {
         let place = format!("probes.{}", gauge.name);
-        error::check_name(&place, &gauge.name)?;
-        let body = gauge.body.as_ref().map(|name| groups::body(model, name, &format!("{place}.body"))).transpose()?;
+        check_name(&place, &gauge.name)?;
+        let body = gauge.body.as_ref().map(|name| body(model, name, &format!("{place}.body"))).transpose()?;
         for (name, at) in gauge.points()? {
-            if !taken.insert(name.clone()) {
-                return Err(ModelError::new(place, format!("there is a probe `{name}` already: rename one")));
-            }
+            let message = format!("there is a probe `{name}` already: rename one");
+            refuse_if(!taken.insert(name.clone()), &place, message)?;
             let is_meant = |e: &usize| body.is_none_or(|body| model.body_of_element[*e] == body);
             let within = |e: usize| Some((e, coordinates(model, e, at)?));
             let near = reaches.meeting(&Box2 { low: at, high: at });
@@ -141,12 +140,6 @@ fn coordinates(model: &Model, element: usize, place: Vector2<f64>) -> Option<[f6
     let (kind, origin) = (element.kind, model.mesh.nodes[element.nodes[0]]);
     let nodes: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| model.mesh.nodes[node] - origin).collect();
     let place = place - origin;
-    let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
-    nodes.iter().for_each(|x| (low, high) = (low.inf(x), high.sup(x)));
-    let size = (high - low).max();
-    if (0..2).any(|i| place[i] < low[i] - BULGE * size || place[i] > high[i] + BULGE * size) {
-        return None;
-    }
     let mut at = Vector2::from(kind.centre());
     for _ in 0..ITERATIONS {
         let x: Vector2<f64> = nodes.iter().zip(kind.values(at.into())).map(|(x, n)| x * n).sum();
@@ -179,4 +172,74 @@ fn outside(model: &Model, at: Vector2<f64>, body: Option<&str>) -> String {
         }
         None => format!("({}, {}) lies {of}: there is none", at.x, at.y),
     }
+}
+
+/// Returns the watched groups and nodes, each once, and all rigid bodies.
+pub fn watched(places: &[Place], model: &Model) -> Checked<Vec<WatchedSet>> {
+    let mut seen = BTreeSet::new();
+    let mut sets = Vec::with_capacity(places.len());
+    for (k, on) in places.iter().enumerate() {
+        let (place, name) = (format!("watch[{k}]"), on.column());
+        check_name(&place, &name)?;
+        refuse_if(!seen.insert(name.clone()), &place, format_args!("`{name}` is watched already: name it once"))?;
+        sets.push(watched_set(model, on, &place)?);
+    }
+    for body in model.mesh.rigid_bodies.iter().filter(|body| !seen.contains(&body.name)) {
+        sets.push(watched_set(model, &Place::Group(body.name.clone()), "rigid_bodies")?);
+    }
+    Ok(sets)
+}
+
+/// Returns a watched set. Reactions of copies belong to their originals; the displacement of a platen counts with every node.
+fn watched_set(model: &Model, on: &Place, place: &str) -> Checked<WatchedSet> {
+    let nodes = nodes_at(&model.mesh, on, place)?;
+    let edges = match on {
+        Place::Group(name) => match group(&model.mesh, name, place)? {
+            Group::Edges(edges) => edges.clone(),
+            _ => Vec::new(),
+        },
+        _ => Vec::new(),
+    };
+    let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
+    let nodes = if model.plates.is_empty() { model.ties.originals(nodes) } else { nodes };
+    Ok(WatchedSet { name: on.column(), nodes, edges, held })
+}
+
+/// Checks the interval of the results of explicit steps.
+pub fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
+    let otherwise = " (leave it out for a hundredth of each explicit step)";
+    check_positive("output.interval", interval.unwrap_or(1.0), otherwise).map(|()| interval)
+}
+
+/// Checks the number of result rows of explicit steps, one per interval.
+pub fn check_rows(model: &Model) -> Checked<()> {
+    let Some(interval) = model.requests.interval else { return Ok(()) };
+    let time: f64 =
+        model.steps.iter().filter(|step| step.may_be_explicit()).map(|step| step.span.end - step.span.start).sum();
+    let rows = time / interval;
+    match rows <= MOST_INCREMENTS {
+        true => Ok(()),
+        false => {
+            let message = format!(
+                "is {interval:e}: that makes {rows:.1e} rows of results, at most {MOST_INCREMENTS:e} are allowed"
+            );
+            Err(ModelError::new("output.interval", message))
+        }
+    }
+}
+
+/// Checks the output times of fields: within the steps, ascending.
+pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
+    let (start, end) =
+        steps.first().zip(steps.last()).map_or((0.0, 0.0), |(first, last)| (first.span.start, last.span.end));
+    for (k, time) in times.iter().enumerate() {
+        let refused = |message: String| Err(ModelError::new(format!("output.times[{k}]"), message));
+        if !(*time > start && *time <= end) {
+            return refused(format!("is {time}: must be after {start} and not after {end}, the end of the last step"));
+        }
+        if k > 0 && *time <= times[k - 1] {
+            return refused(format!("is {time}, but {} comes before it: times must increase", times[k - 1]));
+        }
+    }
+    Ok(times)
 }
