@@ -242,7 +242,7 @@ fn varied_by(
     let mut states = parameters.map(|name| name.map_or(Variation::default(), |name| law.start(name)));
     let mut rows = [Vec::new(), Vec::new()];
     for Step { old, sliding, sampled } in steps.iter().take_while(|_| !raised.is_set()) {
-        let along = |k: usize| Direction { state: states[k], slip: 0.0, parameter: parameters[k] };
+        let along = |k: usize| Direction { state: states[k], parameter: parameters[k], ..Direction::default() };
         states = law.vary(old, *sliding, [along(0), along(1)])?;
         if *sampled {
             (0..2).for_each(|k| rows[k].push(parameters[k].map_or(f64::NAN, |_| states[k].traction)));

@@ -250,7 +250,7 @@ impl Slider<'_> {
             ride.steps.iter().take_while(|_| !self.raised.is_set())
         {
             let (slip, dt) = (sliding.slip, sliding.dt);
-            let along = Direction { state, slip: 0.0, parameter };
+            let along = Direction { state, parameter, ..Direction::default() };
             let [given, by_slip] = law.vary(old, *sliding, [along, Direction { slip: 1.0, ..Direction::default() }])?;
             let per = 4.0 * self.mass / (dt * dt);
             let stretch = load_point - self.course[0][1] - to.slip;

@@ -331,3 +331,58 @@ fn sensitivities_are_those_of_differences() {
         }
     }
 }
+
+/// Without an elastic core U is infinite where a point closes first. Against central differences.
+#[test]
+fn sensitivities_begin_with_the_first_contact() {
+    for approach in ["logarithmic", "cotangent"] {
+        let given = json!({"law": "super_subloading", "mu_s": 0.6, "mu_k": 0.4, "alpha_t": 40.0, "r": 20.0, "kappa": 3.0,
+            "xi": 0.05, "approach": approach});
+        let (law, sliding) = (any(&given), Sliding::new(0.02, 1.0, 0.1));
+        for name in ["mu_s", "mu_k", "alpha_t", "r", "kappa", "xi"] {
+            let sensitive = law.sensitivities().unwrap();
+            let by = with!(Direction::default(), state: sensitive.start(name), parameter: Some(name));
+            let [found, _] = sensitive.vary(&law.initial_state(0.0, 0.0), sliding, [by, by]).unwrap();
+            let of = given[name].as_f64().unwrap();
+            let moved = |to: f64| {
+                let mut other = given.clone();
+                other[name] = json!(to);
+                let law = any(&other);
+                law.respond(&law.initial_state(0.0, 0.0), sliding).unwrap().state.traction
+            };
+            let difference = (moved(of * (1.0 + 1e-4)) - moved(of * (1.0 - 1e-4))) / (2e-4 * of);
+            let error = found.traction - difference;
+            assert!(
+                error.abs() <= 1e-6 * (1.0 + difference.abs()),
+                "{approach} by {name}: {error:e} of {difference:e}"
+            );
+        }
+    }
+}
+
+/// The tangent of an answer is its derivative along the slip and the pressure, which `vary` finds with the law's parameters held.
+#[test]
+fn derivatives_by_slip_and_pressure_are_the_tangent() {
+    let laws = [
+        json!({"law": "super_subloading", "mu_s": 0.6, "mu_k": 0.4, "alpha_t": 40.0, "r": 20.0, "kappa": 3.0, "xi": 0.05, "m": 1.3}),
+        json!({"law": "rate_and_state", "a": 0.02, "b": 0.025, "f_0": 0.6, "V_0": 0.1, "D_c": 0.3, "alpha_t": 40.0}),
+        json!({"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.4, "D_c": 0.5, "cohesion": 0.1, "alpha_t": 4.0}),
+        json!({"law": "coulomb", "mu": 0.5, "alpha_t": 4.0}),
+        json!({"law": "adhesion", "strength": 0.3, "alpha_t": 4.0}),
+    ];
+    for given in laws {
+        let law = any(&given);
+        let sensitive = law.sensitivities().unwrap();
+        let mut old = law.initial_state(0.0, 0.0);
+        for (i, sliding) in increments().into_iter().enumerate() {
+            let along = [with!(Direction::default(), slip: 1.0), with!(Direction::default(), pressure: 2.0)];
+            let [by_slip, by_pressure] = sensitive.vary(&old, sliding, along).unwrap();
+            let answer = law.respond(&old, sliding).unwrap();
+            let [slip, pressure] =
+                [by_slip.traction - answer.dtraction_dslip, by_pressure.traction - 2.0 * answer.dtraction_dpressure];
+            assert!(slip.abs() < 1e-6 * law.description().stiffness, "{given} at {i}: {slip:e} in the tangent by slip");
+            assert!(pressure.abs() < 1e-6, "{given} at {i}: {pressure:e} in the tangent by pressure");
+            old = answer.state;
+        }
+    }
+}

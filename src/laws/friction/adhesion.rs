@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, SensitiveLaw, Variation};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
 use crate::laws::parameter::{InvalidParameter, numbers, require_positive};
 
@@ -123,17 +123,9 @@ impl SensitiveLaw for Adhesion {
         sliding: Sliding,
         directions: [Direction; 2],
     ) -> Result<[Variation; 2], LawFailure> {
-        let Sliding { slip, pressure, .. } = sliding.checked()?;
-        let trial = old.traction + self.alpha_t * slip;
-        Ok(directions.map(|by| {
-            let traction = if pressure <= 0.0 {
-                0.0
-            } else if trial.abs() <= self.strength {
-                by.state.traction + self.alpha_t * by.slip + by.of("alpha_t") * slip
-            } else {
-                trial.signum() * by.of("strength")
-            };
-            Variation { traction, ..Variation::default() }
-        }))
+        let inputs = Inputs::new(old, sliding, directions)?;
+        let alpha_t = inputs.parameter("alpha_t", self.alpha_t);
+        let strength = inputs.parameter("strength", self.strength);
+        Ok(variations(inputs.elastic_up_to(strength, alpha_t), 0.0.into()))
     }
 }

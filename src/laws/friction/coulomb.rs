@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, SensitiveLaw, Variation};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield,
 };
@@ -125,17 +125,9 @@ impl SensitiveLaw for Coulomb {
         sliding: Sliding,
         directions: [Direction; 2],
     ) -> Result<[Variation; 2], LawFailure> {
-        let Sliding { slip, pressure, .. } = sliding.checked()?;
-        let trial = old.traction + self.alpha_t * slip;
-        Ok(directions.map(|by| {
-            let traction = if pressure <= 0.0 {
-                0.0
-            } else if trial.abs() <= self.mu * pressure {
-                by.state.traction + self.alpha_t * by.slip + by.of("alpha_t") * slip
-            } else {
-                trial.signum() * pressure * by.of("mu")
-            };
-            Variation { traction, ..Variation::default() }
-        }))
+        let inputs = Inputs::new(old, sliding, directions)?;
+        let alpha_t = inputs.parameter("alpha_t", self.alpha_t);
+        let strength = inputs.parameter("mu", self.mu) * inputs.pressure;
+        Ok(variations(inputs.elastic_up_to(strength, alpha_t), 0.0.into()))
     }
 }

@@ -15,6 +15,7 @@
 mod adhesion;
 mod contact_law;
 mod coulomb;
+mod dual;
 mod frictionless;
 pub mod observables;
 mod parameters;

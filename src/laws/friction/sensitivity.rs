@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use super::dual::Dual;
 use super::state::MOST_VARIABLES;
 use super::{FrictionState, LawFailure, Sliding};
 
@@ -15,7 +16,7 @@ pub struct Variation {
     pub variables: [f64; MOST_VARIABLES],
 }
 
-/// Variation of the inputs of a response, at constant pressure and time.
+/// Variation of the inputs of a response, at constant time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Direction {
@@ -23,6 +24,8 @@ pub struct Direction {
     pub state: Variation,
     /// of Δu_t [L]
     pub slip: f64,
+    /// of p at the end [F/L²]
+    pub pressure: f64,
     /// Parameter that varies, by 1: one of [`SensitiveLaw::parameters`]
     pub parameter: Option<&'static str>,
 }
@@ -32,7 +35,7 @@ pub struct Direction {
 ///
 /// ```text
 /// (q, variables)₁ = law((q, p, variables)₀; Δu_t, p₁, Δt; parameters)
-/// d(q, variables)₁ = ∂law/∂(q, variables)₀ d(q, variables)₀ + ∂law/∂Δu_t dΔu_t + ∂law/∂parameter
+/// d(q, variables)₁ = ∂law/∂(q, variables)₀ d(q, variables)₀ + ∂law/∂Δu_t dΔu_t + ∂law/∂p₁ dp₁ + ∂law/∂parameter
 /// ```
 pub trait SensitiveLaw: Debug + Send + Sync {
     /// Parameters of the derivatives, as named in cases.
@@ -53,6 +56,69 @@ pub trait SensitiveLaw: Debug + Send + Sync {
     ) -> Result<[Variation; 2], LawFailure>;
 }
 
+/// Inputs of a response with their derivatives along two directions, of a law with one internal variable.
+#[derive(Clone, Copy)]
+pub(super) struct Inputs {
+    /// q at the start [F/L²]
+    pub traction: Dual,
+    /// The internal variable at the start
+    pub variable: Dual,
+    /// Δu_t [L]
+    pub slip: Dual,
+    /// p at the end [F/L²]
+    pub pressure: Dual,
+    /// Δt [T]
+    pub dt: f64,
+    directions: [Direction; 2],
+}
+
+impl Inputs {
+    /// The inputs along two directions.
+    ///
+    /// # Errors
+    /// Returns [`LawFailure`] for invalid increments.
+    pub(super) fn new(old: &FrictionState, sliding: Sliding, directions: [Direction; 2]) -> Result<Self, LawFailure> {
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        let along =
+            |value: f64, of: fn(&Direction) -> f64| Dual { value, by: [of(&directions[0]), of(&directions[1])] };
+        Ok(Self {
+            traction: along(old.traction, |by| by.state.traction),
+            variable: along(old.variables[0], |by| by.state.variables[0]),
+            slip: along(slip, |by| by.slip),
+            pressure: along(pressure, |by| by.pressure),
+            dt,
+            directions,
+        })
+    }
+
+    /// A parameter of the law with its derivatives: 1 along its own direction.
+    pub(super) fn parameter(&self, name: &str, value: f64) -> Dual {
+        Dual { value, by: self.directions.map(|by| f64::from(u8::from(by.parameter == Some(name)))) }
+    }
+
+    /// q at the end if it is elastic up to a strength.
+    pub(super) fn elastic_up_to(&self, strength: Dual, alpha_t: Dual) -> Dual {
+        let trial = self.traction + alpha_t * self.slip;
+        if self.pressure.value <= 0.0 {
+            0.0.into()
+        } else if trial.value.abs() <= strength.value {
+            trial
+        } else {
+            strength * trial.value.signum()
+        }
+    }
+
+    /// Whether the derivatives are those of the consistent tangent.
+    pub(super) fn are_of_tangent(&self) -> bool {
+        self.directions == Direction::TANGENT
+    }
+}
+
+/// Derivatives of the state of a law with one internal variable.
+pub(super) fn variations(traction: Dual, variable: Dual) -> [Variation; 2] {
+    [0, 1].map(|k| Variation::new(traction.by[k], variable.by[k]))
+}
+
 impl Variation {
     /// Variation of a law with one internal variable.
     pub(super) fn new(traction: f64, variable: f64) -> Self {
@@ -63,13 +129,11 @@ impl Variation {
 }
 
 impl Direction {
-    /// Derivative of a parameter along this direction: 1 or 0.
-    pub(super) fn of(&self, parameter: &str) -> f64 {
-        f64::from(u8::from(self.parameter == Some(parameter)))
-    }
+    /// Those of the consistent tangent: Δu_t and p.
+    pub(super) const TANGENT: [Self; 2] = [Self::of_inputs(1.0, 0.0), Self::of_inputs(0.0, 1.0)];
 
-    /// Derivative of the only internal variable of a law.
-    pub(super) fn variable(&self) -> f64 {
-        self.state.variables[0]
+    const fn of_inputs(slip: f64, pressure: f64) -> Self {
+        let state = Variation { traction: 0.0, variables: [0.0; MOST_VARIABLES] };
+        Self { state, slip, pressure, parameter: None }
     }
 }

@@ -1,7 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, SensitiveLaw, Variation};
+use super::dual::{Dual, Number};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding,
     traction_at_yield,
@@ -280,29 +281,26 @@ impl SensitiveLaw for SlipWeakening {
         sliding: Sliding,
         directions: [Direction; 2],
     ) -> Result<[Variation; 2], LawFailure> {
-        let Self { mu_d, critical_slip, weakening, alpha_t, .. } = *self;
-        let Sliding { slip, pressure, .. } = sliding.checked()?;
-        let before = slip_of(old);
-        let trial = old.traction + alpha_t * slip;
-        let slid = self.slide(before, trial.abs(), pressure).filter(|_| pressure > 0.0);
-        Ok(directions.map(|by| {
-            let dtrial = by.state.traction + alpha_t * by.slip + by.of("alpha_t") * slip;
-            let dbefore = by.variable();
-            let Some(Slid { total, mu, softness, .. }) = slid else {
-                return Variation::new(if pressure > 0.0 { dtrial } else { 0.0 }, dbefore);
-            };
-            let delastic = trial.signum() * dtrial;
-            // Derivative of the slip at the end, with μ held constant: α_t ΔD = |q_tr| − c − μ p
-            let dslip = dbefore + (delastic - by.of("cohesion") - by.of("alpha_t") * (total - before)) / alpha_t;
-            let dmu = match mu > mu_d {
-                true => {
-                    let dweakening = (by.of("mu_s") - by.of("mu_d") - weakening * by.of("D_c")) / critical_slip;
-                    softness * (by.of("mu_s") - dweakening * total - weakening * dslip)
-                }
-                false => by.of("mu_d"),
-            };
-            let dstrength = by.of("cohesion") + pressure * dmu;
-            Variation::new(trial.signum() * dstrength, dslip - pressure * dmu / alpha_t)
-        }))
+        let inputs = Inputs::new(old, sliding, directions)?;
+        let [mu_s, mu_d, alpha_t] = [("mu_s", self.mu_s), ("mu_d", self.mu_d), ("alpha_t", self.alpha_t)]
+            .map(|(name, value)| inputs.parameter(name, value));
+        let cohesion = inputs.parameter("cohesion", self.cohesion);
+        let weakening = (mu_s - mu_d) / inputs.parameter("D_c", self.critical_slip);
+        let (before, trial) = (inputs.variable, inputs.traction + alpha_t * inputs.slip);
+        if sliding.pressure <= 0.0 {
+            return Ok(variations(0.0.into(), before));
+        }
+        let Some(slid) = self.slide(before.value, trial.value.abs(), sliding.pressure) else {
+            return Ok(variations(trial, before));
+        };
+        let strength = |total: Dual| {
+            let mu = if slid.mu > self.mu_d { mu_s - weakening * total } else { mu_d };
+            cohesion + mu * inputs.pressure
+        };
+        // Excess of the elastic traction at constant D, which is 0 at its root
+        let (sign, at_root) = (trial.value.signum(), Dual::from(slid.total));
+        let excess = trial * sign - alpha_t * (at_root - before) - strength(at_root);
+        let total = excess.map(slid.total, slid.softness / self.alpha_t);
+        Ok(variations(strength(total) * sign, total))
     }
 }

@@ -6,15 +6,15 @@ mod relaxation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, SensitiveLaw, Variation};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, PointLoad, RateLaw,
     Regime, Sliding, traction_at_yield,
 };
 use crate::laws::parameter::{InvalidParameter, numbers, require_not_negative, require_positive};
-use path::Ramp;
+use path::{PathState, Ramp};
 pub use relaxation::StateEvolution;
-use relaxation::{Coefficients, Relaxation, Relaxed, arsinh_of_exp};
+use relaxation::{Coefficients, Relaxation, arsinh_of_exp};
 
 /// Parameters of [`RateAndState`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -141,8 +141,8 @@ impl RateAndState {
         slip * theta >= OUTWEIGHS * self.coefficients.critical_slip * dt
     }
 
-    /// One increment of first order, with the solution of its equation if it has one.
-    fn relax(&self, old: &FrictionState, sliding: Sliding) -> Result<(FrictionResponse, Option<Relaxed>), LawFailure> {
+    /// One increment of first order, with the slip that solves its equation if there is one.
+    fn relax(&self, old: &FrictionState, sliding: Sliding) -> Result<(FrictionResponse, Option<f64>), LawFailure> {
         let law = &self.coefficients;
         let alpha_t = law.alpha_t;
         let Sliding { slip, pressure, dt } = sliding.checked()?;
@@ -182,7 +182,7 @@ impl RateAndState {
             evaluations,
             ..Default::default()
         };
-        Ok((response.checked(alpha_t)?, Some(found)))
+        Ok((response.checked(alpha_t)?, Some(found.slip)))
     }
 }
 
@@ -282,8 +282,7 @@ impl FrictionLaw for RateAndState {
         if !self.is_controlled || sliding.checked()?.dt == 0.0 {
             return Ok(self.relax(old, sliding)?.0);
         }
-        let by = |slip| Direction { slip, ..Direction::default() };
-        Ramp::new(self, old, sliding, [by(1.0), by(0.0)], [0.0, 1.0]).answer()
+        Ramp::new(self, old, Inputs::new(old, sliding, Direction::TANGENT)?).answer()
     }
 
     fn controlled(&self) -> Option<Box<dyn FrictionLaw>> {
@@ -331,41 +330,9 @@ impl SensitiveLaw for RateAndState {
         sliding: Sliding,
         directions: [Direction; 2],
     ) -> Result<[Variation; 2], LawFailure> {
-        if self.is_controlled && sliding.checked()?.dt > 0.0 {
-            return Ramp::new(self, old, sliding, directions, [0.0; 2]).variations();
-        }
-        Ok(self.increment(old, sliding, directions, [0.0; 2])?.1)
-    }
-}
-
-impl RateAndState {
-    /// One increment of first order, with the variation of the final state along two directions and with the final pressure.
-    ///
-    /// # Errors
-    /// The same as for the response.
-    pub(super) fn increment(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-        dpressure: [f64; 2],
-    ) -> Result<(FrictionResponse, [Variation; 2]), LawFailure> {
-        let law = &self.coefficients;
-        let (response, found) = self.relax(old, sliding)?;
-        let Sliding { slip, pressure, dt } = sliding;
-        let trial = old.traction + law.alpha_t * slip;
-        let dtrial = |by: &Direction| by.state.traction + law.alpha_t * by.slip + by.of("alpha_t") * slip;
-        let Some(found) = found else {
-            let left = if pressure <= 0.0 { 0.0 } else { response.dtraction_dslip / law.alpha_t };
-            return Ok((response, directions.map(|by| Variation::new(left * dtrial(&by), by.variable()))));
-        };
-        let log_state = law.log_state(old.variables[0]);
-        let relaxation = Relaxation { law, trial: trial.abs(), pressure, dt, log_state };
-        let sign = trial.signum();
-        let varied = |k: usize| {
-            let (by, dpressure) = (&directions[k], dpressure[k]);
-            relaxation.vary(&found, by, sign * dtrial(by), dpressure).along(sign)
-        };
-        Ok((response, [varied(0), varied(1)]))
+        let mut ramp = Ramp::new(self, old, Inputs::new(old, sliding, directions)?);
+        let PathState { traction, theta, .. } =
+            if self.is_controlled && sliding.dt > 0.0 { ramp.end()? } else { ramp.single()? };
+        Ok(variations(traction, theta))
     }
 }

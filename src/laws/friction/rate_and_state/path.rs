@@ -1,7 +1,9 @@
 //! Rate-and-state friction along a prescribed path: error-controlled increments of slip and pressure linear in time.
 
 use super::RateAndState;
-use crate::laws::friction::sensitivity::{Direction, Variation};
+use super::relaxation::{Coefficients, Relaxation};
+use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::friction::sensitivity::Inputs;
 use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, PointLoad, RateLaw, Regime, Sliding};
 
 /// Tolerance of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ, relative to f₀:
@@ -35,74 +37,58 @@ const NOISE: f64 = 2e-13;
 /// Decrease of |q|/(a p) that the rows of a sub-step resolve.
 const RESOLVED: f64 = 2.0;
 
-/// q, ln θ, plastic slip, and the work ∫ q du = W + q²/(2 α_t)
-type Values = [f64; 4];
+/// q, ln θ, plastic slip, and the work ∫ q du = W + q²/(2 α_t), of which the first two have derivatives
+type Entry = [Dual; 4];
 
-/// d(q, ln θ) along two directions
-type Derivatives = [[f64; 2]; 2];
-
-/// Extrapolated values and derivatives.
+/// State at an integration point along the path, with the derivatives of its traction and θ.
 #[derive(Clone, Copy)]
-struct Entry {
-    values: Values,
-    derivatives: Derivatives,
-}
-
-/// State at an integration point along the path, with its variations.
-#[derive(Clone, Copy)]
-struct PathState {
+pub(super) struct PathState {
     state: FrictionState,
-    variations: [Variation; 2],
+    pub traction: Dual,
+    pub theta: Dual,
 }
 
 /// An increment whose slip and pressure are linear in time.
 pub(super) struct Ramp<'a> {
     law: &'a RateAndState,
+    coefficients: Coefficients<Dual>,
     start: PathState,
-    sliding: Sliding,
-    /// Directions along which slip, pressure and a parameter vary
-    directions: [Direction; 2],
-    dpressure: [f64; 2],
+    inputs: Inputs,
     /// Number of evaluations of the law's equation so far
     evaluations: usize,
 }
 
 impl<'a> Ramp<'a> {
-    pub(super) fn new(
-        law: &'a RateAndState,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-        dpressure: [f64; 2],
-    ) -> Self {
-        let start = PathState { state: *old, variations: directions.map(|by| by.state) };
-        Self { law, start, sliding, directions, dpressure, evaluations: 0 }
+    pub(super) fn new(law: &'a RateAndState, old: &FrictionState, inputs: Inputs) -> Self {
+        let start = PathState { state: *old, traction: inputs.traction, theta: inputs.variable };
+        Self { law, coefficients: law.coefficients.along(&inputs), start, inputs, evaluations: 0 }
     }
 
-    /// Response at the end of the increment; the directions are those of the consistent tangent.
+    /// Response at the end of the increment; the derivatives are those of the consistent tangent.
     pub(super) fn answer(mut self) -> Answer {
         let old = self.start.state;
-        let PathState { state, variations } = self.end()?;
+        let PathState { state, traction, .. } = self.end()?;
         let regime = match state.pressure > 0.0 {
             true => RateLaw::regime(self.law, self.law.evolving(&state), self.rate(&state)),
             false => Regime::Open,
         };
         FrictionResponse {
             state: FrictionState { plastic_increment: state.plastic_slip - old.plastic_slip, regime, ..state },
-            dtraction_dslip: variations[0].traction,
-            dtraction_dpressure: variations[1].traction,
+            dtraction_dslip: traction.by[0],
+            dtraction_dpressure: traction.by[1],
             evaluations: self.evaluations,
             ..Default::default()
         }
         .checked(self.law.coefficients.alpha_t)
     }
 
-    /// Variations of the state at the end of the path.
+    /// State after one increment of first order.
     ///
     /// # Errors
     /// The same as for the response.
-    pub(super) fn variations(mut self) -> Result<[Variation; 2], LawFailure> {
-        Ok(self.end()?.variations)
+    pub(super) fn single(&mut self) -> Result<PathState, LawFailure> {
+        let start = self.start;
+        self.increments(&start, 0, WHOLE, 1)
     }
 
     fn rate(&self, state: &FrictionState) -> f64 {
@@ -111,7 +97,7 @@ impl<'a> Ramp<'a> {
     }
 
     /// State at the end: sub-steps are halved until their error is below the tolerance, and doubled where possible.
-    fn end(&mut self) -> Result<PathState, LawFailure> {
+    pub(super) fn end(&mut self) -> Result<PathState, LawFailure> {
         let (mut path_state, mut at, mut step) = (self.start, 0, WHOLE);
         for _ in 0..MOST_ATTEMPTS {
             let (next, error) = match self.extrapolated(&path_state, at, step) {
@@ -138,15 +124,16 @@ impl<'a> Ramp<'a> {
                 step *= 2;
             }
         }
-        let trial = (path_state.state.traction + self.law.coefficients.alpha_t * self.sliding.slip * share(step)).abs();
+        let trial =
+            (path_state.state.traction + self.law.coefficients.alpha_t * self.inputs.slip.value * share(step)).abs();
         Err(LawFailure::NotConverged { evaluations: self.evaluations, rest: trial, trial })
     }
 
     /// Maximum change of tractions by slip and pressure over a sub-step without a jump, in tolerances.
     fn drive(&self, from: &PathState, step: u64) -> f64 {
-        let change = self.law.coefficients.alpha_t * self.sliding.slip.abs()
-            + self.law.coefficients.f_0 * (self.sliding.pressure - self.start.state.pressure).abs();
-        let most = self.sliding.pressure.max(from.state.pressure);
+        let change = self.law.coefficients.alpha_t * self.inputs.slip.value.abs()
+            + self.law.coefficients.f_0 * (self.inputs.pressure.value - self.start.state.pressure).abs();
+        let most = self.inputs.pressure.value.max(from.state.pressure);
         share(step) * change / (TOLERANCE * self.law.coefficients.f_0 * most)
     }
 
@@ -169,7 +156,7 @@ impl<'a> Ramp<'a> {
             for (k, above) in rows.iter().enumerate() {
                 let factor = 1.0 / (j as f64 / (j - k - 1) as f64 - 1.0);
                 error = self.error(&entry, above, factor, [from, &fine], step);
-                entry = entry.beyond(above, factor);
+                entry = [0, 1, 2, 3].map(|i| entry[i] + (entry[i] - above[i]) * factor);
                 row.push(entry);
             }
             rows = row;
@@ -185,57 +172,61 @@ impl<'a> Ramp<'a> {
 
     /// A sub-step by `count` increments.
     fn increments(&mut self, from: &PathState, at: u64, step: u64, count: usize) -> Result<PathState, LawFailure> {
-        let Sliding { slip, pressure, dt } = self.sliding;
-        let first = self.start.state.pressure;
+        let (law, Inputs { slip, pressure, dt, .. }) = (self.coefficients, self.inputs);
         let mut path_state = *from;
         for i in 1..=count {
             let part = share(step) / count as f64;
             let x = if i == count { share(at + step) } else { share(at) + i as f64 * part };
-            let sliding = Sliding { slip: slip * part, pressure: (1.0 - x) * first + x * pressure, dt: dt * part };
-            let directions = [0, 1].map(|k| {
-                let Direction { slip, parameter, .. } = self.directions[k];
-                Direction { state: path_state.variations[k], slip: slip * part, parameter }
-            });
-            let dpressure = self.dpressure.map(|dpressure| x * dpressure);
-            let (answer, variations) = self.law.increment(&path_state.state, sliding, directions, dpressure)?;
+            let (slip, dt) = (slip * part, dt * part);
+            let pressure = pressure * x + (1.0 - x) * self.start.state.pressure;
+            let old = path_state;
+            let (answer, found) = self.law.relax(&old.state, Sliding::new(slip.value, pressure.value, dt))?;
             self.evaluations += answer.evaluations;
-            path_state = PathState { state: answer.state, variations };
+            let trial = old.traction + law.alpha_t * slip;
+            let (traction, theta) = match found {
+                Some(slip) => {
+                    let sign = trial.value.signum();
+                    let log_state = law.log_state(old.theta);
+                    let end = Relaxation { law: &law, trial: trial * sign, pressure, dt, log_state }.end(slip);
+                    (end[0] * sign, end[1])
+                }
+                None if pressure.value <= 0.0 => (0.0.into(), old.theta),
+                None => (trial * (answer.dtraction_dslip / law.alpha_t.value), old.theta),
+            };
+            let state = answer.state;
+            let (traction, theta) = (traction.map(state.traction, 1.0), theta.map(state.variables[0], 1.0));
+            path_state = PathState { state, traction, theta };
         }
         Ok(path_state)
     }
 
-    fn entry(&self, PathState { state, variations }: &PathState) -> Entry {
-        let (traction, theta) = (state.traction, state.variables[0]);
-        let work = state.dissipation + 0.5 * traction * traction / self.law.coefficients.alpha_t;
-        Entry {
-            values: [traction, theta.ln(), state.plastic_slip, work],
-            derivatives: variations.map(|by| [by.traction, by.variables[0] / theta]),
-        }
+    fn entry(&self, PathState { state, traction, theta }: &PathState) -> Entry {
+        let work = state.dissipation + 0.5 * state.traction * state.traction / self.law.coefficients.alpha_t;
+        [*traction, theta.ln(), state.plastic_slip.into(), work.into()]
     }
 
     /// State at the end of a sub-step represented by an entry; `fine` is located there too.
-    fn path_state(&self, entry: &Entry, fine: PathState) -> PathState {
-        let [traction, log_theta, plastic_slip, work] = entry.values;
+    fn path_state(&self, &[traction, log_theta, plastic_slip, work]: &Entry, fine: PathState) -> PathState {
         let theta = log_theta.exp();
-        let stored = 0.5 * traction * traction / self.law.coefficients.alpha_t;
-        let state = FrictionState { traction, plastic_slip, dissipation: work - stored, ..fine.state };
-        let variations = entry.derivatives.map(|[traction, log]| Variation::new(traction, theta * log));
-        PathState { state: state.with_variables([theta]), variations }
+        let stored = 0.5 * traction.value * traction.value / self.law.coefficients.alpha_t;
+        let (plastic_slip, dissipation) = (plastic_slip.value, work.value - stored);
+        let state = FrictionState { traction: traction.value, plastic_slip, dissipation, ..fine.state };
+        PathState { state: state.with_variables([theta.value]), traction, theta }
     }
 
     /// Change by the next extrapolation, in tolerances.
     fn error(&self, entry: &Entry, above: &Entry, factor: f64, [from, to]: [&PathState; 2], step: u64) -> f64 {
         let law = &self.law.coefficients;
-        let [traction, log_theta, _, work] = [0, 1, 2, 3].map(|i| factor * (entry.values[i] - above.values[i]).abs());
+        let [traction, log_theta, _, work] = [0, 1, 2, 3].map(|i| factor * (entry[i].value - above[i].value).abs());
         let strength = law.f_0 * from.state.pressure.max(to.state.pressure);
-        let slip = self.sliding.slip.abs() * share(step) + (to.state.plastic_slip - from.state.plastic_slip).abs();
-        let loaded = law.alpha_t * self.sliding.slip.abs() * share(step);
+        let slip = self.inputs.slip.value.abs() * share(step) + (to.state.plastic_slip - from.state.plastic_slip).abs();
+        let loaded = law.alpha_t * self.inputs.slip.value.abs() * share(step);
         let noise = NOISE / TOLERANCE;
         let overlooked = self.overlooked(&from.state, &to.state, step);
         let parts = [
             [traction + law.alpha_t * overlooked, strength + noise * loaded],
             [(law.a + law.b) * (log_theta + overlooked / law.critical_slip), law.f_0],
-            [work, strength * slip + noise * entry.values[3].abs()],
+            [work, strength * slip + noise * entry[3].value.abs()],
         ];
         // An exact 0 has no error, whatever the reference.
         let shares = parts.map(|[part, of]| if part == 0.0 { 0.0 } else { part / (TOLERANCE * of) });
@@ -252,16 +243,7 @@ impl Ramp<'_> {
         }
         let level = |state: &FrictionState| state.traction / (self.law.coefficients.a * state.pressure);
         let fall = (level(from) - level(to)) * from.traction.signum();
-        if fall > RESOLVED { self.rate(from).abs() * self.sliding.dt * share(step) / fall } else { 0.0 }
-    }
-}
-
-impl Entry {
-    fn beyond(&self, above: &Self, factor: f64) -> Self {
-        let beyond = |fine: f64, coarse: f64| fine + factor * (fine - coarse);
-        let values = [0, 1, 2, 3].map(|i| beyond(self.values[i], above.values[i]));
-        let derivatives = [0, 1].map(|k| [0, 1].map(|i| beyond(self.derivatives[k][i], above.derivatives[k][i])));
-        Self { values, derivatives }
+        if fall > RESOLVED { self.rate(from).abs() * self.inputs.dt * share(step) / fall } else { 0.0 }
     }
 }
 

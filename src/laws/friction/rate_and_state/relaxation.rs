@@ -1,10 +1,11 @@
-//! Equation of an increment of rate-and-state friction, its smallest root, and the variation of the root.
+//! Equation of an increment of rate-and-state friction, its smallest root, and the derivatives there.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::laws::friction::dual::{Dual, Number};
 use crate::laws::friction::root::{Argument, Piece, bracketed_root, first_root_bracket};
-use crate::laws::friction::sensitivity::{Direction, Variation};
+use crate::laws::friction::sensitivity::Inputs;
 use crate::laws::friction::{LEAST_SLOPE, LawFailure};
 
 /// Evolution of the state θ of rate-and-state friction.
@@ -21,29 +22,45 @@ pub enum StateEvolution {
 
 /// Coefficients of the friction law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Coefficients {
-    pub f_0: f64,
-    pub reference_rate: f64,
-    pub a: f64,
-    pub b: f64,
-    pub critical_slip: f64,
+pub(super) struct Coefficients<N = f64> {
+    pub f_0: N,
+    pub reference_rate: N,
+    pub a: N,
+    pub b: N,
+    pub critical_slip: N,
     pub evolution: StateEvolution,
-    pub alpha_t: f64,
+    pub alpha_t: N,
 }
 
 impl Coefficients {
+    /// The coefficients with their derivatives along two directions.
+    pub(super) fn along(&self, inputs: &Inputs) -> Coefficients<Dual> {
+        let of = |name: &str, value: f64| inputs.parameter(name, value);
+        Coefficients {
+            f_0: of("f_0", self.f_0),
+            reference_rate: of("V_0", self.reference_rate),
+            a: of("a", self.a),
+            b: of("b", self.b),
+            critical_slip: of("D_c", self.critical_slip),
+            evolution: self.evolution,
+            alpha_t: of("alpha_t", self.alpha_t),
+        }
+    }
+}
+
+impl<N: Number> Coefficients<N> {
     /// ln(V₀ θ/D_c)
-    pub(super) fn log_state(&self, theta: f64) -> f64 {
+    pub(super) fn log_state(&self, theta: N) -> N {
         (self.reference_rate * theta / self.critical_slip).ln()
     }
 
     /// θ from ln(V₀ θ/D_c) [T]
-    pub(super) fn theta(&self, log_state: f64) -> f64 {
+    pub(super) fn theta(&self, log_state: N) -> N {
         log_state.exp() * self.critical_slip / self.reference_rate
     }
 
     /// ψ from ln(V₀ θ/D_c) [-]
-    pub(super) fn psi(&self, log_state: f64) -> f64 {
+    pub(super) fn psi(&self, log_state: N) -> N {
         self.f_0 + self.b * log_state
     }
 }
@@ -58,77 +75,98 @@ const LEAST_PIECE: f64 = 1e-13;
 const MOST_EXPONENT: f64 = 700.0;
 
 /// One increment with a traction to be relaxed: G as a function of Δλ.
-pub(super) struct Relaxation<'a> {
-    pub law: &'a Coefficients,
+pub(super) struct Relaxation<'a, N = f64> {
+    pub law: &'a Coefficients<N>,
     /// |q_tr| > 0
-    pub trial: f64,
-    pub pressure: f64,
+    pub trial: N,
+    pub pressure: N,
     /// Δt > 0
     pub dt: f64,
     /// ln(V₀ θ₀/D_c)
-    pub log_state: f64,
+    pub log_state: N,
 }
 
 /// Result of an increment with the slip Δλ.
 #[derive(Clone, Copy)]
-pub(super) struct Relaxed {
+pub(super) struct Relaxed<N = f64> {
     /// Δλ [L]
     pub slip: f64,
     /// ln Δλ, relative to that of the largest slip
     log: f64,
     /// w: |q| = a p arsinh(eʷ)
-    pub log_sinh: f64,
+    log_sinh: N,
     /// G [F/L²]
-    excess: f64,
+    excess: N,
     /// −∂G/∂Δλ [F/L³]
     pub slope: f64,
     /// ln(V₀ θ/D_c) at the end
-    pub log_state: f64,
+    pub log_state: N,
+    /// ∂ ln θ/∂Δλ at the end [1/L]
+    log_by_slip: f64,
     /// |q| of (2) [F/L²]
-    pub traction: f64,
+    pub traction: N,
 }
 
-impl Relaxation<'_> {
+impl<N: Number> Relaxation<'_, N> {
     /// ln(V₀ θ/D_c) at the end after Δλ, and its derivative with respect to Δλ.
-    pub(super) fn log_state_after(&self, slip: f64) -> (f64, f64) {
+    pub(super) fn log_state_after(&self, slip: f64) -> (N, f64) {
         let Coefficients { reference_rate, critical_slip, evolution, .. } = *self.law;
-        let x = slip / critical_slip;
-        let decay = (-x).exp();
+        let x = N::from(slip) / critical_slip;
+        let decay = (N::from(0.0) - x).exp();
         // (1 − e⁻ˣ)/x and its derivative
-        let share = if x > 0.0 { -(-x).exp_m1() / x } else { 1.0 };
-        let dshare = if x > 1e-4 { (decay - share) / x } else { -0.5 + x / 3.0 };
+        let (share, dshare) = {
+            let x = x.value();
+            let share = if x > 0.0 { -(-x).exp_m1() / x } else { 1.0 };
+            (share, if x > 1e-4 { (decay.value() - share) / x } else { -0.5 + x / 3.0 })
+        };
+        let share = x.map(share, dshare);
         let (log, dlog) = match evolution {
             StateEvolution::Ageing => {
-                let time = self.dt * reference_rate / critical_slip;
+                let time = reference_rate * self.dt / critical_slip;
                 let grown = self.log_state.exp() * decay;
                 let state = grown + time * share;
-                (state.ln(), (time * dshare - grown) / state)
+                (state.ln(), (time.value() * dshare - grown.value()) / state.value())
             }
             StateEvolution::Slip if slip == 0.0 => (self.log_state, 0.0),
             StateEvolution::Slip => {
                 let steady = (reference_rate * self.dt).ln() - slip.ln();
                 let log = self.log_state * decay + steady * x * share;
-                (log, decay * (steady - self.log_state) - share)
+                (log, decay.value() * (steady - self.log_state).value() - share.value())
             }
         };
-        (log, dlog / critical_slip)
+        (log, dlog / critical_slip.value())
     }
 
     /// Traction and state after the slip Δλ.
-    pub(super) fn outcome(&self, slip: f64) -> Relaxed {
+    pub(super) fn outcome(&self, slip: f64) -> Relaxed<N> {
         let Coefficients { a, b, reference_rate, alpha_t, .. } = *self.law;
-        let (log_state, dlog_state) = self.log_state_after(slip);
-        let (psi, dpsi) = (self.law.psi(log_state), b * dlog_state);
-        let fastness = 0.5 / (reference_rate * self.dt);
-        let w = slip.ln() + fastness.ln() + psi / a;
-        let (arsinh, rate) = arsinh_of_exp(w);
-        let traction = a * self.pressure * arsinh;
-        let direct = if slip > 0.0 { rate / slip } else { fastness * (psi / a).exp() };
-        let slope = alpha_t + self.pressure * (a * direct + rate * dpsi);
+        let (log_state, log_by_slip) = self.log_state_after(slip);
+        let psi = self.law.psi(log_state);
+        let fastness = N::from(0.5) / (reference_rate * self.dt);
+        let w = fastness.ln() + slip.ln() + psi / a;
+        let (arsinh, rate) = arsinh_of_exp(w.value());
+        let traction = a * self.pressure * w.map(arsinh, rate);
+        let direct = if slip > 0.0 { rate / slip } else { (fastness * (psi / a).exp()).value() };
+        let by_slip = a.value() * direct + rate * (b.value() * log_by_slip);
+        let slope = alpha_t.value() + self.pressure.value() * by_slip;
         let excess = self.trial - alpha_t * slip - traction;
-        Relaxed { slip, log: 0.0, log_sinh: w, excess, slope, log_state, traction }
+        Relaxed { slip, log: 0.0, log_sinh: w, excess, slope, log_state, log_by_slip, traction }
     }
+}
 
+impl Relaxation<'_, Dual> {
+    /// Traction and θ after the slip Δλ that solves the equation.
+    pub(super) fn end(&self, slip: f64) -> [Dual; 2] {
+        let alpha_t = self.law.alpha_t.value;
+        let at = self.outcome(slip);
+        let slope = at.slope.max(LEAST_SLOPE * alpha_t);
+        let dslip = at.excess.map(0.0, 1.0 / slope);
+        let (traction, log_state) = (at.traction + dslip * (slope - alpha_t), at.log_state + dslip * at.log_by_slip);
+        [traction, self.law.theta(log_state)]
+    }
+}
+
+impl Relaxation<'_> {
     /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, which also occurs in the slip law.
     /// With y = V θ₀/D_c it is x ln(1/y), which increases up to y = 1/e.
     fn healing(&self, slip: f64) -> f64 {
@@ -264,44 +302,6 @@ impl Relaxation<'_> {
             Argument { value: found.excess, step, done: found.excess.abs() <= enough }
         });
         Ok((found, evaluations))
-    }
-}
-
-impl Relaxation<'_> {
-    /// Derivatives of (2) to (5) of the law and of G at its solution, with `dtrial` that of |q_tr| and `dpressure` that of p:
-    ///
-    /// ```text
-    /// d ln θ₁ = e⁻ˣ dθ₀/θ − x S dD_c + S dλ,   S = ∂ ln θ₁/∂λ         θ: θ₁ of the ageing law, θ₀ of the slip law
-    /// dψ = df₀ + db ln(V₀ θ₁/D_c) + b (dV₀/V₀ − dD_c/D_c + d ln θ₁)
-    /// d|q| = p (arsinh(eʷ) da + arsinh'(eʷ) (dψ − ψ da/a + a (dλ/λ − dV₀/V₀))) + |q| dp/p
-    /// D dλ = d|q_tr| − λ dα_t − ∂|q|
-    /// ```
-    pub(super) fn vary(&self, found: &Relaxed, by: &Direction, dtrial: f64, dpressure: f64) -> Variation {
-        let Coefficients { reference_rate, a, b, critical_slip, alpha_t, evolution, .. } = *self.law;
-        let [df_0, drate, da, db, dcritical, dstiffness] =
-            ["f_0", "V_0", "a", "b", "D_c", "alpha_t"].map(|name| by.of(name));
-        let (log_state, log_by_slip) = self.log_state_after(found.slip);
-        let (theta, psi) = (self.law.theta(log_state), self.law.psi(log_state));
-        let x = found.slip / critical_slip;
-        let from = match evolution {
-            StateEvolution::Ageing => theta,
-            StateEvolution::Slip => self.law.theta(self.log_state),
-        };
-        let dlog = (-x).exp() * by.variable() / from - x * log_by_slip * dcritical;
-        let dpsi = df_0 + db * log_state + b * (drate / reference_rate - dcritical / critical_slip + dlog);
-        let (arsinh, rate) = arsinh_of_exp(found.log_sinh);
-        let dstrength = self.pressure * (da * arsinh + rate * (dpsi - psi * da / a - a * drate / reference_rate))
-            + a * arsinh * dpressure;
-        let slope = found.slope.max(LEAST_SLOPE * alpha_t);
-        let dslip = (dtrial - dstiffness * found.slip - dstrength) / slope;
-        Variation::new(dstrength + (slope - alpha_t) * dslip, theta * (dlog + log_by_slip * dslip))
-    }
-}
-
-impl Variation {
-    /// The variation with its traction multiplied by the sign of slip.
-    pub(super) fn along(self, sign: f64) -> Self {
-        Self { traction: sign * self.traction, ..self }
     }
 }
 

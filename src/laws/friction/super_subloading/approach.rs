@@ -5,6 +5,8 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::laws::friction::dual::{Dual, Number};
+
 /// Sliding curve: R as a function of plastic slip.
 ///
 /// ```text
@@ -13,8 +15,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SlidingCurve {
     pub approach: Approach,
-    elastic_core: f64,
-    r: f64,
+    pub elastic_core: f64,
+    pub r: f64,
     /// (1 − R_e)/r: plastic slip per T [L]
     length: f64,
     /// 1/(1 − R_e)
@@ -62,7 +64,7 @@ impl SlidingCurve {
 
     /// Whether the point is the beginning of the curve, where U is infinite.
     pub(super) fn begins_at(&self, curve_point: &CurvePoint) -> bool {
-        self.progress(curve_point.ratio) <= LEAST_Y
+        self.progress(curve_point.ratio) <= 2.0 * LEAST_Y
     }
 
     /// The point at a coordinate of the curve that starts at `start`.
@@ -88,17 +90,21 @@ impl SlidingCurve {
         }
     }
 
-    /// Variation of R for variations `dr` of r and `dcore` of R_e, after a given plastic slip from a given initial R.
-    pub(super) fn varied(&self, start: &CurvePoint, here: &CurvePoint, dr: f64, dcore: f64) -> f64 {
+    /// R after the plastic slip from `start` to `here`, with the derivatives by R at the start, r and R_e.
+    #[inline]
+    pub(super) fn ratio_after(&self, old: Dual, [start, here]: [&CurvePoint; 2], [r, core]: [Dual; 2]) -> Dual {
         // Far along the curve U underflows: R is 1 there too.
         if start.full || start.rate == 0.0 {
-            return 0.0;
+            return here.ratio.into();
         }
-        let slip = here.slip - start.slip;
-        let passed =
-            if self.begins_at(start) { 0.0 } else { (1.0 - self.progress(start.ratio)) * here.rate / start.rate };
-        let by_core = 1.0 - self.progress(here.ratio) - passed + here.rate * slip * self.per_range;
-        here.rate / self.r * slip * dr + by_core * dcore
+        let range = Dual::from(1.0) - core;
+        let gained = (r * (here.slip - start.slip) / range).map(self.progress(here.ratio), here.rate / self.r);
+        // R at the start is irrelevant where the curve begins.
+        let passed = match self.begins_at(start) {
+            true => 0.0.into(),
+            false => ((old - core) / range).map(0.0, here.rate / start.rate),
+        };
+        core + range * (passed + gained)
     }
 
     /// Mean of R over the plastic slip between two points.

@@ -6,41 +6,17 @@
 
 use super::SuperSubloading;
 use super::approach::{CurvePoint, SlidingCurve};
-use super::peak::{Peak, PeakShift};
+use super::peak::{Peak, PeakEvolution};
+use crate::laws::friction::dual::{Dual, Number};
 use crate::laws::friction::root::{Argument, Piece, bracketed_root, first_root_bracket};
 use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
 
-/// Derivatives of an input or result along two directions.
-pub(super) type Derivative = [f64; 2];
-
-/// Derivatives of the inputs of an increment along the two directions.
-#[derive(Clone, Copy)]
-pub(super) struct Directions {
-    /// of Δu
-    pub slip: Derivative,
-    /// of p at the end
-    pub pressure: Derivative,
-    /// of q at the start
-    pub traction: Derivative,
-    /// of μ at the start
-    pub mu: Derivative,
-    /// of the parameters, if they vary
-    pub parameters: Option<[Shift; 2]>,
-}
-
-impl Directions {
-    /// Δu and p: those of the consistent tangent.
-    pub(super) const TANGENT: Self =
-        Self { slip: [1.0, 0.0], pressure: [0.0, 1.0], traction: [0.0; 2], mu: [0.0; 2], parameters: None };
-}
-
-/// Derivative of each parameter of the law along a direction.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shift {
-    pub alpha_t: f64,
-    pub r: f64,
-    pub elastic_core: f64,
-    pub peak: PeakShift,
+/// The parameters of the law with their derivatives.
+pub(super) struct Varied {
+    pub alpha_t: Dual,
+    pub r: Dual,
+    pub elastic_core: Dual,
+    pub evolution: PeakEvolution<Dual>,
 }
 
 /// The part of an increment in which slip may be plastic, with signs such that the traction is not negative.
@@ -48,20 +24,15 @@ pub(super) struct Shift {
 /// Along it slip, pressure and time are linear in x, 0 ≤ x ≤ 1.
 pub(super) struct LoadPath<'a> {
     pub law: &'a SuperSubloading,
+    pub varied: Varied,
+    /// Whether the derivatives are those of the consistent tangent, which is bounded
+    pub is_tangent: bool,
     /// Slip from x = 0 to 1 [L]
-    pub slip: f64,
-    /// Derivatives of the slip
-    pub dslip: Derivative,
+    pub slip: Dual,
     /// Pressures at x = 0 and 1 [F/L²]
-    pub pressures: [f64; 2],
-    /// Derivatives of the pressures
-    pub dpressures: [Derivative; 2],
+    pub pressures: [Dual; 2],
     /// Time from x = 0 to 1 [T]
-    pub time: f64,
-    /// Derivatives of the time
-    pub dtime: Derivative,
-    /// Derivatives of the parameters, if they vary
-    pub parameters: Option<[Shift; 2]>,
+    pub time: Dual,
     /// Number of evaluations of the slip equation so far
     pub evaluations: usize,
 }
@@ -71,13 +42,9 @@ pub(super) struct LoadPath<'a> {
 pub(super) struct PathState {
     pub x: f64,
     /// q ≥ 0 [F/L²]
-    pub traction: f64,
-    /// Derivatives of q
-    pub dtraction: Derivative,
+    pub traction: Dual,
     /// μ [-]
-    pub mu: f64,
-    /// Derivatives of μ
-    pub dmu: Derivative,
+    pub mu: Dual,
     /// R, and its point on the curve
     pub curve_point: CurvePoint,
     /// Plastic slip since the start of the path [L]
@@ -90,17 +57,9 @@ pub(super) struct PathState {
 
 impl LoadPath<'_> {
     /// Start of the path.
-    pub(super) fn start(
-        &self,
-        traction: f64,
-        dtraction: Derivative,
-        mu: f64,
-        dmu: Derivative,
-        ratio: f64,
-    ) -> PathState {
+    pub(super) fn start(&self, traction: Dual, mu: Dual, ratio: f64) -> PathState {
         let curve_point = self.law.curve.start(ratio);
-        let (plastic_slip, work, overlooked) = (0.0, 0.0, 0.0);
-        PathState { x: 0.0, traction, dtraction, mu, dmu, curve_point, plastic_slip, work, overlooked }
+        PathState { x: 0.0, traction, mu, curve_point, plastic_slip: 0.0, work: 0.0, overlooked: 0.0 }
     }
 
     /// Integrates one sub-step.
@@ -110,129 +69,89 @@ impl LoadPath<'_> {
         let equation = SlipEquation {
             law: self.law,
             start: from.curve_point,
-            trial: from.traction + self.law.alpha_t * self.slip * share,
-            pressure: self.pressure(x),
-            old_mu: from.mu,
-            dt: self.time * share,
+            trial: from.traction.value + self.law.alpha_t * self.slip.value * share,
+            pressure: self.pressure(x.into()).value,
+            old_mu: from.mu.value,
+            dt: self.time.value * share,
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return Ok(self.stick(from, x, equation.trial));
+            return Ok(self.stick(from, x));
         }
         let (end, evaluations) = equation.solve(start)?;
         self.evaluations += evaluations;
-        // The tangent is that of the point found, off by the order of the search's tolerance. Sensitivities, which add up over many
-        // increments, are those of the settled one.
-        let end = if self.parameters.is_some() { equation.settled(end) } else { end };
         Ok(self.slide(from, x, &end))
     }
 
     /// A sub-step without plastic slip.
     #[inline]
-    fn stick(&self, from: &PathState, x: f64, trial: f64) -> PathState {
+    fn stick(&self, from: &PathState, x: f64) -> PathState {
         let share = x - from.x;
-        let pressure = self.pressure(x);
         // Only weakening that has reduced the traction during unloading can leave it to reverse: it stays at 0.
-        let traction = trial.max(0.0);
-        let (mu, by_time) = self.law.evolution.rested(from.mu, self.time * share);
-        let old_rate = self.law.evolution.recovery(from.mu);
-        let by_old = if old_rate > 0.0 { by_time / old_rate } else { 1.0 };
-        let curve_point = self.law.curve.start(traction / (mu * pressure));
-        let rate = self.rate(traction, mu, pressure, &curve_point);
-        PathState {
-            x,
-            traction,
-            dtraction: if trial > 0.0 { [0, 1].map(|i| self.dtrial(from, share, i)) } else { [0.0; 2] },
-            mu,
-            dmu: [0, 1].map(|i| match &self.parameters {
-                None => by_old * from.dmu[i] + by_time * share * self.dtime[i],
-                Some(shifts) => {
-                    let (dmu, dtime) = (from.dmu[i], share * self.dtime[i]);
-                    self.law.evolution.rested_by(from.mu, self.time * share, dmu, dtime, &shifts[i].peak)
-                }
-            }),
-            curve_point,
-            overlooked: self.law.alpha_t * rate * share,
-            ..*from
-        }
+        let trial = self.trial(from, share);
+        let traction = if trial.value > 0.0 { trial } else { 0.0.into() };
+        let mu = self.varied.evolution.rested(from.mu, self.time * share);
+        let pressure = self.pressure(x.into()).value;
+        let curve_point = self.law.curve.start(traction.value / (mu.value * pressure));
+        let rate = self.rate(traction.value, mu.value, pressure, &curve_point);
+        PathState { x, traction, mu, curve_point, overlooked: self.law.alpha_t * rate * share, ..*from }
     }
 
-    /// A sub-step with plastic slip. The consistent tangent is that of the equation of plastic slip, including the variation of
-    /// the initial state of the sub-step:
+    /// A sub-step with plastic slip. The derivatives are those of the equation of plastic slip at its root,
     ///
     /// ```text
-    /// dq = dq_tr − α_t dΔλ,   dq_tr = dq₀ + α_t dΔu
-    /// dΔλ = (dq_tr − p (μ δR + R δμ) − R μ dp)/D,   D = α_t + p (U μ + R ∂μ/∂Δλ)
-    /// δR = U/U₀ dR₀,   δμ = ∂μ/∂μ₀ dμ₀ + ∂μ/∂Δt dΔt                 of R and μ after a given Δλ
-    /// dμ = δμ + ∂μ/∂Δλ dΔλ
+    /// dΔλ = ∂G/D,   D = α_t + p (U μ + R ∂μ/∂Δλ)                      ∂G at constant Δλ
+    /// dq = d(q_tr − α_t Δλ),   dμ = ∂μ + ∂μ/∂Δλ dΔλ
     /// ```
-    /// Varying parameters add their contributions to α_t Δλ, δμ and δR.
     #[inline]
     fn slide(&self, from: &PathState, x: f64, point: &Point) -> PathState {
         let share = x - from.x;
-        let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(x));
-        let (curve_point, peak, slip) = (point.curve_point, point.peak, point.slip);
-        let traction = curve_point.ratio * peak.mu * pressure;
-        let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.law.alpha_t);
-
-        // U/(U₀ μ₀ p₀), as dR₀ = (dq₀ − R₀ (p₀ dμ₀ + μ₀ dp₀))/(μ₀ p₀); R₀ is irrelevant where the curve begins.
-        let given = from.x == 0.0 && self.parameters.is_none();
-        let begins = given || self.law.curve.begins_at(&from.curve_point) || from.curve_point.rate == 0.0;
-        let inherited =
-            if begins { 0.0 } else { curve_point.rate / from.curve_point.rate / (from.mu * start_pressure) };
-        let derivatives = |i: usize| {
-            let dstart_pressure = self.dpressure(from.x)[i];
-            let dratio =
-                from.dtraction[i] - from.curve_point.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
-            let own = self.parameters.map_or([0.0; 3], |shifts| self.own(from, x, point, &shifts[i]));
-            let dtrial = self.dtrial(from, share, i) - own[0];
-            let dmu = peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i] + own[1];
-            let dstrength = pressure * (peak.mu * inherited * dratio + peak.mu * own[2] + curve_point.ratio * dmu)
-                + curve_point.ratio * peak.mu * self.dpressure(x)[i];
-            let dslip = (dtrial - dstrength) * per_slope;
-            let limit = match self.parameters {
-                Some(_) => f64::INFINITY,
-                None if i == 0 => STEEPEST * self.law.alpha_t,
-                None => STEEPEST,
-            };
-            let dtraction = (dtrial - self.law.alpha_t * dslip).clamp(-limit, limit);
-            (dtraction, (dmu + peak.slope * dslip).clamp(-limit / pressure, limit / pressure))
+        let (start_pressure, pressure) = (self.pressure(from.x.into()), self.pressure(x.into()));
+        let Point { curve_point, slip, .. } = *point;
+        let Varied { alpha_t, r, elastic_core, evolution } = &self.varied;
+        let time = self.time * share;
+        // The tangent neglects the change by the last step of the search, which would accumulate over many increments.
+        let (peak, by_slip) = match self.is_tangent {
+            true => (point.peak.along(from.mu, time), point.peak.slope),
+            false => {
+                let peak = evolution.after(from.mu, slip, time);
+                (peak.mu, peak.slope)
+            }
         };
-        let (dq_dslip, dmu_dslip) = derivatives(0);
-        let (dq_dpressure, dmu_dpressure) = derivatives(1);
-
-        let strengths = [from.mu * start_pressure, peak.mu * pressure];
-        let work =
-            mean_traction(&self.law.curve, [&from.curve_point, &curve_point], strengths, [from.traction, traction])
-                * slip;
+        let start_ratio = from.traction / (from.mu * start_pressure);
+        let ratio = self.law.curve.ratio_after(start_ratio, [&from.curve_point, &curve_point], [*r, *elastic_core]);
+        let slope =
+            self.law.alpha_t + pressure.value * (curve_point.rate * point.peak.mu + curve_point.ratio * by_slip);
+        let elastic = self.trial(from, share) - *alpha_t * slip;
+        let residual = elastic - ratio * peak * pressure;
+        let dslip = residual.map(0.0, 1.0 / slope.max(LEAST_SLOPE * self.law.alpha_t));
+        let mut traction =
+            (elastic - dslip * self.law.alpha_t).map(curve_point.ratio * point.peak.mu * pressure.value, 1.0);
+        let mut mu = (peak + dslip * by_slip).map(point.peak.mu, 1.0);
+        if self.is_tangent {
+            for (i, limit) in [STEEPEST * self.law.alpha_t, STEEPEST].into_iter().enumerate() {
+                traction.by[i] = traction.by[i].clamp(-limit, limit);
+                mu.by[i] = mu.by[i].clamp(-limit / pressure.value, limit / pressure.value);
+            }
+        }
+        let strengths = [from.mu.value * start_pressure.value, mu.value * pressure.value];
+        let tractions = [from.traction.value, traction.value];
+        let mean = mean_traction(&self.law.curve, [&from.curve_point, &curve_point], strengths, tractions);
         PathState {
             x,
             traction,
-            dtraction: [dq_dslip, dq_dpressure],
-            mu: peak.mu,
-            dmu: [dmu_dslip, dmu_dpressure],
+            mu,
             curve_point,
             plastic_slip: from.plastic_slip + slip,
-            work: from.work + work,
+            work: from.work + mean * slip,
             overlooked: 0.0,
         }
     }
 
-    /// Derivatives of the trial traction.
+    /// The traction after a share of the slip without plastic slip.
     #[inline]
-    fn dtrial(&self, from: &PathState, share: f64, i: usize) -> f64 {
-        let by_stiffness = self.parameters.map_or(0.0, |shifts| shifts[i].alpha_t * self.slip * share);
-        from.dtraction[i] + self.law.alpha_t * self.dslip[i] * share + by_stiffness
-    }
-
-    /// Contribution of varying parameters to α_t Δλ, μ and R after a given plastic slip from a given start.
-    fn own(&self, from: &PathState, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
-        let time = self.time * (x - from.x);
-        [
-            by.alpha_t * point.slip,
-            self.law.evolution.after_by(from.mu, point.slip, time, &by.peak),
-            self.law.curve.varied(&from.curve_point, &point.curve_point, by.r, by.elastic_core),
-        ]
+    fn trial(&self, from: &PathState, share: f64) -> Dual {
+        from.traction + self.varied.alpha_t * self.slip * share
     }
 
     /// dλ/dx of the rate equations, 0 where R decreases without slip or the solution is not unique.
@@ -242,20 +161,20 @@ impl LoadPath<'_> {
             return 0.0; // inside the elastic core
         }
         let (weakening, recovery) = (self.law.evolution.weakening(mu), self.law.evolution.recovery(mu));
-        let drive = self.law.alpha_t * self.slip
-            - curve_point.ratio * (recovery * self.time * pressure + mu * (self.pressures[1] - self.pressures[0]));
+        let drive = self.law.alpha_t * self.slip.value
+            - curve_point.ratio * (recovery * self.time.value * pressure + mu * self.pressure_change());
         let stiffness = self.law.alpha_t + pressure * (curve_point.rate * mu - curve_point.ratio * weakening);
         if drive > 0.0 && stiffness > 0.0 { drive / stiffness } else { 0.0 }
     }
 
     /// p [F/L²]
-    pub(super) fn pressure(&self, x: f64) -> f64 {
-        (1.0 - x) * self.pressures[0] + x * self.pressures[1]
+    pub(super) fn pressure(&self, x: Dual) -> Dual {
+        self.pressures[0] * (Dual::from(1.0) - x) + self.pressures[1] * x
     }
 
-    /// Derivatives of p
-    pub(super) fn dpressure(&self, x: f64) -> Derivative {
-        [0, 1].map(|i| (1.0 - x) * self.dpressures[0][i] + x * self.dpressures[1][i])
+    /// Change of the pressure from x = 0 to 1.
+    pub(super) fn pressure_change(&self) -> f64 {
+        self.pressures[1].value - self.pressures[0].value
     }
 }
 
@@ -389,12 +308,6 @@ impl SlipEquation<'_> {
     #[inline(always)]
     fn slope(&self, ratio: f64, rate: f64, peak: &Peak) -> f64 {
         self.law.alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope)
-    }
-
-    /// The point with μ and D evaluated there, instead of before the last step.
-    pub(super) fn settled(&self, point: Point) -> Point {
-        let peak = self.law.evolution.after(self.old_mu, point.slip, self.dt);
-        Point { peak, slope: self.slope(point.curve_point.ratio, point.curve_point.rate, &peak), ..point }
     }
 
     /// Whether third-order terms of the step are round-off, which is magnified near the fold D = 0.

@@ -7,12 +7,12 @@ mod peak;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::SensitiveLaw;
+use super::sensitivity::{Direction, Inputs, SensitiveLaw};
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
 pub use approach::Approach;
 use approach::SlidingCurve;
-use increment::{Directions, ROUND_OFF, SlipEquation, mean_traction};
+use increment::{ROUND_OFF, SlipEquation, mean_traction};
 use peak::PeakEvolution;
 pub use peak::{Integration, Onset, Rise};
 
@@ -171,22 +171,23 @@ impl SuperSubloading {
     }
 
     /// An increment in which slip may be plastic, in sub-steps.
-    fn follow(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Answer {
-        let (mut path, start, sign) = self.lead(old, trial, sliding, &Directions::TANGENT);
+    fn follow(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        let inputs = Inputs::new(old, sliding, Direction::TANGENT)?;
+        let (mut path, start, sign) = self.lead(&inputs, old.pressure);
         let end = path.end(&start)?;
         let pressure = sliding.pressure;
         let plastic_slip = sign * end.plastic_slip;
         Ok(FrictionResponse {
             state: ruled(FrictionState {
-                traction: sign * end.traction,
+                traction: sign * end.traction.value,
                 pressure,
                 plastic_slip: old.plastic_slip + plastic_slip,
                 plastic_increment: old.plastic_increment + plastic_slip,
                 dissipation: old.dissipation + end.work,
-                ..old.with_variables([end.mu])
+                ..old.with_variables([end.mu.value])
             }),
-            dtraction_dslip: sign * end.dtraction[0],
-            dtraction_dpressure: sign * end.dtraction[1],
+            dtraction_dslip: sign * end.traction.by[0],
+            dtraction_dpressure: sign * end.traction.by[1],
             evaluations: path.evaluations,
             ..Default::default()
         })
@@ -231,18 +232,18 @@ impl FrictionLaw for SuperSubloading {
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         if pressure <= 0.0 {
-            let (mu, _) = self.evolution.rested(self.evolution.clamp(mu_of(old)), dt);
+            let mu = self.evolution.rested(self.evolution.clamp(mu_of(old)), dt);
             let parted = old.parted(self.alpha_t).with_variables([mu]);
             return FrictionResponse::elastic(parted, 0.0).checked(self.alpha_t);
         }
         let old = self.within_strength(old);
         let trial = old.traction + self.alpha_t * slip;
         if falls(&old, trial, pressure) {
-            let (mu, _) = self.evolution.rested(mu_of(&old), dt);
+            let mu = self.evolution.rested(mu_of(&old), dt);
             return self.elastic(&old, trial, pressure, mu).checked(self.alpha_t);
         }
         match self.integration {
-            Integration::Controlled => self.follow(&old, trial, sliding),
+            Integration::Controlled => self.follow(&old, sliding),
             Integration::BackwardEuler => self.step(&old, trial, sliding),
         }?
         .checked(self.alpha_t)

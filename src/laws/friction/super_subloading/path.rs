@@ -12,69 +12,52 @@
 //!
 //! Responses are differentiated with respect to the parameters and the initial state.
 
-use super::increment::{Derivative, Directions, LoadPath, PathState, Shift};
-use super::peak::PeakShift;
-use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls, mu_of};
-use crate::laws::friction::sensitivity::{Direction, SensitiveLaw, Variation};
+use super::increment::{LoadPath, PathState, Varied};
+use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls};
+use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::friction::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 
 impl SuperSubloading {
     /// The path of an increment in which slip may be plastic: from the start, or from where the traction passes 0; its initial
     /// state, and the sign of the traction, by which both are mirrored.
-    pub(super) fn lead(
-        &self,
-        old: &FrictionState,
-        trial: f64,
-        Sliding { slip, pressure, dt }: Sliding,
-        by: &Directions,
-    ) -> (LoadPath<'_>, PathState, f64) {
-        let reversed = old.traction != 0.0 && trial * old.traction.signum() < 0.0;
-        let sign = if reversed || old.traction == 0.0 { trial.signum() } else { old.traction.signum() };
-        let mirrored = |derivative: Derivative| derivative.map(|d| sign * d);
-        let by = &Directions { slip: mirrored(by.slip), traction: mirrored(by.traction), ..*by };
-        let mut path = LoadPath {
-            law: self,
-            slip: sign * slip,
-            dslip: by.slip,
-            pressures: [old.pressure, pressure],
-            dpressures: [[0.0; 2], by.pressure],
-            time: dt,
-            dtime: [0.0; 2],
-            parameters: by.parameters,
-            evaluations: 0,
-        };
+    pub(super) fn lead(&self, inputs: &Inputs, old_pressure: f64) -> (LoadPath<'_>, PathState, f64) {
+        let Inputs { traction: old, variable: mu, slip, pressure, dt, .. } = *inputs;
+        let varied = self.along(inputs);
+        let trial = old + varied.alpha_t * slip;
+        let reversed = old.value != 0.0 && trial.value * old.value.signum() < 0.0;
+        let sign = if reversed || old.value == 0.0 { trial.value.signum() } else { old.value.signum() };
+        let (is_tangent, slip, old, time) = (inputs.are_of_tangent(), slip * sign, old * sign, dt.into());
+        let pressures = [old_pressure.into(), pressure];
+        let mut path = LoadPath { law: self, varied, is_tangent, slip, pressures, time, evaluations: 0 };
         let start = if reversed {
-            let share = old.traction / (old.traction - trial);
-            self.pass_zero(&mut path, mu_of(old), trial, share, by)
+            self.pass_zero(&mut path, [old, mu], trial * sign)
         } else {
-            path.start(old.traction.abs(), by.traction, mu_of(old), by.mu, old.ratio(mu_of(old)).min(1.0))
+            let strength = mu.value * old_pressure;
+            let ratio = if strength > 0.0 { old.value / strength } else { 0.0 };
+            path.start(old, mu, ratio.min(1.0))
         };
         (path, start, sign)
     }
 
-    /// Restricts the path to the part after the traction passes 0, at the fraction `share` of the increment; returns its
-    /// initial state.
-    fn pass_zero(&self, path: &mut LoadPath, old_mu: f64, trial: f64, share: f64, by: &Directions) -> PathState {
-        let (alpha_t, slip, dt) = (self.alpha_t, path.slip, path.time);
-        let dstiffness = [0, 1].map(|i| by.parameters.map_or(0.0, |shifts| shifts[i].alpha_t));
-        let dshare = [0, 1]
-            .map(|i| -share / slip * by.slip[i] - by.traction[i] / (alpha_t * slip) - share * dstiffness[i] / alpha_t);
-        let (mu, mu_rate) = self.evolution.rested(old_mu, dt * share);
-        let dmu = [0, 1].map(|i| match &by.parameters {
-            None => mu_rate * dt * dshare[i],
-            Some(shifts) => self.evolution.rested_by(old_mu, dt * share, by.mu[i], dt * dshare[i], &shifts[i].peak),
-        });
-        let gain = path.pressures[1] - path.pressures[0];
-        path.slip = trial.abs() / alpha_t;
-        path.dslip = [0, 1].map(|i| {
-            let dtrial = by.traction[i] + alpha_t * by.slip[i] + slip * dstiffness[i];
-            dtrial / alpha_t - path.slip * dstiffness[i] / alpha_t
-        });
-        path.dpressures[0] = [0, 1].map(|i| gain * dshare[i] + share * by.pressure[i]);
+    /// Restricts the path to the part after the traction passes 0; returns its initial state.
+    fn pass_zero(&self, path: &mut LoadPath, [old, mu]: [Dual; 2], trial: Dual) -> PathState {
+        let share = old / (old - trial);
+        let mu = path.varied.evolution.rested(mu, path.time * share);
+        path.slip = trial / path.varied.alpha_t;
         path.pressures[0] = path.pressure(share);
-        path.time = dt * (1.0 - share);
-        path.dtime = dshare.map(|dshare| -dt * dshare);
-        path.start(0.0, [0.0; 2], mu, dmu, 0.0)
+        path.time = path.time * (Dual::from(1.0) - share);
+        path.start(0.0.into(), mu, 0.0)
+    }
+
+    /// The parameters with their derivatives.
+    fn along(&self, inputs: &Inputs) -> Varied {
+        Varied {
+            alpha_t: inputs.parameter("alpha_t", self.alpha_t),
+            r: inputs.parameter("r", self.curve.r),
+            elastic_core: inputs.parameter("elastic_core", self.curve.elastic_core),
+            evolution: self.evolution.along(inputs),
+        }
     }
 }
 
@@ -155,11 +138,11 @@ impl LoadPath<'_> {
         if agree {
             return Ok(if halves.slide() { self.extrapolated(&halves) } else { fine });
         }
-        if self.drive(from, &fine) <= SNAP * self.law.tolerance * self.law.evolution.mu_s * self.pressure(fine.x) {
+        if self.drive(from, &fine) <= SNAP * self.law.tolerance * self.law.evolution.mu_s * self.pressure_at(&fine) {
             return Ok(fine);
         }
         if halvings == 0 || self.evaluations > MAX_EVALUATIONS {
-            let trial = from.traction + self.law.alpha_t * self.slip * (fine.x - from.x);
+            let trial = from.traction.value + self.law.alpha_t * self.slip.value * (fine.x - from.x);
             let rest = differences[0].abs().max(overlooked);
             return Err(LawFailure::NotConverged { evaluations: self.evaluations, rest, trial });
         }
@@ -172,12 +155,12 @@ impl LoadPath<'_> {
     /// Maximum change of the traction or the strength by slip, pressure and time over a sub-step without a jump.
     fn drive(&self, from: &PathState, to: &PathState) -> f64 {
         let share = to.x - from.x;
-        let recovery = self.law.evolution.recovery(from.mu.min(to.mu))
-            * self.time
-            * self.pressure(from.x).max(self.pressure(to.x));
+        let recovery = self.law.evolution.recovery(from.mu.value.min(to.mu.value))
+            * self.time.value
+            * self.pressure_at(from).max(self.pressure_at(to));
         share
-            * (self.law.alpha_t * self.slip.abs()
-                + self.law.evolution.mu_s * (self.pressures[1] - self.pressures[0]).abs()
+            * (self.law.alpha_t * self.slip.value.abs()
+                + self.law.evolution.mu_s * self.pressure_change().abs()
                 + recovery)
     }
 
@@ -185,8 +168,8 @@ impl LoadPath<'_> {
     fn differences(&self, halves: &Halves) -> Differences {
         let Halves { coarse, fine, .. } = *halves;
         [
-            fine.traction - coarse.traction,
-            (fine.mu - coarse.mu) * self.pressure(fine.x),
+            fine.traction.value - coarse.traction.value,
+            (fine.mu.value - coarse.mu.value) * self.pressure_at(fine),
             self.energy(fine) - self.energy(coarse),
         ]
     }
@@ -196,9 +179,9 @@ impl LoadPath<'_> {
     fn allowed(&self, halves: &Halves) -> Differences {
         let Halves { from, fine, .. } = *halves;
         let share = fine.x - from.x;
-        let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(fine.x));
-        let slip = self.slip.abs() * share;
-        let noise = NOISE * (fine.traction + from.traction + self.law.alpha_t * slip);
+        let (start_pressure, pressure) = (self.pressure_at(from), self.pressure_at(fine));
+        let slip = self.slip.value.abs() * share;
+        let noise = NOISE * (fine.traction.value + from.traction.value + self.law.alpha_t * slip);
         let tolerance = self.law.tolerance * self.law.evolution.mu_s;
         let strength = tolerance * pressure * (share * share.sqrt()).sqrt() + noise;
         let work = (tolerance * pressure.max(start_pressure) + noise) * (slip + fine.plastic_slip - from.plastic_slip);
@@ -209,37 +192,30 @@ impl LoadPath<'_> {
     fn extrapolated(&self, halves: &Halves) -> PathState {
         let Halves { from, coarse, fine, .. } = *halves;
         let beyond = |fine: f64, coarse: f64| fine + (fine - coarse) / 3.0;
-        let beyond_each = |fine: Derivative, coarse: Derivative| [0, 1].map(|i| beyond(fine[i], coarse[i]));
-        let pressure = self.pressure(fine.x);
-        let (mut mu, mut dmu) = (beyond(fine.mu, coarse.mu), beyond_each(fine.dmu, coarse.dmu));
-        if mu != self.law.evolution.clamp(mu) {
-            dmu = [0, 1]
-                .map(|i| self.parameters.map_or(0.0, |shifts| self.law.evolution.clamped_by(mu, 0.0, &shifts[i].peak)));
-            mu = self.law.evolution.clamp(mu);
-        }
-        let mut traction = beyond(fine.traction, coarse.traction).max(0.0);
-        let mut dtraction = beyond_each(fine.dtraction, coarse.dtraction);
-        if traction > mu * pressure {
-            let dpressure = self.dpressure(fine.x);
-            (traction, dtraction) = (mu * pressure, [0, 1].map(|i| pressure * dmu[i] + mu * dpressure[i]));
-        }
+        let pressure = self.pressure(fine.x.into());
+        let mu = self.varied.evolution.clamp(fine.mu + (fine.mu - coarse.mu) / 3.0);
+        let strength = mu * pressure;
+        let traction = (fine.traction + (fine.traction - coarse.traction) / 3.0).max(0.0.into()).min(strength);
         let energy = beyond(self.energy(fine), self.energy(coarse));
         PathState {
             x: fine.x,
             traction,
-            dtraction,
             mu,
-            dmu,
-            curve_point: self.law.curve.start(traction / (mu * pressure)),
+            curve_point: self.law.curve.start(traction.value / strength.value),
             plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
-            work: (energy - 0.5 * traction * traction / self.law.alpha_t).max(from.work),
+            work: (energy - 0.5 * traction.value * traction.value / self.law.alpha_t).max(from.work),
             overlooked: 0.0,
         }
     }
 
     /// Work of the traction: dissipated, and stored in the contact spring.
     fn energy(&self, path_state: &PathState) -> f64 {
-        path_state.work + 0.5 * path_state.traction * path_state.traction / self.law.alpha_t
+        path_state.work + 0.5 * path_state.traction.value * path_state.traction.value / self.law.alpha_t
+    }
+
+    /// p at a point of the path [F/L²]
+    fn pressure_at(&self, path_state: &PathState) -> f64 {
+        self.pressure(path_state.x.into()).value
     }
 }
 
@@ -292,27 +268,27 @@ impl LoadPath<'_> {
         if unsteady > STEADY {
             return false;
         }
-        let pressure = self.pressures[1];
+        let pressure = self.pressures[1].value;
         let strength = self.law.tolerance * self.law.evolution.mu_s * pressure;
-        let mu_error = 0.25 * unsteady * self.law.evolution.commutator(slip, self.time);
+        let mu_error = 0.25 * unsteady * self.law.evolution.commutator(slip, self.time.value);
         let q_error = mu_error * pressure * (self.law.alpha_t / stiffness).max(1.0);
         q_error <= SHARE * strength && self.mean_error(from, to, &start, &end) <= strength
     }
 
     /// Quantities that determine the rate of plastic slip in a state.
     fn ends(&self, at: &PathState) -> Ends {
-        let (pressure, ratio) = (self.pressure(at.x), at.curve_point.ratio);
-        let approach = pressure * at.curve_point.rate * at.mu;
-        let weakening = pressure * ratio * self.law.evolution.weakening(at.mu);
-        let recovery = ratio * pressure * self.law.evolution.recovery(at.mu) * self.time;
-        let pressing = ratio * at.mu * (self.pressures[1] - self.pressures[0]);
+        let (pressure, ratio, mu) = (self.pressure_at(at), at.curve_point.ratio, at.mu.value);
+        let approach = pressure * at.curve_point.rate * mu;
+        let weakening = pressure * ratio * self.law.evolution.weakening(mu);
+        let recovery = ratio * pressure * self.law.evolution.recovery(mu) * self.time.value;
+        let pressing = ratio * mu * self.pressure_change();
         Ends {
             approach,
             weakening,
             recovery,
             pressing,
             stiffness: self.law.alpha_t + approach - weakening,
-            drive: self.law.alpha_t * self.slip - recovery - pressing,
+            drive: self.law.alpha_t * self.slip.value - recovery - pressing,
             ratio,
         }
     }
@@ -328,7 +304,7 @@ impl LoadPath<'_> {
             [e.weakening, e.recovery * per_rate, e.pressing * per_rate, e.approach]
         };
         let (start_parts, end_parts) = (parts(start), parts(end));
-        let falls = to.traction < from.traction;
+        let falls = to.traction.value < from.traction.value;
         let change = |i: usize, per: [f64; 2]| (end_parts[i] / per[1] - start_parts[i] / per[0]).abs();
         let bend: f64 = if falls {
             (0..4).map(|i| change(i, [1.0, 1.0])).sum()
@@ -338,13 +314,6 @@ impl LoadPath<'_> {
         };
         0.125 * slip * bend
     }
-}
-
-/// Derivative of each parameter along a direction.
-fn shift(by: &Direction) -> Shift {
-    let [mu_s, mu_k, kappa, xi, m, n] = ["mu_s", "mu_k", "kappa", "xi", "m", "n"].map(|name| by.of(name));
-    let peak = PeakShift { mu_s, mu_k, kappa, xi, m, n };
-    Shift { alpha_t: by.of("alpha_t"), r: by.of("r"), elastic_core: by.of("elastic_core"), peak }
 }
 
 impl SensitiveLaw for SuperSubloading {
@@ -369,32 +338,23 @@ impl SensitiveLaw for SuperSubloading {
         sliding: Sliding,
         directions: [Direction; 2],
     ) -> Result<[Variation; 2], LawFailure> {
-        let Sliding { slip, pressure, dt } = sliding.checked()?;
-        let shifts = directions.map(|direction| shift(&direction));
-        let mut by = Directions {
-            slip: directions.map(|direction| direction.slip),
-            pressure: [0.0; 2],
-            traction: directions.map(|direction| direction.state.traction),
-            mu: [0, 1].map(|i| self.evolution.clamped_by(mu_of(old), directions[i].variable(), &shifts[i].peak)),
-            parameters: Some(shifts),
-        };
-        let rested =
-            |mu: f64, by: &Directions| [0, 1].map(|i| self.evolution.rested_by(mu, dt, by.mu[i], 0.0, &shifts[i].peak));
-        if pressure <= 0.0 {
-            return Ok(rested(self.evolution.clamp(mu_of(old)), &by).map(|dmu| Variation::new(0.0, dmu)));
+        let mut inputs = Inputs::new(old, sliding, directions)?;
+        let Varied { alpha_t, evolution, .. } = self.along(&inputs);
+        inputs.variable = evolution.clamp(inputs.variable);
+        let rested = evolution.rested(inputs.variable, sliding.dt.into());
+        if sliding.pressure <= 0.0 {
+            return Ok(variations(0.0.into(), rested));
         }
-        let within = self.within_strength(old);
-        if old.traction.abs() > mu_of(&within) * old.pressure.max(0.0) * (1.0 + EXCESS) {
-            by.traction = by.mu.map(|dmu| old.traction.signum() * old.pressure.max(0.0) * dmu);
+        let strength = inputs.variable * old.pressure.max(0.0);
+        if old.traction.abs() > strength.value * (1.0 + EXCESS) {
+            inputs.traction = strength * old.traction.signum();
         }
-        let trial = within.traction + self.alpha_t * slip;
-        if falls(&within, trial, pressure) {
-            let dmu = rested(mu_of(&within), &by);
-            let dtraction = [0, 1].map(|i| by.traction[i] + self.alpha_t * by.slip[i] + slip * shifts[i].alpha_t);
-            return Ok([0, 1].map(|i| Variation::new(dtraction[i], dmu[i])));
+        let trial = inputs.traction + alpha_t * inputs.slip;
+        if falls(&self.within_strength(old), trial.value, sliding.pressure) {
+            return Ok(variations(trial, rested));
         }
-        let (mut path, start, sign) = self.lead(&within, trial, sliding, &by);
+        let (mut path, start, sign) = self.lead(&inputs, old.pressure);
         let end = path.end(&start)?;
-        Ok([0, 1].map(|i| Variation::new(sign * end.dtraction[i], end.dmu[i])))
+        Ok(variations(end.traction * sign, end.mu))
     }
 }

@@ -1,0 +1,118 @@
+//! Numbers with derivatives along two directions: those of the tangent, Δu_t and p, or two parameters of a law. The equations of
+//! a law are written once, for both kinds of numbers.
+//!
+//! The numbers of `contact/dual.rs` have derivatives by as many unknowns as the nodes of an average, which are counted at run time.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// A number, or a number with its derivatives.
+pub(super) trait Number:
+    Copy
+    + PartialEq
+    + From<f64>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// The number without its derivatives.
+    fn value(self) -> f64;
+
+    /// f(self), given the value f and the derivative f′. The root x of G(x, self) = 0 is `G.map(x, -1/(∂G/∂x))`, with G evaluated
+    /// at the constant x: the implicit function theorem.
+    fn map(self, value: f64, derivative: f64) -> Self;
+
+    fn exp(self) -> Self {
+        let value = self.value().exp();
+        self.map(value, value)
+    }
+
+    fn ln(self) -> Self {
+        self.map(self.value().ln(), 1.0 / self.value())
+    }
+
+    /// self^exponent for self > 0.
+    fn powf(self, exponent: Self) -> Self {
+        let (x, k) = (self.value(), exponent.value());
+        let value = x.powf(k);
+        self.map(value, k * value / x) + exponent.map(0.0, value * x.ln())
+    }
+
+    /// The greater of two numbers.
+    fn max(self, other: Self) -> Self {
+        if self.value().max(other.value()) == self.value() { self } else { other }
+    }
+
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self {
+        if self.value().min(other.value()) == self.value() { self } else { other }
+    }
+}
+
+impl Number for f64 {
+    fn value(self) -> f64 {
+        self
+    }
+
+    fn map(self, value: f64, _: f64) -> Self {
+        value
+    }
+}
+
+/// A number with its derivatives along two directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Dual {
+    pub value: f64,
+    pub by: [f64; 2],
+}
+
+impl From<f64> for Dual {
+    fn from(value: f64) -> Self {
+        Self { value, by: [0.0; 2] }
+    }
+}
+
+impl Number for Dual {
+    fn value(self) -> f64 {
+        self.value
+    }
+
+    fn map(self, value: f64, derivative: f64) -> Self {
+        Self { value, by: self.by.map(|by| derivative * by) }
+    }
+}
+
+/// Operators by their value and partial derivatives.
+macro_rules! operators {
+    ($($operator:ident $name:ident: $a:ident, $b:ident => $value:expr, [$by_a:expr, $by_b:expr];)*) => {$(
+        impl $operator for Dual {
+            type Output = Self;
+
+            fn $name(self, other: Self) -> Self {
+                let ($a, $b) = (self.value, other.value);
+                let (by_a, by_b) = ($by_a, $by_b);
+                Self { value: $value, by: [0, 1].map(|k| by_a * self.by[k] + by_b * other.by[k]) }
+            }
+        }
+
+        impl $operator<f64> for Dual {
+            type Output = Self;
+
+            fn $name(self, $b: f64) -> Self {
+                let $a = self.value;
+                self.map($value, $by_a)
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add add: a, b => a + b, [1.0, 1.0];
+    Sub sub: a, b => a - b, [1.0, -1.0];
+    Mul mul: a, b => a * b, [b, a];
+    Div div: a, b => a / b, [1.0 / b, -a / (b * b)];
+}
