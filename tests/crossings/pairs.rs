@@ -13,7 +13,7 @@ use crate::relations::Base;
 const ENOUGH: usize = 20;
 
 /// So many are drawn for a pair before it is given up.
-const TRIES: u64 = 400;
+const TRIES: u64 = 200;
 
 /// How often each pair was met, and what became of other models that were drawn for it.
 #[derive(Default)]
@@ -95,4 +95,6 @@ fn meet(pair: &[Feature; 2], met: &Mutex<Met>) {
             }
         }
     }
+    let [a, b] = pair;
+    println!("given up: {}:{} with {}:{}", a.0, a.1, b.0, b.1);
 }
