@@ -24,6 +24,8 @@ pub struct Ways {
     pub shuffled: bool,
     /// how motions and loads are driven, if not as drafted
     pub drive: Option<&'static str>,
+    /// numbers of friction as expressions of the time that stay the same, but were others at the very start
+    pub told_in_time: bool,
     /// numbers changed in the 12th digit
     pub noise: Option<u64>,
     /// all loads and motions times this
@@ -60,6 +62,7 @@ impl Ways {
             renamed: false,
             shuffled: false,
             drive: None,
+            told_in_time: false,
             noise: None,
             load: 1.0,
             density: 1.0,
@@ -683,6 +686,9 @@ impl Writer<'_> {
             _ => {}
         }
         self.vary(&mut contact);
+        if self.ways.told_in_time {
+            tell_in_time(&mut contact, self.write(Kind::Time, 1e-9 * self.dt()));
+        }
         let mut contacts = Map::new();
         contacts.insert(self.names.contact.into(), contact);
         if self.has("second_contact") {
@@ -1260,6 +1266,32 @@ impl Writer<'_> {
             }
         }
     }
+}
+
+/// Writes the numbers of a contact's friction, and of that on a part of it, as expressions of the time that stay the same from the
+/// time `early` on. At the start those that say nothing of the first state of a point are a fifth larger: no increment ends there.
+fn tell_in_time(contact: &mut Value, early: f64) {
+    let told = |of: &mut Value| {
+        let friction = of["friction"].clone();
+        let of_first_state: &[&str] = match friction["law"].as_str() {
+            Some("super_subloading") => &["mu_s", "mu_k"],
+            Some("rate_and_state") => &["V_0", "D_c"],
+            _ => &[],
+        };
+        let further = friction["parameters"].as_object().into_iter().flatten();
+        for (name, value) in friction.as_object().into_iter().flatten().chain(further) {
+            // These do not vary in time.
+            let of_start = ["alpha_t", "structure", "theta"].contains(&name.as_str());
+            let Some(value) = value.as_f64().filter(|_| !of_start) else { continue };
+            let jump = if of_first_state.contains(&name.as_str()) { 0.0 } else { 0.2 };
+            let along = &mut of["along"][name];
+            let text = along.as_str().map_or(value.to_string(), str::to_owned);
+            *along = json!(format!("({text})*(1+{jump}*max(0,1-t/{early}))"));
+        }
+    };
+    told(contact);
+    let parts = contact.pointer_mut("/along/law").and_then(Value::as_array_mut);
+    parts.into_iter().flatten().for_each(told);
 }
 
 /// A quantity over one step.

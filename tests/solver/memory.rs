@@ -114,6 +114,24 @@ fn bodies_that_do_not_touch_remember_each_for_itself() {
     }
 }
 
+/// In a bar under one stress everywhere a probe reads the force on its end over the height there, whatever the bar remembers.
+#[test]
+fn a_probe_reads_the_stress_of_a_body_that_remembers() {
+    let yielding = json!({"model": "von_mises", "E": 100, "nu": 0.3, "sigma_y": 2, "H": 10});
+    for material in [remembering("viscoelastic")["material"].clone(), yielding] {
+        let mut case = alone("viscoelastic", &json!("static"));
+        case["bodies"]["soft"]["material"] = material;
+        case["steps"][0]["supports"] = json!([{"on": "soft_left", "ux": 0}, {"on": "soft_bottom", "uy": 0},
+            {"on": "soft_right", "ux": 0.1}]);
+        let run = finish(&case);
+        let sunk = run.last().displacement.iter().skip(1).step_by(2).copied().fold(0.0, f64::min);
+        let height = 1.0 + sunk;
+        let force = run.reaction("soft_right", run.last())[0];
+        assert!(force > 1.0 && height < 0.99, "{force} over {height}");
+        close("stress", read(&run, "in_soft").xx * height, force, 1e-9 * force);
+    }
+}
+
 /// A run that goes on from a checkpoint.
 #[test]
 fn bodies_beside_others_can_be_resumed() {
