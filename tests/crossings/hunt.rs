@@ -185,6 +185,11 @@ const ONCE_BROKEN: &[(u64, &str, &str)] = &[
          stress:components",
     ),
     (33, "bystander", "master:plane press:plate tool:free"),
+    (
+        1565,
+        "later",
+        "block_law:mohr_coulomb friction:registered massless:yes master:plane scheme:hht times:yes wear:yes",
+    ),
 ];
 
 #[test]
