@@ -52,6 +52,7 @@ impl Model {
     }
 
     /// Whether the surfaces of a contact overlap before anything has moved, and push each other apart at once.
+    #[doc(hidden)]
     pub fn overlaps(&self) -> bool {
         let farthest = farthest(&self.mesh);
         let may = |pair: &&ContactPair| pair.initial.is_none() && !pair.is_own() && !pair.tied;
@@ -164,14 +165,20 @@ fn by_chords(surface: &Surface, x: &Configuration) -> f64 {
         let smooth = before.dot(&after) > CORNER * before.norm() * after.norm();
         smooth.then(|| before.perp(&after).atan2(before.dot(&after)))
     };
+    // A single bend is none, but what bends on alike; the edge at an end bends as its neighbour does.
+    let bend = |k: usize| {
+        let before = surface.previous(k).and_then(|previous| turn(previous, k))?;
+        let after = surface.next(k).and_then(|next| turn(k, next))?;
+        Some(if before * after > 0.0 { before.signum() * before.abs().min(after.abs()) } else { 0.0 })
+    };
     let (mut lengths, mut areas) = (0.0, 0.0);
     for (k, segment) in surface.segments.iter().enumerate() {
-        let neighbours = [surface.previous(k).map(|other| (other, k)), surface.next(k).map(|other| (k, other))];
-        let turns: Vec<f64> = neighbours.into_iter().flatten().filter_map(|(a, b)| turn(a, b)).collect();
         let length = along(k).norm();
         lengths += length;
-        if segment.middle.is_none() && !turns.is_empty() {
-            areas += length * length * turns.iter().sum::<f64>() / turns.len() as f64 / 12.0;
+        if segment.middle.is_none() {
+            let neighbours = [Some(k), surface.previous(k), surface.next(k)];
+            let angle = neighbours.into_iter().flatten().find_map(bend).unwrap_or(0.0);
+            areas += length * length * angle / 12.0;
         }
     }
     areas / lengths

@@ -152,6 +152,21 @@ fn edges_that_change_a_fit_are_told() {
     for (elements, kind) in [([24, 24], "Q4"), ([24, 20], "Q8"), ([120, 100], "Q4")] {
         assert_eq!(told(elements, kind), Vec::<String>::new(), "{elements:?}");
     }
+    // A node that stands out of a straight side is no curve.
+    let mut mesh = common::Blocks::default()
+        .rectangle("lower", [4, 1], [0.0, -1.0], [4.0, 0.0])
+        .rectangle("upper", [3, 1], [0.5, 0.0], [3.5, 1.0])
+        .json();
+    mesh["nodes"][11][1] = json!(-0.01);
+    let body = json!({"material": {"model": "linear", "E": E, "nu": NU}});
+    let straight = common::model(&json!({
+        "mesh": mesh, "bodies": {"lower": body, "upper": body},
+        "contacts": {"base": {"slave": "upper_bottom", "master": "lower_top", "shrink_fit": true, "friction": {"law": "frictionless"}}},
+        "steps": [{"name": "press", "duration": 1, "supports": [
+            {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": 0, "uy": 0}]}]
+    }));
+    assert!(straight.contacts[0].points.iter().any(|point| point.overlap > 0.0));
+    assert_eq!(straight.warnings(), Vec::<String>::new());
 }
 
 /// Surfaces that overlap at once set energy free that nobody supplies, whatever the increments; brought in over the step it is supplied.
