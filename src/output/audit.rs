@@ -57,6 +57,10 @@ struct StepError {
     remedy: String,
 }
 
+/// Remedy for the energy of a static first step in which surfaces begin to push each other apart.
+const OVERLAP: &str = "surfaces that overlap at the start set energy free: bring the overlap in over the step (shrink_fit), or move \
+                       them apart; if it is not theirs, take shorter increments (dt.max, dt.min)";
+
 /// Fraction of the elastic energy of bodies and contacts that was stored in contact penalties when that energy was largest.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Give {
@@ -96,7 +100,10 @@ impl Audit {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
         if self.steps.last().is_none_or(|last| last.step != step.name) {
-            self.steps.push(StepError { step: step.name.clone(), error: 0.0, remedy: remedy(model, step).into() });
+            // Whatever the increments, surfaces that overlap at the start set free what nobody has supplied.
+            let overlap = self.steps.is_empty() && old.time == 0.0 && !step.scheme.is_dynamic() && model.overlaps();
+            let remedy = if overlap { OVERLAP } else { remedy(model, step) };
+            self.steps.push(StepError { step: step.name.clone(), error: 0.0, remedy: remedy.into() });
         }
         self.steps.last_mut().into_iter().for_each(|last| last.error += error - self.error);
         if step.scheme.is_dynamic() {
@@ -137,14 +144,17 @@ impl Audit {
         }
         let largest = self.steps.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
         let StepError { step: name, remedy, .. } = largest?;
-        let percent = 100.0 * worst.abs() / self.supplied;
         let fate = if worst < 0.0 { "gain" } else { "loss" };
+        let share = if self.supplied > 0.0 {
+            let percent = 100.0 * worst.abs() / self.supplied;
+            format!("{percent:.3} % of the {:.3e} supplied (initial energy + external work)", self.supplied)
+        } else {
+            "with nothing supplied (initial energy + external work)".into()
+        };
         Some(format!(
-            "energy balance violated by t = {}: spurious {fate} of {:.3e}, {percent:.3} % of the {:.3e} supplied \
-             (initial energy + external work), mostly in step `{name}`: {remedy}",
+            "energy balance violated by t = {}: spurious {fate} of {:.3e}, {share}, mostly in step `{name}`: {remedy}",
             time_text(time),
-            worst.abs(),
-            self.supplied
+            worst.abs()
         ))
     }
 }

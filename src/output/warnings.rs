@@ -92,7 +92,7 @@ impl Observer for Warnings {
                 }
             }
             if let Some(small) = pair.small.as_ref().filter(|_| !pair.tied) {
-                self.no_small_sliding(number, pair, small, state.time, &x);
+                self.no_small_sliding(number, pair, small, state.time, model, &x);
             }
             let fading = model.steps[0].span.share(state.time) < 1.0 && pair.points.iter().any(|p| p.overlap > 0.0);
             let explicit = matches!(attempt.step.scheme, Scheme::Explicit { .. });
@@ -139,13 +139,20 @@ impl Warnings {
         pair: &ContactPair,
         small: &SmallSliding,
         time: f64,
+        model: &Model,
         x: &Configuration,
     ) {
+        let quasi_dynamic = model.steps.iter().any(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }));
+        let remedy = if quasi_dynamic {
+            "quasi_dynamic steps have no other sliding, so judge by how far tractions stay alike along the surface"
+        } else {
+            "take finite sliding"
+        };
         for (slave, point) in pair.points.iter().zip(&small.points) {
             let Some(point) = point else { continue };
             for (kind, message) in left(point.departure(slave, &pair.master, x)) {
                 if self.given.insert((number, kind)) {
-                    self.list.push(format!("{}: {message}; take finite sliding", place(pair, slave.at(x), time)));
+                    self.list.push(format!("{}: {message}; {remedy}", place(pair, slave.at(x), time)));
                 }
             }
         }
@@ -159,11 +166,18 @@ impl Warnings {
             return;
         }
         let deepest = pair.deepest_master_node(&state.contacts[number], x);
-        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP) else { return };
+        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP_BETWEEN) else { return };
         self.given.insert((number, Kind::DeepMasterNode));
+        // A stiffer penalty helps only where the points of the contact give way by as much.
+        let gives = state.contacts[number].iter().filter(|contact| contact.is_closed());
+        let gives = gives.map(|contact| -contact.clearance()).fold(0.0, f64::max);
+        let remedy = if gives > OF_DEPTH * depth {
+            "refine both sides there, make the finer one the slave, or raise alpha_n"
+        } else {
+            "the edges there are too long for the shapes of both surfaces: refine both sides, or make the finer one the slave"
+        };
         self.list.push(format!(
-            "{}: a master node penetrates the slave by {depth:.3e}, {:.1} % of its edge; refine both sides there, make the \
-             finer one the slave, or raise alpha_n",
+            "{}: a master node penetrates the slave by {depth:.3e}, {:.1} % of its edge; {remedy}",
             place(pair, at, state.time),
             100.0 * share
         ));
@@ -271,6 +285,13 @@ fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
 
 /// Penetration that causes a warning, as a fraction of the slave's edge.
 const DEEP: f64 = 0.01;
+
+/// Penetration of a master node that causes a warning, as a fraction of the slave's edge. Between the points of a contact straight edges
+/// that turn by θ lie up to θ/8 of their length in each other: this is 9°.
+const DEEP_BETWEEN: f64 = 0.02;
+
+/// Part of the depth of a master node that the points of the contact must give way by for a stiffer penalty to be advised.
+const OF_DEPTH: f64 = 0.2;
 
 /// Process zone of linearly slip-weakening friction, divided by G*/(p |dμ/dδ|). Source: Palmer & Rice (1973), Proc. R. Soc. A
 /// 332, 527; Day et al. (2005), J. Geophys. Res. 110, B12307.

@@ -219,6 +219,7 @@ fn master_nodes_deep_in_the_slave_are_told() {
     let coarse = told([32, 40]);
     println!("{coarse:?}");
     assert!(coarse.len() == 1 && coarse[0].contains("a master node penetrates the slave"), "{coarse:?}");
+    assert!(!coarse[0].contains("alpha_n"), "a stiffer penalty would not help: {coarse:?}");
     let words: Vec<&str> = coarse[0].split_whitespace().collect();
     let after = |word: &str| words[words.iter().position(|w| *w == word).expect("a word") + 1];
     let depth: f64 = after("by").trim_end_matches(',').parse().expect("a number");

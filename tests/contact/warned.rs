@@ -1,4 +1,5 @@
-//! What a contact is warned of: that it never closes, what it does not see, and fronts that its mesh does not resolve.
+//! What a contact is warned of: that it never closes, what it does not see, fits whose edges do not follow their curves, and fronts that
+//! its mesh does not resolve; each beside a case that must not be warned.
 
 use std::sync::Arc;
 
@@ -113,4 +114,159 @@ fn sheared_linear_elements_beside_a_fault_are_told() {
     {
         assert_eq!(told(degrees, refined, scheme), Vec::<String>::new(), "{degrees}");
     }
+}
+
+/// A quarter of a ring shrunk on another by δ = 1e-3 at r = 2, with so many linear or quadratic elements along the arcs.
+fn fit([inner, outer]: [usize; 2], kind: &str, shrink_fit: bool) -> Value {
+    let ring = |body: &str, n: usize, [a, b]: [f64; 2]| {
+        let sides = ["bottom", "outside", "top", "inside"].map(|side| format!("{body}_{side}"));
+        json!({"body": body, "corners": [[a, 0], [b, 0], [0, b], [0, a]], "arcs": [null, [0, 0], null, [0, 0]], "elements": [2, n],
+               "kind": kind, "sides": sides})
+    };
+    let body = json!({"material": {"model": "linear", "E": E, "nu": NU}});
+    json!({
+        "mesh": {"blocks": [ring("inner", inner, [1.0, 2.001]), ring("outer", outer, [2.0, 3.0])]},
+        "bodies": {"inner": body, "outer": body},
+        "contacts": {"fit": {"slave": "outer_inside", "master": "inner_outside", "method": "mortar", "shrink_fit": shrink_fit,
+                             "friction": {"law": "frictionless"}}},
+        "steps": [{"name": "fit", "duration": 1, "dt": {"initial": 0.5}, "supports": [
+            {"on": "inner_bottom", "uy": 0}, {"on": "inner_top", "ux": 0}, {"on": "outer_bottom", "uy": 0}, {"on": "outer_top", "ux": 0}]}]
+    })
+}
+
+/// Chords of 20 edges on the hole lie h²/12R = 1.03e-3 inside it in the mean, those of 24 on the shaft 0.71e-3: the overlap is larger by
+/// 31 %, and so is the pressure. Equal edges cancel, quadratic ones follow their arcs.
+#[test]
+fn edges_that_change_a_fit_are_told() {
+    let told = |elements, kind| common::model(&fit(elements, kind, true)).warnings();
+    let coarse = told([24, 20], "Q4");
+    assert!(coarse.len() == 1 && coarse[0].contains("make the overlap of its shrink fit 31 % larger"), "{coarse:?}");
+    let pressure = |elements, kind| {
+        let run = common::finish(&fit(elements, kind, true));
+        run.contact_force(run.last())[0]
+    };
+    let larger = pressure([24, 20], "Q4") / pressure([24, 20], "Q8");
+    common::close("pressure", larger, 1.31, 0.02);
+    let other_way = told([20, 24], "Q4");
+    assert!(other_way.len() == 1 && other_way[0].contains("31 % smaller"), "{other_way:?}");
+    for (elements, kind) in [([24, 24], "Q4"), ([24, 20], "Q8"), ([120, 100], "Q4")] {
+        assert_eq!(told(elements, kind), Vec::<String>::new(), "{elements:?}");
+    }
+    // A node that stands out of a straight side is no curve.
+    let mut mesh = common::Blocks::default()
+        .rectangle("lower", [4, 1], [0.0, -1.0], [4.0, 0.0])
+        .rectangle("upper", [3, 1], [0.5, 0.0], [3.5, 1.0])
+        .json();
+    mesh["nodes"][11][1] = json!(-0.01);
+    let body = json!({"material": {"model": "linear", "E": E, "nu": NU}});
+    let straight = common::model(&json!({
+        "mesh": mesh, "bodies": {"lower": body, "upper": body},
+        "contacts": {"base": {"slave": "upper_bottom", "master": "lower_top", "shrink_fit": true, "friction": {"law": "frictionless"}}},
+        "steps": [{"name": "press", "duration": 1, "supports": [
+            {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": 0, "uy": 0}]}]
+    }));
+    assert!(straight.contacts[0].points.iter().any(|point| point.overlap > 0.0));
+    assert_eq!(straight.warnings(), Vec::<String>::new());
+}
+
+/// Surfaces that overlap at once set energy free that nobody supplies, whatever the increments; brought in over the step it is supplied.
+#[test]
+fn energy_of_an_overlap_is_told_with_its_cause() {
+    let told = warnings(&fit([24, 24], "Q4", false));
+    let of_energy: Vec<&String> = told.iter().filter(|told| told.contains("energy balance")).collect();
+    assert!(
+        of_energy.len() == 1
+            && of_energy[0].contains("with nothing supplied")
+            && of_energy[0].contains("surfaces that overlap at the start set energy free"),
+        "{told:?}"
+    );
+    assert_eq!(warnings(&fit([24, 24], "Q4", true)), Vec::<String>::new());
+}
+
+/// A stiffer penalty is advised where the penalty lets a master node in.
+#[test]
+fn a_master_node_let_in_by_the_penalty_is_told() {
+    let mut case = fit([24, 20], "Q8", true);
+    case["mesh"]["blocks"][0]["corners"] = json!([[1, 0], [2.02, 0], [0, 2.02], [0, 1]]);
+    let told = |case: &Value| {
+        warnings(case).into_iter().filter(|told| told.contains("a master node penetrates")).collect::<Vec<_>>()
+    };
+    assert_eq!(told(&case), Vec::<String>::new());
+    case["contacts"]["fit"]["normal"] = json!({"alpha_n": 500});
+    let soft = told(&case);
+    assert!(soft.len() == 1 && soft[0].contains("or raise alpha_n"), "{soft:?}");
+}
+
+/// A point deep in its master is told, with the penalty as the remedy.
+#[test]
+fn a_deep_point_is_told() {
+    let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+    let deep = |alpha_n: f64| {
+        let mut case = moved(&plane, [0.0, -0.02]);
+        case["contacts"]["base"]["normal"]["alpha_n"] = json!(alpha_n);
+        warnings(&case).into_iter().filter(|told| told.contains("of the slave's edge")).collect::<Vec<_>>()
+    };
+    let soft = deep(100.0);
+    assert!(soft.len() == 1 && soft[0].contains("raise alpha_n"), "{soft:?}");
+    assert_eq!(deep(1e5), Vec::<String>::new());
+}
+
+/// A fault under quasi-dynamic steps takes small sliding alone: where it has slid far, no other is advised.
+#[test]
+fn a_fault_that_slides_far_in_cycles_is_not_sent_to_finite_sliding() {
+    let told = |scheme: Value, alpha_t: f64| {
+        let body = json!({"material": {"model": "linear", "E": 200, "nu": 0.25, "density": 1e-6}});
+        let block = |name: &str, y: f64| {
+            json!({"body": name, "corners": [[0, y], [6, y], [6, y + 1.0], [0, y + 1.0]], "elements": [6, 2],
+                   "sides": [format!("{name}_bottom"), null, format!("{name}_top"), null]})
+        };
+        warnings(&json!({
+            "mesh": {"blocks": [block("lower", -1.0), block("upper", 0.0)]}, "bodies": {"lower": body, "upper": body},
+            "contacts": {"fault": {
+                "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small", "radiation_damping": 0.02,
+                "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.02, "b": 0.016, "D_c": 2e-3, "theta": 2, "alpha_t": alpha_t},
+                "initial": {"pressure": 2, "traction": 1.1, "balanced": true}}},
+            "steps": [{"name": "shear", "duration": 150, "scheme": scheme, "dt": {"initial": 1, "max": 10, "min": 1e-3}, "supports": [
+                {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": {"rate": 1e-3}, "uy": 0}]}],
+        }))
+    };
+    let cycles = told(json!({"quasi_dynamic": {}}), 1e4);
+    assert!(cycles.len() == 1 && cycles[0].contains("quasi_dynamic steps have no other sliding"), "{cycles:?}");
+    let statics = told(json!("static"), 1e4);
+    assert!(statics.len() == 1 && statics[0].ends_with("take finite sliding"), "{statics:?}");
+}
+
+/// Radiation damping that no step has a use for, and times of output that a step may shift.
+#[test]
+fn what_has_no_effect_is_told() {
+    let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+    let told = |scheme: Value, until: Value| {
+        let mut case = moved(&plane, [0.0, -0.002]);
+        case["bodies"]["block"]["material"]["density"] = json!(1e-6);
+        case["contacts"]["base"]["radiation_damping"] = json!(0.1);
+        (case["steps"][0]["scheme"], case["steps"][0]["until"]) = (scheme, until);
+        case["output"] = json!({"times": [0.5]});
+        common::model(&case).warnings()
+    };
+    let idle = told(json!({"newmark": {}}), json!(null));
+    assert!(idle.len() == 1 && idle[0].contains("the radiation damping of contact `base` has no effect"), "{idle:?}");
+    let early = told(json!("static"), json!({"on": "top", "fy": -1}));
+    assert!(early.len() == 1 && early[0].contains("step `move` may end early (until)"), "{early:?}");
+    assert_eq!(told(json!("static"), json!(null)), Vec::<String>::new());
+}
+
+/// An increment that may not become shorter is accepted with its error, which is told.
+#[test]
+fn an_error_in_the_shortest_increment_is_told() {
+    let plane = json!({"plane": {"point": [0, -9], "normal": [0, 1]}});
+    let told = |error: f64| {
+        let mut case = moved(&plane, [0.0, -0.1]);
+        case["bodies"]["block"]["material"]["density"] = json!(1);
+        case["steps"][0]["scheme"] = json!({"newmark": {}});
+        case["steps"][0]["dt"] = json!({"initial": 0.1, "min": 0.1, "max": 0.1, "error": error});
+        warnings(&case).into_iter().filter(|told| told.contains("is the shortest allowed")).collect::<Vec<_>>()
+    };
+    let inexact = told(1e-9);
+    assert!(inexact.len() == 1 && inexact[0].ends_with("lower dt.min"), "{inexact:?}");
+    assert_eq!(told(1e3), Vec::<String>::new());
 }
