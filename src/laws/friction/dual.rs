@@ -26,16 +26,19 @@ pub(super) trait Number:
     /// at the constant x: the implicit function theorem.
     fn map(self, value: f64, derivative: f64) -> Self;
 
+    #[inline]
     fn exp(self) -> Self {
         let value = self.value().exp();
         self.map(value, value)
     }
 
+    #[inline]
     fn ln(self) -> Self {
         self.map(self.value().ln(), 1.0 / self.value())
     }
 
     /// self^exponent for self > 0.
+    #[inline]
     fn powf(self, exponent: Self) -> Self {
         let (x, k) = (self.value(), exponent.value());
         let value = x.powf(k);
@@ -43,21 +46,25 @@ pub(super) trait Number:
     }
 
     /// The greater of two numbers.
+    #[inline]
     fn max(self, other: Self) -> Self {
         if self.value().max(other.value()) == self.value() { self } else { other }
     }
 
     /// The smaller of two numbers.
+    #[inline]
     fn min(self, other: Self) -> Self {
         if self.value().min(other.value()) == self.value() { self } else { other }
     }
 }
 
 impl Number for f64 {
+    #[inline]
     fn value(self) -> f64 {
         self
     }
 
+    #[inline]
     fn map(self, value: f64, _: f64) -> Self {
         value
     }
@@ -71,18 +78,29 @@ pub(super) struct Dual {
 }
 
 impl From<f64> for Dual {
+    #[inline]
     fn from(value: f64) -> Self {
         Self { value, by: [0.0; 2] }
     }
 }
 
 impl Number for Dual {
+    #[inline]
     fn value(self) -> f64 {
         self.value
     }
 
+    #[inline]
     fn map(self, value: f64, derivative: f64) -> Self {
         Self { value, by: self.by.map(|by| derivative * by) }
+    }
+}
+
+impl Dual {
+    /// A function of two numbers, given its value and partial derivatives.
+    #[inline]
+    fn join(value: f64, (a, by_a): (Self, f64), (b, by_b): (Self, f64)) -> Self {
+        Self { value, by: [0, 1].map(|k| by_a * a.by[k] + by_b * b.by[k]) }
     }
 }
 
@@ -92,16 +110,17 @@ macro_rules! operators {
         impl $operator for Dual {
             type Output = Self;
 
+            #[inline]
             fn $name(self, other: Self) -> Self {
                 let ($a, $b) = (self.value, other.value);
-                let (by_a, by_b) = ($by_a, $by_b);
-                Self { value: $value, by: [0, 1].map(|k| by_a * self.by[k] + by_b * other.by[k]) }
+                Self::join($value, (self, $by_a), (other, $by_b))
             }
         }
 
         impl $operator<f64> for Dual {
             type Output = Self;
 
+            #[inline]
             fn $name(self, $b: f64) -> Self {
                 let $a = self.value;
                 self.map($value, $by_a)

@@ -108,9 +108,9 @@ impl Inputs {
         }
     }
 
-    /// Whether the derivatives are those of the consistent tangent.
-    pub(super) fn are_of_tangent(&self) -> bool {
-        self.directions == Direction::TANGENT
+    /// Whether parameters vary; if not, the derivatives are those of a tangent.
+    pub(super) fn vary_parameters(&self) -> bool {
+        self.directions.iter().any(|by| by.parameter.is_some())
     }
 }
 

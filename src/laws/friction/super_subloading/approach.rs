@@ -97,14 +97,15 @@ impl SlidingCurve {
         if start.full || start.rate == 0.0 {
             return here.ratio.into();
         }
-        let range = Dual::from(1.0) - core;
-        let gained = (r * (here.slip - start.slip) / range).map(self.progress(here.ratio), here.rate / self.r);
-        // R at the start is irrelevant where the curve begins.
-        let passed = match self.begins_at(start) {
-            true => 0.0.into(),
-            false => ((old - core) / range).map(0.0, here.rate / start.rate),
+        let slip = here.slip - start.slip;
+        // R at the start is irrelevant where the curve begins, and no number without pressure.
+        let (old, by_old) = match self.begins_at(start) {
+            true => (0.0.into(), 0.0),
+            false => (old, here.rate / start.rate),
         };
-        core + range * (passed + gained)
+        let by_core = 1.0 - self.progress(here.ratio) - by_old * (1.0 - self.progress(start.ratio))
+            + here.rate * slip * self.per_range;
+        old.map(here.ratio, by_old) + r.map(0.0, here.rate / self.r * slip) + core.map(0.0, by_core)
     }
 
     /// Mean of R over the plastic slip between two points.

@@ -25,8 +25,8 @@ pub(super) struct Varied {
 pub(super) struct LoadPath<'a> {
     pub law: &'a SuperSubloading,
     pub varied: Varied,
-    /// Whether the derivatives are those of the consistent tangent, which is bounded
-    pub is_tangent: bool,
+    /// Whether parameters vary; if not, the derivatives are those of a tangent, which is bounded
+    pub parameters_vary: bool,
     /// Slip from x = 0 to 1 [L]
     pub slip: Dual,
     /// Pressures at x = 0 and 1 [F/L²]
@@ -65,33 +65,32 @@ impl LoadPath<'_> {
     /// Integrates one sub-step.
     #[inline]
     pub(super) fn advance(&mut self, from: &PathState, x: f64) -> Result<PathState, LawFailure> {
-        let share = x - from.x;
+        let (share, pressure) = (x - from.x, self.pressure(x.into()));
         let equation = SlipEquation {
             law: self.law,
             start: from.curve_point,
             trial: from.traction.value + self.law.alpha_t * self.slip.value * share,
-            pressure: self.pressure(x.into()).value,
+            pressure: pressure.value,
             old_mu: from.mu.value,
             dt: self.time.value * share,
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return Ok(self.stick(from, x));
+            return Ok(self.stick(from, x, pressure.value));
         }
         let (end, evaluations) = equation.solve(start)?;
         self.evaluations += evaluations;
-        Ok(self.slide(from, x, &end))
+        Ok(self.slide(from, x, pressure, &end))
     }
 
     /// A sub-step without plastic slip.
     #[inline]
-    fn stick(&self, from: &PathState, x: f64) -> PathState {
+    fn stick(&self, from: &PathState, x: f64, pressure: f64) -> PathState {
         let share = x - from.x;
         // Only weakening that has reduced the traction during unloading can leave it to reverse: it stays at 0.
         let trial = self.trial(from, share);
         let traction = if trial.value > 0.0 { trial } else { 0.0.into() };
         let mu = self.varied.evolution.rested(from.mu, self.time * share);
-        let pressure = self.pressure(x.into()).value;
         let curve_point = self.law.curve.start(traction.value / (mu.value * pressure));
         let rate = self.rate(traction.value, mu.value, pressure, &curve_point);
         PathState { x, traction, mu, curve_point, overlooked: self.law.alpha_t * rate * share, ..*from }
@@ -104,19 +103,18 @@ impl LoadPath<'_> {
     /// dq = d(q_tr − α_t Δλ),   dμ = ∂μ + ∂μ/∂Δλ dΔλ
     /// ```
     #[inline]
-    fn slide(&self, from: &PathState, x: f64, point: &Point) -> PathState {
-        let share = x - from.x;
-        let (start_pressure, pressure) = (self.pressure(from.x.into()), self.pressure(x.into()));
+    fn slide(&self, from: &PathState, x: f64, pressure: Dual, point: &Point) -> PathState {
+        let (share, start_pressure) = (x - from.x, self.pressure(from.x.into()));
         let Point { curve_point, slip, .. } = *point;
         let Varied { alpha_t, r, elastic_core, evolution } = &self.varied;
         let time = self.time * share;
         // The tangent neglects the change by the last step of the search, which would accumulate over many increments.
-        let (peak, by_slip) = match self.is_tangent {
-            true => (point.peak.along(from.mu, time), point.peak.slope),
-            false => {
+        let (peak, by_slip) = match self.parameters_vary {
+            true => {
                 let peak = evolution.after(from.mu, slip, time);
                 (peak.mu, peak.slope)
             }
+            false => (point.peak.along(from.mu, time), point.peak.slope),
         };
         let start_ratio = from.traction / (from.mu * start_pressure);
         let ratio = self.law.curve.ratio_after(start_ratio, [&from.curve_point, &curve_point], [*r, *elastic_core]);
@@ -128,7 +126,7 @@ impl LoadPath<'_> {
         let mut traction =
             (elastic - dslip * self.law.alpha_t).map(curve_point.ratio * point.peak.mu * pressure.value, 1.0);
         let mut mu = (peak + dslip * by_slip).map(point.peak.mu, 1.0);
-        if self.is_tangent {
+        if !self.parameters_vary {
             for (i, limit) in [STEEPEST * self.law.alpha_t, STEEPEST].into_iter().enumerate() {
                 traction.by[i] = traction.by[i].clamp(-limit, limit);
                 mu.by[i] = mu.by[i].clamp(-limit / pressure.value, limit / pressure.value);

@@ -27,9 +27,9 @@ impl SuperSubloading {
         let trial = old + varied.alpha_t * slip;
         let reversed = old.value != 0.0 && trial.value * old.value.signum() < 0.0;
         let sign = if reversed || old.value == 0.0 { trial.value.signum() } else { old.value.signum() };
-        let (is_tangent, slip, old, time) = (inputs.are_of_tangent(), slip * sign, old * sign, dt.into());
+        let (parameters_vary, slip, old, time) = (inputs.vary_parameters(), slip * sign, old * sign, dt.into());
         let pressures = [old_pressure.into(), pressure];
-        let mut path = LoadPath { law: self, varied, is_tangent, slip, pressures, time, evaluations: 0 };
+        let mut path = LoadPath { law: self, varied, parameters_vary, slip, pressures, time, evaluations: 0 };
         let start = if reversed {
             self.pass_zero(&mut path, [old, mu], trial * sign)
         } else {
