@@ -510,6 +510,10 @@ fn energies(base: &Base) -> Outcome {
     if draft.has("dilatancy") && draft.is("normal", "augmented") {
         return Outcome::Idle;
     }
+    // A temperature that jumps where a step begins strains a body that yields along a way that no increment resolves.
+    if moves(draft) && draft.is("heat", "by_place") {
+        return Outcome::Idle;
+    }
     // A point that slides off the end of its master takes its force along, at once.
     let lengths: Vec<f64> = base.record.values("c.contact_length").collect();
     if !moves(draft) && lengths.windows(2).any(|pair| pair[1] < 0.95 * pair[0]) {
@@ -519,7 +523,8 @@ fn energies(base: &Base) -> Outcome {
     let drive = if moves(draft) { Some("smooth") } else { base.ways.drive };
     let audited = |finer| {
         let record = base.run(&Ways { finer, drive, ..base.ways.clone() });
-        (record.ended == Ended::Complete).then(|| unexplained(&record, moves(draft)))
+        // A fluid acts on open points too, and where they strike its force and theirs change at once.
+        (record.ended == Ended::Complete).then(|| unexplained(&record, moves(draft) && !draft.has("fluid")))
     };
     let Some(coarse) = audited(1.0) else { return Outcome::Idle };
     if coarse.share <= BALANCED {
