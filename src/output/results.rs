@@ -13,7 +13,7 @@
 //!     let pressure = grid.at_points.iter().find(|array| array.name == "pressure");
 //!     println!("t = {}: {:?}", frame.time, pressure.map(|array| &array.values));
 //! }
-//! # Ok::<(), String>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use std::path::{Path, PathBuf};
