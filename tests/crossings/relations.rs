@@ -218,7 +218,8 @@ fn begun_with(base: &Base) -> Outcome {
     // The default penalty, or method, of the first step is another one where a later one has inertia, or is explicit; the command
     // refuses to go on there.
     let by_default = base.draft.is("normal", "default") || base.draft.is("method", "chosen");
-    if !base.has_ended_well() || base.draft.has("times") || by_default && base.draft.has("then") {
+    let other = ["then", "rupture"].iter().any(|slot| base.draft.has(slot)) || base.draft.is("scheme", "quasi_dynamic");
+    if !base.has_ended_well() || base.draft.has("times") || by_default && other {
         return Outcome::Idle;
     }
     let record = run(&model::case(base.draft, &base.ways), &base.ways, Lead::Begun);
