@@ -618,6 +618,10 @@ fn dilating(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     let Ended::Stopped(why) = &base.record.ended else { return Outcome::Holds };
+    // A body whose material fails on the way is no contact that does not close.
+    if why.contains(": element ") {
+        return Outcome::Idle;
+    }
     let without = Base::new(&plainer);
     if !base.record.closed && without.record.closed && without.has_ended_well() {
         let place = format!("ended {why}, and closes without dilatancy");
