@@ -433,7 +433,7 @@ pub fn features() -> Vec<Feature> {
 }
 
 /// Whether `word` of a rule names the feature.
-fn names(word: &str, (slot, value): Feature) -> bool {
+pub fn names(word: &str, (slot, value): Feature) -> bool {
     match word.split_once(':') {
         Some((s, v)) => s == slot && v == value,
         None => word == slot && value != plain(slot),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::features::{Draft, Feature, excluded, features};
+use crate::features::{Draft, Feature, excluded, features, names};
 use crate::law;
 use crate::record::Ended;
 use crate::relations::Base;
@@ -14,6 +14,26 @@ const ENOUGH: usize = 20;
 
 /// So many are drawn for a pair before it is given up.
 const TRIES: u64 = 200;
+
+/// Features that meet more rarely, each with some others, and why.
+const RARELY: &[(&str, &[&str], &str)] = &[
+    (
+        "scheme:wilson",
+        &["stress", "tractions", "fluid", "pores:cavitating", "ground_law:cam_clay", "block_law:cam_clay"],
+        "Wilson-θ overshoots what acts at once, and a run whose motion gains energy ends with an error",
+    ),
+    ("friction:frictionless", &["tractions"], "a traction above the strength is refused, and there is none"),
+    ("scheme:quasi_dynamic", &["press:force"], "a force at one node opens points, which ends such a step"),
+    ("tool:free", &["until"], "its reference point is led by loads, before which no step may end early"),
+];
+
+/// Whether two features meet rarely for a known reason.
+fn is_rare([a, b]: &[Feature; 2]) -> bool {
+    RARELY.iter().any(|(one, others, _)| {
+        let meets = |a: Feature, b: Feature| names(one, a) && others.iter().any(|other| names(other, b));
+        meets(*a, *b) || meets(*b, *a)
+    })
+}
 
 /// How often each pair was met, and what became of other models that were drawn for it.
 #[derive(Default)]
@@ -59,11 +79,12 @@ fn every_pair_of_features_is_solved_closed_and_slipping() {
         println!("    {} in at most {limit} models", counts.iter().filter(|(count, _)| *count <= limit).count());
     }
     let rare: Vec<_> = counts.iter().filter(|(count, _)| *count < ENOUGH).collect();
+    let unknown = rare.iter().filter(|(_, pair)| !is_rare(pair)).count();
     for (count, pair) in &rare {
         let [a, b] = pair;
         println!("{count} × {}:{} with {}:{}; {:?}", a.0, a.1, b.0, b.1, met.failed.get(*pair));
     }
-    assert!(rare.is_empty(), "{} pairs are in less than {ENOUGH} models", rare.len());
+    assert!(unknown == 0, "{unknown} pairs are in less than {ENOUGH} models, and nothing says why");
 }
 
 /// Draw models that have a pair until it was met often enough.
