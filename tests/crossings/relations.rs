@@ -590,8 +590,17 @@ fn switched(base: &Base) -> Outcome {
         else {
             return None;
         };
-        // Tractions that go by the length of now add to the error all the while: what comes at the change is beyond that.
-        let added = after - before - (further - after) * (first - then) / (second - first);
+        // Tractions that go by the length of now add to the error all the while, and contact that chatters now and then: what comes at
+        // the change is beyond that.
+        let steady = after - before - (further - after) * (first - then) / (second - first);
+        let others =
+            [errors.get(change.saturating_sub(4)..change)?, errors.get(change..(change + 4).min(errors.len()))?];
+        let rates = others
+            .iter()
+            .flat_map(|errors| errors.windows(2))
+            .map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0));
+        let usual = rates.map(f64::abs).fold(0.0, f64::max) * (first - then);
+        let added = if (after - before).abs() <= usual { 0.0 } else { steady };
         (record.ended == Ended::Complete).then(|| (added, added.abs() / audit(&record).values[1]))
     };
     let [Some(coarse), Some(fine), Some(finest)] = [1.0, 2.0, 4.0].map(added) else { return Outcome::Idle };
@@ -639,27 +648,28 @@ const BALANCED: f64 = 1e-7;
 
 /// The largest error of the energies as a share of the largest of them.
 fn audit(record: &Record) -> Difference {
-    largest_error(record, |_, _| true)
+    largest_error(record, |_, _, _| true)
 }
 
-/// That of the errors that are larger than what the contacts store: in motion until then, for what is wrong at the start is not theirs.
+/// That of the errors that are larger than what the contacts store: in the first row of motion until then, for what is wrong at the start
+/// is not theirs.
 fn unexplained(record: &Record, in_motion: bool) -> Difference {
     let most = record.values("contact_elastic").fold(0.0, f64::max);
-    largest_error(record, |error, stored| error.abs() > if in_motion { stored } else { most })
+    largest_error(record, |error, stored, first| error.abs() > if in_motion && first { stored } else { most })
 }
 
 /// The largest error of the energies that counts, by what the contacts have stored until then.
-fn largest_error(record: &Record, counts: impl Fn(f64, f64) -> bool) -> Difference {
+fn largest_error(record: &Record, counts: impl Fn(f64, f64, bool) -> bool) -> Difference {
     let entries = || record.rows.iter().flat_map(|(time, row)| row.iter().map(move |entry| (time, entry)));
     let is_energy =
         |entry: &Entry| entry.kind == Kind::Energy && &*entry.column != "energy_error" && !entry.column.contains('.');
     let most = entries().filter(|(_, entry)| is_energy(entry)).map(|(_, entry)| entry.value.abs()).fold(0.0, f64::max);
     let of = |row: &[Entry], name: &str| row.iter().find(|entry| &*entry.column == name).map(|entry| entry.value);
     let mut stored = 0.0f64;
-    let errors = record.rows.iter().filter_map(|(time, row)| {
+    let errors = record.rows.iter().enumerate().filter_map(|(k, (time, row))| {
         stored = stored.max(of(row, "contact_elastic")?);
         let error = of(row, "energy_error")?;
-        counts(error, stored).then_some((time, error))
+        counts(error, stored, k == 0).then_some((time, error))
     });
     let error = errors.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     let Some((time, error)) = error.filter(|_| most > 0.0) else { return Difference::default() };
