@@ -658,7 +658,7 @@ fn unexplained(record: &Record, in_motion: bool) -> Difference {
     largest_error(record, |error, stored, first| error.abs() > if in_motion && first { stored } else { most })
 }
 
-/// The largest error of the energies that counts, by what the contacts have stored until then.
+/// The largest error of the energies that counts, by what the contacts have stored until then and whether its row is the first.
 fn largest_error(record: &Record, counts: impl Fn(f64, f64, bool) -> bool) -> Difference {
     let entries = || record.rows.iter().flat_map(|(time, row)| row.iter().map(move |entry| (time, entry)));
     let is_energy =
