@@ -600,16 +600,18 @@ fn switched(base: &Base) -> Outcome {
             .flat_map(|errors| errors.windows(2))
             .map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0));
         let usual = rates.map(f64::abs).fold(0.0, f64::max) * (first - then);
-        let added = if (after - before).abs() <= usual { 0.0 } else { steady };
-        (record.ended == Ended::Complete).then(|| (added, added.abs() / audit(&record).values[1]))
+        let is_usual = (after - before).abs() <= usual;
+        (record.ended == Ended::Complete).then(|| (steady, steady.abs() / audit(&record).values[1], is_usual))
     };
     let [Some(coarse), Some(fine), Some(finest)] = [1.0, 2.0, 4.0].map(added) else { return Outcome::Idle };
-    let falls = |finer: (f64, f64)| finer.1 <= SWITCHED || finer.1 <= 0.6 * fine.1 || finer.1 <= 0.6 * coarse.1;
+    let falls = |(_, share, is_usual): (f64, f64, bool)| {
+        is_usual || share <= SWITCHED || share <= 0.6 * fine.1 || share <= 0.6 * coarse.1
+    };
     // Contact that chatters just then does so for less in much shorter increments.
     if falls(finest) || added(16.0).is_some_and(falls) {
         return Outcome::Holds;
     }
-    let shares = [coarse, fine, finest].map(|(_, share)| format!("{share:.2e}")).join(" ");
+    let shares = [coarse, fine, finest].map(|(_, share, _)| format!("{share:.2e}")).join(" ");
     let place = format!("energy_error that the change of schemes adds; {shares}");
     Outcome::Broken(Difference { share: finest.1, place, values: [coarse.0, finest.0] })
 }
