@@ -2,11 +2,22 @@
 
 use std::path::Path;
 
-use fecontact::case;
+use fecontact::case::{self, CaseError};
 use fecontact::model::Model;
 use serde_json::Value;
 
 use super::{Finished, finished};
+
+/// The model of a case whose mesh is found from a path, or why it is refused. It is read as text, which the library does itself:
+/// a value would make every program of tests compile the reading of cases anew.
+pub fn built(case: &Value, path: &Path) -> Result<Model, CaseError> {
+    case::from_text(&case.to_string(), path).and_then(|case| case::build(&case, path))
+}
+
+/// Why a case is refused.
+pub fn refusal(case: &Value) -> String {
+    built(case, Path::new("test.json")).map(drop).expect_err("it is refused").to_string()
+}
 
 /// The model of a case.
 pub fn model(case: &Value) -> Model {
@@ -15,8 +26,7 @@ pub fn model(case: &Value) -> Model {
 
 /// The model of a case whose mesh is found from a path.
 pub fn model_at(case: &Value, path: &Path) -> Model {
-    let parsed = serde_json::from_value(case.clone()).unwrap_or_else(|error| panic!("{error}"));
-    case::build(&parsed, path).unwrap_or_else(|error| panic!("{error}"))
+    built(case, path).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Run a case to its end.

@@ -1,8 +1,6 @@
 //! Friction that varies along a contact by law, and in time.
 
-use std::path::Path;
-
-use crate::common::{Blocks, Finished, close, finish, floor, linear, model, run_through};
+use crate::common::{Blocks, Finished, close, finish, floor, linear, model, refusal, run_through};
 use fecontact::contact::pair;
 use fecontact::laws::friction::{
     Answer, Coulomb, CoulombParameters, Description, FrictionLaw, FrictionState, Sliding, register,
@@ -109,14 +107,7 @@ fn strength_follows_the_time_of_explicit_increments() {
 /// What is wrong is told with its place.
 #[test]
 fn bad_choices_are_refused() {
-    let refused = |along: Value| {
-        let case = points(&along, &coulomb(0.5), 1.0, 0.5);
-        match serde_json::from_value(case) {
-            Ok(case) => fecontact::case::build(&case, Path::new("test.json")).err().map(|error| error.to_string()),
-            Err(error) => Some(error.to_string()),
-        }
-        .expect("it is refused")
-    };
+    let refused = |along: Value| refusal(&points(&along, &coulomb(0.5), 1.0, 0.5));
     let creep = json!({"law": "prescribed", "slip_rate": 1});
     for (along, place, what) in [
         (
@@ -161,8 +152,7 @@ fn parameters_of_registered_laws_vary() {
         1.0,
         0.5,
     );
-    let case = serde_json::from_value(case).expect("a case");
-    let told = fecontact::case::build(&case, Path::new("test.json")).expect_err("it is refused").to_string();
+    let told = refusal(&case);
     assert!(["contacts.base.along.nu", "Known are `mu`, `alpha_t`"].iter().all(|what| told.contains(what)), "{told}");
 }
 

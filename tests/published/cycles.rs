@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use fecontact::case;
+use crate::common::model_at;
+
 use fecontact::model::scheme::Scheme;
 use fecontact::run::Simulation;
 use serde_json::{Value, json};
@@ -45,8 +46,7 @@ fn events(fault: Fault, years: f64, every: usize) -> (Vec<Event>, usize) {
 fn events_of(case: &Value, fault: Fault) -> (Vec<Event>, usize) {
     let folder = tempfile::TempDir::new().expect("a folder");
     std::fs::write(folder.path().join("bp3.msh"), fault.mesh()).expect("a mesh");
-    let parsed = serde_json::from_value(case.clone()).expect("well formed");
-    let model = Arc::new(case::build(&parsed, &folder.path().join("bp3.json")).expect("a model"));
+    let model = Arc::new(model_at(case, &folder.path().join("bp3.json")));
     let pair = &model.contacts[0];
     let down_dip = |k: usize| {
         let [x, y] = [0, 1].map(|i| model.mesh.nodes[pair.points[k].position[0].0][i]);

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::common::{self, Blocks};
-use fecontact::case;
+use crate::common::{self, Blocks, model, refusal};
 use fecontact::model::Model;
 use fecontact::output::events::WaveSpeeds;
 use fecontact::output::fronts::{Fronts, FrontsInput};
@@ -97,8 +96,7 @@ impl Observer for Arrivals {
 /// Arrival and highest slip rate at places along the fault; share of energy that the audit misses; how often points
 /// chattered.
 fn rupture(case: &Value, places: &[f64]) -> (BTreeMap<i64, (f64, f64)>, f64, usize) {
-    let parsed = serde_json::from_value(case.clone()).expect("well formed");
-    let model = case::build(&parsed, Path::new("test.json")).unwrap_or_else(|error| panic!("{error}"));
+    let model = model(case);
     let n = model.contacts[0].points.len();
     let mut record = Arrivals {
         threshold: 1e-3,
@@ -211,8 +209,7 @@ fn rows(path: &Path) -> Vec<Vec<String>> {
 
 #[test]
 fn fronts_tell_when_and_how_fast_a_given_front_ran() {
-    let parsed = serde_json::from_value(scec(2000.0, false, 1.0, quiet())).expect("well formed");
-    let model = case::build(&parsed, Path::new("test.json")).expect("a good case");
+    let model = model(&scec(2000.0, false, 1.0, quiet()));
     let folder = tempfile::tempdir().expect("a folder");
     let mut old = model.initial_state();
     let mut fronts = Fronts::new(folder.path(), &model, &old, FrontsInput { slip_rate: 0.5, arrival: None });
@@ -277,8 +274,7 @@ fn what_varies_along_a_fault_is_checked() {
     let refused = |pointer: &str, key: &str, value: Value, words: &str| {
         let mut bad = scec(4000.0, true, 1.0, quiet());
         bad.pointer_mut(pointer).expect("an object")[key] = value;
-        let parsed = serde_json::from_value(bad).expect("well formed");
-        let error = case::build(&parsed, Path::new("test.json")).map(drop).expect_err("refused").to_string();
+        let error = refusal(&bad);
         assert!(error.contains(words), "{error}");
     };
     let fault = "/contacts/fault";
@@ -299,9 +295,7 @@ fn a_balanced_fault_below_its_strength_stays_at_rest() {
     let mut case = scec(2000.0, true, 0.5, quiet());
     case["contacts"]["fault"]["friction"]["mu_s"] = json!(0.69);
     case["contacts"]["fault"]["along"] = json!({});
-    let parsed = serde_json::from_value(case).expect("well formed");
-    let model = case::build(&parsed, Path::new("test.json")).expect("a good case");
-    let model = Arc::new(model);
+    let model = Arc::new(model(&case));
     let (_, result) = run(&model, &mut []);
     let state = result.expect("it runs");
     let fastest = state.velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));

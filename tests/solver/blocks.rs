@@ -3,11 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
-use fecontact::case;
 use fecontact::mesh::{Block, BlockKind, Blocks, Grading, Group, InlineMesh, Mesh};
 use serde_json::{Value, json};
 
-use crate::common::{close, finish, model};
+use crate::common::{close, finish, model, refusal};
 
 fn mesh(blocks: &[Block], apart: &[&str]) -> Result<Mesh, String> {
     let apart = apart.iter().map(|name| name.to_string()).collect();
@@ -404,9 +403,7 @@ fn refused(pointer: &str, value: Value) -> String {
         Value::Array(list) => list[key.parse::<usize>().unwrap()] = value,
         object => object[key] = value,
     }
-    let path = Path::new("bar.json");
-    let built = case::from_text(&case.to_string(), path).and_then(|case| case::build(&case, path));
-    built.expect_err(pointer).to_string()
+    refusal(&case)
 }
 
 #[test]
@@ -414,7 +411,7 @@ fn one_number_moves_a_mesh() {
     let places = |dip: Value| {
         let mut case = bar();
         case["mesh"]["parameters"]["dip"] = dip;
-        case::build(&serde_json::from_value(case).unwrap(), Path::new("bar.json")).unwrap().mesh.nodes
+        model(&case).mesh.nodes
     };
     let (one, other) = (places(json!(FRAC_PI_2)), places(json!("pi/4")));
     assert_eq!(one.len(), other.len());

@@ -1,13 +1,11 @@
 //! Bodies that hang on others: by nodes that they share, periodic sides, plates and hinges. Static steps hold them by what holds
 //! the others, and what is still free is told.
 
-use crate::common::{Blocks, close, finish, half_way, linear, model, quadratic, run_through};
-use fecontact::case;
+use crate::common::{Blocks, close, finish, half_way, linear, model, quadratic, refusal, run_through};
 use fecontact::mesh::InlineMesh;
 use fecontact::model::Model;
 use fecontact::model::builder::{Builder, Load, LoadStep, Place, Plate, Support};
 use serde_json::{Value, json};
-use std::path::Path;
 
 /// Young's modulus of body k.
 fn young(k: usize) -> f64 {
@@ -68,9 +66,7 @@ fn a_body_is_held_by_nodes_that_it_shares() {
 #[test]
 fn bodies_that_share_nodes_are_refused_if_all_are_free() {
     let refused = |supports: Value, words: &str| {
-        let case = serde_json::from_value(pulled(row(2), supports)).expect("a case");
-        let told = case::build(&case, Path::new("test.json")).err().map(|error| error.to_string());
-        let told = told.unwrap_or_default();
+        let told = refusal(&pulled(row(2), supports));
         assert!(told.contains(words), "`{words}` is not in `{told}`");
     };
     refused(json!([]), "`body0` with `body1` can move freely along x: there is no support at all");

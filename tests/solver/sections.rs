@@ -2,8 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::common::{self, Blocks, Finished, close, finish, half_way, half_way_round, quadratic};
-use fecontact::case;
+use crate::common::{self, Blocks, Finished, close, finish, half_way, half_way_round, quadratic, refusal};
 use serde_json::{Value, json};
 
 const E: f64 = 200.0;
@@ -288,12 +287,11 @@ fn what_a_section_cannot_be_is_refused() {
         (f_bar, "f_bar is not needed in plane stress"),
         (periodic, "periodic along y only"),
     ] {
-        let parsed = serde_json::from_value(case.clone()).expect("well formed");
-        let error = case::build(&parsed, std::path::Path::new("test.json")).expect_err(expected).to_string();
+        let error = refusal(&case);
         assert!(error.contains(expected), "{error}\nlacks {expected}");
     }
     for wrong in [json!("plain_strain"), json!({"plane_stress": {}}), json!({"plane_stress": {"depth": 1}})] {
-        assert!(serde_json::from_value::<case::file::Case>(base(wrong, &mesh)).is_err());
+        refusal(&base(wrong, &mesh));
     }
 }
 

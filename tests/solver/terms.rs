@@ -19,7 +19,7 @@ const GRADED: Section = Section::Graded { depth: 1.0, slope: [0.1, 0.0] };
 
 /// The model of a case in a section.
 fn model_in(section: Section, case: &Value) -> Arc<Model> {
-    let case: case::file::Case = serde_json::from_value(case.clone()).expect("well formed");
+    let case = case::from_text(&case.to_string(), Path::new("test.json")).expect("well formed");
     let case::file::MeshSource::Inline(mesh) = &case.mesh else { panic!("an inline mesh") };
     let mesh = fecontact::mesh::Mesh { section, ..mesh.build().expect("a good mesh") };
     Arc::new(case::build_on(&case, mesh, Path::new("test.json")).expect("a good case"))

@@ -1,10 +1,8 @@
 //! Bodies that yield: whole models against closed forms, and what is told of them.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
-use crate::common::{Blocks, Finished, close, finish, model};
-use fecontact::case;
+use crate::common::{Blocks, Finished, close, finish, model, refusal};
 use serde_json::{Value, json};
 
 /// The reaction of a group along an axis at the end of every increment after a time.
@@ -161,8 +159,7 @@ fn an_initial_stress_counts_for_yielding() {
     assert!(run.last().displacement.iter().all(|u| u.abs() < 1e-14));
     assert_eq!(run.last().energy.plastic_dissipation, 0.0);
     close("strain energy", run.last().energy.strain, 0.0, 1e-12);
-    let refused = serde_json::from_value(given(0.3)).expect("well formed");
-    let why = case::build(&refused, Path::new("sand.json")).map(drop).expect_err("K0 is below 1/3").to_string();
+    let why = refusal(&given(0.3));
     for part in ["bodies.sand.initial_stress", "at (0.1", "f = ", "0.3333"] {
         assert!(why.contains(part), "{part}: {why}");
     }

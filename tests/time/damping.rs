@@ -1,9 +1,6 @@
 //! Damping of bodies: decay of vibrations and waves by closed forms, the tangent by differences, the stable increment.
 
-use std::path::Path;
-
-use crate::common::{Blocks, Finished, close, distance, finish, model};
-use fecontact::case;
+use crate::common::{Blocks, Finished, close, distance, finish, model, refusal};
 use fecontact::laws::bulk::{Material, MaterialParameters};
 use fecontact::linear::SparseLu;
 use fecontact::mesh::section::Section;
@@ -275,10 +272,7 @@ fn damping_is_checked() {
             "bodies": {"bar": {"material": {"model": "linear", "E": 3, "nu": 0, "density": density}, "damping": damping}},
             "steps": [{"name": "hold", "duration": 1, "supports": [{"on": "bar", "ux": 0, "uy": 0}]}],
         });
-        let error = match serde_json::from_value(case) {
-            Ok(parsed) => case::build(&parsed, Path::new("test.json")).map(drop).expect_err("refused").to_string(),
-            Err(error) => error.to_string(),
-        };
+        let error = refusal(&case);
         assert!(error.contains(words), "{error}");
     };
     refused(1.0, json!({"mass": -1.0}), "bodies.bar.damping.mass: is -1: must be zero or positive");

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, Record, close, finish, model};
+use crate::common::{Blocks, Finished, Record, close, finish, model, refusal};
 use fecontact::run::run;
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
@@ -272,9 +272,7 @@ fn a_collapse_is_repeated_more_carefully_and_told_if_that_does_not_help() {
 #[test]
 fn what_explicit_steps_cannot_do_is_refused() {
     let refused = |case: &Value, words: &str| {
-        let parsed = serde_json::from_value(case.clone()).expect("well formed");
-        let error =
-            fecontact::case::build(&parsed, std::path::Path::new("test.json")).expect_err("refused").to_string();
+        let error = refusal(case);
         assert!(error.contains(words), "{error}");
     };
     let good = bars(json!({"explicit": {}}), 2);

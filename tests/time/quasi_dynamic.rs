@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, finish, finish_at, model, turned};
+use crate::common::{Blocks, Finished, close, finish, finish_at, model, refusal, turned};
 use fecontact::model::Model;
 use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
@@ -334,8 +334,7 @@ fn what_it_cannot_do_is_refused() {
     let refused = |change: &dyn Fn(&mut Value)| {
         let mut case = slabs(&quasi_dynamic(1e-5, 10), 1.0);
         change(&mut case);
-        let case = serde_json::from_value(case).unwrap_or_else(|error| panic!("{error}"));
-        fecontact::case::build(&case, Path::new("test.json")).expect_err("it is refused").to_string()
+        refusal(&case)
     };
     type Change = fn(&mut Value);
     let changes: [(Change, &str, &str); 12] = [

@@ -1,6 +1,6 @@
 //! Radiation damping in static steps: q + η v stands for q.
 
-use crate::common::{Blocks, Finished, close, finish, model};
+use crate::common::{Blocks, Finished, close, finish, model, refusal};
 use fecontact::contact::force::ContactState;
 use serde_json::{Value, json};
 
@@ -146,11 +146,7 @@ fn bad_dampings_are_refused() {
     let refused = |change: &dyn Fn(&mut Value)| {
         let mut case = slabs([1.0; 3], [1.0, 3.0]);
         change(&mut case);
-        match serde_json::from_value(case) {
-            Ok(case) => fecontact::case::build(&case, std::path::Path::new("test.json")).err().map(|e| e.to_string()),
-            Err(error) => Some(error.to_string()),
-        }
-        .expect("it is refused")
+        refusal(&case)
     };
     let told = refused(&|case| case["contacts"]["fault"]["radiation_damping"] = json!(-1));
     assert!(told.contains("contacts.fault.radiation_damping") && told.contains("must be positive"), "{told}");

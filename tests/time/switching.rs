@@ -1,9 +1,6 @@
 //! A step that goes on explicitly while a contact slips fast: stuck for a second, broken within milliseconds, and slow again.
 
-use std::path::Path;
-
-use crate::common::{Blocks, Finished, close, finish};
-use fecontact::case;
+use crate::common::{Blocks, Finished, close, finish, refusal};
 use serde_json::{Value, json};
 
 /// A slab of 1 × 0.2 on a rigid plane, sheared slowly by its top, with G = 1 and c_s = 1000; the interface weakens by slip and
@@ -118,8 +115,7 @@ fn ruptures_are_checked() {
     let refused = |change: &dyn Fn(&mut Value), words: &str| {
         let mut case = slab(slow(json!("static")), 1e-5);
         change(&mut case);
-        let parsed = serde_json::from_value(case).expect("well formed");
-        let error = case::build(&parsed, Path::new("test.json")).map(drop).expect_err("refused").to_string();
+        let error = refusal(&case);
         assert!(error.contains(words), "{error}");
     };
     refused(&|case| case["steps"][0]["rupture"] = json!({"slip_rate": 0.0}), "steps[0].rupture.slip_rate: is 0");
