@@ -30,13 +30,13 @@ const TOGETHER: usize = 16;
 pub struct PairResponse {
     /// Trial states
     pub states: Vec<ContactState>,
-    /// What the laws answered; it may come from another evaluation of the pair
+    /// Answers of the laws; they may come from another evaluation of the pair
     pub answered: LastAnswers,
     parts: Vec<Chunk>,
     kept: Kept,
 }
 
-/// What the laws of a pair answered at its last evaluation. They are pure: asked the same again, as for the tangent of what a residual
+/// Answers of the laws of a pair at its last evaluation. They are pure: asked the same again, as for the tangent of what a residual
 /// was found for, they need not be asked.
 #[derive(Clone, Debug, Default)]
 pub struct LastAnswers(Vec<Together>);

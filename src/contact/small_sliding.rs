@@ -130,7 +130,7 @@ impl SmallPoint {
         Self { nodes, weights, lever, turning: None, normal, tangent, gap, length, foot, against }
     }
 
-    /// In axes that turn with the edges of the slave.
+    /// Turns the axes with the edges of the slave.
     pub fn turning_with(mut self, slave: &SlavePoint) -> Self {
         let shares = slave.length.iter();
         let along: Weights =
@@ -210,7 +210,7 @@ impl SmallPoint {
         self.relative(|node| x.displacement(node))
     }
 
-    /// As [`Self::meet`], in axes that turn with the slave:
+    /// Does the same as [`Self::meet`], in axes that turn with the slave:
     ///
     /// ```text
     /// g = n·r,   Δu_t = s·r − (s·r)_before,   r = Σ w_a x_a

@@ -44,7 +44,7 @@ pub struct Assembler {
     equilibrium: ConvergenceCriterion,
     /// Responses of contacts without presumptions, kept to reuse their memory
     responses: Vec<PairResponse>,
-    /// What the laws of each contact answered last
+    /// Last answers of the laws of each contact
     answered: Vec<LastAnswers>,
     /// Results at the last evaluated displacement
     pub evaluation: Evaluation,

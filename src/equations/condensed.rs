@@ -201,7 +201,7 @@ impl<'a> CondensedEquations<'a> {
     }
 }
 
-/// From the first to the last value that is not zero.
+/// Returns the range from the first to the last value that is not zero.
 fn reach(column: &[f64]) -> Range<usize> {
     let first = column.iter().position(|value| *value != 0.0).unwrap_or(0);
     first..column.iter().rposition(|value| *value != 0.0).map_or(0, |last| last + 1)

@@ -45,9 +45,9 @@ pub struct Evaluation {
     pub memory: Vec<f64>,
     /// ∫ W dV [F·L]
     pub strain_energy: f64,
-    /// What the materials dissipated in the increment by viscosity [F·L]
+    /// Viscous dissipation of the materials in the increment [F·L]
     pub dissipated: f64,
-    /// What they dissipated by yielding [F·L]
+    /// Plastic dissipation of the materials in the increment [F·L]
     pub plastic: f64,
     /// Work of the temperature change in the increment [F·L]
     pub heating: f64,

@@ -43,7 +43,8 @@ impl Term {
     }
 }
 
-/// Where the tangent of a step is not symmetric beside contacts, as those say who add to it; inertia, dashpots and dead loads always are.
+/// Returns where the tangent of a step is unsymmetric beside contacts, as those say who add to it; inertia, dashpots and dead loads
+/// are symmetric.
 pub(super) fn skew_of(model: &Model, step: &Step) -> Skew {
     let mut nodes = loads::skew(step);
     nodes.extend(damping::skew(model, step));

@@ -34,7 +34,7 @@ pub struct RigidBody {
 }
 
 impl RigidBody {
-    /// Its two nodes.
+    /// Returns the two nodes.
     pub fn nodes(&self) -> [usize; 2] {
         [self.reference, self.turning]
     }

@@ -75,7 +75,7 @@ pub struct PoreFluid {
 }
 
 impl PoreFluid {
-    /// Without pressure at the start, and without cavitation.
+    /// Creates a fluid without initial pressure and without cavitation.
     pub fn new(bulk_modulus: f64, porosity: f64) -> Self {
         Self { bulk_modulus, porosity, pressure: Profile::default(), cavitation: None }
     }

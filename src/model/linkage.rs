@@ -51,7 +51,7 @@ impl Follower {
         self.leaders.iter().map(|(node, g)| g[(i, 0)] * value(2 * node) + g[(i, 1)] * value(2 * node + 1)).sum()
     }
 
-    /// Its dofs that follow.
+    /// Returns the dofs of the node that are linked, with their component.
     pub fn dofs(&self) -> impl Iterator<Item = (usize, usize)> + use<'_> {
         (0..2).filter(|&i| self.components[i]).map(|i| (i, 2 * self.node + i))
     }

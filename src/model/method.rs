@@ -51,7 +51,7 @@ pub struct Chosen {
     pub concern: Option<&'static str>,
 }
 
-/// What a surface looks like.
+/// Geometry of a surface that decides on the default method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Looks {
     shape: Shape,
@@ -78,7 +78,7 @@ const POINTS: usize = 2;
 /// round-off of a straight line, and below facets that affect the pressure [rad].
 const CURVED: f64 = 0.0175;
 
-/// What a contact says of its method, and whether the run has explicit steps.
+/// Input of a contact that decides on its method, and whether the run has explicit steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked {
     /// The method, if it is given

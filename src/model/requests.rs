@@ -3,7 +3,7 @@
 
 use crate::mesh::Edge;
 
-/// What of a run is recorded, and when.
+/// Results to be recorded, and when.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[doc(hidden)]
 pub struct OutputRequests {

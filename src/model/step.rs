@@ -107,7 +107,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Those of a step, in the order of [`Step::entries`], supports before loads, each by place and kind.
+    /// Returns the entries of a step in the order of [`Step::entries`]: supports before loads, each by place and kind.
     pub fn of_step<'e>(all: impl Iterator<Item = &'e Self>) -> Vec<Self> {
         let mut entries: Vec<Self> = all.filter(|entry| entry.value.is_some() || !entry.kept).cloned().collect();
         let order =

@@ -73,7 +73,7 @@ impl Model {
     }
 }
 
-/// What the law of a body has to say before anything is solved.
+/// Returns the concern of a body's law that is known before anything is solved.
 fn concern_of_law(body: &Body) -> Option<String> {
     body.material.description().concern.map(|concern| format!("body `{}`: {concern}", body.name))
 }

@@ -37,7 +37,7 @@ pub struct Audit {
     error: f64,
     /// Largest error, and its time [F·L, T]
     worst: (f64, f64),
-    /// What every step contributed to the error
+    /// Contribution of every step to the error
     steps: Vec<StepError>,
     /// Error that arose in all increments in which masses have inertia, and its largest gain [F·L]
     moving: f64,
@@ -66,13 +66,13 @@ const OVERLAP: &str = "surfaces that overlap at the start set energy free: bring
 pub struct Give {
     /// Elastic energy [F·L]
     elastic: f64,
-    /// When that was [T]
+    /// Its time [T]
     time: f64,
-    /// What of it was in penalties, contact by contact
+    /// Share in the penalties, contact by contact
     penalties: Vec<Penalties>,
 }
 
-/// What was in the penalties of a contact.
+/// Energy in the penalties of a contact.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Penalties {
     contact: String,
@@ -91,7 +91,7 @@ struct Penalties {
 /// Share of the elastic energy in penalties that is worth a warning [-]
 const GIVES_WAY: f64 = 0.01;
 
-/// What is advised leaves this share of the energy in the penalties [-]
+/// Share of the energy that the advised penalties leave in the contacts [-]
 const ADVISED: f64 = 0.004;
 
 impl Audit {

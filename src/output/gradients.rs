@@ -48,7 +48,7 @@ pub struct Neighbours {
     pub parameters: Vec<Parameter>,
 }
 
-/// What is known of a derivative besides its values.
+/// Reliability of a derivative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// number of contact points, summed over the increments, whose status differed between the neighbours: their derivatives are
@@ -136,7 +136,7 @@ impl Gradients {
         })
     }
 
-    /// What is known of every derivative, by the place of its parameter.
+    /// Returns the reliability of every derivative, by the place of its parameter.
     pub fn accounts(&self) -> BTreeMap<String, Account> {
         self.derivatives.iter().map(|derivative| (derivative.place.clone(), derivative.account.clone())).collect()
     }

@@ -353,7 +353,7 @@ const SOLID: [Quantity; 14] = [
     q("stretch_zz", NONE, "stretch across the plane, exp(ln V_zz): thickness of a plate, hoops of rings; as above"),
 ];
 
-/// What bodies that yield, or whose pores hold a fluid, show in frames.
+/// Quantities of bodies that yield, or whose pores hold a fluid, in frames.
 pub const OF_YIELDING: [Quantity; 7] = [
     q(
         "equivalent_plastic_strain",

@@ -77,7 +77,7 @@ impl Stencil {
 }
 
 impl Recovery {
-    /// Of the mesh of a model.
+    /// Creates the recovery for the mesh of a model.
     pub fn new(model: &Model) -> Self {
         let mut starts = vec![0; model.mesh.nodes.len() + 1];
         let elements = || model.mesh.elements.iter().enumerate();
@@ -251,7 +251,7 @@ fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
     both.unwrap_or_else(|_| vec![0.0; 8 * solid.quadrature_points()])
 }
 
-/// What the law of an element shows at its quadrature points, as [`Stencil::sum`] takes it.
+/// Returns what the law of an element shows at its quadrature points, as [`Stencil::sum`] takes it.
 fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
     let material = &*model.body_of(e).material;

@@ -182,7 +182,7 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
 /// Growth of the rate of displacement over its mean in the step, from which it has begun to run away.
 const RUNS_AWAY: f64 = 2.0;
 
-/// That a static step under forces may have come to a limit point, with what its loads had reached, before a semicolon; empty unless
+/// Says that a static step under forces may have come to a limit point, with what its loads had reached, before a semicolon; empty unless
 /// displacements have begun to run away from the loads.
 pub fn limit(step: &Step, state: &State, cause: &IncrementFailure) -> String {
     if !matches!(cause, IncrementFailure::Newton(_)) || step.scheme.is_dynamic() {
@@ -202,7 +202,7 @@ pub fn limit(step: &Step, state: &State, cause: &IncrementFailure) -> String {
     )
 }
 
-/// What the loads that vary in a step are at a time, and what they were to become: of each kind the one that varies most.
+/// Lists the loads that vary in a step: their values at a time and their targets; of each kind the one that varies most.
 fn growing_loads(step: &Step, time: f64) -> Vec<String> {
     let loads = &step.loads;
     let dead = loads.dead.iter().filter_map(|load| {

@@ -70,7 +70,7 @@ pub struct Neighbour {
 struct OnItsWay {
     /// The state at the start of the increment, with the multipliers of the pass
     old: State,
-    /// Its u − that of the run at the last pass, or as expected [L]
+    /// u of the neighbour − u of the run at the last pass, or as expected [L]
     distance: Vec<f64>,
     u: Vec<f64>,
 }

@@ -83,7 +83,7 @@ impl MaterialResponse {
     }
 }
 
-/// What a law says of itself in plain values.
+/// Description of a law in plain values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct MaterialDescription<'a> {
@@ -157,7 +157,7 @@ pub struct Straining<'a> {
 }
 
 impl<'a> Straining<'a> {
-    /// In plane strain, at once.
+    /// Creates a straining in plane strain, without duration.
     pub fn new(deformation: Matrix2<f64>, old: &'a [f64]) -> Self {
         Self { deformation, stretch: 1.0, dt: 0.0, old }
     }
@@ -209,7 +209,7 @@ pub fn log_strain(deformation: &Matrix2<f64>, stretch: f64) -> [f64; 4] {
 }
 
 impl CauchyStress {
-    /// Its components xx, yy, zz, xy.
+    /// Returns the components xx, yy, zz, xy.
     pub fn components(&self) -> [f64; 4] {
         [self.xx, self.yy, self.zz, self.xy]
     }
@@ -259,7 +259,7 @@ pub enum MaterialFailure {
 #[error("{0}")]
 pub struct InadmissibleStress(pub String);
 
-/// How the volume of a body changes while it yields: what its elements must be able to do.
+/// Change of volume of a body that yields, which its elements must be able to follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Flow {
@@ -289,7 +289,7 @@ pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
 /// It is asked in plane strain. What it remembers it names in its [description](Self::description); an elastic law has no variables, and
 /// answers to F alone. An increment of no length leaves no time to relax.
 pub trait Material: Debug + Send + Sync {
-    /// What the law says of itself, before anything is strained.
+    /// Describes the law before anything is strained.
     fn description(&self) -> MaterialDescription<'_>;
 
     /// The answer to an increment, whose variables at the end are written over `new`.

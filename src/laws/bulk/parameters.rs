@@ -83,12 +83,12 @@ impl MaterialParameters {
 }
 
 impl ElasticConstants {
-    /// Of a body without mass.
+    /// Creates the constants of a body without mass.
     pub const fn new(young: f64, poisson: f64) -> Self {
         Self { young, poisson, density: 0.0 }
     }
 
-    /// With a density [M/L³].
+    /// Sets the density [M/L³].
     pub const fn density(self, density: f64) -> Self {
         Self { density, ..self }
     }
@@ -118,7 +118,7 @@ impl Lame {
         self.lambda + 2.0 * self.shear
     }
 
-    /// What an elastic law with these constants says of itself, with its density [M/L³].
+    /// Describes an elastic law with these constants and a density [M/L³].
     pub(crate) fn description(&self, density: f64) -> MaterialDescription<'static> {
         MaterialDescription::new(density, self.constrained_modulus(), self.shear)
     }

@@ -26,7 +26,7 @@ pub struct Stretched {
 }
 
 impl Stretched {
-    /// From the in-plane part and the out-of-plane part: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
+    /// Creates the response from its in-plane part and the out-of-plane part: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
     pub(super) fn new(
         (stress, tangent): (Matrix2<f64>, nalgebra::Matrix4<f64>),
         (stress_33, coupling, stiffness): (f64, Vector4<f64>, f64),
@@ -41,7 +41,7 @@ impl Stretched {
     }
 }
 
-/// In plane strain, without the out-of-plane parts, which do no work.
+/// Takes a response in plane strain, without the out-of-plane parts, which do no work.
 impl From<MaterialResponse> for Stretched {
     fn from(MaterialResponse { stress, tangent, energy, dissipation, .. }: MaterialResponse) -> Self {
         Self { dissipation, ..Self::new((stress, tangent), (0.0, Vector4::zeros(), 0.0), energy) }
@@ -170,7 +170,7 @@ pub struct PlaneStress<L> {
 /// Most iterations for (1).
 const ITERATIONS: usize = 60;
 
-/// What a search of the stretch is called where it fails.
+/// Name of the search for the stretch in messages.
 const PLATE: &str = "plane_stress";
 
 /// ln h is known to so much; the rest is brought in by the tangent.

@@ -64,7 +64,7 @@ impl Undrained {
         Some(Self { law, modulus, cavitation, names, shown })
     }
 
-    /// Of the law alone.
+    /// Returns the straining with the history of the law alone.
     fn inner<'a>(&self, straining: &Straining<'a>) -> Straining<'a> {
         Straining { old: &straining.old[1..], ..*straining }
     }

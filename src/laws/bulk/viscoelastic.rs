@@ -32,12 +32,12 @@ pub struct ViscoelasticConstants {
 }
 
 impl ViscoelasticConstants {
-    /// Of a body without mass.
+    /// Creates the parameters of a body without mass.
     pub const fn new(young: f64, poisson: f64, relaxing: f64, tau: f64) -> Self {
         Self { young, poisson, relaxing, tau, density: 0.0 }
     }
 
-    /// With a density [M/L³].
+    /// Sets the density [M/L³].
     pub const fn density(self, density: f64) -> Self {
         Self { density, ..self }
     }
@@ -88,7 +88,7 @@ impl Viscoelastic {
     }
 }
 
-/// What it remembers: ε of the arm, and E.
+/// History: ε of the arm, and E.
 const VARIABLES: [&str; 8] =
     ["arm_xx", "arm_yy", "arm_xy", "arm_zz", "strain_xx", "strain_yy", "strain_xy", "strain_zz"];
 

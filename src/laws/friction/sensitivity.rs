@@ -129,7 +129,7 @@ impl Variation {
 }
 
 impl Direction {
-    /// Those of the consistent tangent: Δu_t and p.
+    /// Directions of the consistent tangent: Δu_t and p.
     pub(super) const TANGENT: [Self; 2] = [Self::of_inputs(1.0, 0.0), Self::of_inputs(0.0, 1.0)];
 
     const fn of_inputs(slip: f64, pressure: f64) -> Self {

@@ -41,7 +41,7 @@ pub struct Factors {
     pub eliminated: usize,
     /// The scaled values that were factorized, four an entry
     a: Vec<f64>,
-    /// What fronts that stay pass on to those that do not, by the number of the front
+    /// Contributions of fronts that stay to those that do not, by the number of the front
     kept: HashMap<u32, Vec<f64>>,
     /// Room for the contributions inside a forest, used again
     rooms: Mutex<Vec<Vec<f64>>>,

@@ -97,7 +97,7 @@ pub struct Forest {
 /// Share of the whole work below which subtrees are lumped together. Fixed, so that the sums do not depend on threads.
 const FOREST_SHARE: f64 = 1.0 / 32.0;
 
-/// Whole subtrees, neighbours lumped up to a share of the work, from the first front to the last.
+/// Returns whole subtrees, neighbours lumped up to a share of the work, from the first front to the last.
 pub fn forests(fronts: &[Front]) -> Vec<Forest> {
     let (first, work) = subtrees(fronts);
     let limit = FOREST_SHARE * fronts.iter().map(Front::work).sum::<f64>();

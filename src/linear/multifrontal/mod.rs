@@ -65,7 +65,7 @@ impl Held {
         (0..matrix.size()).filter(|&dof| matrix.held[dof]).map(one).collect()
     }
 
-    /// Its x, whose effect goes to the right-hand side.
+    /// Solves for the dof by itself and moves its effect to the right-hand side; returns its value.
     fn solve(&self, pattern: &Pattern, b: &mut [f64]) -> f64 {
         let x = b[self.dof] / self.diagonal;
         if x != 0.0 {

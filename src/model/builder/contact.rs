@@ -249,7 +249,7 @@ impl Contact {
         }
     }
 
-    /// Of surfaces that are tied.
+    /// Creates a contact of tied surfaces.
     pub fn tied(name: impl Into<String>, slave: impl Into<String>, master: impl Into<MasterSide>) -> Self {
         Self { tied: true, ..Self::new(name, slave, master, Friction::tie()) }
     }
@@ -296,7 +296,7 @@ setters! { contact: Contact;
     /// Sets the largest penetration allowed (augmented Lagrangian method) [L].
     penetration(largest: f64) { contact.normal.penetration = Some(largest); }
 
-    /// With the traction of what sticks adjusted until no elastic slip is larger (augmented Lagrangian) [L].
+    /// Sets the largest elastic slip of what sticks (augmented Lagrangian method) [L].
     stick(largest: f64) { contact.stick = Some(largest); }
 
     /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length

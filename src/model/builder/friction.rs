@@ -93,7 +93,7 @@ impl Friction {
         }
     }
 
-    /// Of surfaces that are tied.
+    /// Returns the law of tied surfaces.
     pub(super) fn tie() -> Self {
         let law = Self::varying::<String>([], |_, alpha_t| Ok(Box::new(Tie { alpha_t })));
         Self { tie: true, ..law }

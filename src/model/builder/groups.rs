@@ -51,13 +51,13 @@ impl Place {
         }
     }
 
-    /// It in words; a single node by its tag.
+    /// Describes the place in words; a single node by its tag.
     #[doc(hidden)]
     pub fn in_words(&self, mesh: &Mesh) -> String {
         self.settled(mesh, "").map_or_else(|_| self.to_string(), |settled| settled.to_string())
     }
 
-    /// Its name in the columns of results.
+    /// Returns the name of the place in the columns of results.
     pub fn column(&self) -> String {
         match self {
             Self::Group(name) => name.clone(),

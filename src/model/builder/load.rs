@@ -105,7 +105,7 @@ impl Kind {
     }
 }
 
-/// What a load gives.
+/// Value of a load.
 #[derive(Clone, Copy)]
 pub enum Value<'l> {
     /// one drive
@@ -121,7 +121,7 @@ pub enum Value<'l> {
 }
 
 impl<'l> Value<'l> {
-    /// Its components, or those of its driver.
+    /// Returns the components of the load, or those of its driver.
     pub fn components(self) -> Option<&'l Components> {
         match self {
             Self::Vector(components) => Some(components),
@@ -130,7 +130,7 @@ impl<'l> Value<'l> {
         }
     }
 
-    /// Its drives, with their keys within the key of the load.
+    /// Returns the drives of the load, with their keys within the key of the load.
     pub fn drives(self) -> Vec<(&'static str, &'l Drive)> {
         let keys = match self {
             Self::Scalar(drive) => return vec![("", drive)],
@@ -318,7 +318,7 @@ impl Load {
         given.next().filter(|_| given.next().is_none())
     }
 
-    /// Its drives with their keys, and whether each is evaluated on edges.
+    /// Returns the drives with their keys, and whether each is evaluated on edges.
     pub(super) fn drives(&self) -> impl Iterator<Item = (String, bool, &Drive)> {
         let given = self.action().and_then(|(kind, value)| Some((kind, value?)));
         let drives = given.map(|(kind, value)| value.drives().into_iter().map(move |drive| (kind, drive)));

@@ -22,7 +22,7 @@ use crate::model::step::{Entry, ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
-/// What the steps of a run are, as far as the defaults of penalties and methods depend on it.
+/// Kind of the steps of a run, as far as the defaults of penalties and methods depend on it.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {

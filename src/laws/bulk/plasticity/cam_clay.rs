@@ -54,7 +54,7 @@ pub struct CamClayParameters {
 }
 
 impl CamClayParameters {
-    /// Of a body without mass, λ and κ being slopes of ln v; G or ν and p_c or OCR are still to be given.
+    /// Creates the parameters of a body without mass, λ and κ being slopes of ln v; G or ν and p_c or OCR are still to be given.
     pub const fn new([lambda, kappa]: [f64; 2], critical: f64, p_min: f64) -> Self {
         Self {
             lambda,
@@ -80,12 +80,12 @@ impl CamClayParameters {
         })
     }
 
-    /// With a shear modulus [F/L²].
+    /// Sets the shear modulus [F/L²].
     pub const fn shear(self, shear: f64) -> Self {
         Self { shear: Some(shear), ..self }
     }
 
-    /// With an initial p_c [F/L²].
+    /// Sets the initial p_c [F/L²].
     pub const fn p_c(self, p_c: f64) -> Self {
         Self { p_c: Some(p_c), ..self }
     }
@@ -129,7 +129,7 @@ pub struct CamClay {
     typical: f64,
 }
 
-/// What is known of the shear modulus.
+/// Shear stiffness as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shear {
     Modulus(f64),
@@ -137,30 +137,30 @@ enum Shear {
     Ratio(f64),
 }
 
-/// What is known of p_c at the start.
+/// Initial size of the yield surface as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Start {
     Pressure(f64),
     Ratio(f64),
 }
 
-/// Its own history.
+/// History of the law itself.
 const OWN: [&str; 2] = ["p_c", "shear_modulus"];
 
 /// Places of p_c and G in the history.
 const P_C: usize = 2;
 const SHEAR: usize = 3;
 
-/// What it shows.
+/// Names of the quantities that the law shows.
 const SHOWN_TOO: [&str; 6] = [SHOWN[0], SHOWN[1], SHOWN[2], "effective_pressure", "deviator_stress", "p_c"];
 
 /// Most iterations for (6) and for (7).
 const ITERATIONS: usize = 200;
 
-/// What may be left of (7), as a share of the squares in it.
+/// Tolerance of (7), as a share of the squares in it.
 const LEFT: f64 = 1e-15;
 
-/// What may be left where no number is nearer to the root.
+/// Tolerance where no number is nearer to the root.
 const ALMOST: f64 = 1e-12;
 
 /// Share of p_m by which pressures are round-off.
@@ -275,7 +275,7 @@ struct State {
     rest: f64,
     /// −dF/dΔγ
     fall: f64,
-    /// What (6) rises by with ε_v
+    /// Rate of (6) with ε_v
     rise: f64,
 }
 
@@ -404,7 +404,7 @@ impl Increment<'_> {
     }
 }
 
-/// Its name in a case.
+/// Name of the law in a case.
 const NAME: &str = "cam_clay";
 
 impl ReturnMap for CamClay {

@@ -6,7 +6,7 @@ use super::von_mises::deviatoric;
 use super::{ONE, deviator, double_dot};
 use crate::laws::bulk::Lame;
 
-/// How stress follows from elastic strain.
+/// Relation of stress and elastic strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Elasticity {

@@ -34,7 +34,7 @@ pub use elasticity::{Elasticity, LogarithmicBulk};
 pub use mohr_coulomb::{MohrCoulomb, MohrCoulombParameters, Softening};
 pub use von_mises::{BackStress, VonMises, VonMisesParameters};
 
-/// What a law answers in the principal axes of its trial strains. Components are 11, 22, 33, 12: 1 and 2 in plane, 3 across it.
+/// Response of a law in the principal axes of its trial strains. Components are 11, 22, 33, 12: 1 and 2 in plane, 3 across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
@@ -82,13 +82,13 @@ const ONE: Vector4<f64> = Vector4::new(1.0, 1.0, 1.0, 0.0);
 /// plastic volume strain, which [`Elastoplastic`] adds up, then come its own numbers, then [`tensors`](Self::tensors) in the axes of the
 /// trial strains.
 pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
-    /// Its name in a case.
+    /// Returns the name of the law in a case.
     fn name(&self) -> &'static str;
 
     /// λ and G of its elasticity, τ = λ tr(ε_e) 1 + 2G ε_e, or of an [elasticity](Self::elasticity) that is not linear at the start.
     fn elastic(&self) -> Lame;
 
-    /// Its elasticity, which derives from a potential.
+    /// Returns the elasticity, which derives from a potential.
     fn elasticity(&self, _history: &[f64]) -> Elasticity {
         Elasticity::Linear(self.elastic())
     }
@@ -122,7 +122,7 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
         &[]
     }
 
-    /// How many tensors there are among it, which turn with the body.
+    /// Returns the number of tensors in the history, which turn with the body.
     fn tensors(&self) -> usize {
         0
     }
@@ -148,7 +148,7 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
     /// Whether D is symmetric, as it is where the flow is associated, and ∂P/∂F with it.
     fn is_associated(&self) -> bool;
 
-    /// What makes results depend on the size of elements: "softens", or another word; none if nothing does.
+    /// Says what makes results depend on the size of elements: "softens", or another word; none if nothing does.
     fn localizes(&self) -> Option<&'static str> {
         None
     }
@@ -225,7 +225,7 @@ const STRESS: usize = 5;
 /// Place of the law's history.
 const HISTORY: usize = 9;
 
-/// What every law shows.
+/// Quantities that every law shows.
 const SHOWN: [&str; 3] = ["equivalent_plastic_strain", "plastic_volume_strain", "yield_indicator"];
 
 /// Largest component of an increment of plastic strain.
@@ -353,7 +353,7 @@ impl<L: ReturnMap> Spatial for Elastoplastic<L> {
         Ok(Stretched { stress, tangent, energy, dissipation })
     }
 
-    /// That which leaves a plate without out-of-plane stress if it does not yield in the increment.
+    /// Returns the stretch that leaves a plate without out-of-plane stress if it does not yield in the increment.
     fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
         let jacobian = positive_jacobian(&straining.deformation)?;
         let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| straining.old[k]);

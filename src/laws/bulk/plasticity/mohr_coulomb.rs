@@ -52,7 +52,7 @@ pub struct Softening {
 }
 
 impl MohrCoulombParameters {
-    /// With constant c, φ and ψ, of a body without mass.
+    /// Creates the law with constant c, φ and ψ, of a body without mass.
     pub fn new(young: f64, poisson: f64, [c, phi, psi]: [f64; 3]) -> Self {
         Self { young, poisson, density: 0.0, c, phi, psi, tension: None, softening: None, viscosity: 0.0 }
     }
@@ -84,7 +84,7 @@ impl MohrCoulombParameters {
 pub struct MohrCoulomb {
     elastic: Lame,
     virgin: Strength,
-    /// What is left, and γ_p at which it is reached
+    /// Residual strength, and γ_p at which it is reached
     residual: Option<(Strength, f64)>,
     tension: Option<f64>,
 }
@@ -104,7 +104,7 @@ impl Strength {
         Self { c, phi: phi.to_radians(), psi: psi.to_radians() }
     }
 
-    /// Those at a share of the way to others, and their rates along it.
+    /// Returns the strength at a share of the way to another one, and its rate along it.
     fn towards(self, other: Self, share: f64) -> (Self, Self) {
         let rate = Self { c: other.c - self.c, phi: other.phi - self.phi, psi: other.psi - self.psi };
         let at =

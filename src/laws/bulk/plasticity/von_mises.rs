@@ -118,7 +118,7 @@ const TENSORS: usize = 2;
 /// Most iterations for (5).
 const ITERATIONS: usize = 60;
 
-/// What may be left of (5), as a share of the trial stress.
+/// Tolerance of (5), as a share of the trial stress.
 const LEFT: f64 = 1e-14;
 
 impl VonMises {

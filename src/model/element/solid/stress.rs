@@ -86,7 +86,7 @@ impl SolidElement {
         shares(self.kind, self.formulation)
     }
 
-    /// What a material [shows](MaterialDescription::shown) at each quadrature point, one behind the other.
+    /// Returns what a material [shows](MaterialDescription::shown) at each quadrature point, one behind the other.
     ///
     /// # Errors
     /// Returns the [`MaterialFailure`] of the law at a quadrature point.
@@ -179,7 +179,7 @@ impl SolidElement {
         Ok(element)
     }
 
-    /// How it is integrated.
+    /// Returns how the element is integrated.
     pub fn formulation(&self) -> Formulation {
         self.formulation
     }
@@ -189,7 +189,7 @@ impl SolidElement {
         self.formulation == Formulation::FBar
     }
 
-    /// Its quadrature points.
+    /// Returns the quadrature points of the element.
     pub fn quadrature(&self) -> Vec<QuadraturePoint> {
         self.formulation.quadrature(self.kind)
     }
