@@ -25,6 +25,7 @@ from closed_forms import CLOSED
 from forming import FORMING
 from limit_loads import LIMIT
 from problems import COST, QUICK
+from shafts_and_columns import SHAFTS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MARKED = re.compile(r"(<!-- table: (\S+) -->\n)(.*?)(\n<!-- end -->)", re.S)
@@ -36,7 +37,7 @@ FRONTS = "cargo test --release --test published -- --nocapture fronts_run"
 LABORATORY = """cargo run --release -- run cases/laboratory/fault_4m.json &&
     python3 docs/figures/laboratory.py out/fault_4m docs/figures/laboratory.svg"""
 # Of the quick tier: the function that makes it.
-TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING}
+TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS}
 # Written, but not compared: iterations that do not converge hang on the last digit, which differs between processors.
 LOOSE = {"cut_back", "drawing"}
 # Of the slow tier: the command that prints it, and which of the tables that it prints.
