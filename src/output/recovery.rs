@@ -1,15 +1,18 @@
 //! Stresses and strains at nodes and at probes, recovered from the elements around: right at surfaces, too.
 //!
 //! Stresses are more accurate at the points of the quadrature one order lower than anywhere else in an element (the centre of Q4, 2 × 2 points
-//! of Q8 and Q9, the three points of T6). Around a place X₀ a polynomial is fitted to the values there, body by body:
+//! of Q8 and Q9, the three points of T6). A single T3 is nowhere: its error is of the first order, but that of its neighbour across an edge has the other sign,
+//! and the mean of both is right in the middle of the edge, exactly where the two make a parallelogram. Around a place X₀ a polynomial is fitted
+//! to these samples, body by body:
 //!
 //! ```text
-//! σ*(X) = Σ c_k P_k(X),   P = 1, x, y, x², xy, y²,   Σ_s |X_s − X₀|⁻⁴ (σ*(X_s) − σ_s)² → min,   σ(X₀) = σ*(X₀)       (1)
+//! σ*(X) = Σ c_k P_k(X),   P = 1, x, y, x², xy, y²,   Σ_s w_s² (σ*(X_s) − σ_s)² → min,   σ(X₀) = σ*(X₀)                    (1)
+//! w_s = |X_s − X₀|⁻²;   of pairs of T3  w_s = |X_s − X₀|⁻¹ (d²/A + 0.3²)^(−½),   d = X_a + X_b − X_i − X_j                  (2)
 //! ```
 //! X are places of the undeformed body. The patch is the elements around X₀ and, layer by layer, their neighbours: one layer at most of quadratic
 //! elements, two of linear ones, so that at a surface there are the three layers that a parabola needs; inside fewer will do. The weights let the
-//! nearest values count most; the others only tell how the field bends. Those of T3 count alike: single ones err either way, and only many together
-//! are right.
+//! nearest values count most; the others only tell how the field bends. In (2), A is the area of two triangles, i and j are the ends of their common edge,
+//! a and b the other corners, so that d = 0 of a parallelogram; two that are far from one still err, and count less.
 //!
 //! A linear field is met exactly, a smooth one at a surface to the third order in the size of the elements. Where the samples do not tell
 //! a term, it is left out, the shorter direction of the patch first: σ(X₀) is a weighted sum of samples, and the magnitudes of these
@@ -37,6 +40,9 @@ const INSIDE: f64 = 1.9;
 
 /// Distance from a sample, in parts of the size of the patch, below which weights do not grow any more.
 const NEAREST: f64 = 1e-3;
+
+/// How far two T3 are from a parallelogram, √(d²/A), before they count less.
+const PAIRS: f64 = 0.3;
 
 /// Part of a term that must be new beside the terms before it.
 const NEW: f64 = 1e-6;
@@ -115,45 +121,41 @@ impl Recovery {
 
     /// (1) at a place of a body, from some of its elements on.
     fn stencil(&self, model: &Model, seeds: Vec<usize>, place: Vector2<f64>) -> Stencil {
-        let (fit, elements) = self.patch(model, seeds, place);
+        let Patch { elements, samples, fit } = self.patch(model, seeds, place);
         if fit.terms < 2 {
             // Samples in a row.
-            let all = places(model, &elements, |e| model.solids[e].quadrature());
-            return Stencil { weights: Fit::new(&all, place, (2, Nearness::Counts)).weights, elements };
+            let all = points(model, &elements, |e| model.solids[e].quadrature());
+            return Stencil { weights: Fit::new(&all, place, 2).weights, elements };
         }
-        let mut weights = Vec::new();
-        let mut of_samples = fit.weights.iter();
-        for &e in &elements {
-            let shares = model.solids[e].reduced();
-            let first = weights.len();
-            weights.resize(first + shares.ncols(), 0.0);
-            for (row, weight) in shares.row_iter().zip(&mut of_samples) {
-                weights[first..].iter_mut().zip(row.iter()).for_each(|(sum, share)| *sum += weight * share);
+        let shares: Vec<_> = elements.iter().map(|&e| model.solids[e].reduced()).collect();
+        let mut starts = vec![0];
+        starts.extend(shares.iter().scan(0, |end, shares| {
+            *end += shares.ncols();
+            Some(*end)
+        }));
+        let mut weights = vec![0.0; starts[elements.len()]];
+        for (sample, weight) in samples.iter().zip(&fit.weights) {
+            for &(k, point) in &sample.of {
+                let (row, own) = (shares[k].row(point), &mut weights[starts[k]..]);
+                own.iter_mut().zip(row.iter()).for_each(|(sum, share)| *sum += weight / sample.of.len() as f64 * share);
             }
         }
         Stencil { elements, weights }
     }
 
-    /// The seeds with as many layers of neighbours in the same body as a fit needs, ascending, and the fit.
-    fn patch(&self, model: &Model, seeds: Vec<usize>, place: Vector2<f64>) -> (Fit, Vec<usize>) {
+    /// The seeds with as many layers of neighbours in the same body as a fit needs, and the fit.
+    fn patch(&self, model: &Model, seeds: Vec<usize>, place: Vector2<f64>) -> Patch {
         let is_quadratic = |&e: &usize| {
             let kind = model.mesh.elements[e].kind;
             kind.nodes() > kind.corners()
         };
         let layers = if seeds.iter().any(is_quadratic) { 1 } else { 2 };
-        let is_t3 = |&e: &usize| model.mesh.elements[e].kind == ElementKind::T3;
-        let nearness = if seeds.iter().all(is_t3) { Nearness::IsNothing } else { Nearness::Counts };
-        let fit = |patch: &[usize]| {
-            let samples = places(model, patch, |e| model.mesh.elements[e].kind.reduced_quadrature());
-            Fit::new(&samples, place, (5, nearness))
-        };
-        let mut found = (fit(&seeds), seeds);
+        let mut found = Patch::new(model, seeds, place);
         for _ in 0..layers {
-            if found.0.terms == 5 && found.0.amplified <= INSIDE {
+            if found.fit.terms == 5 && found.fit.amplified <= INSIDE {
                 break;
             }
-            let patch = self.with_neighbours(model, &found.1);
-            found = (fit(&patch), patch);
+            found = Patch::new(model, self.with_neighbours(model, &found.elements), place);
         }
         found
     }
@@ -259,24 +261,71 @@ fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
     found.unwrap_or_else(|_| vec![0.0; material.description().shown.len() * solid.quadrature_points()])
 }
 
-/// Places of the undeformed bodies at points of some elements.
-fn places(model: &Model, elements: &[usize], points: impl Fn(usize) -> Vec<QuadraturePoint>) -> Vec<Vector2<f64>> {
-    let of_element = |&e: &usize| {
-        let element = &model.mesh.elements[e];
-        let place = move |point: QuadraturePoint| {
-            let shares = element.kind.values(point.at);
-            element.nodes.iter().zip(shares).map(|(&node, share)| model.mesh.nodes[node] * share).sum()
-        };
-        points(e).into_iter().map(place)
-    };
-    elements.iter().flat_map(of_element).collect()
+/// Where a value is known, and how: the mean of the values at some points.
+struct Sample {
+    place: Vector2<f64>,
+    /// positions of elements in their patch, and which of their points
+    of: Vec<(usize, usize)>,
+    /// exponent of the distance, and the other factor, in the weight (2)
+    weight: (i32, f64),
 }
 
-/// Whether near samples count more.
-#[derive(Clone, Copy)]
-enum Nearness {
-    Counts,
-    IsNothing,
+/// Samples at points of the elements of a patch.
+fn points(model: &Model, elements: &[usize], points: impl Fn(usize) -> Vec<QuadraturePoint>) -> Vec<Sample> {
+    let of_element = |(k, &e): (usize, &usize)| {
+        let element = &model.mesh.elements[e];
+        let sample = move |(point, at): (usize, QuadraturePoint)| {
+            let shares = element.kind.values(at.at);
+            let place = element.nodes.iter().zip(shares).map(|(&node, share)| model.mesh.nodes[node] * share).sum();
+            Sample { place, of: vec![(k, point)], weight: (-2, 1.0) }
+        };
+        points(e).into_iter().enumerate().map(sample)
+    };
+    elements.iter().enumerate().flat_map(of_element).collect()
+}
+
+/// Samples in the middles of edges that two T3 of a patch share.
+fn pairs(model: &Model, elements: &[usize]) -> Vec<Sample> {
+    let mut sides: Vec<([usize; 2], usize, usize)> = Vec::with_capacity(3 * elements.len());
+    for (k, &e) in elements.iter().enumerate() {
+        if let [a, b, c] = model.mesh.elements[e].nodes[..] {
+            sides.extend([(a, b, c), (b, c, a), (c, a, b)].map(|(i, j, other)| ([i.min(j), i.max(j)], k, other)));
+        }
+    }
+    sides.sort_unstable();
+    let at = |node: usize| model.mesh.nodes[node];
+    let pair = |two: &[([usize; 2], usize, usize)]| {
+        let [([i, j], k, a), (other, l, b)] = *two else { return None };
+        let [along, across] = [at(j) - at(i), at(b) - at(a)];
+        let (twice_the_middle, area) = (at(i) + at(j), 0.5 * along.perp(&across).abs());
+        let off = (at(a) + at(b) - twice_the_middle).norm_squared() / area;
+        let sample = Sample {
+            place: 0.5 * twice_the_middle,
+            of: vec![(k, 0), (l, 0)],
+            weight: (-1, 1.0 / (off + PAIRS * PAIRS).sqrt()),
+        };
+        (other == [i, j]).then_some(sample)
+    };
+    sides.windows(2).filter_map(pair).collect()
+}
+
+/// Elements around a place, ascending, and the fit to their samples.
+struct Patch {
+    elements: Vec<usize>,
+    samples: Vec<Sample>,
+    fit: Fit,
+}
+
+impl Patch {
+    fn new(model: &Model, elements: Vec<usize>, place: Vector2<f64>) -> Self {
+        let is_t3 = |&e: &usize| model.mesh.elements[e].kind == ElementKind::T3;
+        let mut samples = if elements.iter().all(is_t3) { pairs(model, &elements) } else { Vec::new() };
+        if samples.is_empty() {
+            samples = points(model, &elements, |e| model.mesh.elements[e].kind.reduced_quadrature());
+        }
+        let fit = Fit::new(&samples, place, 5);
+        Self { elements, samples, fit }
+    }
 }
 
 /// A value as a weighted sum of samples.
@@ -293,8 +342,8 @@ impl Fit {
     ///
     /// The weighted constant is made orthogonal to the other weighted terms, one after the other; the value at the place is then
     /// the projection of the samples on what is left of it.
-    fn new(samples: &[Vector2<f64>], place: Vector2<f64>, (most, nearness): (usize, Nearness)) -> Self {
-        let arms: Vec<Vector2<f64>> = samples.iter().map(|sample| sample - place).collect();
+    fn new(samples: &[Sample], place: Vector2<f64>, most: usize) -> Self {
+        let arms: Vec<Vector2<f64>> = samples.iter().map(|sample| sample.place - place).collect();
         let size = arms.iter().map(|arm| arm.norm()).fold(0.0, f64::max);
         if size == 0.0 {
             return Self { weights: vec![1.0 / arms.len() as f64; arms.len()], terms: 0, amplified: 1.0 };
@@ -302,11 +351,9 @@ impl Fit {
         let (turned, is_long) = long_axis(&arms);
         let turned = turned.inverse();
         let own: Vec<Vector2<f64>> = arms.iter().map(|arm| turned * arm / size).collect();
-        let near = |x: &Vector2<f64>| match nearness {
-            Nearness::Counts => 1.0 / x.norm_squared().max(NEAREST * NEAREST),
-            Nearness::IsNothing => 1.0,
-        };
-        let near: Vec<f64> = own.iter().map(near).collect();
+        let near =
+            |(x, sample): (&Vector2<f64>, &Sample)| x.norm().max(NEAREST).powi(sample.weight.0) * sample.weight.1;
+        let near: Vec<f64> = own.iter().zip(samples).map(near).collect();
         let terms: [fn(&Vector2<f64>) -> f64; 5] = [|x| x.x, |x| x.y, |x| x.x * x.x, |x| x.x * x.y, |x| x.y * x.y];
         let mut rest = near.clone();
         let mut fit = Self { weights: projection(&near, &rest), terms: 0, amplified: 1.0 };
