@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::file::Case;
 use crate::laws::friction::FrictionParameters;
-use crate::model::builder::{Contact, Friction, IncrementSettings, default_alpha_t};
+use crate::model::builder::{Contact, DefaultAlphaT, Friction, IncrementSettings, default_alpha_t};
 use crate::model::method::{Chosen, Method};
 use crate::model::{Increments, Model};
 
@@ -31,24 +31,25 @@ pub fn resolved(case: &Case, model: &Model) -> String {
     serde_json::to_string_pretty(&case).unwrap_or_default()
 }
 
-fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>, alpha_t: Option<f64>) {
+fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>, default: Option<DefaultAlphaT>) {
     contact.normal.alpha_n = Some(alpha_n);
     let Some(Chosen { method, points, .. }) = chosen else { return };
     contact.method = Some(*method);
     if *method == Method::GaussToSegment {
         contact.points = Some(*points);
     }
-    let Some(alpha_t) = alpha_t else { return };
+    let Some(default) = default else { return };
     if let Some(parameters) = contact.friction.parameters() {
-        contact.friction = Friction::from(with_alpha_t(parameters, alpha_t));
+        contact.friction = Friction::from(with_alpha_t(parameters, default));
     }
     for choice in &mut contact.along.law {
-        choice.friction = with_alpha_t(&choice.friction, alpha_t);
+        choice.friction = with_alpha_t(&choice.friction, default);
     }
 }
 
-/// Returns the parameters with this α_t, if they have one and do not specify it.
-fn with_alpha_t(parameters: &FrictionParameters, alpha_t: f64) -> FrictionParameters {
+/// Returns the parameters with the default α_t, if they have one and do not specify it.
+fn with_alpha_t(parameters: &FrictionParameters, default: DefaultAlphaT) -> FrictionParameters {
+    let alpha_t = default.of(|alpha_t| parameters.build(alpha_t));
     let filled = |mut fields: Value| {
         match fields.get_mut("alpha_t") {
             Some(open @ Value::Null) => *open = alpha_t.into(),

@@ -10,7 +10,7 @@
 //! | `keep` | points with a positive predicted pressure are closed |
 //! | `carried` | friction of a point that has just closed uses the pressure that remains after the bodies deform |
 //! | `touch` | a point with zero gap at the start of an increment is closed and sticks, in the first iterate |
-//! | `stick` | a point that slips in alternating directions sticks |
+//! | `stick` | a point that slips in alternating directions sticks, and one that stuck sticks on |
 //! | `valley` | a projection that alternates between two segments is the node between them |
 //!
 //! Aids unrelated to contact are in [`super::equilibrium`] and [`super::newton`]. Each has a switch in
@@ -77,6 +77,10 @@
 //! between. The tangents on both sides are soft, and Newton's method would alternate indefinitely; presumed to stick, the point
 //! finds the range. Switch `stick`; `aid_stick` counts the points.
 //!
+//! With a stiff α_t a start value takes what stuck past that range before anything else is known: of a disk that rolls, no point
+//! would stick in the first tangent, and the correction would throw the disk off. Points that stuck in the last increment stick in the first
+//! linear solve, where α_t is a penalty above 20 (λ + 2G)/h. Below that it gains nothing.
+//!
 //! A point that was presumed to stick but slips may have missed the range because of errors of its neighbours only. It is
 //! presumed to stick once more if the tractions predicted by that linear solve would have held it. Switch `stick_again`, which
 //! requires `stick`; `aid_stick_again` counts the points.
@@ -99,11 +103,12 @@
 //! The actions of the aids in one iteration ([`Acted`]), and contact states that return every other iterate ([`Flips`]).
 
 use crate::contact::force::{Closed, ContactState, Presume, Tractions, touches};
-use crate::contact::pair::{ContactPair, Presumption};
+use crate::contact::pair::ContactPair;
+use crate::contact::point::{Presumption, SlavePoint};
 use crate::contact::response::PairResponse;
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
-use crate::laws::friction::{FrictionState, Regime};
+use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::linear::system::{Request, System};
 use crate::model::Model;
 use crate::model::aids::Aids;
@@ -270,7 +275,11 @@ impl ContactIteration {
                 point.pulled = first && !closed && point.promised.pressure > 0.0;
                 point.feet.note(state);
                 point.slipping.stuck = aids.stick_again && point.presume == Presume::Stick;
-                point.presume = if first && aids.touch { Presume::Touch } else { Presume::Nothing };
+                point.presume = match first {
+                    true if aids.stick && sticks_on(pair, &pair.points[k], old) => Presume::Stick,
+                    true if aids.touch => Presume::Touch,
+                    _ => Presume::Nothing,
+                };
             }
         }
     }
@@ -357,6 +366,16 @@ fn touch_acts(pair: &ContactPair, presumption: &Presumption, state: &ContactStat
 
 /// Ratio to the slip at the last solve below which the slip of a point counts as abating.
 const ABATES: f64 = 0.5;
+
+/// α_t c above which the start value is more than the range of sticking off, with the compliance c of the bodies [-]
+const STIFF: f64 = 20.0;
+
+/// Returns whether a point that stuck in the last increment is presumed to stick in the first linear solve of the next.
+fn sticks_on(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
+    let Description { stiffness, stiffness_is_penalty, .. } = pair.law(slave).description;
+    let stiff = stiffness_is_penalty && stiffness * pair.compliance > STIFF;
+    stiff && old.friction.pressure > 0.0 && old.friction.regime == Regime::Stick
+}
 
 /// Fraction of the frictional strength of a slipping point below which tractions would hold it.
 const FAR_LOWER: f64 = 0.9;

@@ -50,17 +50,14 @@ fn shorten(case: &mut Value, k: usize, share: f64) {
     }
 }
 
+/// A committed case with a hundred times the default α_n, 3·10⁴ (λ + 2G)/h, and an α_t of 500 (λ + 2G)/h.
 fn stiff(name: &str, change: impl Fn(&mut Value)) -> Model {
-    let base = committed(name, &change);
-    let pair = &base.contacts[0];
-    let (normal, tangential) = (100.0 * pair.alpha_n, 100.0 * pair.laws[0].description.stiffness);
+    let alpha_n = committed(name, &change).contacts[0].alpha_n;
     committed(name, |case| {
         change(case);
         let contact = &mut case["contacts"]["base"];
-        contact["normal"]["alpha_n"] = json!(normal);
-        if tangential > 0.0 {
-            contact["friction"]["alpha_t"] = json!(tangential);
-        }
+        contact["normal"]["alpha_n"] = json!(100.0 * alpha_n);
+        contact["friction"]["alpha_t"] = json!(5.0 / 3.0 * alpha_n);
     })
 }
 

@@ -13,7 +13,7 @@ use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::{Dilatancy, Onset};
 use crate::model::Model;
 use crate::model::boundary::Profile;
-use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, default_over, regime};
+use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, default_over, regime, tangential_over};
 use crate::model::method::{Chosen, Method};
 use crate::model::text::{count, number, vector};
 use crate::model::warnings::{farthest, gaps};
@@ -104,9 +104,12 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     if let Some(given) = gives_alpha_t(input) {
         let penalty = pair.laws.iter().all(|law| law.description.stiffness_is_penalty);
         let chosen = match (given, input.normal.alpha_n) {
-            (true, _) => "given",
-            (false, Some(_)) => "alpha_n/2",
-            (false, None) => "5 (λ + 2G)/h",
+            (true, _) => "given".into(),
+            (false, Some(_)) => "alpha_n/2".into(),
+            (false, None) => {
+                let over = pair.laws.iter().map(|law| tangential_over(law.description.stiffness_is_penalty, regime));
+                format!("{} (λ + 2G)/h", range(over))
+            }
         };
         let what =
             if penalty { "a penalty that holds what sticks" } else { "of the law, whose slip is elastic at first" };

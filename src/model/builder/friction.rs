@@ -12,6 +12,7 @@ use serde::ser::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{Checked, ModelError, refuse_if};
+use super::pair::DefaultAlphaT;
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
@@ -25,7 +26,7 @@ use crate::mesh::names::not_known;
 use crate::mesh::shape::gauss;
 use crate::model::boundary::{Profile, check_table};
 
-/// Friction of a contact: a law, or parameters of one, with α_t = α_n/2 by default.
+/// Friction of a contact: a law, or parameters of one, whose α_t has a default.
 #[derive(Clone, Deserialize)]
 #[serde(from = "FrictionParameters")]
 #[must_use]
@@ -124,7 +125,7 @@ impl Friction {
         place: &str,
         points: &mut [SlavePoint],
         mesh: &Mesh,
-        default_alpha_t: Option<f64>,
+        default: Option<DefaultAlphaT>,
         offsets: Offsets,
     ) -> Checked<(Vec<Arc<ContactLaw>>, Option<LawsInTime>)> {
         for Region { positive: Named { name, profile }, .. } in &self.elsewhere {
@@ -158,6 +159,7 @@ impl Friction {
             numbers.insert(key, laws.len());
             let first = friction.varying.first();
             let first = first.map(|Named { name, .. }| format!("{place}.{name} at ({}, {})", at.x, at.y));
+            let default_alpha_t = default.map(|default| default.of(|alpha_t| (friction.law)(&values, alpha_t)));
             let law = friction.law(&values, default_alpha_t, place, first)?;
             let law = ContactLaw::with_offsets(law, offsets).map_err(|InvalidParameter { name, value, allowed }| {
                 ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))

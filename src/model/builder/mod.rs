@@ -71,7 +71,7 @@ pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
 pub use loads::LoadsInForce;
 pub(crate) use pair::evaluation;
-pub use pair::{default_alpha_t, default_over};
+pub use pair::{DefaultAlphaT, default_alpha_t, default_over, tangential_over};
 pub use requests::Gauge;
 pub use rigid::{LoadingPlateInput, MovingPlateInput, Plate, RigidBodyInput};
 pub use schedule::{Regime, regime};

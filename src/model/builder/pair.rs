@@ -18,9 +18,11 @@
 //! Default penalties are stiff compared with the adjacent elements, but soft enough for the iterations.
 //!
 //! ```text
-//! α_n = 300 (λ + 2G)/h,   α_t = 5 (λ + 2G)/h           all steps are static                                         (1)
-//! α_n =  10 (λ + 2G)/h,   α_t = 5 (λ + 2G)/h           a step has inertia, or explicit increments                   (2)
+//! α_n = 300 (λ + 2G)/h,   α_t = 300 (λ + 2G)/h         all steps are static                                         (1)
+//! α_n =  10 (λ + 2G)/h,   α_t =   5 (λ + 2G)/h         a step has inertia, or explicit increments                   (2)
 //! ```
+//! α_t of (1) is for laws to which it is a penalty; where the elastic slip is a part of the law, α_t is that of (2) in every run.
+//!
 //! Explicit increments are as long as α_n allows. Implicit ones that do not resolve the oscillation of a surface node on α_n gain
 //! energy where surfaces part and meet: with (1) more than all that was supplied, with (2) less than a hundredth of it
 //! (`energy_from_nowhere_ends_with_a_remedy_that_helps`).
@@ -28,8 +30,7 @@
 //! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, h the depth of the element
 //! behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges. Where α_n is given, α_t = α_n/2. Surfaces that are tied
 //! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find
-//! out. Where surfaces roll or slide with a stiff α_t, iterates pass over the narrow range of sticking to and fro: 30 times of it doubles the linear solves of a
-//! rolling disk, and only the elastic slip gains.
+//! out.
 //!
 //! # Data of the bodies
 //!
@@ -50,7 +51,7 @@ use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
 };
 use crate::laws::bulk::Material;
-use crate::laws::friction::Offsets;
+use crate::laws::friction::{FrictionLaw, Offsets};
 use crate::mesh::section::Section;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
@@ -361,7 +362,7 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
     Ok(slave * master / (slave + master))
 }
 
-/// α_n over (λ + 2G)/h where all steps are static, by (1) [-]
+/// α_n over (λ + 2G)/h where all steps are static, and α_t where it is a penalty, by (1) [-]
 const STATIC: f64 = 300.0;
 
 /// The same where a step has inertia, or explicit increments, by (2) [-]
@@ -370,17 +371,37 @@ const MOVING: f64 = 10.0;
 /// The same of surfaces that are tied, without explicit increments [-]
 const TIED: f64 = 1e4;
 
-/// α_t over (λ + 2G)/h, by (1) and (2) [-]
+/// α_t over (λ + 2G)/h otherwise, by (2) [-]
 const TANGENTIAL: f64 = 5.0;
 
 /// Stiffnesses of a contact.
 pub struct Penalty {
     /// α_n [F/L³]
     pub alpha_n: f64,
-    /// Default α_t; `None` for a point group as slave [F/L³]
-    pub alpha_t: Option<f64>,
+    /// Default α_t; `None` for a point group as slave
+    pub alpha_t: Option<DefaultAlphaT>,
     /// h/(λ + 2G): compliance of the bodies under a contact pressure; 0 without elements at the slave [L³/F]
     pub compliance: f64,
+}
+
+/// α_t of the laws of a contact that give none.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct DefaultAlphaT {
+    /// where it is a penalty [F/L³]
+    pub penalty: f64,
+    /// where the elastic slip is a part of the law [F/L³]
+    pub of_law: f64,
+}
+
+impl DefaultAlphaT {
+    /// Returns that of a law, from what makes the law with some α_t.
+    pub fn of<E>(self, law: impl FnOnce(f64) -> Result<Box<dyn FrictionLaw>, E>) -> f64 {
+        match law(self.penalty) {
+            Ok(law) if law.description().stiffness_is_penalty => self.penalty,
+            _ => self.of_law,
+        }
+    }
 }
 
 /// α_n over (λ + 2G)/h unless given [-]
@@ -391,6 +412,12 @@ pub fn default_over(contact: &Contact, regime: Regime) -> f64 {
         Regime::Static => STATIC,
         Regime::Dynamic | Regime::Explicit => MOVING,
     }
+}
+
+/// Returns α_t over (λ + 2G)/h of a law that gives none, beside an α_n that is not given [-]
+#[doc(hidden)]
+pub fn tangential_over(penalty: bool, regime: Regime) -> f64 {
+    if penalty && regime == Regime::Static { STATIC } else { TANGENTIAL }
 }
 
 /// The penalties of a contact, those given checked, in a run of this regime.
@@ -408,18 +435,22 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) ->
     };
     check_positive(&at, alpha_n, " (leave it out for the default)")?;
     check_size(&format!("{place}.normal"), "alpha_n", alpha_n)?;
+    let both = |alpha_t: f64| DefaultAlphaT { penalty: alpha_t, of_law: alpha_t };
     let alpha_t = match (contact.tied, contact.normal.alpha_n, elastic) {
-        (true, ..) => alpha_n,
-        (false, None, Some(elastic)) => TANGENTIAL * elastic,
-        (false, ..) => 0.5 * alpha_n,
+        (true, ..) => both(alpha_n),
+        (false, None, Some(elastic)) => {
+            let [penalty, of_law] = [true, false].map(|penalty| elastic * tangential_over(penalty, regime));
+            DefaultAlphaT { penalty, of_law }
+        }
+        (false, ..) => both(0.5 * alpha_n),
     };
     let alpha_t = contact.area.is_none().then_some(alpha_t);
     Ok(Penalty { alpha_n, alpha_t, compliance: elastic.map_or(0.0, |elastic| 1.0 / elastic) })
 }
 
-/// α_t of a law of a contact that gives none, in a run of these steps; none for a slave group of points.
+/// α_t of the laws of a contact that give none, in a run of these steps; none for a slave group of points.
 #[doc(hidden)]
-pub fn default_alpha_t(contact: &Contact, model: &Model, steps: &[LoadStep]) -> Option<f64> {
+pub fn default_alpha_t(contact: &Contact, model: &Model, steps: &[LoadStep]) -> Option<DefaultAlphaT> {
     penalty("", contact, model, regime(steps)).ok()?.alpha_t
 }
 
