@@ -27,8 +27,7 @@ const REACH: f64 = 10.0;
 /// Cosine between the outward normals below which a slave edge and a master segment face each other.
 const EDGE_ON: f64 = -0.01;
 
-/// Distance beyond an end of a straight edge at which a segment with both ends projected there no longer overlaps it [half edge
-/// length]
+/// Distance beyond an end of an edge at which a segment with both ends projected there no longer overlaps it [half edge length]
 const BESIDE: f64 = 1e-3;
 
 /// Part of a slave edge overlapped by one master segment.
@@ -108,16 +107,17 @@ fn facing(
     let normal = -normal_of(along.normalize());
     let levels = |node: usize| -> Few<f64, 3> { edge.iter().map(|&own| x.between(node, own).dot(&along)).collect() };
     let chord = |levels: &[f64]| 2.0 * levels[0] / (levels[0] - levels[1]) - 1.0;
+    // At its ends a quadratic edge is where its chord is. Beyond them the parabola may turn back, and pass no node far away.
     let coordinate = |node: usize| {
         let levels = levels(node);
-        root(|xi| Line::Edge(edge).shapes(xi), &levels, chord(&levels))
+        let along = chord(&levels);
+        if along.abs() < 1.0 { root(|xi| Line::Edge(edge).shapes(xi), &levels, along) } else { along }
     };
     index.around(edge, reach, x, around);
     for &segment in &*around {
         let [a, b] = surface.segments[segment].ends;
-        // On a straight edge the chord is the coordinate, apart from round-off.
         let [start, end] = [a, b].map(|node| chord(&levels(node)));
-        if edge.len() == 2 && (start.min(end) > 1.0 + BESIDE || start.max(end) < -1.0 - BESIDE) {
+        if start.min(end) > 1.0 + BESIDE || start.max(end) < -1.0 - BESIDE {
             continue;
         }
         // A segment is included until it is nearly edge-on, with almost no overlap: the average must not jump as it rotates.

@@ -21,6 +21,8 @@ use fecontact::mesh::configuration::Configuration;
 use fecontact::mesh::rigid::RigidBody;
 use nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 
+use crate::common;
+
 type Positions = Vec<Vector2<f64>>;
 
 /// In one step an increment: under error control the answer jumps, by less than the tolerance, where the number of sub-steps
@@ -887,6 +889,31 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
             .expect("the master faces the point");
         let away = (met.tangent - expected.normalize()).norm();
         assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.tangent, expected.normalize());
+    }
+}
+
+/// A quadratic edge whose middle node is off its middle is a parabola that turns back beyond an end, and passes no master node farther
+/// away: such nodes cut it nowhere, so that its gaps are those against the two segments of a roof that are below it. (By Newton's
+/// iterations without a solution they cut it anywhere, at some places of the middle node and not at others.)
+#[test]
+fn nodes_beyond_a_quadratic_edge_do_not_cut_it() {
+    let roof = |k: i32| Vector2::new(0.75 * f64::from(k), -0.225 * f64::from(k.abs()));
+    let slave = [vec![0, 1, 2]];
+    let segments: Vec<Vec<usize>> = (0..16).map(|k| vec![k + 4, k + 3]).collect();
+    for shift in 0..100 {
+        let edge = [Vector2::new(-0.5, 0.0), Vector2::new(0.5, 0.0), Vector2::new(4e-4 * f64::from(shift), 0.02)];
+        let x: Positions = edge.into_iter().chain((-8..=8).map(roof)).collect();
+        let configuration = Configuration::undeformed(&x);
+        let gaps = |segments: &[Vec<usize>]| -> Vec<f64> {
+            let (surface, (points, mortar)) = (Surface::new(segments), mortar_points(&slave, &x));
+            let pair = pair(points, Master::Mesh(surface.clone()), FRICTIONLESS);
+            let overlaps = overlaps(&pair, &mortar, &surface, &configuration);
+            let facing = mortar.facing(&surface, &overlaps);
+            let meet = |k| facing.meet(k, None, &configuration, &mut Kinematics::new(false), &mut Room::default());
+            (0..3).map(|k| meet(k).expect("the roof faces the point").gap).collect()
+        };
+        let (all, below) = (gaps(&segments), gaps(&segments[7..9]));
+        assert!(common::distance(&all, &below) < 1e-12, "{shift}: {all:?}, not {below:?}");
     }
 }
 
