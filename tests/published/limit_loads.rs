@@ -14,7 +14,8 @@ fn von_mises(young: f64, sigma_y: f64) -> Value {
     json!({"model": "von_mises", "E": young, "nu": NU, "sigma_y": sigma_y})
 }
 
-fn relative(what: &str, found: f64, exact: f64, low: f64, high: f64) {
+/// Asserts that a number is off by so much, as a share.
+pub fn relative(what: &str, found: f64, exact: f64, low: f64, high: f64) {
     let error = found / exact - 1.0;
     println!("{what}: {found:.5} for {exact:.5}, {:+.2} %", 100.0 * error);
     assert!((low..high).contains(&error), "{what}: {found} for {exact}");

@@ -10,6 +10,7 @@ mod aids;
 mod cycles;
 mod faults;
 mod fracture;
+mod ground_and_metal;
 mod healing;
 mod limit_loads;
 mod paper;
