@@ -1,7 +1,7 @@
 //! Stresses and strains at nodes and at probes, recovered from the elements around: right at surfaces, too.
 //!
 //! Stresses are more accurate at the points of the quadrature one order lower than anywhere else in an element (the centre of Q4, 2 × 2 points
-//! of Q8 and Q9, the three points of T6). A single T3 is nowhere: its error is of the first order, but that of its neighbour across an edge has the other sign,
+//! of Q8 and Q9, the three points of T6). A single T3 is accurate nowhere: its error is of the first order, but that of its neighbour across an edge has the other sign,
 //! and the mean of both is right in the middle of the edge, exactly where the two make a parallelogram. Around a place X₀ a polynomial is fitted
 //! to these samples, body by body:
 //!
