@@ -786,23 +786,27 @@ class Registered(dict[str, Any]):
 
 
 class Dilatancy(dict[str, Any]):
-    """Dilatancy of a contact, with any friction law: asperities override each other as the surfaces slip, until the
-    interface has its largest opening.
+    """Dilatancy of a contact: asperities override each other as the surfaces slip, until the interface has its largest
+    opening, or as long as the friction law has structure to lose. Either `rate` or `structure` is given.
 
     Args:
-        rate: tan ψ: initial opening per plastic slip, in either direction of slip; below the lowest friction
-            coefficient of the law (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
         limit: d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; unlimited by default.
             The opening δ is `dilation` in tables and frames [L]
+        rate: tan ψ: initial opening per plastic slip, in either direction of slip, with any law; below its
+            lowest friction coefficient (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
+        structure: d of tan ψ = d (1/R* − 1) = d (μ/μ_k − 1), of super_subloading: the surfaces dilate with the
+            structure that is left, keep their opening at residual friction, and dilate again once they have
+            healed. At the full structure tan ψ must be below mu_s: d < mu_s mu_k/(mu_s − mu_k) [-]
     """
 
     def __init__(
         self,
         *,
-        rate: float,
         limit: float | None | Given = NOT_GIVEN,
+        rate: float | None | Given = NOT_GIVEN,
+        structure: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"rate": rate, "limit": limit}))
+        super().__init__(_given({"limit": limit, "rate": rate, "structure": structure}))
 
 
 class Initial(dict[str, Any]):

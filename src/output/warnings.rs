@@ -365,7 +365,7 @@ fn yields_work(old: &FrictionState, new: &FrictionState) -> Option<String> {
     yields.then(|| {
         format!(
             "sliding produces energy: friction has dropped to |q|/p = {:.4}, and the surfaces open by {:.4} per slip \
-             (dilatancy.rate); lower that, or raise the friction",
+             (dilatancy); lower that, or raise the friction",
             friction / new.pressure,
             opened / slip
         )

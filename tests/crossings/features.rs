@@ -54,7 +54,7 @@ pub const SLOTS: &[Slot] = &[
     ),
     ("further_parameters", OPTION),
     ("varying", &[("no", 4), ("by_place", 1), ("in_time", 2), ("by_part", 1)]),
-    ("dilatancy", &[("no", 6), ("free", 1), ("limited", 1)]),
+    ("dilatancy", &[("no", 6), ("free", 1), ("limited", 1), ("structure", 1)]),
     ("wear", OPTION),
     ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1)]),
     ("radiation", &[("no", 6), ("given", 1), ("of_bodies", 1)]),
@@ -213,6 +213,11 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         "increments are far shorter than its creep",
     ),
     (&["friction:adhesion"], &["dilatancy"], "adhesion is nothing beside a high pressure"),
+    (
+        &["dilatancy:structure"],
+        &["friction:coulomb", "friction:slip_weakening", "friction:rate_and_state", "friction:registered"],
+        "only super/subloading friction has structure",
+    ),
     (&["dilatancy", "wear"], &["shrink_fit"], "an overlap that wears away while it is brought in"),
     (
         &["massless"],

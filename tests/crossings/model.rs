@@ -647,6 +647,7 @@ impl Writer<'_> {
         }
         match draft.of("dilatancy") {
             "free" => contact["dilatancy"] = json!({"rate": self.pick("tan psi", &[0.05, 0.15])}),
+            "structure" => contact["dilatancy"] = json!({"structure": self.pick("tan psi", &[0.05, 0.2])}),
             "limited" => {
                 contact["dilatancy"] =
                     json!({"rate": self.pick("tan psi", &[0.05, 0.15]), "limit": self.write(Kind::Length, 0.004)})

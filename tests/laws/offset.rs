@@ -124,6 +124,155 @@ fn to_and_fro_dilation_goes_on_and_wear_adds_up() {
     assert_eq!((parted.opening, parted.wear), (state.opening, state.wear));
 }
 
+/// κ, ξ, μ_s, μ_k and r of a law with structure.
+const STRUCTURED: [f64; 5] = [10.0, 0.02, 0.5, 0.3, 100.0];
+
+/// d of tan ψ = d (μ/μ_k − 1).
+const D: f64 = 0.35;
+
+/// The law with structure, of α_t = 700, and more of its parameters.
+fn structured(xi: f64, more: &str) -> String {
+    let [kappa, _, mu_s, mu_k, r] = STRUCTURED;
+    format!(
+        r#"{{"law": "super_subloading", "mu_s": {mu_s}, "mu_k": {mu_k}, "r": {r}, "kappa": {kappa}, "xi": {xi}{more}}}"#
+    )
+}
+
+/// d and its tangents against central differences, where tan ψ follows the structure: from touch, in short and long increments, on
+/// reversal, in healing, by both integrations, with exponents, a limit and wear.
+#[test]
+fn tangents_of_opening_by_structure_equal_differences() {
+    let with_limit = Dilatancy::of_structure(D).limit(0.01);
+    let mut opened = 0;
+    for more in ["", r#", "m": 1.4, "n": 0.8"#, r#", "integration": "backward_euler""#, r#", "elastic_core": 0.3"#] {
+        for (dilatancy, wear) in [(Dilatancy::of_structure(D), None), (with_limit, Some(2e-4))] {
+            let moving = moving(&structured(0.2, more), Some(dilatancy), wear).expect("good parameters");
+            let touch = moving.law.initial_state(20.0, 0.0);
+            for start in [touch, answer(&moving, &touch, 0.03, 22.0)] {
+                for (slip, pressure) in [(2e-3, 22.0), (2e-2, 25.0), (-6e-2, 18.0), (0.4, 21.0)] {
+                    let at = |slip, pressure| answer(&moving, &start, slip, pressure).opening;
+                    let response = moving.respond(&start, Sliding::new(slip, pressure, 0.1)).expect("an answer");
+                    let (h, k) = (1e-6, 1e-3);
+                    let by_slip = (at(slip + h, pressure) - at(slip - h, pressure)) / (2.0 * h);
+                    let by_pressure = (at(slip, pressure + k) - at(slip, pressure - k)) / (2.0 * k);
+                    let told = format!("{more}, {dilatancy:?}, slip {slip} from {}", start.plastic_slip);
+                    let off = (response.dopening_dslip - by_slip).abs();
+                    assert!(off < 3e-4 * by_slip.abs() + 1e-5, "{told}: {} {by_slip}", response.dopening_dslip);
+                    let off = (response.dopening_dpressure - by_pressure).abs();
+                    assert!(
+                        off < 1e-3 * by_pressure.abs() + 1e-9,
+                        "{told}: {} {by_pressure}",
+                        response.dopening_dpressure
+                    );
+                    opened += usize::from(by_slip.abs() > 1e-3);
+                }
+            }
+        }
+    }
+    assert!(opened > 40, "{opened} answers opened");
+}
+
+/// Without healing ∫ (μ/μ_k − 1) dλ has a closed form, μ − μ_k falling by exp(−κ λ/μ_k): d = d (μ_s/μ_k − 1) (1 − exp(−κ λ/μ_k)) μ_k/κ,
+/// in one increment or in many. At the residual the volume stays, and what is dissipated is ∫ q dλ − p d.
+#[test]
+fn structure_dilates_to_its_closed_form() {
+    let [kappa, _, mu_s, mu_k, _] = STRUCTURED;
+    let (text, pressure) = (structured(0.0, ""), 20.0);
+    let moving = moving(&text, Some(Dilatancy::of_structure(D)), None).expect("good parameters");
+    let alone: ContactLaw = law(&text).into();
+    for increments in [1, 7, 300] {
+        let (mut state, mut plain) = (moving.law.initial_state(pressure, 0.0), alone.law.initial_state(pressure, 0.0));
+        for _ in 0..increments {
+            let slip = 0.15 / f64::from(increments);
+            (state, plain) = (answer(&moving, &state, slip, pressure), answer(&alone, &plain, slip, pressure));
+        }
+        let lost = -(-kappa * state.plastic_slip / mu_k).exp_m1();
+        let opening = D * (mu_s / mu_k - 1.0) * mu_k / kappa * lost;
+        assert!((state.opening - opening).abs() < 1e-9 * opening, "{increments}: {} {opening}", state.opening);
+        let work = plain.dissipation - pressure * state.opening;
+        assert!((state.dissipation - work).abs() < 1e-12 * work && lost > 0.95);
+        let residual = answer(&moving, &state, 0.5, pressure);
+        let rest = answer(&moving, &residual, 0.5, pressure);
+        assert!(rest.opening - residual.opening < 1e-8 * opening, "volume at the residual");
+    }
+}
+
+/// q, μ and d of the rate equations by classical Runge–Kutta steps, for a slip rate v: loading where λ > 0 (fact sheet of the law), the
+/// traction not turning round. Returns d after each leg [slip rate, duration].
+fn by_rates(d: f64, pressure: f64, start: f64, legs: &[[f64; 2]]) -> Vec<f64> {
+    let [kappa, xi, mu_s, mu_k, r] = STRUCTURED;
+    let alpha_t = 700.0;
+    let rates = |[q, mu, _]: [f64; 3], v: f64| -> [f64; 3] {
+        let ratio: f64 = q / (mu * pressure);
+        let (recovery, weakening) = (xi * (1.0 - mu / mu_s), kappa * (mu / mu_k - 1.0));
+        let stiffness = alpha_t - r * ratio.ln() * mu * pressure - ratio * weakening * pressure;
+        let slip = ((alpha_t * v - ratio * recovery * pressure) / stiffness).max(0.0);
+        [alpha_t * (v - slip), recovery - weakening * slip, d * (mu / mu_k - 1.0) * slip]
+    };
+    let mut state = [start, mu_s, 0.0];
+    let ends = legs.iter().map(|&[v, duration]| {
+        const STEPS: u32 = 200_000;
+        let dt = duration / f64::from(STEPS);
+        for _ in 0..STEPS {
+            let moved = |by: [f64; 3], share: f64| [0, 1, 2].map(|i| state[i] + share * dt * by[i]);
+            let a = rates(state, v);
+            let b = rates(moved(a, 0.5), v);
+            let c = rates(moved(b, 0.5), v);
+            let e = rates(moved(c, 1.0), v);
+            state = [0, 1, 2].map(|i| state[i] + dt / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + e[i]));
+        }
+        state[2]
+    });
+    ends.collect()
+}
+
+/// Slip, a hold, and slip again: the interface dilates to its peak, keeps its volume, and dilates once more by what has healed, as the
+/// rate equations have it. Short increments and long ones agree.
+#[test]
+fn structure_that_has_healed_dilates_again() {
+    let (pressure, traction) = (20.0, 4.0);
+    let legs = [[0.5, 0.6], [0.0, 30.0], [0.5, 0.6]];
+    let expected = by_rates(D, pressure, traction, &legs);
+    for (increments, tolerance) in [(400, 2e-5), (20, 2e-4)] {
+        let moving = moving(&structured(STRUCTURED[1], ""), Some(Dilatancy::of_structure(D)), None).expect("good");
+        let mut state = moving.law.initial_state(pressure, traction);
+        let mut found = Vec::new();
+        for [rate, duration] in legs {
+            let dt = duration / f64::from(increments);
+            for _ in 0..increments {
+                state = moving.respond(&state, Sliding::new(rate * dt, pressure, dt)).expect("an answer").state;
+            }
+            found.push(state.opening);
+        }
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).abs() < tolerance * expected, "{increments}: {found} {expected}");
+        }
+        assert!(found[2] > 1.5 * found[1] && found[1] - found[0] < 1e-3 * found[0], "{found:?}");
+    }
+}
+
+/// What dilates with structure needs a law that has some, and friction at the full structure above tan ψ: d (μ_s/μ_k − 1) < μ_s.
+#[test]
+fn dilatancy_by_structure_stays_below_the_peak() {
+    let [_, _, mu_s, mu_k, _] = STRUCTURED;
+    let (text, most) = (structured(0.02, ""), mu_s * mu_k / (mu_s - mu_k));
+    assert!(moving(&text, Some(Dilatancy::of_structure(0.999 * most)), None).is_ok());
+    let refused = |text: &str, dilatancy| {
+        let error = moving(text, Some(dilatancy), None).expect_err("refused");
+        format!("{}: {}", error.name, error.allowed)
+    };
+    let told = refused(&text, Dilatancy::of_structure(1.001 * most));
+    assert!(told.starts_with("dilatancy.structure") && told.contains("below 0.5"), "{told}");
+    for other in [0, 2, 3] {
+        let told = refused(LAWS[other], Dilatancy::of_structure(0.1));
+        assert!(told.contains("dilatancy.structure") && told.contains("has no structure"), "{told}");
+    }
+    let both = with!(Dilatancy::of_structure(0.1), rate: Some(0.1));
+    assert!(refused(&text, both).contains("`rate` is given as well"));
+    assert!(refused(&text, with!(both, rate: None, structure: None)).contains("must be given, or `structure`"));
+    assert!(refused(&text, Dilatancy::of_structure(-0.1)).contains("positive"));
+}
+
 /// Sliding must take work however far friction has come down: tan ψ is held against the least coefficient that a law can come to,
 /// μ_k, μ_d or μ, and both are told.
 #[test]

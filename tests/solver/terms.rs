@@ -237,6 +237,7 @@ fn the_tangent_of_a_contact_that_moves_or_holds_water_is_that_of_the_residual() 
     all["fluid_pressure"] = fluid["fluid_pressure"].clone();
     all["friction"] =
         json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.3, "r": 100, "kappa": 10, "xi": 0.02, "alpha_t": 400});
+    let structured = json!({"dilatancy": {"structure": 0.5}, "friction": all["friction"]});
     let kinds = [
         ("node_to_segment", "finite"),
         ("gauss_to_segment", "finite"),
@@ -246,7 +247,7 @@ fn the_tangent_of_a_contact_that_moves_or_holds_water_is_that_of_the_residual() 
     ];
     let kinds = kinds.iter().flat_map(|kind| [json!("lower_top"), plane.clone()].map(|master| (kind, master)));
     for ((method, sliding), master) in kinds {
-        for more in [&fluid, &offset, &all] {
+        for more in [&fluid, &offset, &all, &structured] {
             let mut case = pressed(json!(method), "upper_bottom", master.clone());
             let contact = case["contacts"]["base"].as_object_mut().expect("a contact");
             contact.insert("sliding".into(), json!(sliding));

@@ -178,9 +178,10 @@ fn onset(pair: &ContactPair) -> Option<String> {
 /// Dilatancy, wear, and fluid pressure.
 fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Some(Dilatancy { rate, limit }) = input.dilatancy {
+    if let Some(Dilatancy { rate, structure, limit }) = input.dilatancy {
         let limit = limit.map_or("without limit".into(), |limit| format!("up to {}", number(limit)));
-        lines.push(format!("dilatancy: {} per plastic slip, {limit}", number(rate)));
+        let rate = rate.map(number).or_else(|| Some(format!("{} (1/R* − 1)", number(structure?))));
+        lines.push(format!("dilatancy: {} per plastic slip, {limit}", rate.unwrap_or_default()));
     }
     lines.extend(input.wear.map(|wear| format!("wear: {} × pressure × plastic slip", number(wear))));
     if pair.fluid.is_some() {

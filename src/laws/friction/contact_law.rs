@@ -7,25 +7,34 @@ use serde::{Deserialize, Serialize};
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
-/// Dilatancy of a contact, with any friction law: asperities override each other as the surfaces slip, until the
-/// interface has its largest opening.
+/// Dilatancy of a contact: asperities override each other as the surfaces slip, until the interface has its largest
+/// opening, or as long as the friction law has structure to lose. Either `rate` or `structure` is given.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Dilatancy {
-    /// tan ψ: initial opening per plastic slip, in either direction of slip; below the lowest friction coefficient of
-    /// the law (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
-    pub rate: f64,
+    /// tan ψ: initial opening per plastic slip, in either direction of slip, with any law; below its lowest friction
+    /// coefficient (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
+    pub rate: Option<f64>,
+    /// d of tan ψ = d (1/R* − 1) = d (μ/μ_k − 1), of super_subloading: the surfaces dilate with the structure that is left,
+    /// keep their opening at residual friction, and dilate again once they have healed. At the full structure tan ψ must
+    /// be below mu_s: d < mu_s mu_k/(mu_s − mu_k) [-]
+    pub structure: Option<f64>,
     /// d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; unlimited by default. The opening δ is
     /// `dilation` in tables and frames [L]
     pub limit: Option<f64>,
 }
 
 impl Dilatancy {
-    /// Creates dilatancy without a limit.
+    /// Creates dilatancy of a constant tan ψ, without a limit.
     pub const fn new(rate: f64) -> Self {
-        Self { rate, limit: None }
+        Self { rate: Some(rate), structure: None, limit: None }
+    }
+
+    /// Creates dilatancy of tan ψ = d (1/R* − 1), without a limit.
+    pub const fn of_structure(d: f64) -> Self {
+        Self { rate: None, structure: Some(d), limit: None }
     }
 
     /// Sets the largest opening [L].
@@ -33,20 +42,49 @@ impl Dilatancy {
         Self { limit: Some(limit), ..self }
     }
 
-    /// Dilation δ₁ after the slip λ, and ∂δ₁/∂λ.
-    fn after(self, dilation: f64, slip: f64) -> [f64; 2] {
-        let Some(limit) = self.limit else { return [dilation + self.rate * slip, self.rate] };
-        let exponent = -slip * self.rate / limit;
+    /// Dilation δ₁ after ∫ tan ψ dλ, and its derivative by that.
+    fn after(self, dilation: f64, unlimited: f64) -> [f64; 2] {
+        let Some(limit) = self.limit else { return [dilation + unlimited, 1.0] };
+        let exponent = -unlimited / limit;
         let left = limit - dilation;
-        [dilation - left * exponent.exp_m1(), left * self.rate / limit * exponent.exp()]
+        [dilation - left * exponent.exp_m1(), left / limit * exponent.exp()]
     }
+
+    /// Refuses parameters out of range.
+    fn check(self) -> Result<(), InvalidParameter> {
+        self.limit.map_or(Ok(()), |limit| require_positive("dilatancy.limit", limit))?;
+        let refused =
+            |name, value, allowed: &'static str| Err(InvalidParameter { name, value, allowed: allowed.into() });
+        match (self.rate, self.structure) {
+            (Some(rate), None) => require_positive(Self::RATE, rate),
+            (None, Some(d)) => require_positive(Self::STRUCTURE, d),
+            (Some(_), Some(d)) => refused(Self::STRUCTURE, d, "`rate` is given as well: leave one of them out"),
+            (None, None) => refused(Self::RATE, 0.0, "it must be given, or `structure` in its place"),
+        }
+    }
+
+    const RATE: &str = "dilatancy.rate";
+    const STRUCTURE: &str = "dilatancy.structure";
+}
+
+/// Dilatancy that does more work than friction: its key, tan ψ, and the friction coefficient that is not above it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct Beyond {
+    /// `dilatancy.rate` or `dilatancy.structure`
+    pub key: &'static str,
+    /// tan ψ [-]
+    pub rate: f64,
+    /// lowest coefficient of the law, or that of its full structure [-]
+    pub least: f64,
 }
 
 /// Dilatancy and wear of the surfaces of a contact, independent of its friction law; none by default.
 ///
 /// ```text
 /// λ = |Δu^p|                                         plastic slip of the increment, whichever way it goes
-/// dδ = tan ψ (1 − δ/d_max) dλ                        dilation: δ₁ = d_max − (d_max − δ₀) exp(−λ tan ψ/d_max)            (1)
+/// dδ = tan ψ (1 − δ/d_max) dλ                        dilation: δ₁ = d_max − (d_max − δ₀) exp(−∫ tan ψ dλ/d_max)         (1)
+/// tan ψ = d (1/R* − 1)                               with structure: ∫ tan ψ dλ = d S, [`FrictionLaw::structured_slip`]
 /// dw = k p dλ                                        wear:     w₁ = w₀ + k ½(p₀ + p₁) λ                               (2)
 /// d = δ − w                                          opening
 /// dW = q dλ − p dd                                   dissipation: dilation lifts the load out of the work of friction   (3)
@@ -55,6 +93,11 @@ impl Dilatancy {
 /// (1) does not distinguish forward and backward slip: asperities are overridden permanently, and the surfaces do not close
 /// again when slip reverses. (Interlocked ones would.) The opening persists while the surfaces are separated. (2) is Archard's
 /// law with k = K/H, the wear coefficient divided by the hardness; p varies linearly over the increment, as in (3).
+///
+/// With structure, 1/R* = μ/μ_k, the interface dilates most at the peak, shears at constant volume at the residual, μ = μ_k, and
+/// dilates again after healing. Sliding takes work if tan ψ < μ for every μ from μ_k to μ_s, which the greatest decides:
+/// d (μ_s/μ_k − 1) < μ_s. Before that, while R is small, plastic slip may lift the load by more than friction dissipates, as with a
+/// constant tan ψ.
 ///
 /// (3) is the work of friction and pressure on flat surfaces. The contact applies q to both sides across the gap g without a
 /// couple, so that where the surfaces rotate by dθ under the slip the work q g dθ is missing, the fraction g/R of the
@@ -76,21 +119,23 @@ impl Offsets {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Returns [`InvalidParameter`] named `dilatancy.rate`, `dilatancy.limit` or `wear` if one is out of range.
+    /// Returns [`InvalidParameter`] named by its key, such as `dilatancy.rate` or `wear`, if one is out of range.
     fn check(&self) -> Result<(), InvalidParameter> {
-        if let Some(Dilatancy { rate, limit }) = self.dilatancy {
-            require_positive("dilatancy.rate", rate)?;
-            limit.map_or(Ok(()), |limit| require_positive("dilatancy.limit", limit))?;
-        }
+        self.dilatancy.map_or(Ok(()), Dilatancy::check)?;
         self.wear.map_or(Ok(()), |wear| require_positive("wear", wear))
     }
 
-    /// tan ψ and the lowest friction coefficient of a law, if the first is not below the second: sliding would lift the load
-    /// with more work than it dissipates.
-    pub fn beyond(&self, law: &Description) -> Option<[f64; 2]> {
-        let rate = self.dilatancy?.rate;
+    /// Dilatancy that is not below the friction of a law: sliding would lift the load with more work than it dissipates.
+    pub fn beyond(&self, law: &Description) -> Option<Beyond> {
         let least = law.least_coefficient.unwrap_or_else(|| law.starting_limit(1.0));
-        (rate >= least).then_some([rate, least])
+        let Dilatancy { rate, structure, .. } = self.dilatancy?;
+        let beyond = match (rate, structure, law.full_structure) {
+            (_, Some(d), Some(full)) => {
+                Beyond { key: Dilatancy::STRUCTURE, rate: d * (full - 1.0), least: full * least }
+            }
+            (rate, ..) => Beyond { key: Dilatancy::RATE, rate: rate?, least },
+        };
+        (beyond.rate >= beyond.least).then_some(beyond)
     }
 
     /// Names of the parts of the opening that vary.
@@ -104,7 +149,15 @@ impl Offsets {
     }
 
     /// Response of a law with stiffness α_t, completed by the change of the opening.
-    fn moved(&self, old: &FrictionState, pressure: f64, mut response: FrictionResponse, stiffness: f64) -> Answer {
+    fn moved(
+        &self,
+        law: &dyn FrictionLaw,
+        old: &FrictionState,
+        sliding: Sliding,
+        mut response: FrictionResponse,
+        stiffness: f64,
+    ) -> Answer {
+        let pressure = sliding.pressure;
         let (slip, sign) = (response.state.plastic_increment.abs(), response.state.plastic_increment.signum());
         if pressure <= 0.0 || slip == 0.0 {
             return Ok(response);
@@ -113,15 +166,21 @@ impl Offsets {
         let dslip = sign * (1.0 - elastic(response.dtraction_dslip));
         let dslip_dpressure = -sign * elastic(response.dtraction_dpressure);
         let dilation = old.opening + old.wear;
-        let [dilated, by_slip] = self.dilatancy.map_or([dilation, 0.0], |dilatancy| dilatancy.after(dilation, slip));
+        let unlimited = match self.dilatancy {
+            Some(Dilatancy { structure: Some(d), .. }) => {
+                law.structured_slip(old, sliding).transpose()?.unwrap_or_default().map(|slip| d * slip)
+            }
+            Some(Dilatancy { rate, .. }) => [slip, dslip, dslip_dpressure].map(|slip| rate.unwrap_or_default() * slip),
+            None => [0.0; 3],
+        };
+        let [dilated, rate] = self.dilatancy.map_or([dilation, 0.0], |own| own.after(dilation, unlimited[0]));
         let (mean, wear) = (0.5 * (old.pressure + pressure), self.wear.unwrap_or(0.0));
         let state = &mut response.state;
         state.wear = old.wear + wear * mean * slip;
         state.opening = dilated - state.wear;
         state.dissipation -= mean * (state.opening - old.opening);
-        let rate = by_slip - wear * mean;
-        response.dopening_dslip += rate * dslip;
-        response.dopening_dpressure += rate * dslip_dpressure - 0.5 * wear * slip;
+        response.dopening_dslip += rate * unlimited[1] - wear * mean * dslip;
+        response.dopening_dpressure += rate * unlimited[2] - wear * (mean * dslip_dpressure + 0.5 * slip);
         response.finite()
     }
 }
@@ -153,18 +212,26 @@ impl ContactLaw {
     /// Combines a law with the offsets of its surfaces, and checks their parameters.
     ///
     /// # Errors
-    /// Returns [`InvalidParameter`] named `dilatancy.rate`, `dilatancy.limit` or `wear` if one is out of range, or if dilatancy
-    /// would supply more work than friction dissipates: tan ψ must be below the lowest coefficient of the law, if it has one
-    /// ([`Description::least_coefficient`]).
+    /// Returns [`InvalidParameter`] named by its key, such as `dilatancy.rate` or `wear`, if one is out of range, if a law without
+    /// structure is to dilate with it, or if dilatancy would supply more work than friction dissipates: tan ψ must be below the
+    /// lowest coefficient of the law, if it has one ([`Description::least_coefficient`]), at the full structure below that.
     pub fn with_offsets(law: Box<dyn FrictionLaw>, offsets: Offsets) -> Result<Self, InvalidParameter> {
         offsets.check()?;
         let law = Self::from(law);
-        if let Some([value, least]) = offsets.beyond(&law.description) {
-            let allowed = format!(
-                "it must be below {least}, the lowest friction coefficient of the law, or sliding would produce \
-                 energy: lower it, or raise the friction"
-            );
-            return Err(InvalidParameter { name: "dilatancy.rate", value, allowed: allowed.into() });
+        let of_structure = offsets.dilatancy.and_then(|dilatancy| dilatancy.structure);
+        if let (Some(value), None) = (of_structure, law.description.full_structure) {
+            let allowed = "the friction law has no structure: take super_subloading, or give \"rate\" in its place";
+            return Err(InvalidParameter { name: Dilatancy::STRUCTURE, value, allowed: allowed.into() });
+        }
+        if let Some(Beyond { key, rate, least }) = offsets.beyond(&law.description) {
+            let (value, what) = match of_structure {
+                Some(d) => {
+                    (d, format!("it makes tan ψ = {rate} at the full structure, which must be below {least}, mu_s"))
+                }
+                None => (rate, format!("it must be below {least}, the lowest friction coefficient of the law")),
+            };
+            let allowed = format!("{what}, or sliding would produce energy: lower it, or raise the friction");
+            return Err(InvalidParameter { name: key, value, allowed: allowed.into() });
         }
         if offsets == Offsets::default() {
             return Ok(law);
@@ -193,7 +260,7 @@ impl ContactLaw {
         if self.offsets == Offsets::default() {
             return answer;
         }
-        self.offsets.moved(old, sliding.pressure, answer?, self.description.stiffness)
+        self.offsets.moved(&*self.law, old, sliding, answer?, self.description.stiffness)
     }
 
     /// Value of an observable in a state, or its default if the law does not define it: NaN for an additional one.

@@ -33,7 +33,7 @@ use std::fmt::Debug;
 use thiserror::Error;
 
 pub use adhesion::{Adhesion, AdhesionParameters};
-pub use contact_law::{ContactLaw, Dilatancy, Offsets};
+pub use contact_law::{Beyond, ContactLaw, Dilatancy, Offsets};
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
 pub use parameters::{FrictionParameters, RegisteredParameters, register};
@@ -221,6 +221,12 @@ pub trait FrictionLaw: Debug + Send + Sync {
         None
     }
 
+    /// S = ∫ (1/R* − 1) |dλ|: plastic slip of an increment, weighted by the structure beyond the residual, and its derivatives by
+    /// Δu_t and p; `None` for laws without structure ([`Description::full_structure`]) [L], [-], [L³/F]
+    fn structured_slip(&self, _old: &FrictionState, _sliding: Sliding) -> Option<Result<[f64; 3], LawFailure>> {
+        None
+    }
+
     /// Slip rate under a given traction, for laws that define one.
     fn rates(&self) -> Option<&dyn RateLaw> {
         None
@@ -264,6 +270,8 @@ pub struct Description {
     /// Lower bound of |q|/p in continued sliding, at any rate and state; `None` if there is no such bound, or the
     /// law does not define it [-]
     pub least_coefficient: Option<f64>,
+    /// Largest 1/R*, which the law comes to by healing; `None` for laws without structure [-]
+    pub full_structure: Option<f64>,
     /// Maximum of −d(q/p)/dδ: weakening of friction in fast slip δ, 0 without weakening [1/L]
     pub weakening: f64,
 }
@@ -383,15 +391,17 @@ pub enum LawFailure {
     },
     /// Time-dependent parameters give a dilatancy above the friction coefficient.
     #[error(
-        "the opening per slip {rate} (dilatancy.rate) is not below the lowest friction coefficient {least} of the law \
-         at t = {time}, and sliding would produce energy: lower dilatancy.rate, or keep `along` above it"
+        "the opening per slip {rate} ({key}) is not below the friction coefficient {least} of the law at t = {time}, and \
+         sliding would produce energy: lower {key}, or keep `along` above it"
     )]
     Dilates {
         /// t [T]
         time: f64,
+        /// key of the dilatancy
+        key: &'static str,
         /// tan ψ [-]
         rate: f64,
-        /// lowest friction coefficient of the law at that time [-]
+        /// lowest friction coefficient of the law at that time, or that of its full structure [-]
         least: f64,
     },
     /// The state was not finite, or is no longer because of a too large increment.

@@ -16,7 +16,7 @@ use super::pair::DefaultAlphaT;
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
-    AdhesionParameters, ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, Offsets,
+    AdhesionParameters, Beyond, ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, Offsets,
     PrescribedSlipParameters, RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, Tie,
     observables,
 };
@@ -324,8 +324,8 @@ impl InTime {
             None
         };
         let law = law.ok_or(LawFailure::Undefined { time })?;
-        if let Some([rate, least]) = self.offsets.beyond(&law.description()) {
-            return Err(LawFailure::Dilates { time, rate, least });
+        if let Some(Beyond { key, rate, least }) = self.offsets.beyond(&law.description()) {
+            return Err(LawFailure::Dilates { time, key, rate, least });
         }
         ContactLaw::with_offsets(law, self.offsets).map_err(|_| LawFailure::Undefined { time })
     }

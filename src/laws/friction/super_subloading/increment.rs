@@ -27,6 +27,8 @@ pub(super) struct LoadPath<'a> {
     pub varied: Varied,
     /// Whether parameters vary; if not, the derivatives are those of a tangent, which is bounded
     pub parameters_vary: bool,
+    /// Whether plastic slip is weighed by the structure
+    pub weighs: bool,
     /// Slip from x = 0 to 1 [L]
     pub slip: Dual,
     /// Pressures at x = 0 and 1 [F/L²]
@@ -49,6 +51,8 @@ pub(super) struct PathState {
     pub curve_point: CurvePoint,
     /// Plastic slip since the start of the path [L]
     pub plastic_slip: f64,
+    /// ∫ (μ/μ_k − 1) dλ since the start of the path, if it is asked for [L]
+    pub weighed_slip: Dual,
     /// Work dissipated since the start of the path [F/L]
     pub work: f64,
     /// Bound of the traction lost by plastic slip that was neglected in an elastic sub-step [F/L²]
@@ -59,7 +63,8 @@ impl LoadPath<'_> {
     /// Start of the path.
     pub(super) fn start(&self, traction: Dual, mu: Dual, ratio: f64) -> PathState {
         let curve_point = self.law.curve.start(ratio);
-        PathState { x: 0.0, traction, mu, curve_point, plastic_slip: 0.0, work: 0.0, overlooked: 0.0 }
+        let weighed_slip = 0.0.into();
+        PathState { x: 0.0, traction, mu, curve_point, plastic_slip: 0.0, weighed_slip, work: 0.0, overlooked: 0.0 }
     }
 
     /// Integrates one sub-step.
@@ -132,6 +137,11 @@ impl LoadPath<'_> {
                 mu.by[i] = mu.by[i].clamp(-limit / pressure.value, limit / pressure.value);
             }
         }
+        let mut weighed_slip = from.weighed_slip;
+        if self.weighs {
+            let slip = dslip + slip;
+            weighed_slip = weighed_slip + slip * evolution.excess(evolution.mean([from.mu, mu], slip, time));
+        }
         let strengths = [from.mu.value * start_pressure.value, mu.value * pressure.value];
         let tractions = [from.traction.value, traction.value];
         let mean = mean_traction(&self.law.curve, [&from.curve_point, &curve_point], strengths, tractions);
@@ -141,6 +151,7 @@ impl LoadPath<'_> {
             mu,
             curve_point,
             plastic_slip: from.plastic_slip + slip,
+            weighed_slip,
             work: from.work + mean * slip,
             overlooked: 0.0,
         }

@@ -7,8 +7,11 @@ mod peak;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::dual::Dual;
 use super::sensitivity::{Direction, Inputs, SensitiveLaw};
-use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
+use super::{
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Regime, Sliding,
+};
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
 pub use approach::Approach;
 use approach::SlidingCurve;
@@ -170,6 +173,39 @@ impl SuperSubloading {
         })
     }
 
+    /// ∫ (1/R* − 1) |dλ| over an increment and its derivatives by Δu_t and p, by the steps of the response.
+    fn weighed(&self, old: &FrictionState, sliding: Sliding) -> Result<[f64; 3], LawFailure> {
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        if pressure <= 0.0 {
+            return Ok([0.0; 3]);
+        }
+        let (given, old) = (old.plastic_slip, self.within_strength(old));
+        let released = (old.plastic_slip - given).abs() * self.evolution.excess(mu_of(&old));
+        let trial = old.traction + self.alpha_t * slip;
+        if falls(&old, trial, pressure) {
+            return Ok([released, 0.0, 0.0]);
+        }
+        let [slip, by_slip, by_pressure] = match self.integration {
+            Integration::Controlled => {
+                let (mut path, start, _) = self.lead(&Inputs::new(&old, sliding, Direction::TANGENT)?, old.pressure);
+                path.weighs = true;
+                let Dual { value, by } = path.end(&start)?.weighed_slip;
+                [value, by[0], by[1]]
+            }
+            Integration::BackwardEuler => {
+                let FrictionResponse { state, dtraction_dslip, dtraction_dpressure, .. } =
+                    self.step(&old, trial, sliding)?;
+                let (slip, sign) = (state.plastic_increment.abs(), state.plastic_increment.signum());
+                let end = self.evolution.after(mu_of(&old), slip, dt);
+                let excess = self.evolution.excess(end.mu);
+                let rate = sign * (excess + slip * end.slope / self.evolution.mu_k);
+                let elastic = [dtraction_dslip / self.alpha_t, dtraction_dpressure / self.alpha_t];
+                [slip * excess, rate * (1.0 - elastic[0]), -rate * elastic[1]]
+            }
+        };
+        Ok([released + slip, by_slip, by_pressure])
+    }
+
     /// An increment in which slip may be plastic, in sub-steps.
     fn follow(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let inputs = Inputs::new(old, sliding, Direction::TANGENT)?;
@@ -220,6 +256,7 @@ impl FrictionLaw for SuperSubloading {
             observables: Some(&["R", "mu", "structure"]),
             starting_coefficient: Some(self.initial_mu),
             least_coefficient: Some(self.evolution.mu_k.min(self.evolution.mu_s)),
+            full_structure: Some(self.evolution.mu_s / self.evolution.mu_k),
             weakening: self.evolution.weakening(self.evolution.mu_s),
             ..Description::default()
         }
@@ -247,6 +284,10 @@ impl FrictionLaw for SuperSubloading {
             Integration::BackwardEuler => self.step(&old, trial, sliding),
         }?
         .checked(self.alpha_t)
+    }
+
+    fn structured_slip(&self, old: &FrictionState, sliding: Sliding) -> Option<Result<[f64; 3], LawFailure>> {
+        Some(self.weighed(old, sliding))
     }
 
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {

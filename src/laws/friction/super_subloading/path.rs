@@ -29,7 +29,8 @@ impl SuperSubloading {
         let sign = if reversed || old.value == 0.0 { trial.value.signum() } else { old.value.signum() };
         let (parameters_vary, slip, old, time) = (inputs.vary_parameters(), slip * sign, old * sign, dt.into());
         let pressures = [old_pressure.into(), pressure];
-        let mut path = LoadPath { law: self, varied, parameters_vary, slip, pressures, time, evaluations: 0 };
+        let mut path =
+            LoadPath { law: self, varied, parameters_vary, weighs: false, slip, pressures, time, evaluations: 0 };
         let start = if reversed {
             self.pass_zero(&mut path, [old, mu], trial * sign)
         } else {
@@ -203,6 +204,7 @@ impl LoadPath<'_> {
             mu,
             curve_point: self.law.curve.start(traction.value / strength.value),
             plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
+            weighed_slip: fine.weighed_slip + (fine.weighed_slip - coarse.weighed_slip) / 3.0,
             work: (energy - 0.5 * traction.value * traction.value / self.law.alpha_t).max(from.work),
             overlooked: 0.0,
         }

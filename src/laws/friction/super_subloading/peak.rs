@@ -116,6 +116,28 @@ impl<N: Number> PeakEvolution<N> {
         self.xi * self.gain(mu).0
     }
 
+    /// 1/R* − 1 = μ/μ_k − 1: structure beyond the residual [-]
+    #[inline]
+    pub(super) fn excess(&self, mu: N) -> N {
+        (mu - self.mu_k) * self.per_mu_k
+    }
+
+    /// Mean of μ over a step from `mu[0]` to `mu[1]`: of uniform rates for m = n = 1, as in [`Self::at_uniform_rate`], and of second
+    /// order for other exponents.
+    ///
+    /// ```text
+    /// mean of μ = μ₀ + (a (μ_k − μ₀) + b (μ_s − μ₀)) (1 − φ(Z))/Z,   φ = (1 − e^(−Z))/Z
+    /// ```
+    pub(super) fn mean(&self, [old, new]: [N; 2], slip: N, dt: N) -> N {
+        if !self.is_linear() {
+            return (old + new) * 0.5;
+        }
+        let (a, b) = (self.kappa * slip * self.per_mu_k, self.xi * dt * self.per_mu_s);
+        let z = a + b;
+        let (mean, slope) = decay(z.value()).of_mean(z.value());
+        self.clamp(old + (a * (self.mu_k - old) + b * (self.mu_s - old)) * z.map(mean, slope))
+    }
+
     /// Whether both rates are linear in μ: m = n = 1, and do not vary.
     #[inline]
     pub(super) fn is_linear(&self) -> bool {
@@ -228,7 +250,7 @@ impl<N: Number> PeakEvolution<N> {
             return self.relax(old, kappa, slip, xi, dt).0;
         }
         let half = self.backward_euler(old, 0.5 * slip, dt * 0.5);
-        let excess = ((half.mu - self.mu_k) * self.per_mu_k).max(f64::EPSILON.into());
+        let excess = self.excess(half.mu).max(f64::EPSILON.into());
         let deficit = ((self.mu_s - half.mu) * self.per_mu_s).max(f64::EPSILON.into());
         let (kappa, xi) = (kappa * excess.powf(self.m - 1.0), xi * deficit.powf(self.n - 1.0));
         let (peak, (by_a, by_b)) = self.relax(old, kappa, slip, xi, dt);
@@ -264,7 +286,7 @@ impl<N: Number> PeakEvolution<N> {
     /// (μ/μ_k − 1)^m and its derivative.
     #[inline]
     fn loss(&self, mu: N) -> (N, f64) {
-        let (value, slope) = power((mu - self.mu_k) * self.per_mu_k, self.m);
+        let (value, slope) = power(self.excess(mu), self.m);
         (value, slope * self.per_mu_k.value())
     }
 
@@ -286,6 +308,17 @@ struct Decay {
     slope: f64,
     /// d²φ/dZ²
     curvature: f64,
+}
+
+impl Decay {
+    /// ψ = (1 − φ)/Z and dψ/dZ.
+    fn of_mean(&self, z: f64) -> (f64, f64) {
+        if z < 1e-3 {
+            return (0.5 - z * (1.0 / 6.0 - z / 24.0), -1.0 / 6.0 + z / 12.0);
+        }
+        let mean = (1.0 - self.mean) / z;
+        (mean, -(self.slope + mean) / z)
+    }
 }
 
 /// e^(−Z) and φ(Z) for Z ≥ 0. The round-off of φ and its derivatives is of the order ε/Z, ε/Z², ε/Z³, and harmless since
