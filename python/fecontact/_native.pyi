@@ -93,7 +93,7 @@ def drive(
     time: NDArray[np.float64],
     slip: NDArray[np.float64],
     pressure: NDArray[np.float64],
-    initial: str,
+    interface: str,
     by: list[str],
     threads: int | None,
 ) -> list[tuple[str, NDArray[np.float64]]]: ...

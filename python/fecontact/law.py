@@ -21,7 +21,8 @@ class Drive(Mapping[str, Array]):
 
     ``time`` (n,) [T], ``slip`` [L], ``pressure``, ``traction`` [F/L²], ``R``, ``mu``, ``structure`` [-], ``plastic_slip`` [L],
     ``dissipation`` [F/L], the consistent tangents of every step ``dtraction_dslip`` [F/L³] and ``dtraction_dpressure`` [-],
-    ``evaluations`` of the law's equation, and further variables of the law. Also available as attributes: ``drive.traction``.
+    ``evaluations`` of the law's equation, and further variables of the law; of an interface that opens also ``dilation``, ``wear`` and
+    its ``gap`` [L]. Also available as attributes: ``drive.traction``.
     """
 
     def __init__(self, arrays: Mapping[str, Array]) -> None:
@@ -83,6 +84,9 @@ class Law:
         pressure: ArrayLike,
         *,
         traction: float = 0.0,
+        dilatancy: Mapping[str, Any] | None = None,
+        wear: float | None = None,
+        normal: Mapping[str, Any] | None = None,
         by: Sequence[str] = (),
         threads: int | None = None,
     ) -> Drive:
@@ -96,7 +100,12 @@ class Law:
             slip: total slip since the start, shape (n,), or (..., n) with a path for every set of parameters [L].
             pressure: the same, or a number; at or below 0 the surfaces are separated [F/L²].
             traction: traction at the start [F/L²].
-            by: parameters by which to differentiate the traction, among those of :meth:`sensitivities`: the drive contains
+            dilatancy: opening by plastic slip, as of a contact: ``model.Dilatancy(structure=0.3)``.
+            wear: k of Archard's law, as of a contact [L²/F].
+            normal: how the pressure answers to the opening, p = p_a + K_n g with the given pressure p_a; constant load by default.
+                ``{"stiffness": 4 * G / D}`` is the constant normal stiffness K_n of a shaft, ``{"constant_volume": True, "alpha_n": 1e6}``
+                holds the gap g = d − (p − p₀)/α_n at zero; ``alpha_n`` is the normal stiffness of the interface itself, rigid by default.
+            by: parameters by which to differentiate the traction, not with ``normal``, among those of :meth:`sensitivities`: the drive contains
                 ``dtraction_dmu_s`` for ``"mu_s"``, at constant initial traction. The derivatives are those of the computed values, to
                 round-off, at fixed sub-steps.
             threads: number of threads; default: all cores.
@@ -108,8 +117,12 @@ class Law:
         times = _times(time)
         courses = {name: self._course(name, given, times.size) for name, given in (("slip", slip), ("pressure", pressure))}
         by = self._checked(by, self.sensitivities())
-        initial = json.dumps({"traction": number(traction, "traction", "law")})
-        arrays = _native.drive(self._sets, times, courses["slip"], courses["pressure"], initial, by, count(threads, "threads"))
+        if by and normal is not None:
+            raise refused("law", "by", "the traction is differentiated at given pressures: leave out normal")
+        opening = {"dilatancy": dilatancy, "wear": wear, "normal": normal}
+        given = {name: value for name, value in opening.items() if value is not None}
+        interface = json.dumps(plain({"initial": {"traction": number(traction, "traction", "law")}, **given}, file="law"))
+        arrays = _native.drive(self._sets, times, courses["slip"], courses["pressure"], interface, by, count(threads, "threads"))
         answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
         slips = np.broadcast_to(courses["slip"], (len(self._sets), times.size)).reshape(*self.shape, times.size)
         return Drive({"time": times, "slip": slips, **answers})

@@ -5,6 +5,7 @@ use std::path::Path;
 use fecontact::case::{CaseError, law_test};
 use fecontact::laws::friction::sensitivity::{Direction, Variation};
 use fecontact::laws::friction::{FrictionState, LawFailure, SensitiveLaw, Sliding, observables};
+use fecontact::output::quantities::OPENED;
 use fecontact::run::error::Error;
 use fecontact::run::law::{LawRow, LawTest};
 use numpy::ndarray::{Array2, Axis};
@@ -45,10 +46,13 @@ impl LawPath<'_> {
         self.time.iter().enumerate().map(|(i, time)| [*time, row(self.slip, i), row(self.pressure, i)]).collect()
     }
 
-    /// The test of one set of parameters.
-    pub fn test(&self, k: usize, parameters: &Value, initial: &Value) -> Result<LawTest, CaseError> {
+    /// The test of one set of parameters; `interface` is what else a test has: initial, dilatancy, wear, normal.
+    pub fn test(&self, k: usize, parameters: &Value, interface: &Value) -> Result<LawTest, CaseError> {
         let path = Path::new("law");
-        let document = json!({"friction": parameters, "initial": initial, "path": null, "table": null});
+        let mut document = json!({"friction": parameters, "path": null, "table": null});
+        for (key, value) in interface.as_object().into_iter().flatten() {
+            document[key] = value.clone();
+        }
         let mut input = law_test::from_text(&document.to_string(), path)?;
         input.table = Some(self.rows(k));
         law_test::build(&input, path)
@@ -76,11 +80,11 @@ pub fn sensitivities(py: Python, parameters: &str) -> PyResult<Vec<&'static str>
     let still = Array2::zeros((1, 2));
     let course = LawPath { time: &[0.0, 1.0], slip: &still, pressure: &still };
     let test = course.test(0, &parameters, &json!({})).map_err(|error| case_error(py, &error))?;
-    Ok(test.law.sensitivities().map_or(Vec::new(), |law| law.parameters().to_vec()))
+    Ok(test.law.law.sensitivities().map_or(Vec::new(), |law| law.parameters().to_vec()))
 }
 
 /// Drive laws along a path: `time` (n), `slip` and `pressure` (sets or 1, n), `parameters` a JSON text a set. Returns arrays
-/// (sets, n) by name, NaN where a law does not know it, and of ∂q/∂parameter for the parameters of `by`.
+/// (sets, n) by name, NaN where a law does not know it, and of ∂q/∂parameter for the parameters of `by`. `interface` is a JSON text.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)] // those of Python
 pub fn drive<'py>(
@@ -89,16 +93,16 @@ pub fn drive<'py>(
     time: PyReadonlyArray1<f64>,
     slip: PyReadonlyArray2<f64>,
     pressure: PyReadonlyArray2<f64>,
-    initial: &str,
+    interface: &str,
     by: Vec<String>,
     threads: Option<i64>,
 ) -> PyResult<Vec<(String, Bound<'py, PyArray2<f64>>)>> {
     let parameters = documents(&parameters)?;
-    let initial = document(initial)?;
+    let interface = document(interface)?;
     let (time, slip, pressure) = (time.as_array().to_vec(), slip.as_array().to_owned(), pressure.as_array().to_owned());
     let course = LawPath { time: &time, slip: &slip, pressure: &pressure };
     let pool = Pool::new(threads)?;
-    let ask = Ask { initial: &initial, by: &by, raised: &pool.raised };
+    let ask = Ask { interface: &interface, by: &by, raised: &pool.raised };
     let answered: Vec<Result<Answers, Refusal>> = pool.watched(py, || {
         let sets = parameters.par_iter().enumerate();
         sets.map(|(k, parameters)| answers(&course, k, parameters, ask)).collect()
@@ -156,27 +160,28 @@ pub fn documents(texts: &[String]) -> PyResult<Vec<Value>> {
 /// What is asked of every law.
 #[derive(Clone, Copy)]
 struct Ask<'a> {
-    initial: &'a Value,
+    interface: &'a Value,
     /// parameters by which to differentiate
     by: &'a [String],
     raised: &'a Raised,
 }
 
 fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<Answers, Refusal> {
-    let Ask { initial, by, raised } = ask;
+    let Ask { interface, by, raised } = ask;
     goes_on(raised).map_err(|error| Refusal::Stopped(error.to_string()))?;
-    let test = course.test(k, parameters, initial).map_err(Refusal::Case)?;
-    let law = &*test.law;
-    let further = observables::further([&law.description()]);
-    let names = further.iter().map(|name| (*name).to_owned()).collect();
+    let test = course.test(k, parameters, interface).map_err(Refusal::Case)?;
+    let law = &test.law;
+    let further = observables::further([&law.description]);
+    let gap = (!law.description.opening.is_empty()).then_some(OPENED.name);
+    let names: Vec<String> = further.iter().copied().chain(gap).map(String::from).collect();
     let mut answers =
-        Answers { rows: Vec::with_capacity(course.time.len()), further: vec![Vec::new(); further.len()], names };
+        Answers { rows: Vec::with_capacity(course.time.len()), further: vec![Vec::new(); names.len()], names };
     // Between two samples there are stops where the surfaces touch or part.
     let mut samples = course.time.iter().peekable();
     let mut steps = Vec::new();
     let (mut old, mut before) =
         (test.start, test.path.first().map_or([0.0; 2], |first| [first.start(), first.slip(first.start())]));
-    let (_, ended) = test.run(|LawRow { time, slip, response, .. }| {
+    let (_, ended) = test.run(|LawRow { time, slip, response, gap, .. }| {
         goes_on(raised)?;
         let state = &response.state;
         let sampled = samples.next_if(|sample| *sample == time).is_some();
@@ -188,7 +193,7 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
         if !sampled {
             return Ok(());
         }
-        let [r, mu, structure] = observables::ALWAYS.map(|(name, _)| observables::value(law, name, state));
+        let [r, mu, structure] = observables::ALWAYS.map(|(name, _)| law.observe(name, state));
         let tangent = [response.dtraction_dslip, response.dtraction_dpressure];
         answers.rows.push([
             state.traction,
@@ -202,9 +207,9 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
             response.evaluations as f64,
             state.pressure,
         ]);
-        for (values, name) in answers.further.iter_mut().zip(&further) {
-            values.push(observables::value(law, name, state));
-        }
+        let observed = further.iter().map(|name| law.observe(name, state));
+        let shown = observed.chain((!law.description.opening.is_empty()).then_some(*gap));
+        answers.further.iter_mut().zip(shown).for_each(|(values, value)| values.push(value));
         Ok(())
     });
     let set = if k > 0 { format!("parameter set {k}: ") } else { String::new() };
@@ -213,7 +218,7 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
     if answers.rows.len() != course.time.len() {
         return Err(Refusal::Stopped(format!("{set}the law was not evaluated at all times")));
     }
-    if let Some(law) = law.sensitivities().filter(|_| !by.is_empty()) {
+    if let Some(law) = law.law.sensitivities().filter(|_| !by.is_empty()) {
         answers
             .further
             .extend(varied(law, &steps, ask).map_err(|cause| stopped(Error::Law { time: course.time[0], cause }))?);

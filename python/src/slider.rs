@@ -59,9 +59,9 @@ fn ridden(
     if raised.is_set() {
         return Err(Refusal::Stopped(Error::Interrupted.to_string()));
     }
-    let test = course.test(k, parameters, &json!({"traction": initial})).map_err(Refusal::Case)?;
+    let test = course.test(k, parameters, &json!({"initial": {"traction": initial}})).map_err(Refusal::Case)?;
     let course = course.rows(k);
-    let slider = Slider { law: &*test.law, start: test.start, stiffness, mass, course: &course, tolerance, raised };
+    let slider = Slider { law: &*test.law.law, start: test.start, stiffness, mass, course: &course, tolerance, raised };
     let set = if k > 0 { format!("parameter set {k}: ") } else { String::new() };
     let stopped = |halt: Halt| match halt {
         Halt::Raised => Refusal::Stopped(Error::Interrupted.to_string()),
@@ -72,7 +72,7 @@ fn ridden(
     };
     let ride = slider.ride(!by.is_empty()).map_err(stopped)?;
     let mut columns: Vec<Vec<f64>> = (0..3).map(|at| ride.rows.iter().map(|row| row[at]).collect()).collect();
-    if let Some(law) = test.law.sensitivities().filter(|_| !by.is_empty()) {
+    if let Some(law) = test.law.law.sensitivities().filter(|_| !by.is_empty()) {
         columns.extend(slider.varied(&ride, law, by).map_err(|cause| stopped(Halt::Law(course[0][0], cause)))?);
     }
     Ok(columns)

@@ -44,6 +44,25 @@ def test_drive_gives_what_the_command_line_writes(program: Path, tmp_path: Path,
     assert set(table) == set(drive)
 
 
+@pytest.mark.parametrize("normal", [None, {"stiffness": 30.0}, {"constant_volume": True, "alpha_n": 500.0}])
+def test_an_interface_that_opens_is_driven_as_by_the_command_line(
+    program: Path, tmp_path: Path, normal: dict[str, Any] | None
+) -> None:
+    time = np.linspace(0.0, 20.0, 400)
+    slip, dilatancy = 0.02 * time, fc.model.Dilatancy(structure=0.1)
+    table = np.stack([time, slip, np.full_like(time, 98.1)], axis=1).tolist()
+    test = {"friction": PAPER, "dilatancy": dilatancy, "table": table, **({"normal": normal} if normal else {})}
+    (tmp_path / "test.json").write_text(json.dumps(test))
+    told = command(program, "law", tmp_path / "test.json", "--out", tmp_path / "out")
+    assert told.returncode == 0, told.stderr
+    written = fc.Result(tmp_path / "out")._table("law.csv")
+    drive = fc.law(PAPER).drive(time, slip, 98.1, dilatancy=dilatancy, normal=normal)
+    for name in written:
+        np.testing.assert_array_equal(drive[name], written[name], err_msg=name)
+    assert {"dilation", "gap"} <= set(drive) and drive.dilation[-1] > 0
+    assert (drive.pressure[-1] > 98.1) == (normal is not None)
+
+
 def test_many_sets_at_once_are_each_as_alone() -> None:
     time, slip, pressure = wave(120)
     mu_s, xi = np.array([[0.3], [0.4]]), np.array([0.0, 0.002, 0.2])
@@ -111,6 +130,8 @@ def test_steady_sliding_is_where_a_long_drive_ends(friction: dict[str, Any]) -> 
         (lambda: fc.law(PAPER).ride([0, 1], 0.0, 1.0, stiffness=1, mass=1, force=np.inf), "law: force: is inf: must be a finite number"),
         (lambda: fc.law(PAPER).drive([], [], 1.0), r"law: time: has the shape \(0,\): must be \(n,\), n ≥ 2"),
         (lambda: fc.law(PAPER).drive(1.0, 1.0, 1.0), r"law: time: has the shape \(\): must be \(n,\), n ≥ 2"),
+        (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, normal={"stiffness": 1.0}, by=["mu_s"]), "by: the traction is differentiated at given"),
+        (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, dilatancy={"structure": 1.0}), "dilatancy.structure: is 1: it makes tan ψ = 1"),
         (lambda: fc.law({**PAPER, "xi": []}), r"the parameters have the shape \(0,\): give one set of them or more"),
         (lambda: fc.law(PAPER).steady([1.0, -1.0]), "rate: is -1.0: must be positive"),
     ],

@@ -10,7 +10,10 @@ use serde_json::Value;
 use super::check_units;
 use super::error::CaseError;
 use super::schema::schema_of;
-use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
+use crate::laws::friction::{
+    Confinement, ContactLaw, Dilatancy, FrictionLaw, FrictionParameters, FrictionState, Offsets, observables,
+};
+use crate::laws::parameter::InvalidParameter;
 use crate::model::boundary::{Drive, Span};
 use crate::model::builder::{Checked, ModelError, check_line, check_positive, refuse_if};
 use crate::run::law::{LawTest, PathDrive, Phase, Undefined};
@@ -27,6 +30,13 @@ pub struct LawTestInput {
     pub units: BTreeMap<String, String>,
     /// Friction law, with its alpha_t
     pub friction: FrictionParameters,
+    /// Dilatancy: opening by plastic slip, as of a contact
+    pub dilatancy: Option<Dilatancy>,
+    /// k of Archard's law, as of a contact [L²/F]
+    pub wear: Option<f64>,
+    /// How the pressure answers to the opening of the interface by dilatancy and wear; constant normal load by default
+    #[serde(default)]
+    pub normal: ConfinementInput,
     /// State at the start
     #[serde(default)]
     pub initial: StartInput,
@@ -49,6 +59,21 @@ pub struct StartInput {
     pub pressure: Option<f64>,
 }
 
+/// How the pressure answers to the opening of the interface: p = p_a + K_n g with the pressure p_a of the path and the opening
+/// g = d − (p − p₀)/α_n since the start, d being that by dilatancy and wear.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConfinementInput {
+    /// K_n: normal stiffness of what surrounds the interface, such as 4 G/D for a shaft of diameter D in soil of the shear
+    /// modulus G; 0, constant normal load, by default [F/L³]
+    pub stiffness: Option<f64>,
+    /// Whether the volume is constant, g = 0, as for K_n → ∞: p = p₀ + α_n d under a constant pressure of the path
+    #[serde(default)]
+    pub constant_volume: bool,
+    /// α_n: normal stiffness of the interface itself; rigid by default, which constant volume does not allow [F/L³]
+    pub alpha_n: Option<f64>,
+}
+
 /// A phase of the path.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -58,7 +83,7 @@ pub struct PhaseInput {
     /// Total slip [L]: a number (reached at the end), an expression in the time t, {"rate": v} or {"table": [[t, v],
     /// …]}; constant by default
     pub slip: Option<Drive>,
-    /// Pressure [F/L²], in the same forms; at or below 0 the surfaces are open; constant by default
+    /// Applied pressure [F/L²], in the same forms; at or below 0 the surfaces are open; constant by default
     pub pressure: Option<Drive>,
     /// Longest step in this phase [T]; default: that of the test
     pub dt: Option<f64>,
@@ -109,13 +134,48 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     check_line("title", &input.title)?;
     check_units(&input.units)?;
     let law = law(&input.friction)?;
+    let confinement = confinement(&input.normal)?;
     let path = match (&input.path, &input.table) {
         (Some(phases), None) => phases_of(input, phases)?,
         (None, Some(table)) => vec![table_of(input, table)?],
         _ => return Err(ModelError::new("", "must give either \"path\", a list of phases, or \"table\"")),
     };
     let start = start(input, law.as_ref(), path[0].pressure(path[0].start()))?;
-    Ok(LawTest { law, start, path })
+    if input.normal.constant_volume {
+        check_constant(&path)?;
+    }
+    let offsets = Offsets { dilatancy: input.dilatancy, wear: input.wear };
+    let law = ContactLaw::with_offsets(law, offsets)
+        .map_err(|InvalidParameter { name, value, allowed }| ModelError::new(name, format!("is {value}: {allowed}")))?;
+    Ok(LawTest { law, start, path, confinement })
+}
+
+fn confinement(ConfinementInput { stiffness, constant_volume, alpha_n }: &ConfinementInput) -> Checked<Confinement> {
+    let given = |key: &str, value: &Option<f64>| {
+        value.map_or(Ok(()), |value| check_positive(&format!("normal.{key}"), value, ""))
+    };
+    given("stiffness", stiffness)?;
+    given("alpha_n", alpha_n)?;
+    if *constant_volume {
+        refuse_if(
+            stiffness.is_some(),
+            "normal.stiffness",
+            "is infinite where the volume is constant: leave one of them out",
+        )?;
+        let message = "is missing: between rigid surfaces no slip could dilate at constant volume";
+        refuse_if(alpha_n.is_none(), "normal.alpha_n", message)?;
+    }
+    let stiffness = if *constant_volume { f64::INFINITY } else { stiffness.unwrap_or_default() };
+    Ok(Confinement { stiffness, alpha_n: alpha_n.unwrap_or(f64::INFINITY) })
+}
+
+/// At constant volume no pressure can be applied from outside.
+fn check_constant(path: &[Phase]) -> Checked<()> {
+    let first = path[0].pressure(path[0].start());
+    let changed = |phase: &Phase| phase.times().map(|time| [time, phase.pressure(time)]).find(|[_, p]| *p != first);
+    let Some([time, pressure]) = path.iter().find_map(changed) else { return Ok(()) };
+    let message = format!("is {pressure} at t = {time} and was {first}: at constant volume it cannot be applied");
+    Err(ModelError::new("pressure", message))
 }
 
 fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {

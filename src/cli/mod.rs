@@ -72,7 +72,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     let begun =
         LawSummary { ending: Ending::running(&folder.files), about: about.clone(), report: LawReport::default() };
     summary::write(&begun, &folder.path)?;
-    let mut table = LawTable::create(&folder.path, &*test.law)?;
+    let mut table = LawTable::create(&folder.path, &test.law)?;
     let (report, result) = test.run(|row| table.write(row));
     let result = result.and(table.finish());
     folder.make_room_after(&result);

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::csv::Table;
-use super::quantities::{LAW, names};
-use crate::laws::friction::{FrictionLaw, FrictionResponse, observables};
+use super::quantities::{LAW, OPENED, names};
+use crate::laws::friction::{ContactLaw, FrictionResponse, observables};
 use crate::run::error::Error;
 use crate::run::law::LawRow;
 
@@ -12,17 +12,18 @@ use crate::run::law::LawRow;
 #[derive(Debug)]
 pub struct LawTable<'a> {
     table: Table,
-    law: &'a dyn FrictionLaw,
+    law: &'a ContactLaw,
 }
 
 impl<'a> LawTable<'a> {
-    /// Creates `law.csv` of a law in `folder`; its further observables have columns at the end.
+    /// Creates `law.csv` of a law in `folder`; its further observables have columns at the end, and the gap of one that opens.
     ///
     /// # Errors
     /// Returns [`Error::Output`] if it cannot be written.
-    pub fn create(folder: &Path, law: &'a dyn FrictionLaw) -> Result<Self, Error> {
-        let header =
-            names(&LAW).chain(observables::further([&law.description()]).into_iter().map(String::from)).collect();
+    pub fn create(folder: &Path, law: &'a ContactLaw) -> Result<Self, Error> {
+        let further = observables::further([&law.description]).into_iter().map(String::from);
+        let gap = (!law.description.opening.is_empty()).then(|| OPENED.name.into());
+        let header = names(&LAW).chain(further).chain(gap).collect();
         Ok(Self { table: Table::create(&folder.join("law.csv"), header)?, law })
     }
 
@@ -32,15 +33,18 @@ impl<'a> LawTable<'a> {
     /// Returns [`Error::Output`] if it cannot be written.
     pub fn write(&mut self, row: &LawRow) -> Result<(), Error> {
         let Self { table, law } = self;
-        let LawRow { time, slip, response, .. } = row;
+        let LawRow { time, slip, response, gap, .. } = row;
         let FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations, .. } = response;
-        let observed = |name: &str| observables::value(*law, name, state);
+        let observed = |name: &str| law.observe(name, state);
         let mut write = |numbers: &[f64]| numbers.iter().for_each(|number| table.number(*number));
         write(&[*time, *slip, state.pressure, state.traction]);
         write(&observables::ALWAYS.map(|(name, _)| observed(name)));
         write(&[state.plastic_slip, state.dissipation, *dtraction_dslip, *dtraction_dpressure]);
         table.count(*evaluations);
-        table.numbers(observables::further([&law.description()]).into_iter().map(observed));
+        table.numbers(observables::further([&law.description]).into_iter().map(observed));
+        if !law.description.opening.is_empty() {
+            table.number(*gap);
+        }
         table.end_row()
     }
 

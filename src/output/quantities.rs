@@ -305,6 +305,10 @@ pub const LAW: [Quantity; 12] = [
     q("evaluations", NONE, "how often the law was evaluated within the step"),
 ];
 
+/// Column of `law.csv` for an interface that opens, behind those of its dilation and wear.
+pub const OPENED: Quantity =
+    q("gap", LENGTH, "opening of the interface since the start: dilation − wear − (p − p₀)/α_n");
+
 /// Columns of `newton.csv`; those of the convergence aids stand before `verdict` and `reason`.
 pub const NEWTON: [Quantity; 15] = [
     q("step", NONE, "name of the step"),
@@ -441,7 +445,7 @@ pub const ALL: [(&str, &[Group]); 11] = [
         "newton.csv",
         &[("", &NEWTON), ("", &[q("aid_…", NONE, "points on which each convergence aid acted")]), ("", &VERDICT)],
     ),
-    ("law.csv", &[("", &LAW), ("", &[OF_SOME[0]])]),
+    ("law.csv", &[("", &LAW), ("", &[OF_SOME[0], OF_SOME[1], OF_SOME[2], OPENED])]),
 ];
 
 /// Name of a quantity in charts.

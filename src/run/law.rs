@@ -2,7 +2,8 @@
 //!
 //! # Path
 //!
-//! The path prescribes slip and pressure as functions of time; steps end at their turning points.
+//! The path prescribes slip and pressure as functions of time; steps end at their turning points. An interface that opens with slip
+//! answers with its pressure as its [`Confinement`] makes it: under constant load, constant normal stiffness or constant volume.
 //!
 //! # Report
 //!
@@ -34,7 +35,7 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use crate::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
+use crate::laws::friction::{Confinement, ContactLaw, FrictionLaw, FrictionResponse, FrictionState, Sliding};
 use crate::model::boundary::{Drive, Span};
 use crate::run::error::Error;
 
@@ -42,10 +43,12 @@ use crate::run::error::Error;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct LawTest {
-    /// the law
-    pub law: Box<dyn FrictionLaw>,
+    /// the law, with the dilatancy and wear of the interface
+    pub law: ContactLaw,
     /// state at the start of the path
     pub start: FrictionState,
+    /// how the pressure answers to the opening of the interface; it does not by default
+    pub confinement: Confinement,
     /// the path, at least one phase
     pub path: Vec<Phase>,
 }
@@ -54,7 +57,7 @@ impl LawTest {
     /// Creates a test that drives the law along a path from its stationary state under the initial pressure.
     pub fn new(law: impl FrictionLaw + 'static, path: Vec<Phase>) -> Self {
         let pressure = path.first().map_or(0.0, |phase| phase.pressure(phase.start()));
-        Self { start: law.initial_state(pressure, 0.0), law: Box::new(law), path }
+        Self { start: law.initial_state(pressure, 0.0), law: law.into(), path, confinement: Confinement::default() }
     }
 
     /// Drives the law along its path and passes every step to `tell`. The report is returned for a stopped test as well.
@@ -79,8 +82,10 @@ impl LawTest {
         let mut slip = first.slip(time);
         let mut state = self.start;
         let mut step = |to: f64, phase: &Phase| {
-            let sliding = Sliding { slip: phase.slip(to) - slip, pressure: phase.pressure(to), dt: to - time };
-            let response = self.law.respond(&state, sliding).map_err(|cause| Error::Law { time, cause })?;
+            let confined = self.confinement.confined(phase.pressure(to), self.start.pressure);
+            let sliding = Sliding { slip: phase.slip(to) - slip, pressure: confined.pressure, dt: to - time };
+            let response = self.law.respond_confined(&state, sliding, confined);
+            let response = response.map_err(|cause| Error::Law { time, cause })?;
             (time, slip, state) = (to, phase.slip(to), response.state);
             record(&self.row(time, slip, response))
         };
@@ -89,14 +94,16 @@ impl LawTest {
     }
 
     fn row(&self, time: f64, slip: f64, response: FrictionResponse) -> LawRow {
-        LawRow { time, slip, response, mu: observables::value(&*self.law, "mu", &response.state) }
+        let state = &response.state;
+        let gap = self.confinement.gap(state, self.start.pressure);
+        LawRow { time, slip, response, mu: self.law.observe("mu", state), gap }
     }
 
     /// Warns once of a pressure above which the response may not be unique.
     fn warn(&self, report: &mut LawReport, row: &LawRow) {
         let (time, pressure) = (row.time, row.response.state.pressure);
         if let Some(limit) =
-            self.law.description().uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
+            self.law.description.uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
         {
             report.warnings.push(format!(
                 "the pressure {pressure:.6e} at t = {time} exceeds {limit:.6e}, above which the response is not \
@@ -178,7 +185,7 @@ impl Phase {
         self.slip.value(time, self.span)
     }
 
-    /// p; the surfaces are separated where it is not positive [F/L²].
+    /// p_a: applied pressure; without an opening the surfaces are separated where it is not positive [F/L²].
     pub fn pressure(&self, time: f64) -> f64 {
         self.pressure.value(time, self.span)
     }
@@ -368,6 +375,8 @@ pub struct LawRow {
     pub response: FrictionResponse,
     /// μ: frictional strength divided by p [-]
     pub mu: f64,
+    /// g: opening of the interface since the start, of its law and by its normal stiffness [L]
+    pub gap: f64,
 }
 
 /// Point of the path for the evaluation of peaks and holds.

@@ -7,12 +7,14 @@
 //!
 //! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Adhesion`], [`Frictionless`], [`PrescribedSlip`].
 //! [`FrictionParameters`] reads any of them from a case, and [registered](register) laws from other programs;
-//! [`ContactLaw`] combines any of them with dilatancy and wear at the points of a contact.
+//! [`ContactLaw`] combines any of them with dilatancy and wear at the points of a contact, and [`Confinement`] says how the pressure
+//! on an interface alone answers to its opening.
 //!
 //! The input of a law is [`Sliding`], the increment of one point; its failure is a [`LawFailure`]. Laws whose slip rate follows
 //! from traction and state also implement [`RateLaw`].
 
 mod adhesion;
+mod confinement;
 mod contact_law;
 mod coulomb;
 mod dual;
@@ -33,6 +35,7 @@ use std::fmt::Debug;
 use thiserror::Error;
 
 pub use adhesion::{Adhesion, AdhesionParameters};
+pub use confinement::{Confined, Confinement};
 pub use contact_law::{Beyond, ContactLaw, Dilatancy, Offsets};
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
