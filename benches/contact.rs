@@ -50,6 +50,7 @@ fn surfaces(n: usize) -> Surfaces {
         tied: false,
         radiation: 0.0,
         fluid: None,
+        pores: None,
     };
     (nodes, pair)
 }

@@ -470,7 +470,9 @@ class Contact(dict[str, Any]):
             on the run time t and on the reference position x, y of the slave. It acts on both surfaces wherever
             the slave projects onto the master, closed or open, in addition to the contact pressure p; friction,
             `initial.pressure` and all outputs called pressure use this effective p only. The pressure is
-            prescribed: there is no flow. Not for quasi_dynamic steps [F/L²]
+            prescribed: there is no flow. "of_bodies" takes it from the pores of the slave's bodies
+            (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it. Not
+            for quasi_dynamic steps [F/L²]
         friction: Friction law; only surfaces that are tied have none
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
             point is then measured, throughout the run, relative to the gap at which this pressure acts in its

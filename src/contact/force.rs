@@ -15,7 +15,8 @@
 //! p̄ − α_n (g − d(Δu_t, p → 0)) > 0
 //! ```
 //!
-//! A fluid adds its pressure p_w to p in the forces only, see `pair.rs`; it acts on open points too.
+//! A fluid adds its pressure p_w to p in the forces only, see `pair.rs`; it acts on open points too. One in the pores of a body takes its
+//! part of p from friction, see `pores.rs`.
 //!
 //! With radiation damping, q + η Δu_t/Δt replaces q in static increments: without inertia the slip rate is unbounded;
 //! in unbounded bodies, shear waves radiated by slip would reduce the traction by η v.
@@ -49,6 +50,7 @@ pub use super::nodal_forces::{Closed, ClosedPoints, nodal_forces};
 use super::pair::ContactPair;
 pub use super::point::{ContactState, PointIncrement, Presume, Tractions};
 use super::point::{MasterPoint, Presumption, SlavePoint};
+use super::pores::effective;
 use super::projection::Projection;
 use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
@@ -73,6 +75,8 @@ pub struct PointEvaluation<'a> {
     lift: f64,
     /// d/p of slip after closure; `None` where all slip counts [L³/F]
     compliance: Option<f64>,
+    /// p for which the law is asked, with the part of it that a fluid in the pores bears [F/L²]
+    asked: f64,
     /// Arguments of the law
     pub sliding: Sliding,
 }
@@ -110,6 +114,7 @@ impl<'a> PointEvaluation<'a> {
             free,
             lift: 0.0,
             compliance,
+            asked: 0.0,
             sliding,
         };
         if place.closes {
@@ -156,7 +161,13 @@ impl<'a> PointEvaluation<'a> {
     /// Sets a pressure, and the slip that counts under it.
     fn load(&mut self, pressure: f64) {
         self.sliding.slip = self.whole * self.counted(pressure).0;
-        self.sliding.pressure = pressure;
+        self.asked = pressure;
+        self.sliding.pressure = self.effective(pressure)[0];
+    }
+
+    /// What friction sees of a contact pressure, and its derivative.
+    fn effective(&self, pressure: f64) -> [f64; 2] {
+        self.place.pore_pressure.map_or([pressure, 1.0], |pores| effective(pressure, pores))
     }
 
     /// Fraction of the slip that counts under a pressure, d/(g₀ + d) in an increment that starts open and 1 otherwise, and the
@@ -173,13 +184,15 @@ impl<'a> PointEvaluation<'a> {
     /// Returns [`LawFailure`] of the law, or if its opening and its pressure do not converge.
     pub fn finish(mut self, answer: Answer, closed: &mut ClosedPoints) -> Result<ContactState, LawFailure> {
         let mut response = self.met(answer?);
-        let PointPlace { gap, foot, closes, fluid } = self.place;
+        let PointPlace { gap, foot, closes, fluid, .. } = self.place;
         if !closes {
             let length = closed.push_open(self.kinematics, fluid).unwrap_or(self.old.length);
             let parted = ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, elastic_slip: 0.0, ..*self.old };
-            return Ok(ContactState { friction: response.state, foot, gap, length, fluid, ..parted });
+            return Ok(ContactState { friction: response.state, foot, gap, length, fluid, pores: 0.0, ..parted });
         }
-        let (pressure, carried) = (self.agree(&mut response)?, self.sliding.pressure);
+        let (pressure, carried) = (self.agree(&mut response)?, self.asked);
+        let (seen, [_, by_pressure]) = (self.effective(pressure)[0], self.effective(carried));
+        response.dtraction_dpressure *= by_pressure;
         let (share, dslip_dpressure) = self.counted(carried);
         // To a node the point is held by α_n in either direction: where it was off the node by more than it goes in, no other
         // tractions turn as its own do.
@@ -197,7 +210,7 @@ impl<'a> PointEvaluation<'a> {
             let along = response.dtraction_dpressure + response.dtraction_dslip * dslip_dpressure;
             response.state.traction += along * (pressure - carried);
             response.state.opening += opening_rate * (pressure - carried);
-            response.state.pressure = pressure;
+            response.state.pressure = seen;
         }
         let clearance = gap - response.state.opening;
         // At p = 0 the law has no response, and near it round-off decides.
@@ -211,7 +224,8 @@ impl<'a> PointEvaluation<'a> {
             vary(kinematics, alpha, alpha * response.dopening_dslip, counted, closed);
         }
         let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
-        closed.push(kinematics, &response, Beside { radiates, fluid }, promised);
+        let pores = pressure - seen;
+        closed.push(kinematics, &response, Beside { radiates, fluid, pores }, promised);
         Ok(ContactState {
             friction: response.state,
             foot,
@@ -224,6 +238,7 @@ impl<'a> PointEvaluation<'a> {
             multiplier: old.multiplier - (alpha_n - pair.alpha_n) * clearance,
             elastic_slip: pair.left_of_stick(law, old, response.state.traction),
             fluid,
+            pores,
         })
     }
 
@@ -239,7 +254,7 @@ impl<'a> PointEvaluation<'a> {
         // p − p̄ + α_n (g − d) changes its sign between them: zero pressure is too low where the surfaces stay closed.
         let [mut low, mut high] = [0.0, f64::INFINITY];
         for _ in 0..MOST_ANSWERS {
-            let asked = self.sliding.pressure;
+            let asked = self.asked;
             let dslip = self.counted(asked).1;
             let opened = response.state.opening - self.old.friction.opening;
             let rate = response.dopening_dpressure + response.dopening_dslip * dslip;
@@ -257,7 +272,7 @@ impl<'a> PointEvaluation<'a> {
             self.load(if between { pressure } else { 0.5 * (low + high.min(4.0 * asked)) });
             *response = self.met(self.law.respond(&self.old.friction, self.sliding)?);
         }
-        Err(LawFailure::Opening { opening: response.state.opening, pressure: self.sliding.pressure })
+        Err(LawFailure::Opening { opening: response.state.opening, pressure: self.asked })
     }
 }
 
@@ -299,6 +314,8 @@ pub struct PointPlace {
     pub closes: bool,
     /// p_w; if it is not 0, the point has kinematics too [F/L²]
     pub fluid: f64,
+    /// p_w in the pores of the slave's bodies, at a closed point of a contact whose friction goes by it [F/L²]
+    pub pore_pressure: Option<f64>,
 }
 
 /// Locates a point with known projection, in the committed and the trial configuration, and its kinematics if it is
@@ -322,7 +339,7 @@ pub fn place(
             k.count_from(pair.master.rigid_body(), before, x);
         }
     }
-    PointPlace { gap, foot: Some(projection.foot), closes, fluid }
+    PointPlace { gap, foot: Some(projection.foot), closes, fluid, pore_pressure: None }
 }
 
 /// Whether a point with this gap carries pressure or is presumed to.

@@ -74,6 +74,10 @@ pub struct Kinematics {
     pub lever: Option<Lever>,
     /// δb of the lever, its two components
     pub dlever: [Vec<f64>; 2],
+    /// Nodes of the elements whose pores hold a fluid, behind the point
+    pub behind: Vec<usize>,
+    /// δp_w of these, two entries per node [F/L³]
+    pub dpores: Vec<f64>,
     /// δξ of the projection
     dfoot: Vec<f64>,
 }

@@ -11,6 +11,7 @@ use super::mortar::{Overlaps, Room};
 use super::nodal_forces::nodal_forces;
 use super::pair::{ContactPair, InitialTraction, Reverse};
 use super::point::ContactState;
+use super::pores::effective;
 use super::search::Index;
 use super::small_sliding::{SmallPoint, SmallSliding};
 use super::surface::{SlavePoint, Weights};
@@ -77,14 +78,15 @@ impl ContactPair {
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let state = |(k, (slave, met)): (usize, (&SlavePoint, Met))| {
             let given = self.initial.as_ref().map(|initial| initial[k]);
-            let InitialTraction { pressure, traction } = given.unwrap_or_default();
+            let InitialTraction { pressure: total, traction } = given.unwrap_or_default();
+            let pressure = if self.pores.is_some() { effective(total, self.pore_pressure(k, x))[0] } else { total };
             let friction = match self.tied && met.is_none() {
                 true => FrictionState::default(),
                 false => self.law(slave).law.initial_state(pressure, traction),
             };
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
             let (gap, foot) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.foot)).unzip();
-            let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };
+            let multiplier = if self.penetration.is_some() { total } else { 0.0 };
             ContactState {
                 elastic_slip: 0.0,
                 friction,
@@ -96,6 +98,7 @@ impl ContactPair {
                 radiated: 0.0,
                 multiplier,
                 fluid: if foot.is_some() { self.fluid_pressure(slave, x, 0.0) } else { 0.0 },
+                pores: total - pressure,
             }
         };
         self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()

@@ -21,6 +21,7 @@ mod mortar_segments;
 pub mod nodal_forces;
 pub mod pair;
 pub mod point;
+pub mod pores;
 pub mod projection;
 pub mod response;
 pub mod search;

@@ -16,7 +16,7 @@ use super::kinematics::{Kinematics, Lever, kinematics};
 use super::pair::ContactPair;
 use super::point::{ContactState, Tractions, Weights};
 use super::search::Index;
-use crate::laws::friction::FrictionResponse;
+use crate::laws::friction::{FrictionResponse, FrictionState};
 use crate::mesh::configuration::Configuration;
 
 /// Contribution to the equations of a point that is closed or under fluid pressure, with the variation of its tractions; two
@@ -48,6 +48,8 @@ pub(super) struct Beside {
     pub radiates: [f64; 2],
     /// p_w
     pub fluid: f64,
+    /// Part of the contact pressure that friction does not see
+    pub pores: f64,
 }
 
 impl Closed<'_> {
@@ -138,18 +140,20 @@ impl ClosedPoints {
         &mut self,
         k: &Kinematics,
         response: &FrictionResponse,
-        Beside { radiates, fluid }: Beside,
+        Beside { radiates, fluid, pores }: Beside,
         promised: Option<Tractions>,
     ) {
-        let tractions = Tractions::of(&response.state);
+        let FrictionState { pressure, traction, .. } = response.state;
+        let tractions = Tractions { pressure: pressure + pores, traction };
         let whole = |of: Tractions| Tractions { pressure: of.pressure + fluid, traction: of.traction + radiates[0] };
         self.points.push(Some(Place {
             tractions,
             is_open: false,
-            nodes: [self.nodes.len(), k.nodes.len()],
+            nodes: [self.nodes.len(), k.nodes.len() + k.behind.len()],
             tangent: self.tangent.len(),
         }));
         self.nodes.extend_from_slice(&k.nodes);
+        self.nodes.extend_from_slice(&k.behind);
         let traction = turned(k, whole(tractions));
         self.push_fluid(k, fluid);
         for &w in &k.relative {
@@ -159,6 +163,7 @@ impl ClosedPoints {
             let first = self.force.len() - 2 * k.nodes.len();
             self.force[first + 2 * at] -= arm.dot(&traction) * k.length;
         }
+        self.force.resize(self.force.len() + 2 * k.behind.len(), 0.0);
         if k.varied {
             self.push_tangent(k, response, radiates[1], whole(promised.unwrap_or(tractions)));
         }
@@ -183,15 +188,17 @@ impl ClosedPoints {
         let rate =
             |(dgap, dslip): (&f64, &f64)| if by_slip == 0.0 { dgap * by_gap } else { dgap * by_gap + dslip * by_slip };
         self.dpressure.extend(k.dgap.iter().zip(&k.dslip).map(rate));
+        self.dpressure.extend(k.dpores.iter().map(|_| 0.0));
     }
 
     fn push_tangent(&mut self, k: &Kinematics, response: &FrictionResponse, damping: f64, promised: Tractions) {
         let Self { tangent, dpressure, dtraction, rows, .. } = self;
-        let dofs = 2 * k.nodes.len();
+        let (dofs, all) = (2 * k.nodes.len(), 2 * (k.nodes.len() + k.behind.len()));
         let dpressure = &dpressure[dtraction.len()..];
         let first = dtraction.len();
         let by = |(dslip, dp): (&f64, &f64)| dslip * response.dtraction_dslip + dp * response.dtraction_dpressure;
         dtraction.extend(k.dslip.iter().zip(dpressure).map(by));
+        dtraction.extend(k.dpores.iter().map(|dpores| -dpores * response.dtraction_dpressure));
         let dtraction = &dtraction[first..];
         let force = turned(k, promised);
         for (i, row) in rows.iter_mut().enumerate() {
@@ -202,19 +209,23 @@ impl ClosedPoints {
                 let along_tangent = -(resisting + k.drotation[c] * promised.pressure);
                 (along_normal * k.normal[i] + along_tangent * k.tangent[i]) * k.length + k.dlength[c] * force[i]
             }));
+            row.extend(dtraction[dofs..].iter().map(|dtraction| -dtraction * k.tangent[i] * k.length));
         }
         let first = tangent.len();
-        for c in 0..dofs {
+        for c in 0..all {
             let rows = [rows[0][c], rows[1][c]];
             k.relative.iter().for_each(|&w| tangent.extend(rows.map(|row| -w * row)));
+            tangent.extend(k.dpores.iter().map(|_| 0.0));
         }
-        let columns = tangent[first..].chunks_exact_mut(dofs);
+        let columns = tangent[first..].chunks_exact_mut(all);
         for (c, column) in columns.enumerate() {
             if let Some(Lever { at, arm }) = k.lever {
-                let turned = (0..2).map(|i| arm[i] * rows[i][c] + k.dlever[i][c] * force[i] * k.length);
+                let dlever = |i: usize| k.dlever[i].get(c).copied().unwrap_or_default();
+                let turned = (0..2).map(|i| arm[i] * rows[i][c] + dlever(i) * force[i] * k.length);
                 column[2 * at] -= turned.sum::<f64>();
             }
-            for (&a, dw) in k.changing.iter().zip(k.drelative.chunks_exact(dofs)) {
+            let changing = if c < dofs { &k.changing[..] } else { &[] };
+            for (&a, dw) in changing.iter().zip(k.drelative.chunks_exact(dofs)) {
                 (0..2).for_each(|i| column[2 * a + i] += -force[i] * k.length * dw[c]);
             }
         }

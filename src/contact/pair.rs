@@ -30,6 +30,7 @@ use super::master::Master;
 use super::mortar::Mortar;
 use super::point::ContactState;
 pub use super::point::{ContactIncrement, Presumption};
+use super::pores::Pores;
 use super::small_sliding::SmallSliding;
 use super::surface::SlavePoint;
 use crate::laws::friction::{ContactLaw, Description, FrictionState, LawFailure, Regime, Sliding, observables};
@@ -68,6 +69,8 @@ pub struct ContactPair {
     pub radiation: f64,
     /// Fluid that acts on the surfaces in addition to the contact pressure
     pub fluid: Option<Fluid>,
+    /// Pores behind every point, where friction goes by the effective stress of the slave's bodies
+    pub pores: Option<Vec<Pores>>,
     /// Friction laws, each with the parameters of some of the points at the start of the run. They also define the
     /// time-independent properties: α_t, the names of internal variables and observables, and whether they have friction and
     /// dilatancy
@@ -121,10 +124,14 @@ impl ContactPair {
         self.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node))
     }
 
-    /// Nodes of both sides, possibly repeated.
+    /// Nodes of both sides, and of elements whose pores bear a part of the pressure, possibly repeated.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        let behind = self.pores.iter().flatten().flat_map(|pores| pores.nodes.iter().copied());
         let rigid = self.master.rigid_body().into_iter().flat_map(RigidBody::nodes);
-        self.slave_nodes().chain(self.master.segments().iter().flat_map(|segment| segment.nodes())).chain(rigid)
+        self.slave_nodes()
+            .chain(self.master.segments().iter().flat_map(|segment| segment.nodes()))
+            .chain(rigid)
+            .chain(behind)
     }
 
     /// Whether the master is the slave itself (self-contact).
@@ -221,6 +228,16 @@ impl ContactPair {
         if varies { stiffening * self.alpha_n } else { self.alpha_n }
     }
 
+    /// Whether a fluid bears a part of the pressure, between the surfaces or in the pores of a body.
+    pub fn holds_fluid(&self) -> bool {
+        self.fluid.is_some() || self.pores.is_some()
+    }
+
+    /// p_w in the pores behind a point; 0 where friction does not go by it [F/L²].
+    pub fn pore_pressure(&self, point: usize, x: &Configuration) -> f64 {
+        self.pores.as_ref().map_or(0.0, |pores| pores[point].pressure(x))
+    }
+
     /// p_w at a slave point; 0 without a fluid [F/L²].
     pub fn fluid_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
         let at = || x.apart(&slave.position, Vector2::zeros())[0];
@@ -304,7 +321,7 @@ impl ContactPair {
         let points = self.points.iter().zip(old.iter().zip(found));
         let again = |(slave, (old, new)): (&SlavePoint, (&ContactState, &ContactState))| {
             let mut again = *old;
-            again.multiplier = if self.penetration.is_some() { new.friction.pressure } else { 0.0 };
+            again.multiplier = if self.penetration.is_some() { new.contact_pressure() } else { 0.0 };
             again.friction.traction += self.law(slave).description.stiffness * new.elastic_slip;
             again
         };
@@ -425,7 +442,7 @@ pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
     let always = observables::ALWAYS.iter().map(|(name, _)| *name);
     let of_surfaces = ["gap", "pressure", "traction", "slip", "elastic_slip", "slip_rate"].into_iter();
     let further = observables::further(laws);
-    let fluid = pairs.iter().any(|pair| pair.fluid.is_some()).then_some("fluid_pressure");
+    let fluid = pairs.iter().any(ContactPair::holds_fluid).then_some("fluid_pressure");
     of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).chain(fluid).collect()
 }
 
@@ -445,7 +462,7 @@ pub fn field_values(pair: &ContactPair, states: &[ContactState], time: f64, dt: 
             "total_slip" => friction.plastic_slip + pair.elastic_slip(slave, state),
             "slip_rate" => friction.plastic_increment * rate,
             "dissipation" => friction.dissipation,
-            "fluid_pressure" => state.fluid,
+            "fluid_pressure" => state.fluid + state.pores,
             "state" => match pair.regime(slave, state) {
                 Regime::Open => 0.0,
                 Regime::Stick | Regime::Tied => 1.0,

@@ -187,12 +187,19 @@ pub struct ContactState {
     pub elastic_slip: f64,
     /// p_w: pressure of the fluid if the point has a projection [F/L²]
     pub fluid: f64,
+    /// Part of the contact pressure that the fluid in the pores of a body bears, beside that of friction's state [F/L²]
+    pub pores: f64,
 }
 
 impl ContactState {
     /// g − d: separation of the surfaces beyond the opening of the law, negative under the penalty [L]
     pub fn clearance(&self) -> f64 {
         self.gap - self.friction.opening
+    }
+
+    /// Contact pressure of the penalty or the multiplier: that of friction's state, and what a fluid in pores bears [F/L²]
+    pub fn contact_pressure(&self) -> f64 {
+        self.friction.pressure + self.pores
     }
 
     /// p and q + η v: tractions between the surfaces, friction and radiation damping together [F/L²]
@@ -297,9 +304,9 @@ pub struct Tractions {
 }
 
 impl Tractions {
-    /// Returns the tractions of a friction state.
-    pub fn of(friction: &FrictionState) -> Self {
-        Self { pressure: friction.pressure, traction: friction.traction }
+    /// Returns the tractions of a state, with all of its contact pressure.
+    pub fn of(state: &ContactState) -> Self {
+        Self { pressure: state.contact_pressure(), traction: state.friction.traction }
     }
 
     /// Scales both by one factor, so that the pressure does not exceed a limit.

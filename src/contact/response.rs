@@ -99,6 +99,7 @@ struct Question<'a, P> {
     /// Increment of a point, and its presumptions
     during: ContactIncrement,
     presumed: P,
+    x: &'a Configuration<'a>,
     varied: bool,
 }
 
@@ -119,7 +120,7 @@ impl ContactPair {
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
         let laws = self.laws_during(during.span())?;
-        let question = Question { pair: self, laws, during, presumed, varied: request == Request::Tangent };
+        let question = Question { pair: self, laws, during, presumed, x, varied: request == Request::Tangent };
         if let Some(small) = &self.small {
             return question.each(old, response, |k, slave, old, increment, kinematics, _| {
                 let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
@@ -226,7 +227,12 @@ impl Chunk {
                 let (slave, old) = (&points[i], &old[i]);
                 let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
                 kinematics.varied = question.varied;
-                let place = place(first + i, slave, old, increment, kinematics, room);
+                kinematics.behind.clear();
+                kinematics.dpores.clear();
+                let mut place = place(first + i, slave, old, increment, kinematics, room);
+                if let Some(pores) = pair.pores.as_ref().filter(|_| place.closes) {
+                    place.pore_pressure = Some(pores[first + i].vary(question.x, kinematics));
+                }
                 match PointEvaluation::new(pair, slave, &laws[slave.law], old, increment, place, kinematics) {
                     Ok(loading) => {
                         sliding[i] = loading.sliding;
@@ -315,5 +321,5 @@ fn averaged(
     let Some(Meeting { gap, foot }) = meeting else { return PointPlace::default() };
     let gap = slave.gap(gap, increment.during.fading);
     let fluid = pair.fluid_pressure(slave, x, increment.during.time);
-    PointPlace { gap, foot: Some(foot), closes: closes(pair, slave, gap, old, increment), fluid }
+    PointPlace { gap, foot: Some(foot), closes: closes(pair, slave, gap, old, increment), fluid, pore_pressure: None }
 }

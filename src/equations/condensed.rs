@@ -340,8 +340,11 @@ fn sorted(mut nodes: Vec<usize>) -> Vec<usize> {
 /// Groups of nodes that a contact couples or may couple: those of each point separately if they never change.
 fn nodes_of(model: &Model, pair: &ContactPair) -> Vec<Vec<usize>> {
     if let Some(small) = &pair.small {
-        let of_point = |point: &SmallPoint| model.ties.originals(point.nodes.iter().copied());
-        return small.points.iter().flatten().map(of_point).collect();
+        let of_point = |(k, point): (usize, &Option<SmallPoint>)| {
+            let behind = pair.pores.iter().flat_map(|pores| pores[k].nodes.iter().copied());
+            Some(model.ties.originals(point.as_ref()?.nodes.iter().copied().chain(behind)))
+        };
+        return small.points.iter().enumerate().filter_map(of_point).collect();
     }
     let along = pair.points.iter().flat_map(|point| &point.length).flat_map(|share| &share.tangent);
     vec![model.ties.originals(pair.nodes().chain(along.map(|&(node, _)| node)))]
@@ -379,7 +382,9 @@ impl Jumps {
             let free = uses[*slave] == 1 && !tied[*slave];
             free && feet.iter().all(|&(foot, _)| !tied[foot] && !left_over(*slave, foot))
         };
-        let jumps: Vec<Jump> = model.contacts.iter().flat_map(of_pair).filter(fits).collect();
+        // Friction that goes by pores depends on the nodes behind the surface too.
+        let pairs = model.contacts.iter().filter(|pair| pair.pores.is_none());
+        let jumps: Vec<Jump> = pairs.flat_map(of_pair).filter(fits).collect();
         let mut numbers = vec![None; uses.len()];
         jumps.iter().enumerate().for_each(|(number, jump)| numbers[jump.slave] = Some(number as u32));
         Self { jumps, numbers }

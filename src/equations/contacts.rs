@@ -136,7 +136,7 @@ pub fn radiated(old: &[Vec<ContactState>], new: &[Vec<ContactState>]) -> f64 {
 /// Work of applying the overlap of shrink fits: mean force × applied increment of the overlap [F·L].
 pub fn fitted(model: &Model, [old, new]: [&[Vec<ContactState>]; 2], [t0, t1]: [f64; 2]) -> f64 {
     let [before, after] = [t0, t1].map(|time| model.steps[0].span.share(time));
-    let force = |state: &ContactState| state.friction.pressure * state.length;
+    let force = |state: &ContactState| state.contact_pressure() * state.length;
     let mut work = 0.0;
     for (pair, (old, new)) in model.contacts.iter().zip(old.iter().zip(new)) {
         for (point, (old, new)) in pair.points.iter().zip(old.iter().zip(new)).filter(|(point, _)| point.overlap > 0.0)

@@ -129,6 +129,10 @@ impl ConvergenceCriterion {
                 let stiffness = if closed.is_open { 0.0 } else { alpha_n };
                 let squared = (stiffness * state.length).powi(2);
                 for (a, &node) in closed.nodes.iter().enumerate() {
+                    // A node behind the surface has a part in friction, but bears no force of it.
+                    if closed.force[2 * a..2 * a + 2] == [0.0; 2] {
+                        continue;
+                    }
                     let original = model.ties.original(node);
                     self.contact_stiffness[original][0] += squared * self.edges[k].powi(2);
                     self.contact_stiffness[original][1] += squared;

@@ -220,14 +220,16 @@ impl Layout {
         let (mut groups, ahead) = (Vec::new(), self.coupling.ahead);
         for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
             for (k, ((slave, state), old)) in pair.points.iter().zip(&responses.states).zip(old).enumerate() {
+                let behind = pair.pores.iter().flat_map(|pores| pores[k].nodes.iter().copied());
                 if let Some(small) = &pair.small {
-                    groups.extend(small.points[k].iter().map(|point| point.nodes.clone()));
+                    let met = small.points[k].iter();
+                    groups.extend(met.map(|point| point.nodes.iter().copied().chain(behind.clone()).collect()));
                     continue;
                 }
                 let Some(foot) = state.foot.or(old.foot) else { continue };
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(responses.acting(k).into_iter().flat_map(|closed| closed.nodes));
-                nodes.extend(pair.master.rigid_body().into_iter().flat_map(RigidBody::nodes));
+                nodes.extend(pair.master.rigid_body().into_iter().flat_map(RigidBody::nodes).chain(behind));
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).into_iter();
                     let slip: f64 = way.flat_map(Path::parts).map(|part| part.end - part.start).sum();

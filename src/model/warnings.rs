@@ -115,15 +115,15 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
         let Description { is_frictionless, least_coefficient, .. } = law.description;
         !is_frictionless && least_coefficient.is_none_or(|least| least > NO_FRICTION)
     };
-    if pair.tied || pair.fluid.is_some() || !pair.laws.iter().any(goes_by_pressure) {
+    if pair.tied || pair.holds_fluid() || !pair.laws.iter().any(goes_by_pressure) {
         return None;
     }
     let nodes: BTreeSet<usize> = pair.nodes().collect();
     let is_beside = |body: &&Body| body.pore_fluid.is_some() && body.nodes.iter().any(|node| nodes.contains(node));
     let body = &model.bodies.iter().find(is_beside)?.name;
     Some(format!(
-        "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: give the contact that part \
-         (`fluid_pressure`), or a strength by total stress (friction law `adhesion`)"
+        "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: take that part \
+         from the pores of the slave (`\"fluid_pressure\": \"of_bodies\"`), or give it (`fluid_pressure`), or a strength by total stress (friction law `adhesion`)"
     ))
 }
 

@@ -74,7 +74,7 @@ impl Rows for HistoryRows {
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &RESULTANT)));
         header.extend(model.bodies.iter().flat_map(|body| of(&body.name, &BODY)));
         header.extend(edges.iter().flat_map(|(name, _)| of(name, &EDGES)));
-        let in_fluid = model.contacts.iter().filter(|pair| pair.fluid.is_some());
+        let in_fluid = model.contacts.iter().filter(|pair| pair.holds_fluid());
         header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
         header.extend(model.mesh.rigid_bodies.iter().flat_map(|body| of(&body.name, &RIGID)));
@@ -148,8 +148,8 @@ impl HistoryRows {
                 |i: usize| -> f64 { shares.iter().map(|(node, share)| share * state.displacement[2 * node + i]).sum() };
             row.extend([mean(0), mean(1)]);
         }
-        for (_, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.fluid.is_some()) {
-            row.push(states.iter().map(|state| state.length * state.fluid).sum());
+        for (_, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.holds_fluid()) {
+            row.push(states.iter().map(|state| state.length * (state.fluid + state.pores)).sum());
         }
         for (heat, (old_states, new)) in memory.heat.iter_mut().zip(old.contacts.iter().zip(&state.contacts)) {
             let more = contacts::dissipated(slice::from_ref(old_states), slice::from_ref(new));

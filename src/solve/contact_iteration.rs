@@ -108,7 +108,7 @@ use crate::contact::point::{Presumption, SlavePoint};
 use crate::contact::response::PairResponse;
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
-use crate::laws::friction::{Description, FrictionState, Regime};
+use crate::laws::friction::{Description, Regime};
 use crate::linear::system::{Request, System};
 use crate::model::Model;
 use crate::model::aids::Aids;
@@ -271,7 +271,7 @@ impl ContactIteration {
                 };
                 point.tied = pair.tied;
                 let closed = state.friction.pressure > 0.0;
-                point.limited = first && closed && point.promised.pressure < state.friction.pressure;
+                point.limited = first && closed && point.promised.pressure < state.contact_pressure();
                 point.pulled = first && !closed && point.promised.pressure > 0.0;
                 point.feet.note(state);
                 point.slipping.stuck = aids.stick_again && point.presume == Presume::Stick;
@@ -291,7 +291,7 @@ impl ContactIteration {
             let rough = pair.points.iter().map(|slave| pair.law(slave).description.stiffness > 0.0);
             let answers = points.iter_mut().zip(&response.states);
             for ((point, state), _) in answers.zip(rough).filter(|(_, rough)| *rough) {
-                if !point.tied && point.slipping.sticks(&state.friction, point.promised) {
+                if !point.tied && point.slipping.sticks(state, point.promised) {
                     point.presume = Presume::Stick;
                     any = true;
                 }
@@ -322,8 +322,8 @@ const MOST_GROWTH: f64 = 2.0;
 
 /// Predicted traction of a point that is closed in the start value.
 fn promised_at_start(state: &ContactState, old: &ContactState, limit: bool) -> Tractions {
-    let tractions = Tractions::of(&state.friction);
-    if limit { tractions.limited(MOST_GROWTH * old.friction.pressure) } else { tractions }
+    let tractions = Tractions::of(state);
+    if limit { tractions.limited(MOST_GROWTH * old.contact_pressure()) } else { tractions }
 }
 
 /// Whether the tangent of a point uses tractions other than its own.
@@ -339,10 +339,10 @@ const MOST_LIFT: f64 = 1e7;
 
 /// Predicted traction, from the committed state, of a point that is open in the start value.
 fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
-    let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
+    let reach = old.contact_pressure() * (pair.compliance + MOST_PULL / pair.alpha_n);
     let closed = old.friction.pressure > 0.0;
     if closed && state.clearance() <= reach.max(MOST_LIFT * pair.touch) {
-        Tractions::of(&old.friction)
+        Tractions::of(old)
     } else {
         Tractions::default()
     }
@@ -356,7 +356,7 @@ fn keep_acts(presumption: &Presumption, closed: &Closed) -> bool {
 /// Pressure used by friction at a point that has just closed; `None` at any other.
 fn carried(pair: &ContactPair, was_closed: bool, state: &ContactState, stiffening: f64) -> Option<f64> {
     let closes = !was_closed && state.friction.pressure > 0.0;
-    closes.then(|| pair.shared(state.friction.pressure, stiffening))
+    closes.then(|| pair.shared(state.contact_pressure(), stiffening))
 }
 
 /// Whether a closed point sticks because of the aid `touch`.
@@ -393,11 +393,12 @@ impl Slipping {
     /// Records the slip from which the next linear solve starts; returns whether the point is presumed to stick. It is if it
     /// slips in the opposite direction to the last solve, or was presumed to stick and slips, but would not with the tractions
     /// predicted by that solve: it missed the narrow range of sticking only because of its own error.
-    fn sticks(&mut self, friction: &FrictionState, promised: Tractions) -> bool {
+    fn sticks(&mut self, state: &ContactState, promised: Tractions) -> bool {
+        let friction = &state.friction;
         let slip = friction.plastic_increment;
         let slips = friction.regime == Regime::Slip;
         // A point closed only by a prediction has a negative pressure.
-        let strength = (friction.traction / friction.pressure).abs() * promised.pressure;
+        let strength = (friction.traction / friction.pressure).abs() * (promised.pressure - state.pores);
         // A point that slips below its strength would also slip with these tractions, unless they are far lower or the slip
         // abates.
         let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };

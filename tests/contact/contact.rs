@@ -69,6 +69,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         stick: None,
         radiation: 0.0,
         fluid: None,
+        pores: None,
         laws: vec![Arc::new(law.into())],
         in_time: None,
         initial: None,
@@ -228,6 +229,7 @@ fn committed(friction: FrictionState, foot: MasterPoint, gap: f64) -> ContactSta
         multiplier: 0.0,
         elastic_slip: 0.0,
         fluid: 0.0,
+        pores: 0.0,
     }
 }
 
@@ -627,6 +629,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                         multiplier: 0.0,
                         elastic_slip: 0.0,
                         fluid: 0.0,
+                        pores: 0.0,
                     };
                     pair.points.len()
                 ];
@@ -788,6 +791,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
             multiplier: 0.0,
             elastic_slip: 0.0,
             fluid: 0.0,
+            pores: 0.0,
         };
         let old = vec![old; pair.points.len()];
         let answer = |u: &[f64]| {
@@ -951,7 +955,7 @@ fn check_mortar_tangent(
         let met = facing.meet(k, weights.as_ref(), &x, &mut kinematics, &mut Room::default());
         let met = met.expect("the master faces the point");
         closes(pair, &pair.points[k], met.gap, &old, increment).then(|| {
-            let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true, fluid: 0.0 };
+            let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true, ..PointPlace::default() };
             finish(pair, k, &old, increment, place, &mut kinematics).1.expect("a closed point").contribution
         })
     };
@@ -998,6 +1002,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
         multiplier: 0.0,
         elastic_slip: 0.0,
         fluid: 0.0,
+        pores: 0.0,
     };
     check_tangent(&pair, 1, &old, &x, "concave corner");
 }

@@ -56,7 +56,7 @@ pub const SLOTS: &[Slot] = &[
     ("varying", &[("no", 4), ("by_place", 1), ("in_time", 2), ("by_part", 1)]),
     ("dilatancy", &[("no", 6), ("free", 1), ("limited", 1), ("structure", 1)]),
     ("wear", OPTION),
-    ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1)]),
+    ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1), ("of_bodies", 1)]),
     ("radiation", &[("no", 6), ("given", 1), ("of_bodies", 1)]),
     ("shrink_fit", OPTION),
     ("massless", OPTION),
@@ -250,6 +250,8 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["stress:components"], &["tractions:given"], "the stress would count twice"),
     (&["heat", "stress", "pores"], &["scheme:quasi_dynamic"], "tractions serve there"),
     (&["pores"], &["tractions"], "the pressure of the pores would be a part of them"),
+    (&["fluid:of_bodies"], &["pores:no"], "there is no pressure to take"),
+    (&["fluid:of_bodies"], &["dilatancy", "wear"], "what an interface takes in as it opens is not followed"),
     (
         &["error_control"],
         &["scheme:wilson", "scheme:explicit", "scheme:quasi_dynamic", "rupture"],
@@ -422,6 +424,7 @@ pub const NEEDED: &[(&str, &[(&str, &str)])] = &[
     ),
     ("tractions:balanced", &[("stress", "components")]),
     ("tractions:of_bodies", &[("stress", "components")]),
+    ("fluid:of_bodies", &[("pores", "full")]),
     ("press:plate", &[]),
 ];
 

@@ -638,6 +638,7 @@ impl Writer<'_> {
             _ => {}
         }
         match draft.of("fluid") {
+            "of_bodies" => contact["fluid_pressure"] = json!("of_bodies"),
             "constant" => contact["fluid_pressure"] = json!(self.write(Kind::Stress, self.ways.load)),
             "in_time" => {
                 contact["fluid_pressure"] =

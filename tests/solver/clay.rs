@@ -125,6 +125,122 @@ fn friction_of_the_total_pressure_is_warned_of() {
     }
 }
 
+/// A block under a total pressure σ that cannot widen, with a fluid in its pores: σ = (M + K_w/n) ε, and the grains carry p = σ M/(M + K_w/n)
+/// + what p_w began with. Dragged as a whole, its interface sticks to q = α_t U and slips at q = μ p, whatever the method; by a
+/// prescribed p_w alike. With suction it holds more than μ σ.
+#[test]
+fn an_interface_slips_where_the_effective_stress_says() {
+    let mesh = Blocks::default().rectangle("block", [2, 2], [0.0, 0.0], [1.0, 1.0]).json();
+    let [sigma, mu, alpha_t, modulus, fluid] = [12.0, 0.4, 2000.0, 1000.0 / 0.9, 500.0];
+    let constrained = modulus * 0.9; // nu = 0
+    for method in ["node_to_segment", "gauss_to_segment", "mortar"] {
+        for initial in [0.0, 2.0, -3.0] {
+            let share = fluid / (constrained + fluid);
+            let pore = initial + (sigma - initial) * share;
+            let pressure = sigma - pore;
+            let slips_at = mu * pressure / alpha_t;
+            let run = finish(&json!({
+                "mesh": mesh,
+                "bodies": {"block": {"material": {"model": "linear", "E": constrained, "nu": 0}, "element": "displacement",
+                    "pore_fluid": {"bulk_modulus": 0.4 * fluid, "porosity": 0.4, "pressure": initial}}},
+                "contacts": {"floor": {"slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                    "method": method, "sliding": "small", "fluid_pressure": "of_bodies", "normal": {"alpha_n": 1e5},
+                    "friction": {"law": "coulomb", "mu": mu, "alpha_t": alpha_t}}},
+                "steps": [
+                    {"name": "press", "duration": 1, "dt": {"initial": 1}, "loads": [{"on": "block_top", "dead_pressure": sigma.to_string()}],
+                     "supports": [{"on": "block", "ux": 0}]},
+                    {"name": "drag", "duration": 1, "dt": {"initial": 0.1, "max": 0.1},
+                     "supports": [{"on": "block", "ux": 2.0 * slips_at}]}]
+            }));
+            for state in &run.states {
+                let moved = 2.0 * slips_at * (state.time - 1.0).max(0.0);
+                for point in &state.contacts[0] {
+                    let told = format!("{method}, p_w0 = {initial} at {}", state.time);
+                    let at = if state.time == 0.0 { continue } else { state.time };
+                    close(&told, point.friction.pressure, pressure, 1e-9 * sigma);
+                    close(&told, point.pores, pore, 1e-9 * sigma);
+                    close(&told, point.friction.traction, (alpha_t * moved).min(mu * pressure), 1e-9 * sigma);
+                    let slips = point.regime() == fecontact::laws::friction::Regime::Slip;
+                    assert!(slips == (at > 1.5) || (at - 1.5).abs() < 1e-9, "{told}");
+                }
+            }
+            let energy = run.last().energy;
+            close("energy error", energy.error(), 0.0, 1e-9 * energy.external_work.abs());
+        }
+    }
+}
+
+/// Undrained Cam-clay sheared under a constant total pressure by an interface at its foot: at the critical state of simple shear the
+/// interface bears τ = M p_f/√3 under the effective pressure p_f = p₀ 2^(−Λ). With μ < M/√3 it slips before, whatever p_w
+/// has become, and with more never; friction of the total pressure would hold with 0.6 M/√3 as well.
+#[test]
+fn clay_slips_on_its_interface_below_the_critical_stress_ratio() {
+    let mesh = Blocks::default().rectangle("clay", [1, 2], [0.0, 0.0], [1.0, 1.0]).json();
+    let p_f = 100.0 * 0.5f64.powf(1.0 - 0.02 / 0.10);
+    for share in [0.6, 0.9, 1.1] {
+        let mu = share * 1.2 / 3f64.sqrt();
+        let run = finish(&json!({
+            "mesh": mesh, "periodic": [["clay_left", "clay_right"]],
+            "bodies": {"clay": {"material": clay(json!({"G": 3000, "p_c": 100})), "element": "f_bar", "initial_stress": isotropic(100.0),
+                "pore_fluid": {"bulk_modulus": 1e6, "porosity": 0.5, "pressure": 20}}},
+            "contacts": {"floor": {"slave": "clay_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                "sliding": "small", "fluid_pressure": "of_bodies", "initial": {"of_bodies": true},
+                "normal": {"alpha_n": 1e7}, "friction": {"law": "coulomb", "mu": mu, "alpha_t": 1e6}}},
+            "steps": [{"name": "shear", "duration": 1, "dt": {"initial": 2e-3, "max": 4e-3},
+                "loads": [{"on": "clay_top", "dead_pressure": "120"}], "supports": [{"on": "clay_top", "ux": 0.5}]}]
+        }));
+        let last = run.last();
+        for point in &last.contacts[0] {
+            let friction = point.friction;
+            close("total pressure", point.contact_pressure(), 120.0, 0.5);
+            if share < 1.0 {
+                close("q/p", friction.traction.abs() / friction.pressure, mu, 1e-9);
+                assert!(friction.plastic_slip.abs() > 0.2, "{share}: {}", friction.plastic_slip);
+            } else {
+                assert!(friction.plastic_slip == 0.0, "{share}: {}", friction.plastic_slip);
+                close("p", friction.pressure, p_f, 0.02 * p_f);
+                close("q", friction.traction.abs(), 1.2 * p_f / 3f64.sqrt(), 0.02 * p_f);
+            }
+        }
+    }
+}
+
+/// What has no pores behind it, or opens, is refused with what to do.
+#[test]
+fn friction_by_effective_stress_needs_pores_behind_it() {
+    let mesh = Blocks::default().rectangle("ground", [1, 1], [0.0, 0.0], [1.0, 1.0]).json();
+    let case = |fluid: bool, more: (&str, Value)| {
+        let mut case = json!({
+            "mesh": mesh,
+            "bodies": {"ground": {"material": {"model": "linear", "E": 100, "nu": 0.3}}},
+            "contacts": {"floor": {"slave": "ground_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                "fluid_pressure": "of_bodies", "friction": {"law": "coulomb", "mu": 0.3}}},
+            "steps": [{"name": "rest", "duration": 1, "supports": [{"on": "ground_top", "ux": 0, "uy": -0.01}]}]
+        });
+        if fluid {
+            case["bodies"]["ground"]["pore_fluid"] = json!({"bulk_modulus": 2.2e6, "porosity": 0.4, "pressure": 5});
+        }
+        case["contacts"]["floor"][more.0] = more.1;
+        case
+    };
+    let sliding = || ("sliding", json!("finite"));
+    let why = refusal(&case(false, sliding()));
+    assert!(why.contains("contacts.floor.fluid_pressure: of bodies needs a `pore_fluid` of body `ground`"), "{why}");
+    let why = refusal(&case(true, ("wear", json!(1e-6))));
+    assert!(why.contains("leave out dilatancy and wear"), "{why}");
+    let why = refusal(&case(true, ("fluid_pressure", json!("of_body"))));
+    assert!(
+        why.contains("contacts.floor.fluid_pressure") && why.contains("`of_body` is not one of the variables"),
+        "{why}"
+    );
+    let warnings = model(&case(true, sliding())).warnings().join("\n");
+    assert!(!warnings.contains("goes by the total pressure"), "{warnings}");
+    // Written with all defaults it is the same.
+    let text = case(true, sliding()).to_string();
+    let parsed = fecontact::case::from_text(&text, std::path::Path::new("test.json")).expect("well formed");
+    assert_eq!(serde_json::to_value(&parsed).expect("JSON")["contacts"]["floor"]["fluid_pressure"], "of_bodies");
+}
+
 /// What cannot be is refused with its place and what to do.
 #[test]
 fn what_has_no_pressure_or_no_volume_is_refused() {

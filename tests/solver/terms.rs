@@ -263,6 +263,38 @@ fn the_tangent_of_a_contact_that_moves_or_holds_water_is_that_of_the_residual() 
     }
 }
 
+/// Friction that goes by the pressure in the pores of the slave's body has a tangent by all nodes of the elements behind the surface, by
+/// every method, in small sliding, in rings, on a rigid plane and beside suction, sticking and slipping.
+#[test]
+fn the_tangent_of_friction_by_effective_stress_is_that_of_the_residual() {
+    let plane = json!({"plane": {"point": [0.0, 0.0], "normal": [0.0, 1.0]}});
+    for method in ["node_to_segment", "gauss_to_segment", "mortar"] {
+        for (master, sliding) in
+            [(json!("lower_top"), "finite"), (plane.clone(), "finite"), (json!("lower_top"), "small")]
+        {
+            for (element, material, pressure) in
+                [("f_bar", "neo_hookean", 1), ("displacement", "hencky", -1), ("displacement", "linear", 1)]
+            {
+                let mut case = pressed(json!(method), "upper_bottom", master.clone());
+                let fluid = json!({"bulk_modulus": 80, "porosity": 0.4, "pressure": pressure});
+                case["bodies"]["upper"] = json!({"material": {"model": material, "E": 100, "nu": 0.3, "density": 2},
+                    "element": element, "pore_fluid": fluid});
+                case["contacts"]["base"]["fluid_pressure"] = json!("of_bodies");
+                case["contacts"]["base"]["sliding"] = json!(sliding);
+                for section in [Section::PlaneStrain, Section::Axisymmetric] {
+                    let model = model_in(section, &case);
+                    for slide in [1e-4, 3e-2] {
+                        let told = format!(
+                            "{method}, {sliding} on {master} in {section:?}, {element} {material}, slid {slide}"
+                        );
+                        moved_tangent(&model, [slide, -0.01], false, &told);
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Check the tangent where the upper block is moved; it is closed unless it is lifted.
 fn moved_tangent(model: &Arc<Model>, [slide, lift]: [f64; 2], is_wet: bool, told: &str) {
     let (state, step) = (moving(model), &model.steps[0]);

@@ -189,6 +189,14 @@ fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
         let pressures = pair.points.iter().map(|point| pair.fluid_pressure(point, &x, 0.0));
         lines.push(format!("fluid pressure in the interface: {} at the start", range(pressures)));
     }
+    if pair.pores.is_some() {
+        let x = model.mesh.undeformed();
+        let pressures = (0..pair.points.len()).map(|k| pair.pore_pressure(k, &x));
+        let pressures = range(pressures);
+        lines.push(format!(
+            "friction by effective stress, fluid pressure in the pores of the slave: {pressures} at the start"
+        ));
+    }
     lines
 }
 

@@ -134,7 +134,7 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     refuse_if(pair.penetration.is_some(), "normal.penetration", why)?;
     let why =
         "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with radiation_damping";
-    refuse_if(pair.fluid.is_some(), "fluid_pressure", why)?;
+    refuse_if(pair.holds_fluid(), "fluid_pressure", why)?;
     let opening = pair.laws.iter().find_map(|law| law.description.opening.first());
     let key = if opening == Some(&"wear") { "wear" } else { "dilatancy" };
     let why = "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out";

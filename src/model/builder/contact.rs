@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
 use super::friction::{Along, Friction, check_in_time};
@@ -13,7 +13,7 @@ use crate::laws::friction::{Dilatancy, FrictionParameters};
 use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::method::Method;
-use crate::model::written::written;
+use crate::model::written::{Written, written};
 
 /// A contact pair.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -88,15 +88,61 @@ pub struct Contact {
     /// p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend on the run time t and on
     /// the reference position x, y of the slave. It acts on both surfaces wherever the slave projects onto the master,
     /// closed or open, in addition to the contact pressure p; friction, `initial.pressure` and all outputs called
-    /// pressure use this effective p only. The pressure is prescribed: there is no flow. Not for quasi_dynamic steps
-    /// [F/L²]
-    pub fluid_pressure: Option<Profile>,
+    /// pressure use this effective p only. The pressure is prescribed: there is no flow. "of_bodies" takes it from the pores of the
+    /// slave's bodies (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it. Not for
+    /// quasi_dynamic steps [F/L²]
+    #[schemars(with = "Option<Profile>")]
+    pub fluid_pressure: Option<FluidPressure>,
     /// Friction parameters that vary along the slave and in time
     #[serde(default)]
     pub along: Along,
     /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then
     /// measured, throughout the run, relative to the gap at which this pressure acts in its initial position
     pub initial: Option<InitialTractions>,
+}
+
+/// Pressure of a fluid at a contact.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum FluidPressure {
+    /// That of the fluid in the pores of the slave's bodies
+    OfBodies,
+    /// That of a fluid between the surfaces
+    Given(Profile),
+}
+
+const OF_BODIES: &str = "of_bodies";
+
+impl Written for FluidPressure {
+    const EXPECTING: &'static str =
+        "\"of_bodies\", a number, an expression in x, y and t such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}";
+
+    fn number(value: f64) -> Option<Self> {
+        Profile::number(value).map(Self::Given)
+    }
+
+    fn text<E: serde::de::Error>(text: &str) -> Result<Self, E> {
+        if text == OF_BODIES { Ok(Self::OfBodies) } else { Profile::text(text).map(Self::Given) }
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        Profile::object(object).map(Self::Given)
+    }
+}
+
+impl<'de> Deserialize<'de> for FluidPressure {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::read(deserializer)
+    }
+}
+
+impl Serialize for FluidPressure {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::OfBodies => serializer.serialize_str(OF_BODIES),
+            Self::Given(pressure) => Serialize::serialize(pressure, serializer),
+        }
+    }
 }
 
 /// Normal contact.
@@ -313,7 +359,12 @@ setters! { contact: Contact;
     radiation(radiation: Radiation) { contact.radiation_damping = radiation; }
 
     /// Sets the pressure p_w of a fluid, by reference position and time [F/L²].
-    fluid_pressure(pressure: impl Into<Profile>) { contact.fluid_pressure = Some(pressure.into()); }
+    fluid_pressure(pressure: impl Into<Profile>) {
+        contact.fluid_pressure = Some(FluidPressure::Given(pressure.into()));
+    }
+
+    /// Makes friction go by the effective stress, with the pressure of the fluid in the pores of the slave's bodies.
+    fluid_pressure_of_bodies() { contact.fluid_pressure = Some(FluidPressure::OfBodies); }
 
     /// Sets the tributary area of each point of a point group [L].
     area(area: f64) { contact.area = Some(area); }
@@ -344,7 +395,7 @@ setters! { contact: Contact;
 
 /// Returns the fluid of a contact, if it has one.
 pub fn fluid(place: &str, contact: &Contact) -> Checked<Option<Fluid>> {
-    let Some(pressure) = contact.fluid_pressure.clone() else { return Ok(None) };
+    let Some(FluidPressure::Given(pressure)) = contact.fluid_pressure.clone() else { return Ok(None) };
     check_in_time(&pressure, &format!("{place}.fluid_pressure"))?;
     Ok(Some(Fluid::new(move |at, time| pressure.value_at(at, time))))
 }
@@ -368,8 +419,9 @@ const VALUES: usize = 2_000_000;
 /// during the run.
 pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> {
     for (contact, pair) in contacts.iter().zip(&model.contacts) {
-        if !contact.fluid_pressure.as_ref().is_some_and(Profile::depends_on_time) {
-            continue;
+        match &contact.fluid_pressure {
+            Some(FluidPressure::Given(pressure)) if pressure.depends_on_time() => {}
+            _ => continue,
         }
         let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, TIMES as usize) as u32;
         for step in &model.steps {

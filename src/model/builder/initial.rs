@@ -11,6 +11,7 @@ use super::friction::{check_profile, defined, position};
 use super::groups;
 use super::load_step::LoadStep;
 use crate::contact::pair::{ContactPair, InitialTraction};
+use crate::contact::pores::effective;
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
@@ -113,9 +114,11 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
         true => of_bodies(pair, given, slave, model, place)?,
         false => as_given(pair, given, model, place)?,
     };
-    for (point, InitialTraction { pressure, traction }) in pair.points.iter().zip(&initial) {
+    let undeformed = model.mesh.undeformed();
+    for (k, (point, InitialTraction { pressure: total, traction })) in pair.points.iter().zip(&initial).enumerate() {
         let law = pair.law(point);
-        let limit = law.description.starting_limit(*pressure);
+        let pressure = effective(*total, pair.pore_pressure(k, &undeformed))[0];
+        let limit = law.description.starting_limit(pressure);
         if traction.abs() > limit * (1.0 + ROUNDED) {
             let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
             let message = format!(
@@ -124,7 +127,6 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
             return Err(ModelError::new(format!("{place}.traction"), message));
         }
     }
-    let undeformed = model.mesh.undeformed();
     let closed = pair.start_closed(initial, &undeformed);
     closed.map_err(|point| without_projection(pair, point, model, place))
 }
@@ -145,14 +147,18 @@ fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: 
     check_profile(pressures, &at_pressure)?;
     check_profile(&tractions, &at_traction)?;
     let mut initial = Vec::with_capacity(pair.points.len());
-    for point in &pair.points {
+    for (k, point) in pair.points.iter().enumerate() {
         let at = position(point, &model.mesh);
         let (pressure, traction) = (defined(pressures, at, &at_pressure)?, defined(&tractions, at, &at_traction)?);
         if pressure < 0.0 {
             let message = format!("is {pressure}: must be zero or positive, which is compression");
             return Err(ModelError::new(at_pressure, message));
         }
-        initial.push(InitialTraction { pressure, traction });
+        let total = pressure + pair.pore_pressure(k, &model.mesh.undeformed());
+        let message =
+            format!("is {pressure}, {total} with the fluid in the pores, which contact cannot carry: raise it");
+        refuse_if(total < 0.0, &at_pressure, message)?;
+        initial.push(InitialTraction { pressure: total, traction });
     }
     Ok(initial)
 }

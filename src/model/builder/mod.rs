@@ -55,6 +55,7 @@ mod load;
 mod load_step;
 mod loads;
 mod pair;
+mod pores;
 mod requests;
 mod rigid;
 pub(crate) mod schedule;
@@ -62,7 +63,7 @@ mod supports;
 mod unconstrained;
 
 pub use body::{BodyInput, BulkLaw, PointMassInput};
-pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
+pub use contact::{Contact, FluidPressure, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_positive, refuse_if};
 pub use friction::{Along, Friction, LawChoice};

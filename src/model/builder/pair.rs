@@ -43,7 +43,7 @@ use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
-use super::{contact, friction, initial, rigid};
+use super::{contact, friction, initial, pores, rigid};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
@@ -82,6 +82,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
     for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
+    let pores = pores::pores(&place, contact, &points, model)?;
     let mut pair = ContactPair {
         name: contact.name.clone(),
         tied: contact.tied,
@@ -95,6 +96,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
         fluid: contact::fluid(&place, contact)?,
+        pores,
         laws,
         in_time,
         initial: None,

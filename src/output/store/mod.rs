@@ -79,7 +79,7 @@ impl InterfaceStore {
     /// Opens the existing store, to be restored.
     pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
-        let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "fluid_pressure");
+        let in_fluid = |pair: &ContactPair| pair.holds_fluid().then_some("fluid_pressure");
         let names = |pair: &ContactPair| {
             IN_STORE.map(|of| of.name).into_iter().chain(further(pair)).chain(in_fluid(pair)).collect()
         };

@@ -1,11 +1,13 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4 and reduced integration for Q8.
 //!
 //! This file contains the viscous stress of a damped body as well, and elements with internal variables or an unsymmetric tangent;
-//! `f_bar.rs` contains F-bar, `ring.rs` axisymmetry, `stress.rs` the stress and the reference geometry of elements.
+//! `f_bar.rs` contains F-bar, `ring.rs` axisymmetry, `stress.rs` the stress and the reference geometry of elements, `volume.rs` their mean volume
+//! change.
 
 mod f_bar;
 mod ring;
 mod stress;
+mod volume;
 
 use std::array;
 
