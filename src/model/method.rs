@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::master::Master;
 use crate::contact::search::Index;
-use crate::contact::surface::{CORNER, MasterPoint, Surface, in_order, nodal_points};
+use crate::contact::surface::{CORNER, MasterPoint, SlavePoint, Surface, in_order, nodal_points};
+use crate::mesh::configuration::Configuration;
 use crate::mesh::{Group, Mesh};
 
 /// Contact method: evaluation points of contact.
@@ -158,17 +159,18 @@ fn nodes_meet(slave: &str, master: &str, mesh: &Mesh) -> bool {
     let [slave, master] = [slave, master].map(|group| in_order(&edges(group)));
     let x = mesh.undeformed();
     [(&slave, &master), (&master, &slave)].into_iter().all(|(points, faced)| {
-        if faced.is_empty() {
-            return true;
-        }
-        let faced = Master::Mesh(Surface::new(faced));
-        let index = Index::new(&faced, &x);
-        let feet = nodal_points(points).into_iter().filter_map(|point| index.project(&point, None, &x));
-        feet.map(|projection| projection.foot).all(|MasterPoint { segment, xi }| {
-            let middle = faced.segments()[segment].middle.map(|_| 0.5);
-            [0.0, 1.0].into_iter().chain(middle).any(|node| (xi - node).abs() <= FACE)
-        })
+        faced.is_empty() || between_nodes(&nodal_points(points), &Master::Mesh(Surface::new(faced)), &x).is_none()
     })
+}
+
+/// Returns the first node that faces an edge elsewhere than at a node.
+pub fn between_nodes<'a>(nodes: &'a [SlavePoint], faced: &Master, x: &Configuration) -> Option<&'a SlavePoint> {
+    let index = Index::new(faced, x);
+    let is_between = |MasterPoint { segment, xi }: MasterPoint| {
+        let middle = faced.segments()[segment].middle.map(|_| 0.5);
+        [0.0, 1.0].into_iter().chain(middle).all(|node| (xi - node).abs() > FACE)
+    };
+    nodes.iter().find(|node| index.project(node, None, x).is_some_and(|projection| is_between(projection.foot)))
 }
 
 /// Known weakness of the requested method for these surfaces, if any.

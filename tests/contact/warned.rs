@@ -1,5 +1,5 @@
-//! What a contact is warned of: that it never closes, what it does not see, fits whose edges do not follow their curves, and fronts that
-//! its mesh does not resolve; each beside a case that must not be warned.
+//! What a contact is warned of: that it never closes, what it does not see, methods that do not suit its meshes, fits whose edges do not
+//! follow their curves, and fronts that its mesh does not resolve; each beside a case that must not be warned.
 
 use std::sync::Arc;
 
@@ -113,6 +113,81 @@ fn sheared_linear_elements_beside_a_fault_are_told() {
     for (degrees, refined, scheme) in [(60.0, false, cycles()), (30.0, true, cycles()), (30.0, false, json!("static"))]
     {
         assert_eq!(told(degrees, refined, scheme), Vec::<String>::new(), "{degrees}");
+    }
+}
+
+/// Two blocks of E with so many elements along their interface, pressed by p = 1 without friction: the pressure is 1 everywhere.
+fn patch([lower, upper]: [usize; 2], contact: &Value) -> Value {
+    let block = |body: &str, y: f64, n: usize| {
+        let sides = ["bottom", "right", "top", "left"].map(|side| format!("{body}_{side}"));
+        json!({"body": body, "corners": [[0, y], [1, y], [1, y + 0.5], [0, y + 0.5]], "elements": [n, 4], "sides": sides})
+    };
+    let body = json!({"material": {"model": "linear", "E": E, "nu": 0.3}});
+    let mut base = json!({"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "frictionless"}});
+    for (key, value) in contact.as_object().expect("keys") {
+        base[key] = value.clone();
+    }
+    json!({
+        "mesh": {"blocks": [block("lower", 0.0, lower), block("upper", 0.5, upper)]},
+        "bodies": {"lower": body, "upper": body},
+        "contacts": {"base": base},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1},
+                   "supports": [{"on": "lower_bottom", "uy": 0}, {"on": "lower_left", "ux": 0}, {"on": "upper_left", "ux": 0}],
+                   "loads": [{"on": "upper_top", "pressure": 1}]}]
+    })
+}
+
+/// Points that are asked for where nodes do not face nodes leave an even pressure uneven by 5 % and more; where the slave divides the
+/// edges of its master, by mortar, or by Gauss points on the finer side with a soft penalty it is even enough, and nothing is told.
+#[test]
+fn points_on_edges_that_do_not_match_are_told() {
+    let [gauss, nodes] = ["gauss_to_segment", "node_to_segment"].map(|method| json!({"method": method}));
+    // 20 (λ + 2G)/h, h = 1/8
+    let soft = json!({"method": "gauss_to_segment", "normal": {"alpha_n": 20.0 * 8.0 * 1346.0}});
+    let (augmented, open) = (json!({"method": "gauss_to_segment", "normal": {"penetration": 1e-9}}), json!({}));
+    for (elements, contact, is_told) in [
+        ([10, 13], &gauss, true),
+        ([13, 10], &gauss, true),
+        ([10, 13], &nodes, true),
+        ([10, 13], &augmented, true),
+        ([37, 10], &soft, true),
+        ([24, 28], &soft, false),
+        ([10, 13], &json!({"method": "mortar"}), false),
+        ([10, 13], &open, false),
+        ([10, 20], &gauss, false),
+        ([10, 20], &nodes, false),
+        ([10, 10], &nodes, false),
+    ] {
+        let what = format!("{elements:?}, {contact}");
+        let run = common::finish(&patch(elements, contact));
+        let told = run.model.warnings();
+        let pressures = run.last().contacts[0].iter().map(|state| state.friction.pressure);
+        let uneven = pressures.fold(0.0, |most: f64, pressure| most.max((pressure - 1.0).abs()));
+        assert_eq!(uneven > 0.05, is_told, "{what}: {uneven}");
+        assert_eq!(told.len(), usize::from(is_told), "{what}: {told:?}");
+        if is_told {
+            let method = contact["method"].as_str().expect("a name");
+            assert!(
+                told[0].starts_with(&format!("contact `base`: {method} where nodes do not face nodes")),
+                "{told:?}"
+            );
+            assert!(told[0].ends_with("take \"method\": \"mortar\""), "{told:?}");
+        }
+    }
+}
+
+/// Explicit steps have no other method, and rigid masters no nodes.
+#[test]
+fn points_without_a_better_method_are_not_told() {
+    let mut explicit = patch([10, 13], &json!({"method": "gauss_to_segment"}));
+    for body in ["lower", "upper"] {
+        explicit["bodies"][body]["material"]["density"] = json!(1e-6);
+    }
+    explicit["steps"][0]["scheme"] = json!({"explicit": {}});
+    let mut rigid = patch([10, 13], &json!({"method": "gauss_to_segment"}));
+    rigid["contacts"]["base"]["master"] = json!({"plane": {"point": [0, 0.5], "normal": [0, 1]}});
+    for case in [explicit, rigid] {
+        assert_eq!(common::model(&case).warnings(), Vec::<String>::new());
     }
 }
 
