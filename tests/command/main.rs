@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/delayed.rs"]
 mod delayed;
 
+mod committed;
 mod convergence;
 mod gradients;
 mod input;

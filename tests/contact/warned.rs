@@ -1,5 +1,6 @@
 //! What a contact is warned of: that it never closes, what it does not see, methods that do not suit its meshes, fits whose edges do not
-//! follow their curves, and fronts that its mesh does not resolve; each beside a case that must not be warned.
+//! follow their curves, and fronts that its mesh does not resolve; and bodies that hardly anything holds. Each beside a case that must not
+//! be warned.
 
 use std::sync::Arc;
 
@@ -189,6 +190,32 @@ fn points_without_a_better_method_are_not_told() {
     for case in [explicit, rigid] {
         assert_eq!(common::model(&case).warnings(), Vec::<String>::new());
     }
+}
+
+/// An element of reduced integration by itself has no stiffness against one motion of its nodes: a pivot is only round-off. Loads that do
+/// not excite it are borne, and the run goes on; two such elements have the edge between them, and full integration lacks nothing.
+#[test]
+fn pivots_that_had_to_be_replaced_are_told() {
+    let told = |elements: usize, formulation: &str| {
+        let near = |x: f64| json!({"near": [x, 0]});
+        warnings(&json!({
+            "mesh": {"blocks": [{"body": "block", "corners": [[0, 0], [4, 0], [4, 2], [0, 2]], "elements": [elements, 1], "kind": "Q8",
+                                 "sides": ["bottom", "right", "top", "left"]}]},
+            "bodies": {"block": {"material": {"model": "linear", "E": E, "nu": NU}, "element": formulation}},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1},
+                       "supports": [{"on": near(0.0), "ux": 0, "uy": 0}, {"on": near(4.0), "uy": 0}],
+                       "loads": [{"on": "top", "total_force": {"y": -4}}, {"on": "bottom", "total_force": {"y": 4}}]}]
+        }))
+    };
+    let alone = told(1, "reduced");
+    assert!(
+        alone.len() == 1
+            && alone[0].starts_with("step `press`, t = 1: 1 pivots of the tangent were nearly zero and were replaced")
+            && alone[0].ends_with("a body may be barely constrained"),
+        "{alone:?}"
+    );
+    assert_eq!(told(2, "reduced"), Vec::<String>::new());
+    assert_eq!(told(1, "displacement"), Vec::<String>::new());
 }
 
 /// A quarter of a ring shrunk on another by δ = 1e-3 at r = 2, with so many linear or quadratic elements along the arcs.
