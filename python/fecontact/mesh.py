@@ -162,17 +162,25 @@ class Mesh:
 
     @property
     def groups(self) -> dict[str, str]:
-        """Every group and its kind: elements, edges or points."""
+        """Every group and its kind: elements, edges, points, or lines that are sides of no element (the outline of a rigid master)."""
         return {name: kind for name, (kind, _) in self._native.groups().items()}
 
     def document(self) -> dict[str, Any]:
         """The mesh in the form of a case file."""
         groups = self._native.groups()
-        elements = self.elements
+        elements, nodes = self.elements, self.nodes.tolist()
+        edges = {name: members for name, (kind, members) in groups.items() if kind == "edges"}
+        for name, lines in self._native.lines().items():
+            number: dict[tuple[float, float], int] = {}
+            for x, y in (node for line in lines for node in line):
+                if (x, y) not in number:
+                    number[x, y] = len(nodes)
+                    nodes.append([x, y])
+            edges[name] = [[number[x, y] for x, y in line] for line in lines]
         return {
-            "nodes": self.nodes.tolist(),
+            "nodes": nodes,
             "elements": {k: [elements[e] for e in m[0]] for k, (kind, m) in groups.items() if kind == "elements"},
-            "edges": {name: members for name, (kind, members) in groups.items() if kind == "edges"},
+            "edges": edges,
             "points": {name: members[0] for name, (kind, members) in groups.items() if kind == "points"},
         }
 

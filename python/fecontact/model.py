@@ -483,8 +483,8 @@ class Contact(dict[str, Any]):
         method: Contact method. By default mortar where an edge of either side is quadratic or a side curved
             (its direction turns by more than 1° between two corners of more than 45°), and where nodes do not
             face nodes unless a step is explicit; node_to_segment where a slave of straight linear edges meets a
-            rigid circle or polyline, or a slave with a corner a rigid plane; gauss_to_segment otherwise, with a
-            `smooth` master, and where `points` are given
+            rigid circle, polyline or outline, or a slave with a corner a rigid plane; gauss_to_segment
+            otherwise, with a `smooth` master, and where `points` are given
         normal: Normal contact
         points: Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
         radiation_damping: Static steps: radiation damping, a traction η × slip rate that resists slip in
@@ -589,6 +589,23 @@ class Polyline(dict[str, Any]):
         points: Pairs,
     ) -> None:
         super().__init__({"polyline": _given({"points": points})})
+
+
+class Outline(dict[str, Any]):
+    """A rigid body bounded by lines of the mesh that are sides of no element, such as a physical curve without a
+    surface.
+
+    Args:
+        group: Name of their group. The lines form one chain, with the solid on the right in their direction; they
+            are replaced by straight ones through their nodes
+    """
+
+    def __init__(
+        self,
+        *,
+        group: str,
+    ) -> None:
+        super().__init__({"outline": _given({"group": group})})
 
 
 class LawChoice(dict[str, Any]):
@@ -1525,7 +1542,7 @@ Profile = Union[AlongX, AlongY, float, str]
 
 # The master side: a group of the mesh, or a rigid master given by a formula, fixed unless `rigid_body` names a moving
 # body.
-Master = Union[Plane, Circle, Polyline, str]
+Master = Union[Plane, Circle, Polyline, Outline, str]
 
 # A friction law and its parameters.
 Friction = Union[Frictionless, Coulomb, Adhesion, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]

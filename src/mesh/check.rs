@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use nalgebra::Vector2;
 
+use super::outline::Line;
 use super::{Edge, Element, Group, Mesh, MeshError};
 use crate::mesh::shape::ElementKind;
 
@@ -169,16 +170,24 @@ fn add_edges(mesh: &mut Mesh, numbers: &NodeNumbers, curves: BTreeMap<String, Ve
         }
     }
     let sides = adjacent_sides(mesh, lines.iter().map(|(_, _, nodes)| ends(nodes)));
+    let on_bodies: HashSet<&String> =
+        lines.iter().filter(|(_, _, nodes)| !sides[&ends(nodes)].is_empty()).map(|(name, ..)| *name).collect();
     let mut groups: BTreeMap<String, Vec<Edge>> = BTreeMap::new();
+    let mut outlines: BTreeMap<String, Vec<Line>> = BTreeMap::new();
     let mut seen = HashSet::new();
     for (name, tag, nodes) in &lines {
         if !seen.insert((name, ends(nodes))) {
             return Err(MeshError::EdgeRepeated { line: *tag, group: name.to_string() });
         }
-        let edge = edge(mesh, &sides[&ends(nodes)], nodes, *tag, name)?;
-        groups.entry(name.to_string()).or_default().push(edge);
+        if on_bodies.contains(name) {
+            let edge = edge(mesh, &sides[&ends(nodes)], nodes, *tag, name)?;
+            groups.entry(name.to_string()).or_default().push(edge);
+        } else {
+            outlines.entry(name.to_string()).or_default().push(along(mesh, nodes));
+        }
     }
     mesh.groups.extend(groups.into_iter().map(|(name, edges)| (name, Group::Edges(edges))));
+    mesh.groups.extend(outlines.into_iter().map(|(name, lines)| (name, Group::Lines(lines))));
     Ok(())
 }
 
@@ -192,6 +201,12 @@ fn line_nodes(numbers: &NodeNumbers, group: &str, cell: &RawCell) -> Result<Vec<
         });
     }
     numbers.of("line", group, cell)
+}
+
+/// Returns a line by tags and positions, its middle node between the ends: nodes without elements are dropped.
+fn along(mesh: &Mesh, nodes: &[usize]) -> Line {
+    let in_order = nodes[..1].iter().chain(&nodes[2..]).chain(&nodes[1..2]);
+    in_order.map(|&node| (mesh.node_tags[node], mesh.nodes[node])).collect()
 }
 
 /// The two end nodes in ascending order: the key of an edge, independent of its direction.
@@ -276,7 +291,7 @@ fn renumber_nodes(mesh: &mut Mesh, number: &[usize]) {
     mesh.elements.iter_mut().for_each(|element| renumber(&mut element.nodes));
     for group in mesh.groups.values_mut() {
         match group {
-            Group::Elements(_) => {}
+            Group::Elements(_) | Group::Lines(_) => {}
             Group::Edges(edges) => edges.iter_mut().for_each(|edge| renumber(&mut edge.nodes)),
             Group::Nodes(nodes) => renumber(nodes),
         }

@@ -245,10 +245,10 @@ pub enum MeshError {
         /// its body
         second_group: String,
     },
-    /// A line is not an element edge.
+    /// A line is not an element edge, and others of its group are.
     #[error(
-        "line {line} of `{group}` is not an edge of any element; the group must lie on the boundary of a meshed \
-         physical surface"
+        "line {line} of `{group}` is not an edge of any element, and others of the group are; the group must lie on the \
+         boundary of a meshed physical surface, or away from all (the outline of a rigid master)"
     )]
     EdgeOutside {
         /// tag of the line

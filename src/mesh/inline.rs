@@ -21,7 +21,8 @@ pub struct InlineMesh {
     /// quadrilateral (corners in order, then mid-side nodes in the same order, then the centre)
     #[serde(default)]
     pub elements: BTreeMap<String, Vec<Vec<usize>>>,
-    /// Boundary curves: list of edges by name, each edge given as [end, end] or [end, end, middle]
+    /// Boundary curves, and outlines of rigid masters, which are sides of no element: list of edges by name, each edge given as
+    /// [end, end] or [end, end, middle]
     #[serde(default)]
     pub edges: BTreeMap<String, Vec<Vec<usize>>>,
     /// Node sets: list of nodes by name

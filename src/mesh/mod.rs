@@ -19,6 +19,7 @@ cfg_if::cfg_if! {
         pub mod joined;
         pub mod names;
         pub mod nearest;
+        pub mod outline;
         pub mod rigid;
         pub mod section;
         pub mod shape;
@@ -30,6 +31,7 @@ cfg_if::cfg_if! {
         pub(crate) mod joined;
         pub(crate) mod names;
         pub(crate) mod nearest;
+        pub(crate) mod outline;
         pub(crate) mod rigid;
         pub(crate) mod section;
         pub(crate) mod shape;
@@ -46,6 +48,7 @@ use crate::mesh::configuration::{Configuration, vector};
 pub use error::MeshError;
 pub use inline::InlineMesh;
 pub use names::UnknownGroup;
+use outline::Line;
 use rigid::RigidBody;
 pub use section::Section;
 pub use shape::ElementKind;
@@ -81,6 +84,8 @@ pub enum Group {
     Edges(Vec<Edge>),
     /// Single nodes (a gmsh physical point), ascending
     Nodes(Vec<usize>),
+    /// Lines that are sides of no element (a gmsh physical curve by itself): the outline of a rigid body
+    Lines(Vec<Line>),
 }
 
 /// A checked mesh: every node is used, every element is counter-clockwise, has positive area and belongs to one body.
@@ -139,12 +144,13 @@ impl Mesh {
         })
     }
 
-    /// Returns the nodes of a group, ascending, each once.
+    /// Returns the nodes of a group, ascending, each once; lines that are sides of no element have none.
     pub fn nodes_of(&self, group: &Group) -> Vec<usize> {
         let mut nodes: Vec<usize> = match group {
             Group::Elements(elements) => elements.iter().flat_map(|&e| &self.elements[e].nodes).copied().collect(),
             Group::Edges(edges) => edges.iter().flat_map(|edge| &edge.nodes).copied().collect(),
             Group::Nodes(nodes) => nodes.clone(),
+            Group::Lines(_) => Vec::new(),
         };
         nodes.sort_unstable();
         nodes.dedup();

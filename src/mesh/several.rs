@@ -45,6 +45,7 @@ impl Mesh {
                     *element += elements;
                 }),
                 Group::Nodes(list) => moved(list, nodes),
+                Group::Lines(_) => {}
             }
         }
         self.nodes.append(&mut other.nodes);

@@ -100,7 +100,8 @@ fn faces_away(model: &Model, pair: &ContactPair) -> Option<String> {
     pair.points.iter().all(|point| away(&point)).then(|| {
         let at = first.at(&x);
         format!(
-            "the slave faces away from the rigid master everywhere, as at ({}, {}): turn the normal of the plane, or see `hole` of the circle",
+            "the slave faces away from the rigid master everywhere, as at ({}, {}): turn the normal of the plane, reverse the polyline or the lines of the \
+             outline, or see `hole` of the circle",
             number(at.x),
             number(at.y)
         )

@@ -72,6 +72,10 @@ impl MeshPrint {
             match group {
                 Group::Elements(numbers) | Group::Nodes(numbers) => list(&mut groups, numbers),
                 Group::Edges(edges) => edges.iter().for_each(|edge| list(&mut groups, &edge.nodes)),
+                Group::Lines(lines) => {
+                    let places = lines.iter().flatten().flat_map(|(_, at)| [at.x, at.y]);
+                    places.for_each(|x| groups.update(&x.to_bits().to_le_bytes()));
+                }
             }
         }
         Self {

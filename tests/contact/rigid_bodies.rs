@@ -26,8 +26,24 @@ const MU: f64 = 0.3;
 
 /// A block 2 × 1 with its bottom on y = 0, on a master that is at rest or part of the rigid body `tool`.
 fn block(soft: bool, contact: Contact) -> Builder {
-    let mesh = Blocks::default().rectangle("block", [6, 3], [-1.0, 0.0], [1.0, 1.0]).mesh();
-    let builder = Model::builder(mesh).newton(NewtonSettings { tolerance: 1e-12, max_iterations: 40 });
+    block_beside(&[], soft, contact)
+}
+
+/// The same in a mesh with further lines, `die`: each the positions of its nodes, end, end and perhaps middle.
+fn block_beside(lines: &[Vec<[f64; 2]>], soft: bool, contact: Contact) -> Builder {
+    let mut mesh = Blocks::default().rectangle("block", [6, 3], [-1.0, 0.0], [1.0, 1.0]);
+    for line in lines {
+        let node = |at: &[f64; 2]| {
+            let known = mesh.nodes.iter().position(|node| node == at);
+            known.unwrap_or_else(|| {
+                mesh.nodes.push(*at);
+                mesh.nodes.len() - 1
+            })
+        };
+        let nodes: Vec<usize> = line.iter().map(node).collect();
+        mesh.edges.entry("die".into()).or_default().push(nodes);
+    }
+    let builder = Model::builder(mesh.mesh()).newton(NewtonSettings { tolerance: 1e-12, max_iterations: 40 });
     let builder = match soft {
         true => builder.body("block", neo_hookean(100.0, 0.3, 2.0)),
         false => builder.body("block", linear(100.0, 0.3, 2.0)),
@@ -185,6 +201,93 @@ fn a_tool_that_turns_is_a_block_that_turns() {
         }
         touches(&what, &moving.last().contacts[0]);
     }
+}
+
+/// Lines of the mesh that are sides of no element, in any order, are the polyline through their nodes: a tool of them presses and turns
+/// to the same bits. Closed ones and quadratic ones are the polyline as well.
+#[test]
+fn an_outline_in_the_mesh_is_the_polyline_through_its_nodes() {
+    let [a, b, c, d] = [[-2.0, -0.3], [-0.5, -0.01], [0.7, -0.02], [2.5, -0.2]];
+    let outline = || MasterSide::Outline { group: "die".into() };
+    let polyline = |points: &[[f64; 2]]| MasterSide::Polyline { points: points.to_vec() };
+    let run = |lines: &[Vec<[f64; 2]>], master: MasterSide| {
+        let down = Support::on("block_top").ux(0.0).uy(-0.04);
+        let held = Support::on("tool").ux(0.0).uy(0.0).angle(0.0);
+        let dt = IncrementSettings::from(0.25);
+        run_through(
+            block_beside(lines, true, on(master).rigid_body("tool"))
+                .rigid_body("tool", [0.4, -1.0])
+                .step(LoadStep::new("press", 1.0).dt(dt).support(down).support(held))
+                .step(LoadStep::new("turn", 1.0).dt(dt).support(Support::on("tool").angle(-0.2))),
+        )
+    };
+    let [lines, points] = [run(&[vec![b, c], vec![a, b], vec![c, d]], outline()), run(&[], polyline(&[a, b, c, d]))];
+    assert_eq!(lines.states.len(), points.states.len());
+    for (one, other) in lines.states.iter().zip(&points.states) {
+        assert_eq!((&one.displacement, &one.contacts), (&other.displacement, &other.contacts));
+    }
+    touches("the outline", &lines.last().contacts[0]);
+
+    let master = |lines: &[Vec<[f64; 2]>], master: MasterSide| {
+        let model = block_beside(lines, true, on(master)).step(LoadStep::new("rest", 1.0).fix("block_top")).build();
+        model.unwrap_or_else(|error| panic!("{error}")).contacts[0].master.clone()
+    };
+    let deep = [0.0, -3.0];
+    let closed = master(&[vec![c, deep], vec![a, c], vec![deep, a]], outline());
+    assert_eq!(closed, master(&[], polyline(&[c, deep, a, c])));
+    let quadratic = master(&[vec![a, c, b], vec![c, d]], outline());
+    assert_eq!(quadratic, master(&[], polyline(&[a, b, c, d])));
+}
+
+/// Lines that are no outline, and outlines where something else is meant.
+#[test]
+fn outlines_that_are_refused() {
+    let [a, b, c, d] = [[-2.0, -0.3], [-0.5, -0.01], [0.7, -0.02], [2.5, -0.2]];
+    let refused = |lines: &[Vec<[f64; 2]>], contact: Contact, support: Option<Support>, told: &str| {
+        let step = LoadStep::new("rest", 1.0).fix("block_top");
+        let step = support.into_iter().fold(step, |step, support| step.support(support));
+        let error = block_beside(lines, true, contact).step(step).build().map(|_| ()).expect_err(told).to_string();
+        assert!(error.contains(told), "{error}, expected {told}");
+    };
+    let of = |group: &str| on(MasterSide::Outline { group: group.into() });
+    let place = "contacts.base.master.outline.group: ";
+    let at = |why: &str| format!("{place}`die`: {why}");
+    refused(
+        &[vec![a, b], vec![b, c], vec![b, d]],
+        of("die"),
+        None,
+        &at("two lines begin at node 29 at (-0.5, -0.01): "),
+    );
+    refused(&[vec![a, b], vec![c, b]], of("die"), None, &at("two lines end at node 29 at (-0.5, -0.01): "));
+    refused(
+        &[vec![a, b], vec![c, d]],
+        of("die"),
+        None,
+        &at("it is in pieces, one from node 28 on, another with node 30 at (0.7, -0.02): "),
+    );
+    refused(&[], of("die"), None, &format!("{place}the mesh has no group `die`"));
+    refused(
+        &[],
+        of("block_top"),
+        None,
+        &format!("{place}the lines of `block_top` are sides of elements, which deform: "),
+    );
+    refused(&[], of("block"), None, &format!("{place}`block` is a group of solid elements, not of lines"));
+    let lines = [vec![a, b], vec![b, c]];
+    refused(
+        &lines,
+        on("die".into()),
+        None,
+        "contacts.base.master: `die` is a group of lines that are sides of no element; it serves as a rigid master alone: {\"outline\": \
+         {\"group\": \"die\"}}",
+    );
+    refused(
+        &lines,
+        of("die"),
+        Some(Support::on("die").ux(0.0)),
+        "`die` is a group of lines that are sides of no element",
+    );
+    refused(&lines, of("die").smooth(), None, "contacts.base.smooth: ");
 }
 
 /// In motion: a block that flies along a plane at a steady speed, pressed on it, and a plane that passes below a block.

@@ -35,6 +35,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     (&["area"], "slaves that are points: tests/contact/contact.rs"),
     (&["tied"], "surfaces that are held together: tests/contact/tied.rs"),
     (&["hole"], "the rim of a hole: tests/contact/contact.rs"),
+    (&["outline", "group"], "a polyline by another name: tests/contact/rigid_bodies.rs"),
     (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),
     (&["beta", "gamma", "rho_infinity"], "parameters of schemes: tests/time/time_integration.rs"),
     (&["gradients"], "derivatives of what is computed: tests/command/gradients.rs"),

@@ -209,7 +209,10 @@ fn bad_inline_meshes_are_refused() {
         ),
         (json!({"elements": {"a": [[0, 1, 2]]}, "edges": {"a": [[0, 1]]}}), &["two groups", "named `a`"]),
         (json!({"elements": {"a": [[0, 1, 2]]}, "edges": {"e": [[0]]}}), &["line 0 of `e` has 1 nodes"]),
-        (json!({"elements": {"a": [[0, 1, 2]]}, "edges": {"e": [[0, 4]]}}), &["line 0 of `e` is not an edge of any"]),
+        (
+            json!({"elements": {"a": [[0, 1, 2]]}, "edges": {"e": [[0, 1], [0, 4]]}}),
+            &["line 1 of `e` is not an edge of any element, and others of the group are"],
+        ),
         (
             json!({"elements": {"a": [[0, 1, 2]]}, "edges": {"e": [[0, 1], [1, 0]]}}),
             &["line 1 of `e` is in the group twice"],
@@ -315,6 +318,27 @@ fn files_of_both_formats_give_the_same_mesh() {
         assert_eq!((&new.elements, &new.groups, &new.nodes), (&old.elements, &old.groups, &old.nodes));
         assert_eq!((new.node_tags, new.element_tags), (old.node_tags, old.element_tags));
     }
+}
+
+/// A physical curve without a surface is the outline of a rigid body; its nodes are none of the mesh.
+#[test]
+fn a_curve_by_itself_is_an_outline() {
+    let mut text = fs::read_to_string(data("quad4_22.msh")).unwrap();
+    for (piece, replacement) in [
+        ("$PhysicalNames\n3\n", "$PhysicalNames\n4\n1 3 \"die\"\n"),
+        ("$Nodes\n6\n", "$Nodes\n9\n7 -1 -1 0\n8 0.5 -0.5 0\n9 3 -1 0\n"),
+        ("$Elements\n7\n", "$Elements\n9\n"),
+        ("$EndElements", "8 1 2 3 9 8 9\n9 1 2 3 9 7 8\n$EndElements"),
+    ] {
+        assert_eq!(text.matches(piece).count(), 1, "{piece}");
+        text = text.replace(piece, replacement);
+    }
+    let [mesh, plain] = [gmsh::from_bytes(text.into_bytes()).unwrap(), read("quad4_22.msh")];
+    assert_eq!((&mesh.nodes, &mesh.elements), (&plain.nodes, &plain.elements));
+    let [left, top, right] =
+        [(7, [-1.0, -1.0]), (8, [0.5, -0.5]), (9, [3.0, -1.0])].map(|(tag, at)| (tag, Vector2::from(at)));
+    assert_eq!(mesh.group("die").unwrap(), &Group::Lines(vec![vec![top, right], vec![left, top]]));
+    assert_eq!(mesh.nodes_of(mesh.group("die").unwrap()), Vec::<usize>::new());
 }
 
 /// Each case replaces one piece of a good file of format 2.2.

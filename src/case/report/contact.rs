@@ -212,6 +212,7 @@ fn master(input: &Contact) -> String {
             format!("the rigid {kind} of radius {} about {}", number(*radius), vector(*centre))
         }
         MasterSide::Polyline { points } => format!("the rigid polyline through {}", count(points.len(), "point")),
+        MasterSide::Outline { group } => format!("the rigid outline {group}"),
     }
 }
 

@@ -6,6 +6,7 @@ mod steps;
 use std::fmt::Write;
 
 use contact::{contacts, parameters, pressed_too_hard};
+use nalgebra::Vector2;
 use steps::{steps, watched};
 
 use super::file::{Case, MeshSource};
@@ -100,25 +101,25 @@ fn mesh(case: &Case, model: &Model) -> Vec<String> {
 /// Lists every group with its extent, which reveals a side given in place of another.
 fn groups(model: &Model) -> Vec<String> {
     let row = |(name, group): (&String, &Group)| {
-        let (size, nodes): (_, Vec<usize>) = match group {
-            Group::Elements(elements) => {
-                let nodes = elements.iter().flat_map(|&element| &model.mesh.elements[element].nodes);
-                (count(elements.len(), "element"), nodes.copied().collect())
-            }
-            Group::Edges(edges) => {
-                (count(edges.len(), "edge"), edges.iter().flat_map(|edge| &edge.nodes).copied().collect())
-            }
-            Group::Nodes(nodes) => (count(nodes.len(), "point"), nodes.clone()),
+        let size = match group {
+            Group::Elements(elements) => count(elements.len(), "element"),
+            Group::Edges(edges) => count(edges.len(), "edge"),
+            Group::Nodes(nodes) => count(nodes.len(), "point"),
+            Group::Lines(lines) => count(lines.len(), "line") + " of an outline",
         };
-        [name.clone(), format!("{size}, {}", extent(model, &nodes))]
+        let places: Vec<Vector2<f64>> = match group {
+            Group::Lines(lines) => lines.iter().flatten().map(|(_, at)| *at).collect(),
+            _ => model.mesh.nodes_of(group).into_iter().map(|node| model.mesh.nodes[node]).collect(),
+        };
+        [name.clone(), format!("{size}, {}", extent(&places))]
     };
     aligned(&model.mesh.groups.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Extent of some nodes, such as "x from 0 to 2, y = 1".
-fn extent(model: &Model, nodes: &[usize]) -> String {
+/// Extent of some places, such as "x from 0 to 2, y = 1".
+fn extent(places: &[Vector2<f64>]) -> String {
     let along = |name: &str, component: usize| {
-        let values = nodes.iter().map(|&node| model.mesh.nodes[node][component]);
+        let values = places.iter().map(|at| at[component]);
         let [low, high] = [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)];
         if low < high {
             format!("{name} from {} to {}", number(low), number(high))

@@ -6,10 +6,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
 use super::friction::{Along, Friction, check_in_time};
-use super::groups::TIMES;
+use super::groups::{self, TIMES};
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
 use crate::laws::friction::{Dilatancy, FrictionParameters};
+use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::method::Method;
@@ -37,7 +38,7 @@ pub struct Contact {
     pub rigid_body: Option<String>,
     /// Contact method. By default mortar where an edge of either side is quadratic or a side curved (its direction
     /// turns by more than 1° between two corners of more than 45°), and where nodes do not face nodes unless a step is explicit;
-    /// node_to_segment where a slave of straight linear edges meets a rigid circle or polyline, or a slave with a corner a rigid plane;
+    /// node_to_segment where a slave of straight linear edges meets a rigid circle, polyline or outline, or a slave with a corner a rigid plane;
     /// gauss_to_segment otherwise, with a `smooth` master, and where `points` are given
     pub method: Option<Method>,
     /// Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
@@ -176,8 +177,8 @@ pub enum SlidingRange {
     Small,
 }
 
-/// The master side: a group of the mesh, or a rigid master given by a formula, fixed unless `rigid_body` names a moving
-/// body.
+/// The master side: a group of the mesh, or a rigid master given by a formula or an outline, fixed unless `rigid_body` names a
+/// moving body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case", deny_unknown_fields)]
 #[schemars(rename = "Master")]
@@ -204,6 +205,12 @@ pub enum MasterSide {
     Polyline {
         /// Corners, with the solid on the right in their order; repeating the first corner at the end closes the line [L]
         points: Vec<[f64; 2]>,
+    },
+    /// A rigid body bounded by lines of the mesh that are sides of no element, such as a physical curve without a surface
+    Outline {
+        /// Name of their group. The lines form one chain, with the solid on the right in their direction; they are replaced by
+        /// straight ones through their nodes
+        group: String,
     },
     /// Edge group of the mesh; the slave's own group means self-contact
     #[serde(skip)]
@@ -438,7 +445,7 @@ pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> 
 }
 
 /// Returns the shape of a rigid master.
-pub fn shape(side: &MasterSide, place: &str) -> Checked<Shape> {
+pub fn shape(side: &MasterSide, mesh: &Mesh, place: &str) -> Checked<Shape> {
     match side {
         MasterSide::Group(group) => Err(ModelError::new(place, format!("`{group}` is a group, not a rigid body"))),
         MasterSide::Plane { point, normal } => plane(*point, *normal, place),
@@ -448,16 +455,23 @@ pub fn shape(side: &MasterSide, place: &str) -> Checked<Shape> {
             Ok(Shape::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
         }
         MasterSide::Polyline { points } => {
-            let place = format!("{place}.polyline.points");
-            check_finite(&place, points.iter().flatten().copied())?;
-            refuse_if(points.len() < 2, &place, format_args!("has {} points: must have two or more", points.len()))?;
-            if let Some(k) = points.windows(2).position(|pair| pair[0] == pair[1]) {
-                let message = format!("points {} and {} are the same: leave one out", k, k + 1);
-                return Err(ModelError::new(place, message));
-            }
-            Ok(Shape::Polyline(Polyline::new(points.iter().map(|&point| Vector2::from(point)).collect())))
+            let corners = points.iter().map(|&point| Vector2::from(point)).collect();
+            polyline(corners, &format!("{place}.polyline.points"))
+        }
+        MasterSide::Outline { group } => {
+            let place = format!("{place}.outline.group");
+            polyline(groups::outline(mesh, group, &place)?, &place)
         }
     }
+}
+
+fn polyline(corners: Vec<Vector2<f64>>, place: &str) -> Checked<Shape> {
+    check_finite(place, corners.iter().flatten().copied())?;
+    refuse_if(corners.len() < 2, place, format_args!("has {} points: must have two or more", corners.len()))?;
+    if let Some(k) = corners.windows(2).position(|pair| pair[0] == pair[1]) {
+        return Err(ModelError::new(place, format!("points {} and {} are the same: leave one out", k, k + 1)));
+    }
+    Ok(Shape::Polyline(Polyline::new(corners)))
 }
 
 fn plane(point: [f64; 2], normal: [f64; 2], place: &str) -> Checked<Shape> {

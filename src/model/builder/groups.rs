@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError, no_body, refuse_if};
 use crate::mesh::nearest::{NotOne, nearest as nearest_node};
+use crate::mesh::outline::chain;
 use crate::mesh::{Edge, Group, Mesh, shape};
 use crate::model::boundary::{Absorber, NodalWeight};
 use crate::model::text::{number, vector};
@@ -115,9 +116,30 @@ impl Display for Place {
     }
 }
 
-/// Returns a group of the mesh.
+/// Returns a group of nodes or elements of the mesh.
 pub fn group<'m>(mesh: &'m Mesh, name: &str, place: &str) -> Checked<&'m Group> {
-    mesh.group(name).map_err(|error| ModelError::new(place, error))
+    match mesh.group(name).map_err(|error| ModelError::new(place, error))? {
+        Group::Lines(_) => Err(ModelError::new(
+            place,
+            format!(
+                "`{name}` is a group of lines that are sides of no element; it serves as a rigid master alone: {{\"outline\": {{\"group\": \
+                 \"{name}\"}}}}"
+            ),
+        )),
+        group => Ok(group),
+    }
+}
+
+/// Returns the positions of the nodes along the outline of a rigid body, in order.
+pub fn outline(mesh: &Mesh, name: &str, place: &str) -> Checked<Vec<Vector2<f64>>> {
+    let refused = |message: String| ModelError::new(place, message);
+    match mesh.group(name).map_err(|error| ModelError::new(place, error))? {
+        Group::Lines(lines) => chain(lines).map_err(|defect| refused(format!("`{name}`: {defect}"))),
+        Group::Edges(_) => Err(refused(format!(
+            "the lines of `{name}` are sides of elements, which deform: name it as the master itself, or leave its body out of the mesh"
+        ))),
+        group => Err(refused(format!("`{name}` is a group of {}, not of lines", kind(group)))),
+    }
 }
 
 /// Kind of the members of a group.
@@ -126,6 +148,7 @@ pub fn kind(group: &Group) -> &'static str {
         Group::Elements(_) => "solid elements",
         Group::Edges(_) => "edges",
         Group::Nodes(_) => "points",
+        Group::Lines(_) => "lines",
     }
 }
 

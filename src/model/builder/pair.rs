@@ -202,7 +202,10 @@ pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chos
         smooth: *smooth,
         explicit: regime == Regime::Explicit && !contact.tied,
         small: contact.tied || contact.sliding == SlidingRange::Small,
-        bent: matches!(contact.master, MasterSide::Circle { .. } | MasterSide::Polyline { .. }),
+        bent: matches!(
+            contact.master,
+            MasterSide::Circle { .. } | MasterSide::Polyline { .. } | MasterSide::Outline { .. }
+        ),
     };
     contact.area.is_none().then(|| choose([Some(slave), contact.master_group()], asked, mesh))
 }
@@ -277,7 +280,7 @@ fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) 
     let refuse_smooth_if = |fails: bool, why: &str| refuse_if(contact.smooth && fails, format!("{place}.smooth"), why);
     let Some(group) = contact.master_group() else {
         refuse_smooth_if(true, "is for a master of mesh edges, and a rigid body needs none: leave it out")?;
-        let shape = contact::shape(&contact.master, &format!("{place}.master"))?;
+        let shape = contact::shape(&contact.master, mesh, &format!("{place}.master"))?;
         return Ok(Master::Rigid(Rigid { shape, body: rigid::of_contact(contact, mesh, place)? }));
     };
     rigid::of_contact(contact, mesh, place)?;
