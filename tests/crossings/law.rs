@@ -1,7 +1,7 @@
 //! A law that the program does not know, with as many variables as a point has room for.
 
 use fecontact::laws::friction::{
-    Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, register,
+    Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, MOST_VARIABLES, Regime, Sliding, register,
 };
 
 /// Viscous friction above a threshold that grows with what it has slipped.
@@ -15,7 +15,24 @@ struct Viscous {
     threshold: f64,
 }
 
-const VARIABLES: [&str; 4] = ["slipped", "loads", "closed_increments", "last_sign"];
+const VARIABLES: [&str; MOST_VARIABLES] = [
+    "slipped",
+    "loads",
+    "closed_increments",
+    "count_4",
+    "count_5",
+    "count_6",
+    "count_7",
+    "count_8",
+    "count_9",
+    "count_10",
+    "count_11",
+    "count_12",
+    "count_13",
+    "count_14",
+    "count_15",
+    "last_sign",
+];
 
 impl FrictionLaw for Viscous {
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
@@ -25,16 +42,20 @@ impl FrictionLaw for Viscous {
             return FrictionResponse::elastic(old.stuck(traction, pressure.max(0.0)), 0.0).checked(1.0);
         }
         // What it remembers makes it more viscous; a variable that is lost is seen in forces.
-        let [slipped, loads, closed, last] = old.variables;
+        let [slipped, loads, closed, counts @ .., last] = old.variables;
         let growth = 1.0 + 0.01 * closed.min(10.0) + 0.02 * last;
         let dtraction_dslip = self.viscosity * growth / dt;
         let traction = dtraction_dslip * slip;
+        let mut variables = [0.0; MOST_VARIABLES];
+        variables[..3].copy_from_slice(&[slipped + slip, loads + 1.0, closed + 1.0]);
+        variables[3..MOST_VARIABLES - 1].copy_from_slice(&counts.map(|count| count + 1.0));
+        variables[MOST_VARIABLES - 1] = 1.0;
         let state = FrictionState {
             plastic_slip: old.plastic_slip + slip,
             plastic_increment: slip,
             dissipation: old.dissipation + traction * slip,
             regime: if slip == 0.0 { Regime::Stick } else { Regime::Slip },
-            variables: [slipped + slip, loads + 1.0, closed + 1.0, 1.0],
+            variables,
             ..old.stuck(traction, pressure)
         };
         FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)

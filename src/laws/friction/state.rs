@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Maximum number of internal variables of a law.
-pub const MOST_VARIABLES: usize = 4;
+pub const MOST_VARIABLES: usize = 16;
 
 /// Internal state of friction at one contact point between increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
