@@ -389,6 +389,47 @@ class AlongY(dict[str, Any]):
         super().__init__({"y": y})
 
 
+class VonKarman(dict[str, Any]):
+    """Von Kármán: rough at all wavelengths below the correlation length.
+
+    Args:
+        hurst: H: Hurst exponent, 0 < H ≤ 1; ½ is a correlation of exp(−d/a), smaller ones are rougher [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        hurst: float,
+    ) -> None:
+        super().__init__({"von_karman": _given({"hurst": hurst})})
+
+
+class Random(dict[str, Any]):
+    """A random field.
+
+    Args:
+        seed: Number of the field, 0 to 2^53: another seed gives another field
+        mean: m: mean
+        deviation: s: standard deviation, s ≥ 0
+        correlation: a: correlation length, a > 0. At this distance the correlation of a gaussian spectrum is
+            1/e [L]
+        marginal: Distribution of the values at a point
+        spectrum: Spectrum of the field
+    """
+
+    def __init__(
+        self,
+        *,
+        seed: int,
+        mean: float,
+        deviation: float,
+        correlation: float,
+        marginal: Marginal | Given = NOT_GIVEN,
+        spectrum: Spectrum | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"random": _given({"seed": seed, "mean": mean, "deviation": deviation, "correlation": correlation, "marginal": marginal, "spectrum": spectrum})})
+
+
 class Components(dict[str, Any]):
     """Components of the stress, tension positive.
 
@@ -1538,7 +1579,13 @@ InitialStress = Union[Geostatic, Components]
 
 # Quantity that varies along a surface, by reference position. A table is linear between its pairs, constant outside;
 # the same coordinate twice is a jump, and the second value holds there and beyond.
-Profile = Union[AlongX, AlongY, float, str]
+Profile = Union[AlongX, AlongY, Random, float, str]
+
+# Distribution of the values of a random field at a point.
+Marginal = Union[Literal["normal"], Literal["lognormal"]]
+
+# Spectrum of a random field.
+Spectrum = Union[Literal["gaussian"], VonKarman]
 
 # The master side: a group of the mesh, or a rigid master given by a formula, fixed unless `rigid_body` names a moving
 # body.

@@ -357,3 +357,13 @@ def test_dask_workers_killed_in_mid_run(tmp_path: Path) -> None:
         table = studies.study(case, {MU_S: [0.4, 0.45, 0.5, 0.6]}, peak, out, memory=6e8, client=client, progress=False)
         killer.join()
     check_after_kills(case, out, table, told, killed, tmp_path)
+
+
+def test_seeds_of_a_random_interface_are_an_ensemble(document: dict[str, Any], tmp_path: Path) -> None:
+    field = {"seed": 0, "mean": 0.4, "deviation": 0.04, "correlation": 0.3}
+    document["contacts"]["base"]["along"] = {"mu_s": {"random": field}}
+    place = "contacts.base.along.mu_s.random.seed"
+    table = fc.study(fc.Case(document), {place: [1, 2, 3]}, peak, tmp_path, progress=False)
+    assert list(table["status"]) == ["completed"] * 3 and table["peak"].nunique() == 3
+    again = fc.Case(document).replace({place: 2}).run(progress=False)
+    assert peak(again)["peak"] == table["peak"][1]

@@ -19,6 +19,7 @@
 //! Fields of a contact are available by name, one value per point, for output and callers.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -77,6 +78,8 @@ pub struct ContactPair {
     pub laws: Vec<Arc<ContactLaw>>,
     /// Laws of an increment, where parameters vary in time
     pub in_time: Option<LawsInTime>,
+    /// Number of points at which a random parameter is truncated to the range of the law, by its name within the contact
+    pub truncated: BTreeMap<String, usize>,
     /// Initial tractions of every point of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
     /// The pair with exchanged sides, for the penetration of master nodes into the slave

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use super::expression::{Expression, InvalidExpression};
+pub use super::random::{InvalidField, Marginal, RandomField, Spectrum};
 use super::text::{count, number};
 use super::written::written;
 
@@ -107,6 +108,8 @@ pub enum Profile {
     X(Vec<[f64; 2]>),
     /// Pairs of y and value, y ascending
     Y(Vec<[f64; 2]>),
+    /// A random field
+    Random(RandomField),
     /// Uniform value
     #[serde(skip)]
     #[schemars(!skip, untagged)]
@@ -119,7 +122,7 @@ pub enum Profile {
 
 written!(
     Profile,
-    "a number, an expression in x, y such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}",
+    "a number, an expression in x, y such as \"1 + 0.1*x\", {\"x\": [[x, v], …]}, or {\"random\": {…}}",
     number: Constant,
     text: Expression
 );
@@ -136,6 +139,12 @@ impl From<f64> for Profile {
     }
 }
 
+impl From<RandomField> for Profile {
+    fn from(field: RandomField) -> Self {
+        Self::Random(field)
+    }
+}
+
 impl Profile {
     /// Value at a reference position at the start of the run; NaN where an expression is not defined.
     pub fn value(&self, position: Vector2<f64>) -> f64 {
@@ -149,6 +158,7 @@ impl Profile {
             Self::Expression(expression) => expression.value(position, time),
             Self::X(table) => interpolate(table, position.x),
             Self::Y(table) => interpolate(table, position.y),
+            Self::Random(field) => field.value(position),
         }
     }
 

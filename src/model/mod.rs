@@ -5,6 +5,7 @@ mod body;
 pub mod boundary;
 pub mod builder;
 mod expression;
+mod random;
 mod requests;
 mod unfit;
 pub(crate) mod written;

@@ -36,7 +36,7 @@ impl Model {
                 false => Gaps::of(self, pair, farthest).warnings(),
             };
             let further = faces_away(self, pair).into_iter().chain(friction_of_total_pressure(self, pair));
-            let further = further.chain(facets_of_a_fit(self, pair));
+            let further = further.chain(facets_of_a_fit(self, pair)).chain(truncated(pair));
             warnings
                 .into_iter()
                 .chain(further)
@@ -163,6 +163,19 @@ fn uneven(model: &Model, pair: &ContactPair, chosen: &Chosen) -> Option<String> 
         number(at.x),
         number(at.y)
     ))
+}
+
+/// Random parameters that are out of the range of the law at some points.
+fn truncated(pair: &ContactPair) -> impl Iterator<Item = String> {
+    let points = pair.points.len();
+    pair.truncated.iter().map(move |(name, outside)| {
+        format!(
+            "`{name}` is random, and outside the range of the friction law at {outside} of {} ({:.2} %): there it is truncated to the \
+             range; a smaller deviation, or a lognormal marginal, leaves it less often",
+            count(points, "contact point"),
+            100.0 * *outside as f64 / points as f64
+        )
+    })
 }
 
 /// Part of the overlap of a shrink fit that straight edges may bring in [-]

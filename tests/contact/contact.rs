@@ -1,5 +1,6 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fecontact::contact::force::{
@@ -72,6 +73,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         pores: None,
         laws: vec![Arc::new(law.into())],
         in_time: None,
+        truncated: BTreeMap::new(),
         initial: None,
         unseen: Vec::new(),
         modulus: 0.0,

@@ -9,6 +9,7 @@ mod hard;
 mod moving;
 mod periodic;
 mod points;
+mod random;
 mod rigid_bodies;
 mod rings;
 mod self_contact;

@@ -53,7 +53,7 @@ pub const SLOTS: &[Slot] = &[
         ],
     ),
     ("further_parameters", OPTION),
-    ("varying", &[("no", 4), ("by_place", 1), ("in_time", 2), ("by_part", 1)]),
+    ("varying", &[("no", 4), ("by_place", 1), ("in_time", 2), ("by_part", 1), ("random", 1)]),
     ("dilatancy", &[("no", 6), ("free", 1), ("limited", 1), ("structure", 1)]),
     ("wear", OPTION),
     ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1), ("of_bodies", 1)]),

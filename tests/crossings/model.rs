@@ -780,6 +780,27 @@ impl Writer<'_> {
                 part["along"] = json!({name: text});
                 contact["along"] = json!({"law": [part]});
             }
+            "random" => {
+                let (name, mean) = match self.draft.of("friction") {
+                    "coulomb" => ("mu", 0.3),
+                    "adhesion" => ("strength", f.stress),
+                    "super_subloading" => ("mu_s", 0.5),
+                    "slip_weakening" => ("mu_d", 0.35),
+                    "rate_and_state" => ("f_0", 0.45),
+                    law => panic!("say which parameter of `{law}` varies"),
+                };
+                let rough = json!({"von_karman": {"hurst": self.pick("hurst", &[0.5, 0.8])}});
+                let picked = |name: &str, plain: Value, other: Value| {
+                    if self.pick(name, &[0.0, 1.0]) == 1.0 { other } else { plain }
+                };
+                let field = json!({
+                    "seed": self.pick("seed", &[1.0, 2.0, 3.0]) as u64, "mean": mean, "deviation": 0.05 * mean,
+                    "correlation": 0.5 * f.length,
+                    "marginal": picked("marginal", json!("normal"), json!("lognormal")),
+                    "spectrum": picked("spectrum", json!("gaussian"), rough),
+                });
+                contact["along"] = json!({name: {"random": field}});
+            }
             "no" => {}
             value => {
                 let (name, text) = parameter(self.draft.of("friction"), value == "in_time");
@@ -1287,6 +1308,9 @@ fn tell_in_time(contact: &mut Value, early: f64) {
             let Some(value) = value.as_f64().filter(|_| !of_start) else { continue };
             let jump = if of_first_state.contains(&name.as_str()) { 0.0 } else { 0.2 };
             let along = &mut of["along"][name];
+            if along.is_object() {
+                continue;
+            }
             let text = along.as_str().map_or(value.to_string(), str::to_owned);
             *along = json!(format!("({text})*(1+{jump}*max(0,1-t/{early}))"));
         }

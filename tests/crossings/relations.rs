@@ -295,15 +295,23 @@ fn flight(base: &Base) -> Outcome {
     }
 }
 
+/// A random field is one of the place: elsewhere it is another one.
+fn has_a_place(draft: &Draft) -> bool {
+    draft.is("varying", "random")
+}
+
 /// Far from the origin; rings along their axis alone.
 fn moved(base: &Base) -> Outcome {
+    if has_a_place(base.draft) {
+        return Outcome::Idle;
+    }
     let far = f64::from(1 << 20);
     let by = if base.draft.of("section").starts_with("rings") { [0.0, far] } else { [far, -0.25 * far] };
     base.same(Ways { frame: base.ways.frame.clone().moved(by), ..base.ways.clone() }, SAME, NOTHING)
 }
 
 fn turns(draft: &Draft) -> bool {
-    !draft.of("section").starts_with("rings") && !draft.is("stress", "geostatic")
+    !draft.of("section").starts_with("rings") && !draft.is("stress", "geostatic") && !has_a_place(draft)
 }
 
 fn turned(base: &Base) -> Outcome {
@@ -332,7 +340,7 @@ fn faces_nodes(draft: &Draft) -> bool {
 
 fn mirrored(base: &Base) -> Outcome {
     let axis = usize::from(base.draft.of("section").starts_with("rings"));
-    if base.draft.is("stress", "geostatic") && axis == 1 {
+    if base.draft.is("stress", "geostatic") && axis == 1 || has_a_place(base.draft) {
         return Outcome::Idle;
     }
     // A node that faces a node is projected on the edge before it or the one after; in a mirror on the other, which is not quite

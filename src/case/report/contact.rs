@@ -126,7 +126,11 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
     let vary = |along: &BTreeMap<String, Profile>| -> Option<String> {
-        let names: Vec<&str> = along.keys().map(String::as_str).collect();
+        let random = |profile: &Profile| matches!(profile, Profile::Random(_));
+        let name = |(name, profile): (&String, &Profile)| {
+            if random(profile) { format!("{name} at random") } else { name.clone() }
+        };
+        let names: Vec<String> = along.iter().map(name).collect();
         (!names.is_empty()).then(|| format!("varies along the interface: {}", names.join(", ")))
     };
     lines.extend(vary(&input.along.parameters));

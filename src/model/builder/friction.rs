@@ -24,7 +24,7 @@ use crate::laws::parameter::{InvalidParameter, UnknownParameter};
 use crate::mesh::Mesh;
 use crate::mesh::names::not_known;
 use crate::mesh::shape::gauss;
-use crate::model::boundary::{Profile, check_table};
+use crate::model::boundary::{InvalidField, Profile, check_table};
 
 /// Friction of a contact: a law, or parameters of one, whose α_t has a default.
 #[derive(Clone, Deserialize)]
@@ -118,8 +118,8 @@ impl Friction {
         self
     }
 
-    /// Returns the initial laws of a contact, with the offsets of its surfaces, and the laws in time if any varies; and for
-    /// each slave point the number of its law, shared by points with the same values.
+    /// Returns the laws of a contact, with the offsets of its surfaces; and for each slave point the number of its law, shared
+    /// by points with the same values.
     pub(super) fn laws(
         &self,
         place: &str,
@@ -127,7 +127,7 @@ impl Friction {
         mesh: &Mesh,
         default: Option<DefaultAlphaT>,
         offsets: Offsets,
-    ) -> Checked<(Vec<Arc<ContactLaw>>, Option<LawsInTime>)> {
+    ) -> Checked<Laws> {
         for Region { positive: Named { name, profile }, .. } in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
         }
@@ -135,7 +135,7 @@ impl Friction {
         for Named { name, profile } in all().flat_map(|friction| &friction.varying) {
             check_in_time(profile, &format!("{place}.{name}"))?;
         }
-        let (mut laws, mut varying) = (Vec::new(), Vec::new());
+        let (mut laws, mut varying, mut truncated) = (Vec::new(), Vec::new(), BTreeMap::new());
         let mut numbers: BTreeMap<(usize, Vec<u64>), usize> = BTreeMap::new();
         for point in points {
             let at = position(point, mesh);
@@ -147,7 +147,12 @@ impl Friction {
             }
             let (number, friction) = chosen;
             let values = friction.varying.iter().map(|named| named.value(at, place));
-            let values = values.collect::<Checked<Vec<_>>>()?;
+            let drawn = values.collect::<Checked<Vec<_>>>()?;
+            let values = friction.in_range(&drawn, default_alpha_t, offsets);
+            for (named, _) in friction.varying.iter().zip(drawn.iter().zip(&values)).filter(|(_, (was, is))| was != is)
+            {
+                *truncated.entry(named.name.clone()).or_default() += 1;
+            }
             // If a parameter varies in place and time, only points at the same place share a law.
             let place_of = [at.x, at.y].into_iter().filter(|_| friction.varies_in_place_and_time());
             let key = (number, values.iter().copied().chain(place_of).map(f64::to_bits).collect());
@@ -164,27 +169,59 @@ impl Friction {
             let law = ContactLaw::with_offsets(law, offsets).map_err(|InvalidParameter { name, value, allowed }| {
                 ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
             })?;
-            varying.push(friction.in_time(at, default_alpha_t, offsets));
+            varying.push(friction.in_time(at, &values, default_alpha_t, offsets));
             laws.push(Arc::new(law));
         }
         let varies = all().flat_map(|friction| &friction.varying).any(|named| named.profile.depends_on_time());
         let during = move |law: usize, span| varying[law].during(span);
         let in_time = varies.then(|| LawsInTime::new(laws.len(), during));
-        Ok((laws, in_time))
+        Ok(Laws { at_start: laws, in_time, truncated })
+    }
+
+    /// Returns the values with those of random fields truncated to the range of the law: where the law does not take them, the
+    /// nearest ones that it takes, one after another from the means of all, because the range of one may depend on others.
+    fn in_range(&self, drawn: &[f64], alpha_t: Option<f64>, offsets: Offsets) -> Vec<f64> {
+        let fits = |values: &[f64]| {
+            let law = (self.law)(values, alpha_t.unwrap_or(1.0));
+            law.is_ok_and(|law| ContactLaw::with_offsets(law, offsets).is_ok())
+        };
+        let mean = |named: &Named| match &named.profile {
+            Profile::Random(field) => Some(field.mean),
+            _ => None,
+        };
+        let means: Vec<Option<f64>> = self.varying.iter().map(mean).collect();
+        let mut values: Vec<f64> = means.iter().zip(drawn).map(|(mean, drawn)| mean.unwrap_or(*drawn)).collect();
+        // What the law does not take at the means is an error, which names the values.
+        if means.iter().all(Option::is_none) || fits(drawn) || !fits(&values) {
+            return drawn.to_vec();
+        }
+        for (k, mean) in means.iter().enumerate() {
+            let Some(mean) = *mean else { continue };
+            values[k] = nearest(mean, drawn[k], |value| {
+                let mut tried = values.clone();
+                tried[k] = value;
+                fits(&tried)
+            });
+        }
+        values
     }
 
     fn varies_in_place_and_time(&self) -> bool {
         let of_both = |profile: &Profile| match profile {
             Profile::Expression(expression) => expression.depends_on_time() && expression.depends_on_position(),
-            Profile::Constant(_) | Profile::X(_) | Profile::Y(_) => false,
+            Profile::Constant(_) | Profile::X(_) | Profile::Y(_) | Profile::Random(_) => false,
         };
         self.varying.iter().any(|named| of_both(&named.profile))
     }
 
-    /// Returns the time-dependent law at a place.
-    fn in_time(&self, at: Vector2<f64>, alpha_t: Option<f64>, offsets: Offsets) -> InTime {
+    /// Returns the time-dependent law at a place, where its parameters have these values at the start.
+    fn in_time(&self, at: Vector2<f64>, values: &[f64], alpha_t: Option<f64>, offsets: Offsets) -> InTime {
+        let there = |(named, value): (&Named, &f64)| match named.profile.depends_on_time() {
+            true => named.profile.clone(),
+            false => Profile::Constant(*value),
+        };
         InTime {
-            profiles: self.varying.iter().map(|named| named.profile.clone()).collect(),
+            profiles: self.varying.iter().zip(values).map(there).collect(),
             at,
             law: self.law.clone(),
             alpha_t: alpha_t.unwrap_or(f64::NAN),
@@ -209,6 +246,39 @@ impl Friction {
             observables::check_names(&law.description()).map_err(|error| ModelError::new("", error)).map(|()| law)
         };
         law.and_then(named).map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
+    }
+}
+
+/// Laws of a contact.
+pub(super) struct Laws {
+    /// Those at the start of the run
+    pub at_start: Vec<Arc<ContactLaw>>,
+    /// Those in time, if any varies
+    pub in_time: Option<LawsInTime>,
+    /// Number of points at which a random parameter is truncated, by its name within the contact
+    pub truncated: BTreeMap<String, usize>,
+}
+
+/// Halvings that find the end of a range to round-off.
+const HALVINGS: usize = 60;
+
+/// A parameter that has to be positive is truncated at this fraction of its mean.
+const LEAST: f64 = 0.01;
+
+/// The value nearest to `value` that fits, on the way to it from `mean`, which fits.
+fn nearest(mean: f64, value: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    if fits(value) {
+        return value;
+    }
+    let (mut end, mut beyond) = (mean, value);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (end + beyond);
+        *(if fits(middle) { &mut end } else { &mut beyond }) = middle;
+    }
+    match end.abs() < LEAST * mean.abs() {
+        true if fits(0.0) => 0.0,
+        true => LEAST * mean,
+        false => end,
     }
 }
 
@@ -274,13 +344,18 @@ pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
     check_in_time(profile, place)
 }
 
-/// Checks that the coordinates of a table ascend, and that a parameter of the initial state does not depend on time.
+/// Checks that the coordinates of a table ascend, that the numbers of a random field are in range, and that a parameter of the
+/// initial state does not depend on time.
 pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
     let parameter = place.rsplit('.').next().unwrap_or_default();
     let message = format!("{parameter} is constant in time at each point: the variables are x and y, and not t");
     refuse_if(profile.depends_on_time() && OF_THE_START.contains(&parameter), place, message)?;
     let (name, table) = match profile {
         Profile::Constant(_) | Profile::Expression(_) => return Ok(()),
+        Profile::Random(field) => {
+            let named = |error: InvalidField| ModelError::new(format!("{place}.random.{}", error.key), error);
+            return field.check().map_err(named);
+        }
         Profile::X(table) => ("x", table),
         Profile::Y(table) => ("y", table),
     };

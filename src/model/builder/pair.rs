@@ -40,6 +40,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
+use super::friction::Laws;
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
@@ -78,7 +79,8 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
     let structure = contact.initial.as_ref().and_then(|initial| initial.structure.as_ref());
     contact::check_has_friction(contact, &place)?;
     let friction = friction::friction(&contact.friction, &contact.along, structure, &place)?;
-    let (laws, in_time) = friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
+    let Laws { at_start: laws, in_time, truncated } =
+        friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
     for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
@@ -99,6 +101,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         pores,
         laws,
         in_time,
+        truncated,
         initial: None,
         unseen: Vec::new(),
         modulus: modulus(contact, model),
