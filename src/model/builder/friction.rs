@@ -148,7 +148,7 @@ impl Friction {
             let (number, friction) = chosen;
             let values = friction.varying.iter().map(|named| named.value(at, place));
             let drawn = values.collect::<Checked<Vec<_>>>()?;
-            let values = friction.in_range(&drawn, default_alpha_t, offsets);
+            let values = friction.in_range(&drawn, default.map(|default| default.of_law), offsets);
             for (named, _) in friction.varying.iter().zip(drawn.iter().zip(&values)).filter(|(_, (was, is))| was != is)
             {
                 *truncated.entry(named.name.clone()).or_default() += 1;
