@@ -143,7 +143,7 @@ fn cantilevers() -> Model {
     }))
 }
 
-/// A softer block pushed by its top over a faceted ridge.
+/// A softer block pushed by its top over a faceted ridge, with the penalties of explicit steps.
 fn faceted(height: f64, method: &str, mu: f64) -> Model {
     let top = |x: f64| -height * x.abs();
     let block = |s: f64| -0.75 + 0.5 * s;
@@ -155,7 +155,8 @@ fn faceted(height: f64, method: &str, mu: f64) -> Model {
             "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
             "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}},
         },
-        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "friction": {"law": "coulomb", "mu": mu}}},
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "normal": {"alpha_n": 1.1e4},
+                              "friction": {"law": "coulomb", "mu": mu}}},
         "steps": [
             {"name": "press", "duration": 1, "dt": {"initial": 0.25},
              "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.04}]},

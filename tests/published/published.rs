@@ -601,7 +601,7 @@ fn augmented_lagrangian_of_the_greco_block() {
     assert!((answers[1] - 0.02865).abs() < 0.03 * 0.02865);
 }
 
-/// Penalties 10 times the default, plain and with the augmented Lagrangian, draw the die nearly as easily as the default: points at
+/// α_n ten times the default and an α_t of 50 (λ + 2G)/h, plain and with the augmented Lagrangian, draw the die nearly as easily as the default: points at
 /// its front come in under the highest pressure of all, slide from the start, and close and part from iterate to iterate.
 /// (Where such points stuck in the increment in which they close, nearly every second increment was cut.) The first tenth of
 /// the way.
@@ -611,7 +611,7 @@ fn stiff_penalties_cut_no_increments_of_ironing() {
     for tolerance in [None, Some(1e-5)] {
         let (run, _) = solve("ironing_q4", |case| {
             shortened(case);
-            with_penalties(case, &base.model, [10.0; 2]);
+            with_penalties(case, &base.model, [10.0, 1.0 / 6.0]);
             if let Some(tolerance) = tolerance {
                 case["contacts"]["base"]["normal"]["penetration"] = json!(tolerance);
             }
