@@ -43,6 +43,21 @@ enum Command {
         #[arg(long)]
         resolved: bool,
     },
+    /// Run a case on meshes of blocks and with increments that are halved again and again, and tell how sure a number of it is
+    Converge {
+        /// The case file (JSON)
+        case: PathBuf,
+        /// Column of the history, and what is taken of it: COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean (over time); may be given
+        /// several times
+        #[arg(long, required = true)]
+        measure: Vec<String>,
+        /// Number of runs, 3 or more; the first is the case as it is
+        #[arg(long, default_value_t = 3)]
+        levels: usize,
+        /// Folder of the results, with a folder for each run [default: out/<case name>]
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// Drive a friction law on its own along a path of slip, pressure and time
     Law {
         /// The test (JSON)
@@ -92,6 +107,7 @@ fn run() -> Result<(), Failure> {
     match command {
         Command::Run { case, out, threads, quiet, resume } => cli::run(&case, Options { out, threads, quiet, resume }),
         Command::Check { case, resolved } => cli::check(&case, resolved),
+        Command::Converge { case, measure, levels, out } => cli::converge(&case, &measure, levels, out),
         Command::Law { test, out } => cli::law(&test, out),
         Command::Plot { .. } => Err(cli::plot()),
         Command::Report { folders, out } => cli::report(&folders, out),

@@ -16,6 +16,7 @@ from . import model, plot
 from ._native import __version__
 from .calibration import Fit, fit
 from .case import Case, schema
+from .convergence import Convergence, converge
 from .errors import CaseError, Defect, Interrupted, RunWarning, Stopped
 from .law import Drive, Law, friction_law, law
 from .mesh import Mesh
@@ -26,6 +27,7 @@ from .studies import study
 __all__ = [
     "Case",
     "CaseError",
+    "Convergence",
     "Defect",
     "Drive",
     "Fit",
@@ -37,6 +39,7 @@ __all__ = [
     "Simulation",
     "Stopped",
     "__version__",
+    "converge",
     "fit",
     "friction_law",
     "law",

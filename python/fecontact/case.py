@@ -119,6 +119,20 @@ class Case:
         case._native = case._made()
         return case
 
+    def refined(self, times: int = 1) -> Case:
+        """The case with elements and increments halved so many times; it writes no fields. What it leaves open has the default of the
+        finer mesh.
+
+        Raises:
+            CaseError: the case is invalid, or its mesh is not made of blocks in the case itself.
+        """
+        if self._mesh is not None:
+            raise refused(self._path, "mesh", "is at hand, and only blocks in the case can be refined: give {\"blocks\": …}")
+        case = Case.__new__(Case)
+        case._path, case._mesh, case._document = self._path, None, json.loads(self._native.refined(times))
+        case._native = case._made()
+        return case
+
     def replace(self, values: Mapping[str, Any]) -> Case:
         """The case with other values at some places.
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fecontact::case::convergence::{self, Convergence, Measure};
 use fecontact::case::{self, CaseError, Opened, Written, law_test};
 use fecontact::output::checkpoint::Checkpoint;
 use fecontact::output::quantities;
@@ -77,6 +78,26 @@ impl Case {
         })?;
         resolved.map_err(|error| case_error(py, &error))
     }
+
+    /// The case as JSON with elements and increments that are halved so many times.
+    fn refined(&self, py: Python, times: u32) -> PyResult<String> {
+        let refined = Pool::new(None)?.short(py, || case::refined(&self.written, times))?;
+        refined.map(|written| written.document.to_string()).map_err(|error| case_error(py, &error))
+    }
+}
+
+/// The number of a measure, COLUMN:max, from the results in a folder.
+#[pyfunction]
+pub fn measured(folder: PathBuf, measure: &str) -> PyResult<f64> {
+    measure.parse().and_then(|measure: Measure| measure.of(&folder)).map_err(PyValueError::new_err)
+}
+
+/// Order, extrapolated value, error bar and verdict of numbers of runs that are refined alike.
+#[pyfunction]
+pub fn judge(values: Vec<f64>) -> PyResult<(Option<f64>, Option<f64>, Option<f64>, String)> {
+    let Convergence { order, extrapolated, bar, verdict, .. } =
+        convergence::judge(&values).map_err(PyValueError::new_err)?;
+    Ok((order, extrapolated, bar, verdict))
 }
 
 /// The JSON Schema of a `"case"`, or of the test of a `"law"`; the quantities of `"results"` by their files.

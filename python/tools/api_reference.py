@@ -31,6 +31,7 @@ SECTIONS = [
     ("Results", "result", ["Result", "report"]),
     ("Increment by increment", "simulation", ["Simulation"]),
     ("Laws alone", "law", ["law", "Law", "Drive", "friction_law"]),
+    ("How sure a number is", "convergence", ["converge", "Convergence"]),
     ("Studies", "studies", ["study", "grid", "latin_hypercube", "sobol"]),
     ("Fits", "calibration", ["fit", *(name for name in calibration.__all__ if name != "fit")]),
     ("Figures", "plot", ["friction", "slip_fraction", "interface", "events", "path", "newton", "residuals"]),

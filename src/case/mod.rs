@@ -2,6 +2,7 @@
 //! ([`file`]); run by [`job`].
 
 mod again;
+pub mod convergence;
 mod error;
 pub mod file;
 mod gradients;
@@ -9,6 +10,7 @@ pub mod job;
 pub mod law_test;
 pub mod loading;
 mod read;
+mod refined;
 mod report;
 mod resolved;
 mod schema;
@@ -25,6 +27,7 @@ use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_
 pub use again::Opened;
 pub use error::CaseError;
 use file::{Case, MeshSource, blocks};
+pub use refined::refined;
 pub use report::{report, understood};
 pub use resolved::resolved;
 

@@ -2,6 +2,7 @@
 
 #[macro_use]
 mod say;
+mod converge;
 mod failure;
 mod interrupt;
 mod place;
@@ -13,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
+pub use self::converge::converge;
 pub use self::failure::Failure;
 use self::place::{claim, default_folder};
 pub use self::run::{Options, run};

@@ -40,6 +40,11 @@ pub struct HistoryRows {
     memory: Memory,
 }
 
+/// Names of the columns of a model's history.
+pub fn columns(model: &Model) -> Vec<String> {
+    HistoryRows::new(model).1
+}
+
 /// Memory from row to row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Memory {

@@ -6,6 +6,7 @@ mod common;
 mod delayed;
 
 mod committed;
+mod converge;
 mod convergence;
 mod gradients;
 mod input;

@@ -154,9 +154,20 @@ impl MeshKeys {
     }
 }
 
+/// A place within the mesh at a place.
+fn within(place: &str, rest: &str) -> String {
+    if place.is_empty() { rest.to_string() } else { format!("{place}.{rest}") }
+}
+
 /// Returns the mesh of blocks at a place.
 pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
-    let at = |rest: &str| if place.is_empty() { rest.to_string() } else { format!("{place}.{rest}") };
+    let complain = |error: BlockError| ModelError::new(within(place, &error.place), error.message);
+    evaluated(input, place)?.mesh().map_err(complain)
+}
+
+/// Returns the blocks at a place, with the numbers of their expressions.
+pub fn evaluated(input: &BlocksInput, place: &str) -> Checked<Blocks> {
+    let at = |rest: &str| within(place, rest);
     let parameters = parameters(&input.parameters, &at("parameters"))?;
     let block = |(b, input): (usize, &BlockInput)| block(input, &parameters, &at(&format!("blocks[{b}]")));
     let blocks = input.blocks.iter().enumerate().map(block).collect::<Checked<_>>()?;
@@ -164,8 +175,7 @@ pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
         let message = "is not used in any expression of the mesh: use it, or leave it out";
         return Err(ModelError::new(at(&format!("parameters.{name}")), message));
     }
-    let complain = |BlockError { place, message }| ModelError::new(at(&place), message);
-    Blocks { blocks, apart: input.apart.clone(), joined: input.joined.clone() }.mesh().map_err(complain)
+    Ok(Blocks { blocks, apart: input.apart.clone(), joined: input.joined.clone() })
 }
 
 /// Values of parameters by name.

@@ -18,8 +18,8 @@ use crate::model::builder::{
 };
 use crate::model::written::Written;
 use blocks::MeshKeys;
-pub(super) use blocks::blocks;
 pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MiddleInput};
+pub(super) use blocks::{blocks, evaluated};
 pub use output::OutputInput;
 
 /// A case: mesh, bodies, contacts and steps.

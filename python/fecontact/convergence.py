@@ -1,0 +1,83 @@
+"""How sure a number of a run is: the case on meshes and with increments that are refined alike."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from . import _native
+from ._plain import a_name
+from .case import Case
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """What a number makes of refinement (:func:`fecontact.converge`).
+
+    Attributes:
+        measure: the number, ``"base.tangential_force:max"``.
+        runs: one row per run, the coarsest first: elements, increments, and the value.
+        order: observed order of convergence; None if the differences alternate or are round-off.
+        extrapolated: value for elements and increments of no size; None if it does not converge.
+        bar: error bar of the value of the last run; None if it does not converge.
+        verdict: the same in words.
+    """
+
+    measure: str
+    runs: pd.DataFrame
+    order: float | None
+    extrapolated: float | None
+    bar: float | None
+    verdict: str
+
+    @property
+    def value(self) -> float:
+        """Value of the last run."""
+        return float(self.runs["value"].iloc[-1])
+
+    @property
+    def converges(self) -> bool:
+        """Whether there is an error bar."""
+        return self.bar is not None
+
+    def __repr__(self) -> str:
+        bar = "" if self.bar is None else f": {self.value:.8g} ± {self.bar:.2g}, extrapolated {self.extrapolated:.8g}"
+        return f"<{self.measure} {self.verdict}{bar}>"
+
+
+def converge(
+    case: Case, measure: str, levels: int = 3, out: str | os.PathLike[str] | None = None, threads: int | None = None
+) -> Convergence:
+    """Run a case as it is, then on meshes of blocks whose elements, and with increments that are halved again and again, and judge a
+    number of these runs: its observed order, its extrapolated value, its error bar, or that it does not converge.
+
+    The same as ``fecontact converge``. Only a mesh of blocks in the case can be refined.
+
+    Args:
+        case: the case; its own mesh is the coarsest.
+        measure: a column of the history and what is taken of it: ``"base.tangential_force:max"``, ``:min``, ``:end``, or ``:mean`` (over time).
+        levels: number of runs, 3 or more; the last three count.
+        out: folder of the results, with a folder ``level_k`` for each run; default: a temporary one.
+        threads: number of threads of a run.
+
+    Raises:
+        CaseError: the case is invalid, or its mesh is not made of blocks.
+        ValueError: the measure is invalid, or there are fewer than three levels.
+        Stopped: a run stopped while solving.
+    """
+    measure = a_name(measure, "measure", "measure")
+    if levels < 3:
+        raise ValueError(f"levels: is {levels}: an order takes 3 or more")
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="fecontact-", ignore_cleanup_errors=True) as holder:
+        for level in range(levels):
+            folder = Path(holder if out is None else out, f"level_{level}")
+            summary = case.refined(level).run(out=folder, threads=threads, progress=False).summary
+            value = _native.measured(os.fspath(folder), measure)
+            rows.append({"elements": summary["elements"], "increments": summary["increments"], "value": value})
+    runs = pd.DataFrame(rows)
+    return Convergence(measure, runs, *_native.judge([float(value) for value in runs["value"]]))

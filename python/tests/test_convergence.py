@@ -1,0 +1,65 @@
+"""Error bars by refinement, against a closed form; the rules of the bar are held in tests/command/converge.rs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import DOCUMENT
+
+import fecontact as fc
+
+
+def tube() -> tuple[dict[str, Any], float]:
+    """A thick tube under a pressure inside, and Lamé's displacement of its bore."""
+    a, b, p, young, nu = 1.0, 2.0, 0.7, 200.0, 0.3
+    block = {
+        "body": "tube",
+        "corners": [[a, 0], [b, 0], [b, 0.5], [a, 0.5]],
+        "elements": [4, 1],
+        "sides": ["bottom", None, "top", "bore"],
+    }
+    case = {
+        "section": "axisymmetric",
+        "mesh": {"blocks": [block]},
+        "watch": ["bore"],
+        "bodies": {"tube": {"material": {"model": "linear", "E": young, "nu": nu}}},
+        "steps": [
+            {
+                "name": "load",
+                "duration": 1,
+                "dt": {"initial": 0.5},
+                "supports": [{"on": "bottom", "uy": 0}, {"on": "top", "uy": 0}],
+                "loads": [{"on": "bore", "traction": {"x": p}}],
+            }
+        ],
+    }
+    return case, (1 + nu) * p * a**2 / (young * (b**2 - a**2)) * ((1 - 2 * nu) * a + b**2 / a)
+
+
+def test_the_bar_of_a_tube_holds_its_closed_form(tmp_path: Path) -> None:
+    case, exact = tube()
+    found = fc.converge(fc.Case(case), "bore.ux:end", out=tmp_path)
+    assert list(found.runs["elements"]) == [4, 16, 64] and list(found.runs["increments"]) == [2, 4, 8]
+    assert found.converges and found.bar is not None and found.order == pytest.approx(2, abs=0.2)
+    error = abs(found.value - exact)
+    assert error < found.bar < 2 * error
+    assert found.extrapolated == pytest.approx(exact, abs=0.1 * error)
+    assert "converges with the order 2" in found.verdict and "±" in repr(found)
+    assert fc.Result(tmp_path / "level_2").history["bore.ux"].iloc[-1] == found.value
+
+
+def test_what_cannot_be_refined_is_refused() -> None:
+    case = fc.Case(tube()[0])
+    with pytest.raises(ValueError, match="levels: is 2"):
+        fc.converge(case, "bore.ux:end", levels=2)
+    with pytest.raises(ValueError, match="is no measure"):
+        fc.converge(case, "bore.ux")
+    with pytest.raises(ValueError, match="has no column"):
+        fc.converge(case, "bor.ux:end")
+    with pytest.raises(fc.CaseError, match="mesh: is not made of blocks"):
+        fc.converge(fc.Case(DOCUMENT), "base.normal_force:max")
+    mesh = fc.Mesh.from_blocks(tube()[0]["mesh"]["blocks"])
+    with pytest.raises(fc.CaseError, match="mesh: is at hand"):
+        fc.converge(fc.Case({**tube()[0], "mesh": mesh}), "bore.ux:end")

@@ -1,0 +1,99 @@
+//! A case on a finer mesh and with shorter increments, as convergence studies need it ([`super::convergence`]).
+//!
+//! ```text
+//! n → 2 n                            elements along both sides of a block
+//! g → g^((2n − 1)/(2n − 2))          their grading, last size over first: neighbours differ by the root of what they did
+//! dt → dt/2,  error → error/4        increments, and the error allowed in one, which is of second order in them
+//! ```
+//! What the case leaves open has the default of the finer mesh; `alpha_n` then grows with 1/h.
+
+use super::file::{Amount, BlockInput, BlocksInput, Case, GradingInput, MeshSource, MiddleInput, evaluated};
+use super::{CaseError, Written, build};
+use crate::mesh::{Block, Blocks, Grading};
+use crate::model::builder::{Checked, IncrementSettings, LoadStep, ModelError, refuse_if};
+use crate::model::scheme::Scheme;
+use crate::model::{Increments, Step};
+
+/// Most halvings of a mesh: 65 536 elements for one along a side are more than any mesh may have.
+const MOST: u32 = 16;
+
+/// Returns a case whose elements and increments are halved so many times. It writes no fields and no page.
+///
+/// # Errors
+/// Returns [`CaseError`] if the case is invalid, begins with another one, or its mesh is not made of blocks.
+pub fn refined(written: &Written, times: u32) -> Result<Written, CaseError> {
+    let Written { path, case, .. } = written;
+    let mesh = refined_mesh(case, times).map_err(|complaint| complaint.in_file(path))?;
+    let model = build(case, path)?;
+    let mut case = Case { mesh, ..case.clone() };
+    for (given, step) in case.steps.iter_mut().zip(&model.steps) {
+        refine_increments(given, step, 2.0_f64.powi(times as i32));
+    }
+    (case.output.fields, case.output.report) = (false, false);
+    // Values read from JSON can be written as JSON.
+    let document = serde_json::to_value(&case).unwrap_or_default();
+    Ok(Written { path: path.clone(), document, case })
+}
+
+fn refined_mesh(case: &Case, times: u32) -> Checked<MeshSource> {
+    let message =
+        "the mesh is that of the case before, which has to be refined as well: give the steps of both in one case";
+    refuse_if(case.begin_with.is_some(), "begin_with", message)?;
+    refuse_if(times > MOST, "mesh", format_args!("cannot be halved {times} times: {MOST} are the most"))?;
+    let MeshSource::Blocks(input) = &case.mesh else {
+        let message = "is not made of blocks, which alone can be refined: give blocks, or run the case on meshes of your own, each \
+                       with elements and increments of half the size";
+        return Err(ModelError::new("mesh", message));
+    };
+    let Blocks { blocks, apart, joined } = evaluated(input, "mesh")?;
+    let blocks = blocks.iter().map(|block| halved(block, times)).collect();
+    Ok(MeshSource::Blocks(BlocksInput { parameters: [].into(), blocks, apart, joined }))
+}
+
+/// The block with elements that are halved so many times.
+fn halved(block: &Block, times: u32) -> BlockInput {
+    let numbers = |point: [f64; 2]| point.map(Amount::Number);
+    let (mut elements, mut grading) = (block.elements, block.grading);
+    for _ in 0..times {
+        for k in 0..2 {
+            grading[k] = of_halves(grading[k], elements[k]);
+            elements[k] *= 2;
+        }
+    }
+    BlockInput {
+        body: block.body.clone(),
+        corners: block.corners.map(numbers),
+        arcs: block.arcs.map(|centre| centre.map(numbers)),
+        elements: elements.map(|count| Amount::Number(count as f64)),
+        grading: grading.map(|grading| match grading {
+            Grading::Ratio(ratio) => GradingInput::Ratio(ratio),
+            Grading::Middle(ratio) => GradingInput::Middle(MiddleInput { middle: Amount::Number(ratio) }),
+        }),
+        kind: block.kind,
+        sides: block.sides.clone(),
+        points: block.points.iter().map(|(name, at)| (name.clone(), numbers(*at))).collect(),
+    }
+}
+
+/// The grading of twice as many elements. A single element, or two of one size, have none.
+fn of_halves(grading: Grading, count: usize) -> Grading {
+    let power = |halves: usize, last: usize| halves as f64 / (2 * last.max(1)) as f64;
+    match grading {
+        Grading::Ratio(ratio) => Grading::Ratio(ratio.powf(power(2 * count - 1, count - 1))),
+        Grading::Middle(ratio) => Grading::Middle(ratio.powf(power(count - 1, (count - 1) / 2))),
+    }
+}
+
+/// Shortens the increments of a step by a factor. Explicit ones follow from the mesh unless they are given.
+fn refine_increments(given: &mut LoadStep, step: &Step, factor: f64) {
+    if matches!(step.scheme, Scheme::Explicit { .. }) && given.dt.is_none() {
+        return;
+    }
+    let Increments { initial, min, max, error } = step.increments;
+    given.dt = Some(IncrementSettings {
+        initial: initial / factor,
+        min: Some(min / factor),
+        max: Some(max / factor),
+        error: error.map(|error| error / (factor * factor)),
+    });
+}

@@ -1,0 +1,131 @@
+//! `fecontact converge`: refinement of cases, and what is made of the numbers of their runs.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use fecontact::case::convergence::{Convergence, judge};
+use fecontact::case::{self, Written};
+use fecontact::model::Model;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+fn fecontact(arguments: &[&str], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fecontact"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program runs")
+}
+
+/// A thick tube under a pressure inside, of so many bilinear elements, and Lamé's displacement of its bore.
+fn tube(elements: u32) -> (Value, f64) {
+    let (a, b, p, young, nu): (f64, f64, f64, f64, f64) = (1.0, 2.0, 0.7, 200.0, 0.3);
+    let mesh = json!({
+        "parameters": {"n": elements},
+        "blocks": [{"body": "tube", "corners": [[a, 0], [b, 0], [b, 0.5], [a, 0.5]], "elements": ["n", 1], "grading": [2, 1],
+            "sides": ["bottom", null, "top", "bore"]}],
+    });
+    let case = json!({
+        "section": "axisymmetric", "mesh": mesh, "watch": ["bore"],
+        "bodies": {"tube": {"material": {"model": "linear", "E": young, "nu": nu}}},
+        "steps": [{"name": "load", "duration": 1, "dt": {"initial": 0.5},
+            "supports": [{"on": "bottom", "uy": 0}, {"on": "top", "uy": 0}], "loads": [{"on": "bore", "traction": {"x": p}}]}],
+    });
+    (case, (1.0 + nu) * p * a * a / (young * (b * b - a * a)) * ((1.0 - 2.0 * nu) * a + b * b / a))
+}
+
+/// The bar of the finest mesh holds Lamé's displacement, and the order is that of bilinear elements.
+#[test]
+fn the_bar_of_a_tube_holds_its_closed_form() {
+    let folder = TempDir::new().expect("a folder");
+    let (case, exact) = tube(4);
+    fs::write(folder.path().join("tube.json"), case.to_string()).expect("a case");
+    let arguments = ["converge", "tube.json", "--measure", "bore.ux:end", "--measure", "time:mean"];
+    let output = fecontact(&arguments, folder.path());
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(said.contains("level 2: 64 elements, 8 increments"), "{said}");
+    let line = said.lines().find_map(|line| line.strip_prefix("bore.ux:end: ")).expect("the values");
+    let values: Vec<f64> = line.split(", ").map(|value| value.parse().expect("a number")).collect();
+    let Convergence { order, extrapolated, bar, .. } = judge(&values).expect("three numbers");
+    let (order, extrapolated, bar) = (order.expect("an order"), extrapolated.expect("a value"), bar.expect("a bar"));
+    let error = (values[2] - exact).abs();
+    assert!((1.8..2.2).contains(&order), "{order}");
+    assert!(error < bar && bar < 2.0 * error, "{error:e}, {bar:e}");
+    assert!((extrapolated - exact).abs() < 0.1 * error, "{extrapolated}, {exact}");
+    // The mean of the time from the first row on: (dt + 1)/2.
+    assert!(said.contains("time:mean: 0.75, 0.625, 0.5625\n"), "{said}");
+    assert!(folder.path().join("out/tube/level_1/history.csv").exists());
+}
+
+/// Elements are twice as many, the sizes of neighbours differ by the root, and the nodes of the coarse mesh are nodes of the fine one.
+#[test]
+fn a_refined_mesh_has_the_nodes_of_the_coarse_one() {
+    let build = |written: &Written| -> Model { case::build(&written.case, &written.path).expect("a model") };
+    let (case, _) = tube(5);
+    let written = Written::from_text(&case.to_string(), Path::new("test.json")).expect("a case");
+    let refined = case::refined(&written, 2).expect("a refined case");
+    let (coarse, fine) = (build(&written), build(&refined));
+    assert_eq!([coarse.mesh.elements.len(), fine.mesh.elements.len()], [5, 5 * 16]);
+    for node in &coarse.mesh.nodes {
+        let nearest = fine.mesh.nodes.iter().map(|other| (other - node).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-14, "{node}: {nearest:e}");
+    }
+    let increments = |model: &Model| model.steps[0].increments;
+    let (was, is) = (increments(&coarse), increments(&fine));
+    assert_eq!([is.initial, is.min, is.max], [was.initial / 4.0, was.min / 4.0, was.max / 4.0]);
+    assert_eq!(was, increments(&build(&case::refined(&written, 0).expect("the case"))));
+}
+
+/// Orders, extrapolations and bars of sequences that are known: 1 + 2^(−p k), sequences to and fro, and those that do not converge.
+#[test]
+fn sequences_are_judged() {
+    let of = |values: [f64; 3]| judge(&values).expect("three numbers");
+    let power = |p: f64| of([1.0, 0.0, -1.0].map(|k: f64| 1.0 + (p * (k - 2.0)).exp2()));
+    for (p, factor) in [(0.6, 3.0), (1.0, 1.25), (1.5, 3.0), (2.0, 1.25), (3.9, 1.25)] {
+        let judged = power(p);
+        let error = (p * -3.0).exp2();
+        assert!((judged.order.expect("an order") - p).abs() < 1e-10);
+        assert!((judged.extrapolated.expect("a value") - 1.0).abs() < 1e-12);
+        assert!((judged.bar.expect("a bar") - factor * error).abs() < 1e-12, "{p}");
+    }
+    assert!(power(0.3).bar.is_none() && power(0.3).verdict.contains("does not converge"));
+    assert!(power(5.0).bar.expect("a bar") > 5.0 * (5.0_f64 * -3.0).exp2() && power(5.0).verdict.contains("by chance"));
+    let to_and_fro = of([1.1, 0.95, 1.02]);
+    assert_eq!((to_and_fro.order, to_and_fro.extrapolated), (None, Some(1.02)));
+    assert!((to_and_fro.bar.expect("a bar") - 0.21).abs() < 1e-12);
+    for diverging in [[1.0, 1.1, 1.2], [1.0, 1.1, 1.3], [1.0, 1.1, 0.9], [1.0, 1.0, 1.1]] {
+        let judged = of(diverging);
+        assert!(judged.bar.is_none() && judged.extrapolated.is_none() && judged.verdict.contains("does not converge"));
+    }
+    let same = of([3.0, 3.0 + 1e-12, 3.0]);
+    assert!(same.verdict.contains("does not change") && same.bar.expect("a bar") <= 1e-7);
+    assert!(judge(&[1.0, 2.0]).is_err() && judge(&[1.0, 2.0, f64::NAN]).is_err());
+}
+
+/// What cannot be refined or measured is refused with a reason.
+#[test]
+fn bad_studies_are_refused() {
+    let folder = TempDir::new().expect("a folder");
+    let write = |name: &str, case: &Value| fs::write(folder.path().join(name), case.to_string()).expect("a case");
+    let (good, _) = tube(2);
+    let mut by_nodes = good.clone();
+    by_nodes["mesh"] = json!({"nodes": [[1, 0], [2, 0], [2, 1], [1, 1]], "elements": {"tube": [[0, 1, 2, 3]]},
+        "edges": {"bottom": [[0, 1]], "top": [[2, 3]], "bore": [[3, 0]]}});
+    write("good.json", &good);
+    write("by_nodes.json", &by_nodes);
+    for (arguments, code, told) in [
+        (["by_nodes.json", "--measure", "bore.ux:end", "--levels", "3"], 2, "mesh: is not made of blocks"),
+        (["good.json", "--measure", "bore.ux", "--levels", "3"], 2, "`bore.ux` is no measure: give COLUMN:max"),
+        (["good.json", "--measure", "bore.ux:last", "--levels", "3"], 2, "`last` is nothing that is taken of a column"),
+        (["good.json", "--measure", "bor.ux:end", "--levels", "3"], 2, "the history has no column `bor.ux`; there are"),
+        (["good.json", "--measure", "step:end", "--levels", "3"], 2, "is not of numbers"),
+        (["good.json", "--measure", "bore.ux:end", "--levels", "2"], 2, "--levels: is 2: an order takes 3"),
+    ] {
+        let output = fecontact(&[&["converge"], &arguments[..]].concat(), folder.path());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(code) && said.contains(told), "{arguments:?}: {said}");
+        assert!(!folder.path().join("out").exists(), "{arguments:?}");
+    }
+}
