@@ -8,6 +8,7 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -121,6 +122,38 @@ class Result:
         # Units are those of quantity and value, which has none that is known.
         table.attrs.clear()
         return table
+
+    def spread(self, deviations: Mapping[str, float]) -> pd.DataFrame:
+        """Standard deviation of the history by deviations of values of the case that are independent of each other, to first order:
+        √Σ (∂Q/∂θ s_θ)² of every quantity Q, with the rows and units of the history.
+
+        Args:
+            deviations: standard deviation s_θ by place, such as ``{"contacts.base.friction.mu_k": 0.02}``. The run must have the derivatives
+                (:attr:`gradients`) by these places. They must be so small that the history is nearly linear over them.
+
+        Raises:
+            FileNotFoundError: the run has no derivatives.
+            ValueError: a place has none, or its deviation is not zero or positive.
+        """
+        if not isinstance(deviations, Mapping) or not deviations:
+            raise ValueError(f"deviations: is {deviations!r}: give standard deviations by place")
+        table = self.gradients
+        places = dict.fromkeys(column.rpartition(")/d(")[2][:-1] for column in map(str, table) if column.startswith("d("))
+        variance: dict[str, Any] = {}
+        for place, deviation in deviations.items():
+            if place not in places:
+                raise ValueError(f"deviations: this run has no derivatives by {place}; it has those by {', '.join(places)}")
+            if not (isinstance(deviation, Real) and 0 <= float(deviation) < np.inf):
+                raise ValueError(f"deviations: {place}: is {deviation!r}: must be zero or positive")
+            end = f")/d({place})"
+            for column in map(str, table):
+                if column.startswith("d(") and column.endswith(end):
+                    quantity = column[2 : -len(end)]
+                    variance[quantity] = variance.get(quantity, 0.0) + (table[column] * float(deviation)) ** 2
+        spread = pd.DataFrame({"time": table["time"], **{quantity: np.sqrt(of) for quantity, of in variance.items()}})
+        labels = self.units if (self.folder / "summary.json").is_file() else {}
+        spread.attrs["units"] = {str(column): _quantities.unit_in("history.csv", str(column), labels) for column in spread}
+        return spread
 
     @cached_property
     def interface(self) -> Mapping[str, xr.Dataset]:
