@@ -485,6 +485,7 @@ fn with_nodes_shuffled(case: &mut Value, model: &Model) {
                 case["mesh"]["edges"][name] = all.iter().map(|edge| json!(moved(&edge.nodes))).collect()
             }
             Group::Nodes(all) => case["mesh"]["points"][name] = json!(moved(all)),
+            Group::Lines(_) => panic!("`{name}` is an outline, which none of these meshes has"),
         }
     }
 }
