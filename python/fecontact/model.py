@@ -637,8 +637,8 @@ class Outline(dict[str, Any]):
     surface.
 
     Args:
-        group: Name of their group. The lines form one chain, with the solid on the right in their direction; they
-            are replaced by straight ones through their nodes
+        group: Name of their group. The lines form one chain, with the solid on the right in their direction;
+            they are replaced by straight ones through their nodes
     """
 
     def __init__(
@@ -1587,8 +1587,8 @@ Marginal = Union[Literal["normal"], Literal["lognormal"]]
 # Spectrum of a random field.
 Spectrum = Union[Literal["gaussian"], VonKarman]
 
-# The master side: a group of the mesh, or a rigid master given by a formula, fixed unless `rigid_body` names a moving
-# body.
+# The master side: a group of the mesh, or a rigid master given by a formula or an outline, fixed unless `rigid_body`
+# names a moving body.
 Master = Union[Plane, Circle, Polyline, Outline, str]
 
 # A friction law and its parameters.

@@ -427,7 +427,7 @@ fn parameters_are_checked() {
         (
             "/mesh/parameters/L",
             json!("2*M"),
-            &["bar.json: mesh.parameters.L: ", "`M` is not one of the variables H, dip, n"][..],
+            &["test.json: mesh.parameters.L: ", "`M` is not one of the variables H, dip, n"][..],
         ),
         ("/mesh/parameters/L", json!("reach*2 + L"), &["mesh.parameters.L: ", "`L` is not one of the variables"]),
         ("/mesh/parameters/reach", json!("1/(H - 1)"), &["mesh.parameters.reach: ", "is inf: must be finite"]),

@@ -12,7 +12,6 @@ use serde::ser::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{Checked, ModelError, refuse_if};
-use super::pair::DefaultAlphaT;
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
@@ -246,6 +245,26 @@ impl Friction {
             observables::check_names(&law.description()).map_err(|error| ModelError::new("", error)).map(|()| law)
         };
         law.and_then(named).map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
+    }
+}
+
+/// α_t of the laws of a contact that give none.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct DefaultAlphaT {
+    /// where it is a penalty [F/L³]
+    pub penalty: f64,
+    /// where the elastic slip is a part of the law [F/L³]
+    pub of_law: f64,
+}
+
+impl DefaultAlphaT {
+    /// Returns that of a law, from what makes the law with some α_t.
+    pub fn of<E>(self, law: impl FnOnce(f64) -> Result<Box<dyn FrictionLaw>, E>) -> f64 {
+        match law(self.penalty) {
+            Ok(law) if law.description().stiffness_is_penalty => self.penalty,
+            _ => self.of_law,
+        }
     }
 }
 

@@ -40,7 +40,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
-use super::friction::Laws;
+use super::friction::{DefaultAlphaT, Laws};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
@@ -52,7 +52,7 @@ use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
 };
 use crate::laws::bulk::Material;
-use crate::laws::friction::{FrictionLaw, Offsets};
+use crate::laws::friction::Offsets;
 use crate::mesh::section::Section;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
@@ -390,26 +390,6 @@ pub struct Penalty {
     pub alpha_t: Option<DefaultAlphaT>,
     /// h/(λ + 2G): compliance of the bodies under a contact pressure; 0 without elements at the slave [L³/F]
     pub compliance: f64,
-}
-
-/// α_t of the laws of a contact that give none.
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug)]
-pub struct DefaultAlphaT {
-    /// where it is a penalty [F/L³]
-    pub penalty: f64,
-    /// where the elastic slip is a part of the law [F/L³]
-    pub of_law: f64,
-}
-
-impl DefaultAlphaT {
-    /// Returns that of a law, from what makes the law with some α_t.
-    pub fn of<E>(self, law: impl FnOnce(f64) -> Result<Box<dyn FrictionLaw>, E>) -> f64 {
-        match law(self.penalty) {
-            Ok(law) if law.description().stiffness_is_penalty => self.penalty,
-            _ => self.of_law,
-        }
-    }
 }
 
 /// α_n over (λ + 2G)/h unless given [-]
