@@ -1,5 +1,6 @@
 //! One update of a contact: the index of the master, and every slave point with search, law and forces.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use criterion::{BenchmarkId, Criterion, criterion_group};
@@ -51,6 +52,7 @@ fn surfaces(n: usize) -> Surfaces {
         radiation: 0.0,
         fluid: None,
         pores: None,
+        truncated: BTreeMap::new(),
     };
     (nodes, pair)
 }

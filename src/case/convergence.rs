@@ -61,7 +61,7 @@ impl Measure {
     /// Returns a message if it has not, or the column is not of numbers.
     pub fn check(&self, model: &Model) -> Result<(), String> {
         let header = history::columns(model);
-        match header.iter().any(|column| *column == self.column) {
+        match header.contains(&self.column) {
             _ if self.column == "step" => Err("the column `step` is not of numbers".into()),
             true => Ok(()),
             false => Err(format!("the history has no column `{}`; there are {}", self.column, header.join(", "))),

@@ -109,7 +109,7 @@ pub enum Profile {
     /// Pairs of y and value, y ascending
     Y(Vec<[f64; 2]>),
     /// A random field
-    Random(RandomField),
+    Random(Box<RandomField>),
     /// Uniform value
     #[serde(skip)]
     #[schemars(!skip, untagged)]
@@ -141,7 +141,7 @@ impl From<f64> for Profile {
 
 impl From<RandomField> for Profile {
     fn from(field: RandomField) -> Self {
-        Self::Random(field)
+        Self::Random(Box::new(field))
     }
 }
 
