@@ -125,8 +125,8 @@ fn friction_of_the_total_pressure_is_warned_of() {
     }
 }
 
-/// A block under a total pressure σ that cannot widen, with a fluid in its pores: σ = (M + K_w/n) ε, and the grains carry p = σ M/(M + K_w/n)
-/// + what p_w began with. Dragged as a whole, its interface sticks to q = α_t U and slips at q = μ p, whatever the method; by a
+/// A block under a total pressure σ that cannot widen, with a fluid in its pores: σ = (M + K_w/n) ε, and the grains carry
+/// p = σ M/(M + K_w/n) + what p_w began with. Dragged as a whole, its interface sticks to q = α_t U and slips at q = μ p, whatever the method; by a
 /// prescribed p_w alike. With suction it holds more than μ σ.
 #[test]
 fn an_interface_slips_where_the_effective_stress_says() {
