@@ -79,7 +79,7 @@ def test_things_that_a_case_cannot_hold(document: dict[str, Any]) -> None:
         ({"elements": {"a": [[0.0, 1.0, 2.0, 3.0]]}}, "mesh: elements.a: has the type float64"),
         ({"elements": {"a": [[0, 1, 2, -1]]}}, "mesh: elements.a: the node -1 is negative"),
         ({"elements": {"a": [[0, 1, 2, 9]]}}, "node 9"),
-        ({"edges": {"s": [[0, 2]]}}, "s"),
+        ({"edges": {"s": [[0, 1], [0, 2]]}}, "line 1 of `s` is not an edge of any element"),
     ],
 )
 def test_bad_meshes(change: dict[str, Any], message: str) -> None:
