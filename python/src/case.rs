@@ -92,9 +92,12 @@ pub fn measured(folder: PathBuf, measure: &str) -> PyResult<f64> {
     measure.parse().and_then(|measure: Measure| measure.of(&folder)).map_err(PyValueError::new_err)
 }
 
+/// Order, extrapolated value and error bar, where there are any, and the verdict in words.
+type Judged = (Option<f64>, Option<f64>, Option<f64>, String);
+
 /// Order, extrapolated value, error bar and verdict of numbers of runs that are refined alike.
 #[pyfunction]
-pub fn judge(values: Vec<f64>) -> PyResult<(Option<f64>, Option<f64>, Option<f64>, String)> {
+pub fn judge(values: Vec<f64>) -> PyResult<Judged> {
     let Convergence { order, extrapolated, bar, verdict, .. } =
         convergence::judge(&values).map_err(PyValueError::new_err)?;
     Ok((order, extrapolated, bar, verdict))
