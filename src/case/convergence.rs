@@ -13,7 +13,6 @@
 //!
 //! Source: P. J. Roache, J. Fluids Eng. 116 (1994) 405.
 
-use std::fs;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -21,6 +20,7 @@ use serde::Serialize;
 
 use crate::model::Model;
 use crate::output::history;
+use crate::output::report::table::Columns;
 
 /// A number of a run: a column of its history, and what is taken of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,24 +74,21 @@ impl Measure {
     /// Returns a message if the history cannot be read, or has no such column or no number there.
     pub fn of(&self, folder: &Path) -> Result<f64, String> {
         let path = folder.join("history.csv");
+        let (table, fault) = Columns::read(&path).map_err(|fault| fault.to_string())?;
+        if let Some(fault) = fault {
+            return Err(fault.to_string());
+        }
         let told = |message: String| format!("{}: {message}", path.display());
-        let text = fs::read_to_string(&path).map_err(|error| told(error.to_string()))?;
-        let mut lines = text.lines();
-        let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-        let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
-        let column = |name: &str| -> Result<Vec<f64>, String> {
-            let k = header.iter().position(|head| *head == name);
-            let k = k.ok_or_else(|| told(format!("has no column `{name}`; there are {}", header.join(", "))))?;
-            let number = |row: &Vec<&str>| row.get(k).and_then(|cell| cell.parse().ok());
-            let numbers: Option<Vec<f64>> = rows.iter().map(number).collect();
-            numbers.ok_or_else(|| told(format!("the column `{name}` is not of numbers")))
-        };
+        if table.words(&self.column).is_some() {
+            return Err(told(format!("the column `{}` is not of numbers", self.column)));
+        }
+        let column = |name: &str| table.get(name).map_err(|fault| fault.to_string());
         let (values, times) = (column(&self.column)?, column("time")?);
         let value = match self.of {
             Of::Max => values.iter().copied().reduce(f64::max),
             Of::Min => values.iter().copied().reduce(f64::min),
             Of::End => values.last().copied(),
-            Of::Mean => mean(&times, &values),
+            Of::Mean => mean(times, values),
         };
         let value = value.filter(|value| value.is_finite());
         value.ok_or_else(|| told(format!("the column `{}` has no such number", self.column)))

@@ -35,7 +35,7 @@ pub fn converge(path: &Path, measures: &[String], levels: usize, out: Option<Pat
     for level in 0..levels {
         let folder = place.join(format!("level_{level}"));
         let times = u32::try_from(level).unwrap_or(u32::MAX);
-        let Summary { elements, report, .. } = run(refined(&written, times)?, &folder, interrupt.clone())?;
+        let Summary { elements, report, .. } = run(refined(&written, times)?, &folder, level, interrupt.clone())?;
         print(&format!("level {level}: {elements} elements, {} increments\n", report.increments))?;
         for (measure, values) in read.iter().zip(&mut values) {
             values.push(measure.of(&folder).map_err(refused)?);
@@ -59,12 +59,13 @@ fn told(Convergence { values, extrapolated, bar, verdict, .. }: &Convergence) ->
     format!("{}\n  {verdict}{sure}", values.join(", "))
 }
 
-/// Runs one level.
-fn run(written: Written, folder: &Path, interrupt: Interrupt) -> Result<Summary, Failure> {
+/// Runs one level; its warnings go to stderr.
+fn run(written: Written, folder: &Path, level: usize, interrupt: Interrupt) -> Result<Summary, Failure> {
     let mut job = Job::open(Opened::begin(written)?, folder)?;
+    let warn = move |warning: &str| say!("warning: level {level}: {warning}");
+    job.model.warnings().iter().for_each(|warning| warn(warning));
     let outcome = job.run(Callbacks {
-        // They are in the summary of the level.
-        warn: Arc::new(|_| {}),
+        warn: Arc::new(warn),
         ends: Arc::new(move || interrupt.came().then_some(Error::Interrupted)),
         progress: None,
     })?;

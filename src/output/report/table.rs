@@ -70,7 +70,7 @@ impl Columns {
     ///
     /// # Errors
     /// Returns [`ReportError::Unreadable`] if there is no header.
-    fn read(path: &Path) -> Result<(Self, Option<ReportError>), ReportError> {
+    pub fn read(path: &Path) -> Result<(Self, Option<ReportError>), ReportError> {
         let unreadable = |cause: String| ReportError::Unreadable { path: path.to_owned(), cause };
         let file = File::open(path).map_err(|cause| unreadable(format!("cannot be read: {cause}")))?;
         let mut lines = BufReader::with_capacity(1 << 16, file);
