@@ -449,7 +449,10 @@ for (const [name, told] of Object.entries(faults)) {
     if (told) assert.match(await page.locator("#faults").textContent(), told);
     assert.ok(await page.locator("#histories figure.chart").count() > 3);
     await page.evaluate(() => charts.forEach((chart) => chart.draw()));
-    if (name === "missing_frame") assert.equal(await page.evaluate(() => bodiesView.solid.frames.length), 57);
+    if (name === "missing_frame") {
+      const written = readFileSync(join(PAGES, "tube", "solid.pvd"), "utf8").match(/<DataSet/g).length;
+      assert.equal(await page.evaluate(() => bodiesView.solid.frames.length), written - 1);
+    }
     if (name === "killed") assert.match(await text(page, ".badge"), /ended without a status/);
     if (name === "no_frames") assert.equal(await page.locator("#bodies").isVisible(), false);
     await close(page, name);

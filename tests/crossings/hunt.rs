@@ -251,6 +251,9 @@ fn try_seed(seed: u64, tally: &Mutex<Tally>) {
     }
     let mut tally = tally.lock().expect("no thread has failed");
     tally.models += 1;
+    if tally.models.is_multiple_of(500) {
+        println!("{} models so far, {} findings", tally.models, tally.findings.len());
+    }
     let said = |message: &str| -> String { message.chars().filter(|c| !c.is_ascii_digit()).take(160).collect() };
     match &base.record.ended {
         Ended::Complete => tally.solved += 1,
