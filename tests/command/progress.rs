@@ -35,7 +35,7 @@ fn on_terminal(folder: &Path, kind: &str, arguments: &str) -> String {
 #[test]
 fn a_terminal_shows_one_line_that_is_kept_up_to_date() {
     // Long enough for the time that is left to be told on a machine many times faster than today's.
-    let (folder, _) = soft(20_000);
+    let (folder, _) = soft(10_000);
     let text = on_terminal(folder.path(), "xterm", "run case.json --threads 1 --out out");
     let drawn: Vec<&str> = text.split(['\r', '\n']).collect();
     let states: Vec<&&str> = drawn.iter().filter(|line| line.contains(" %") && line.contains(" dt ")).collect();

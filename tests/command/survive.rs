@@ -197,7 +197,7 @@ fn whole_records(straight: &Path, out: &Path) -> usize {
 /// An explicit run, and one that breaks and heals by turns.
 fn explicit() -> Value {
     let mut case = dragged(json!({"explicit": {}}), 4);
-    case["steps"][1]["duration"] = json!(0.1);
+    case["steps"][1]["duration"] = json!(0.03);
     case["output"]["interval"] = json!(1e-3);
     case
 }
@@ -207,7 +207,7 @@ pub fn ruptures() -> Value {
     case["contacts"]["base"]["friction"] = json!({"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.1, "D_c": 1e-4});
     case["steps"][1]["rupture"] = json!({"slip_rate": 0.5});
     case["steps"][1]["dt"] = json!({"initial": 0.02, "min": 1e-3});
-    case["steps"][1]["duration"] = json!(0.1);
+    case["steps"][1]["duration"] = json!(0.03);
     case["steps"][1]["supports"][0]["ux"] = json!({"rate": 1.0});
     case
 }
@@ -395,7 +395,7 @@ fn fifty_signals_over_five_cases_leave_no_trace() {
 #[test]
 fn a_signal_ends_a_run_with_its_results_whole() {
     let folder = TempDir::new().expect("a folder");
-    written(folder.path(), &dragged(json!("static"), 600));
+    written(folder.path(), &dragged(json!("static"), 200));
     done(&run(folder.path(), "straight", &[]));
     for (k, name) in ["INT", "TERM", "HUP"].into_iter().enumerate() {
         let out = folder.path().join(name);
@@ -821,24 +821,29 @@ fn a_damaged_checkpoint_is_told() {
     let out = folder.path().join("out");
     let newest = out.join("checkpoint.bin");
     let bytes = fs::read(&newest).expect("a checkpoint");
+    // A run that was killed between its two checkpoints has left one file with two names.
+    let put = |path: &Path, bytes: &[u8]| {
+        fs::remove_file(path).expect("it was there");
+        fs::write(path, bytes).expect("a file");
+    };
     let mut flipped = bytes.clone();
     flipped[bytes.len() / 2] ^= 0x10;
     for damaged in
         [&flipped[..], &bytes[..bytes.len() - 7], &bytes[..10], b"", b"not a checkpoint at all, but a text of a user"]
     {
-        fs::write(&newest, damaged).expect("a file");
-        fs::write(out.join("checkpoint_prev.bin"), damaged).expect("a file");
+        put(&newest, damaged);
+        put(&out.join("checkpoint_prev.bin"), damaged);
         let told = told(&run(folder.path(), "out", &["--resume"]), 2);
         assert!(told.contains("checkpoint.bin: --resume: it is damaged: "), "{told}");
     }
     let mut later = bytes.clone();
     later[21] += 1;
-    fs::write(&newest, later).expect("a file");
-    fs::write(out.join("checkpoint_prev.bin"), &bytes).expect("a file");
+    put(&newest, &later);
+    put(&out.join("checkpoint_prev.bin"), &bytes);
     assert!(
         told(&run(folder.path(), "out", &["--resume"]), 2).contains(&format!("it has the format {}", bytes[21] + 1))
     );
-    fs::write(&newest, flipped).expect("a file");
+    put(&newest, &flipped);
     done(&run(folder.path(), "out", &["--resume"]));
     let warnings = summary(&out)["warnings"].to_string();
     assert!(warnings.contains("its checksum is wrong; the previous checkpoint was used"), "{warnings}");

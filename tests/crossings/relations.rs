@@ -632,8 +632,9 @@ fn dilating(base: &Base) -> Outcome {
     let Some(plainer) = base.draft.with("dilatancy", "no").filter(|_| base.draft.has("dilatancy")) else {
         return Outcome::Idle;
     };
-    // A law that jumps at a threshold of the pressure may leave no equilibrium at it.
-    if moves(base.draft) || base.draft.is("friction", "registered") {
+    // A law that jumps at a threshold of the pressure may leave no equilibrium at it, nor may the traction η v of radiation, which does
+    // not vanish with the pressure: closed, it slows the slip below what lifts the surfaces into contact, and open, it does not.
+    if moves(base.draft) || base.draft.is("friction", "registered") || base.draft.has("radiation") {
         return Outcome::Idle;
     }
     let Ended::Stopped(why) = &base.record.ended else { return Outcome::Holds };

@@ -388,7 +388,7 @@ fn the_same_ruptures(sizes: &[f64]) {
 
 #[test]
 fn ruptures_from_a_weak_patch_are_those_of_coarser_elements() {
-    the_same_ruptures(&[0.5, 1.0]);
+    the_same_ruptures(&[0.5, 0.75]);
 }
 
 #[test]

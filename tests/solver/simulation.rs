@@ -227,7 +227,7 @@ fn every_stretch_of_explicit_increments_can_be_redone_and_resumed() {
 fn every_increment_of_committed_cases_can_be_redone_and_resumed() {
     // A second step in fewer increments does for the first two.
     for (file, duration) in
-        [("cases/coulomb_drag_5k.json", Some(5)), ("cases/block_on_ground.json", Some(2)), ("cases/tube.json", None)]
+        [("cases/coulomb_drag_5k.json", Some(2)), ("cases/block_on_ground.json", Some(1)), ("cases/tube.json", None)]
     {
         let (mut case, path) = repository(file);
         if let Some(duration) = duration {

@@ -262,6 +262,7 @@ fn a_collapse_is_repeated_more_carefully_and_told_if_that_does_not_help() {
     }
     // A support that drives a block flat leaves nothing to hope for, and is told before increments shrink for ever.
     let mut flat = struck("neo_hookean", 0.0, 0.9, 0.0);
+    flat["mesh"] = Blocks::default().rectangle("bar", [1, 4], [0.0, 0.0], [0.1, 0.5]).json();
     flat["steps"][0]["supports"] = json!([
         {"on": "bar", "ux": 0}, {"on": "bar_bottom", "uy": 0}, {"on": "bar_top", "uy": {"rate": -0.6}}
     ]);
