@@ -43,7 +43,7 @@ enum Command {
         #[arg(long)]
         resolved: bool,
     },
-    /// Run a case on meshes of blocks and with increments that are halved again and again, and tell how sure a number of it is
+    /// Run a case with elements and increments that are halved again and again, and tell how sure a number of it is
     Converge {
         /// The case file (JSON)
         case: PathBuf,

@@ -119,17 +119,25 @@ class Case:
         case._native = case._made()
         return case
 
-    def refined(self, times: int = 1) -> Case:
+    def refined(self, times: int = 1, increments: int | None = None) -> Case:
         """The case with elements and increments halved so many times; it writes no fields. What it leaves open has the default of the
-        finer mesh.
+        finer mesh. Blocks have twice as many elements along their sides; of other meshes every element becomes four, and their boundaries
+        stay as they are.
+
+        Args:
+            times: how many times elements are halved.
+            increments: how many times increments are halved; default: as often as elements.
 
         Raises:
-            CaseError: the case is invalid, or its mesh is not made of blocks in the case itself.
+            CaseError: the case is invalid, or a group of nodes in its mesh stands for a side.
         """
-        if self._mesh is not None:
-            raise refused(self._path, "mesh", "is at hand, and only blocks in the case can be refined: give {\"blocks\": …}")
+        increments = times if increments is None else increments
+        for name, value in (("times", times), ("increments", increments)):
+            if value < 0:
+                raise ValueError(f"{name}: is {value}: give 0 or more")
         case = Case.__new__(Case)
-        case._path, case._mesh, case._document = self._path, None, json.loads(self._native.refined(times))
+        case._path, case._document = self._path, json.loads(self._native.refined(times, increments))
+        case._mesh = self._mesh if times == 0 else None
         case._native = case._made()
         return case
 

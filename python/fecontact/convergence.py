@@ -6,6 +6,7 @@ import os
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -24,6 +25,8 @@ class Convergence:
         order: observed order of convergence; None if the differences alternate or are round-off.
         extrapolated: value for elements and increments of no size; None if it does not converge.
         bar: error bar of the value of the last run; None if it does not converge.
+        by_increments: fraction of the last difference that is due to the increments, the rest being due to the mesh; None if nothing
+            differs, or explicit increments follow from the mesh.
         verdict: the same in words.
     """
 
@@ -32,6 +35,7 @@ class Convergence:
     order: float | None
     extrapolated: float | None
     bar: float | None
+    by_increments: float | None
     verdict: str
 
     @property
@@ -52,32 +56,41 @@ class Convergence:
 def converge(
     case: Case, measure: str, levels: int = 3, out: str | os.PathLike[str] | None = None, threads: int | None = None
 ) -> Convergence:
-    """Run a case as it is, then on meshes of blocks whose elements, and with increments that are halved again and again, and judge a
-    number of these runs: its observed order, its extrapolated value, its error bar, or that it does not converge.
+    """Run a case as it is, then with elements and increments that are halved again and again, and judge a number of these runs: its
+    observed order, its extrapolated value, its error bar, or that it does not converge. The finest mesh with the increments of the level
+    before tells what of the last difference is due to the increments.
 
-    The same as ``fecontact converge``. Only a mesh of blocks in the case can be refined.
+    The same as ``fecontact converge``. Blocks keep their arcs; other meshes are refined within the boundaries that they have.
 
     Args:
         case: the case; its own mesh is the coarsest.
         measure: a column of the history and what is taken of it: ``"base.tangential_force:max"``, ``:min``, ``:end``, or ``:mean`` (over time).
         levels: number of runs, 3 or more; the last three count.
-        out: folder of the results, with a folder ``level_k`` for each run; default: a temporary one.
+        out: folder of the results, with a folder ``level_k`` for each run, and ``level_k_longer_increments``; default: a temporary one.
         threads: number of threads of a run.
 
     Raises:
-        CaseError: the case is invalid, or its mesh is not made of blocks.
+        CaseError: the case is invalid, or a group of nodes in its mesh stands for a side.
         ValueError: the measure is invalid, or there are fewer than three levels.
         Stopped: a run stopped while solving.
     """
     measure = a_name(measure, "measure", "measure")
     if levels < 3:
         raise ValueError(f"levels: is {levels}: an order takes 3 or more")
-    rows = []
+    finest, longer = case.refined(levels - 1), case.refined(levels - 1, levels - 2)
     with tempfile.TemporaryDirectory(prefix="fecontact-", ignore_cleanup_errors=True) as holder:
-        for level in range(levels):
-            folder = Path(holder if out is None else out, f"level_{level}")
-            summary = case.refined(level).run(out=folder, threads=threads, progress=False).summary
+
+        def measured(name: str, refined: Case) -> dict[str, Any]:
+            folder = Path(holder if out is None else out, name)
+            summary = refined.run(out=folder, threads=threads, progress=False).summary
             value = _native.measured(os.fspath(folder), measure)
-            rows.append({"elements": summary["elements"], "increments": summary["increments"], "value": value})
-    runs = pd.DataFrame(rows)
-    return Convergence(measure, runs, *_native.judge([float(value) for value in runs["value"]]))
+            return {"elements": summary["elements"], "increments": summary["increments"], "value": value}
+
+        rows = [measured(f"level_{level}", case.refined(level)) for level in range(levels)]
+        values = [float(row["value"]) for row in rows]
+        by_increments = None
+        if finest.document != longer.document:
+            other = measured(f"level_{levels - 1}_longer_increments", longer)
+            by_increments = _native.fraction_of_increments(values, other["value"])
+    order, extrapolated, bar, verdict = _native.judge(values)
+    return Convergence(measure, pd.DataFrame(rows), order, extrapolated, bar, by_increments, verdict)

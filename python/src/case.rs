@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fecontact::case::convergence::{self, Convergence, Measure};
-use fecontact::case::{self, CaseError, Opened, Written, law_test};
+use fecontact::case::{self, CaseError, Halvings, Opened, Written, law_test};
 use fecontact::output::checkpoint::Checkpoint;
 use fecontact::output::quantities;
 use pyo3::exceptions::PyValueError;
@@ -79,9 +79,13 @@ impl Case {
         resolved.map_err(|error| case_error(py, &error))
     }
 
-    /// The case as JSON with elements and increments that are halved so many times.
-    fn refined(&self, py: Python, times: u32) -> PyResult<String> {
-        let refined = Pool::new(None)?.short(py, || case::refined(&self.written, times))?;
+    /// The case as JSON with elements and increments that are halved so many times, each.
+    fn refined(&self, py: Python, mesh: u32, increments: u32) -> PyResult<String> {
+        let halvings = Halvings { mesh, increments };
+        let refined = Pool::new(None)?.short(py, || match &self.mesh {
+            Some(mesh) => case::refined_on(&self.written, mesh, halvings),
+            None => case::refined(&self.written, halvings),
+        })?;
         refined.map(|written| written.document.to_string()).map_err(|error| case_error(py, &error))
     }
 }
@@ -101,6 +105,13 @@ pub fn judge(values: Vec<f64>) -> PyResult<Judged> {
     let Convergence { order, extrapolated, bar, verdict, .. } =
         convergence::judge(&values).map_err(PyValueError::new_err)?;
     Ok((order, extrapolated, bar, verdict))
+}
+
+/// The fraction of the last difference that is due to the increments, if there is any: `longer` is the number of the finest mesh with the
+/// increments of the level before.
+#[pyfunction]
+pub fn fraction_of_increments(values: Vec<f64>, longer: f64) -> Option<f64> {
+    convergence::fraction_of_increments(&values, longer)
 }
 
 /// The JSON Schema of a `"case"`, or of the test of a `"law"`; the quantities of `"results"` by their files.

@@ -28,6 +28,7 @@ fn _native(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(case::schema, module)?)?;
     module.add_function(wrap_pyfunction!(case::measured, module)?)?;
     module.add_function(wrap_pyfunction!(case::judge, module)?)?;
+    module.add_function(wrap_pyfunction!(case::fraction_of_increments, module)?)?;
     module.add_function(wrap_pyfunction!(run::run, module)?)?;
     module.add_function(wrap_pyfunction!(run::report, module)?)?;
     module.add_function(wrap_pyfunction!(law::drive, module)?)?;

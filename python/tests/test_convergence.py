@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import DOCUMENT
 
 import fecontact as fc
 
@@ -47,6 +46,7 @@ def test_the_bar_of_a_tube_holds_its_closed_form(tmp_path: Path) -> None:
     assert error < found.bar < 2 * error
     assert found.extrapolated == pytest.approx(exact, abs=0.1 * error)
     assert f"converges with the order {found.order:.3g}" in found.verdict and "±" in repr(found)
+    assert found.by_increments == 0
     assert fc.Result(tmp_path / "level_2").history["bore.ux"].iloc[-1] == found.value
 
 
@@ -58,8 +58,16 @@ def test_what_cannot_be_refined_is_refused() -> None:
         fc.converge(case, "bore.ux")
     with pytest.raises(ValueError, match="has no column"):
         fc.converge(case, "bor.ux:end")
-    with pytest.raises(fc.CaseError, match="mesh: is not made of blocks"):
-        fc.converge(fc.Case(DOCUMENT), "base.normal_force:max")
-    mesh = fc.Mesh.from_blocks(tube()[0]["mesh"]["blocks"])
-    with pytest.raises(fc.CaseError, match="mesh: is at hand"):
-        fc.converge(fc.Case({**tube()[0], "mesh": mesh}), "bore.ux:end")
+    with pytest.raises(ValueError, match="increments: is -1: give 0 or more"):
+        case.refined(1, -1)
+    nodes = {"nodes": [[1, 0], [2, 0], [2, 1], [1, 1]], "elements": {"tube": [[0, 1, 2, 3]]}, "edges": {"top": [[2, 3]], "bore": [[3, 0]]}}
+    held = {**tube()[0], "mesh": {**nodes, "points": {"bottom": [0, 1]}}}
+    with pytest.raises(fc.CaseError, match="mesh: the group `bottom` holds the nodes 0 and 1"):
+        fc.converge(fc.Case(held), "bore.ux:end")
+
+
+def test_a_mesh_at_hand_is_refined_as_its_blocks_are() -> None:
+    case, _ = tube()
+    on_mesh = fc.Case({**case, "mesh": fc.Mesh.from_blocks(case["mesh"]["blocks"])})
+    values = [fc.converge(one, "bore.ux:end").runs["value"] for one in (fc.Case(case), on_mesh)]
+    assert list(values[1]) == pytest.approx(list(values[0]), rel=1e-13)

@@ -11,6 +11,9 @@
 //! times the last difference, and not less than a quarter of the one before. Where the last difference is not the smaller one, or p is below ½, the
 //! number does not converge, as far as these meshes can tell.
 //!
+//! The finest mesh with the increments of the level before, f₂₃, divides the last difference: |f₃ − f₂₃| is that of the increments,
+//! |f₂₃ − f₂| that of the mesh.
+//!
 //! Source: P. J. Roache, J. Fluids Eng. 116 (1994) 405.
 
 use std::path::Path;
@@ -121,6 +124,14 @@ pub struct Convergence {
     pub bar: Option<f64>,
     /// In words
     pub verdict: String,
+}
+
+/// What the increments have to do with the last difference, a fraction of it: `longer` is the number of the finest mesh with the increments
+/// of the level before. `None` if nothing differs.
+pub fn fraction_of_increments(values: &[f64], longer: f64) -> Option<f64> {
+    let [.., before, last] = *values else { return None };
+    let [by_mesh, by_increments] = [longer - before, last - longer].map(f64::abs);
+    Some(by_increments / (by_mesh + by_increments)).filter(|fraction| fraction.is_finite())
 }
 
 /// Difference of numbers that is round-off and the tolerance of Newton's method, relative to them.

@@ -27,7 +27,7 @@ use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_
 pub use again::Opened;
 pub use error::CaseError;
 use file::{Case, MeshSource, blocks};
-pub use refined::refined;
+pub use refined::{Halvings, refined, refined_on};
 pub use report::{report, understood};
 pub use resolved::resolved;
 

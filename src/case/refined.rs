@@ -1,30 +1,76 @@
 //! A case on a finer mesh and with shorter increments, as convergence studies need it ([`super::convergence`]).
 //!
 //! ```text
-//! n → 2 n                            elements along both sides of a block
+//! n → 2 n                            elements along both sides of a block; of other meshes every element becomes four ([`Mesh::divided`])
 //! g → g^((2n − 1)/(2n − 2))          their grading, last size over first: neighbours differ by the root of what they did
 //! dt → dt/2,  error → error/4        increments, and the error allowed in one, which is of second order in them
 //! ```
 //! What the case leaves open has the default of the finer mesh; `alpha_n` then grows with 1/h.
 
 use super::file::{Amount, BlockInput, BlocksInput, Case, GradingInput, MeshSource, MiddleInput, evaluated};
-use super::{CaseError, Written, build};
-use crate::mesh::{Block, Blocks, Grading};
+use super::{CaseError, Written, build, build_on, mesh};
+use crate::mesh::{Block, Blocks, Grading, MOST_ELEMENTS, Mesh};
 use crate::model::builder::{Checked, IncrementSettings, LoadStep, ModelError, refuse_if};
 use crate::model::scheme::Scheme;
-use crate::model::{Increments, Step};
+use crate::model::{Increments, Model, Step};
 
 /// Most halvings of a mesh: 65 536 elements for one along a side are more than any mesh may have.
 const MOST: u32 = 16;
 
+/// How many times elements and increments are halved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Halvings {
+    /// of the sizes of elements
+    pub mesh: u32,
+    /// of the increments
+    pub increments: u32,
+}
+
+impl Halvings {
+    /// As many of elements and increments.
+    pub const fn of_both(times: u32) -> Self {
+        Self { mesh: times, increments: times }
+    }
+}
+
 /// Returns a case whose elements and increments are halved so many times. It writes no fields and no page.
 ///
 /// # Errors
-/// Returns [`CaseError`] if the case is invalid, begins with another one, or its mesh is not made of blocks.
-pub fn refined(written: &Written, times: u32) -> Result<Written, CaseError> {
+/// Returns [`CaseError`] if the case is invalid or begins with another one, or if nodes of its mesh stand for a side.
+pub fn refined(written: &Written, halvings: Halvings) -> Result<Written, CaseError> {
     let Written { path, case, .. } = written;
-    let mesh = refined_mesh(case, times).map_err(|complaint| complaint.in_file(path))?;
-    let model = build(case, path)?;
+    let refined_mesh = || {
+        check(case, halvings.mesh)?;
+        match &case.mesh {
+            MeshSource::Blocks(input) => of_blocks(input, halvings.mesh),
+            given => divided(given, mesh(case, path)?, halvings.mesh),
+        }
+    };
+    let finer = refined_mesh().map_err(|complaint| complaint.in_file(path))?;
+    Ok(with(written, finer, &build(case, path)?, halvings.increments))
+}
+
+/// Returns a case on a mesh in memory as [`refined`]; its own mesh is the finer one, unless elements are not halved.
+///
+/// # Errors
+/// The same as for [`refined`].
+pub fn refined_on(written: &Written, mesh: &Mesh, halvings: Halvings) -> Result<Written, CaseError> {
+    let Written { path, case, .. } = written;
+    let refined_mesh = || check(case, halvings.mesh).and_then(|()| divided(&case.mesh, mesh.clone(), halvings.mesh));
+    let finer = refined_mesh().map_err(|complaint| complaint.in_file(path))?;
+    Ok(with(written, finer, &build_on(case, mesh.clone(), path)?, halvings.increments))
+}
+
+/// Refuses what cannot be refined.
+fn check(case: &Case, times: u32) -> Checked<()> {
+    let message =
+        "the mesh is that of the case before, which has to be refined as well: give the steps of both in one case";
+    refuse_if(case.begin_with.is_some(), "begin_with", message)?;
+    refuse_if(times > MOST, "mesh", format_args!("cannot be halved {times} times: {MOST} are the most"))
+}
+
+/// The case on another mesh, with increments that are halved so many times.
+fn with(Written { path, case, .. }: &Written, mesh: MeshSource, model: &Model, times: u32) -> Written {
     let mut case = Case { mesh, ..case.clone() };
     for (given, step) in case.steps.iter_mut().zip(&model.steps) {
         refine_increments(given, step, 2.0_f64.powi(times as i32));
@@ -32,22 +78,28 @@ pub fn refined(written: &Written, times: u32) -> Result<Written, CaseError> {
     (case.output.fields, case.output.report) = (false, false);
     // Values read from JSON can be written as JSON.
     let document = serde_json::to_value(&case).unwrap_or_default();
-    Ok(Written { path: path.clone(), document, case })
+    Written { path: path.clone(), document, case }
 }
 
-fn refined_mesh(case: &Case, times: u32) -> Checked<MeshSource> {
-    let message =
-        "the mesh is that of the case before, which has to be refined as well: give the steps of both in one case";
-    refuse_if(case.begin_with.is_some(), "begin_with", message)?;
-    refuse_if(times > MOST, "mesh", format_args!("cannot be halved {times} times: {MOST} are the most"))?;
-    let MeshSource::Blocks(input) = &case.mesh else {
-        let message = "is not made of blocks, which alone can be refined: give blocks, or run the case on meshes of your own, each \
-                       with elements and increments of half the size";
-        return Err(ModelError::new("mesh", message));
-    };
+fn of_blocks(input: &BlocksInput, times: u32) -> Checked<MeshSource> {
     let Blocks { blocks, apart, joined } = evaluated(input, "mesh")?;
     let blocks = blocks.iter().map(|block| halved(block, times)).collect();
     Ok(MeshSource::Blocks(BlocksInput { parameters: [].into(), blocks, apart, joined }))
+}
+
+/// A mesh that is not made of blocks, with elements that are halved so many times.
+fn divided(given: &MeshSource, mut mesh: Mesh, times: u32) -> Checked<MeshSource> {
+    let refused = |error| ModelError::new("mesh", error);
+    let total = mesh.elements.len() as f64 * 4.0_f64.powi(times as i32);
+    let message = format_args!("would have {total:.0} elements, more than {MOST_ELEMENTS:.0}: take fewer levels");
+    refuse_if(total > MOST_ELEMENTS, "mesh", message)?;
+    let mut finer = None;
+    for _ in 0..times {
+        let mesh_of_halves = mesh.divided().map_err(refused)?;
+        mesh = mesh_of_halves.build().map_err(refused)?;
+        finer = Some(mesh_of_halves);
+    }
+    Ok(finer.map_or_else(|| given.clone(), MeshSource::Inline))
 }
 
 /// The block with elements that are halved so many times.

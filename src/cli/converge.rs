@@ -8,9 +8,9 @@ use super::interrupt::Interrupt;
 use super::place::default_folder;
 use super::say::print;
 use super::threads::use_threads;
-use crate::case::convergence::{Convergence, FEWEST, Measure, judge};
+use crate::case::convergence::{Convergence, FEWEST, Measure, fraction_of_increments, judge};
 use crate::case::job::{Callbacks, Job, Outcome};
-use crate::case::{Opened, Written, build, refined};
+use crate::case::{Halvings, Opened, Written, build, refined};
 use crate::model::text::number;
 use crate::output::summary::Summary;
 use crate::run::error::Error;
@@ -29,40 +29,53 @@ pub fn converge(path: &Path, measures: &[String], levels: usize, out: Option<Pat
     }
     let place = out.unwrap_or_else(|| default_folder(path));
     let (written, interrupt) = (Written::read(path)?, Interrupt::watch());
-    let model = build(&refined(&written, 0)?.case, path)?;
+    let model = build(&refined(&written, Halvings::of_both(0))?.case, path)?;
     read.iter().try_for_each(|measure| measure.check(&model)).map_err(refused)?;
+    let measured = |name: &str, refined: Written| -> Result<Vec<f64>, Failure> {
+        let (folder, name) = (place.join(name), name.replace('_', " "));
+        let Summary { elements, report, .. } = run(refined, &folder, name.clone(), interrupt.clone())?;
+        print(&format!("{name}: {elements} elements, {} increments\n", report.increments))?;
+        read.iter().map(|measure| measure.of(&folder).map_err(refused)).collect()
+    };
     let mut values = vec![Vec::new(); read.len()];
-    for level in 0..levels {
-        let folder = place.join(format!("level_{level}"));
-        let times = u32::try_from(level).unwrap_or(u32::MAX);
-        let Summary { elements, report, .. } = run(refined(&written, times)?, &folder, level, interrupt.clone())?;
-        print(&format!("level {level}: {elements} elements, {} increments\n", report.increments))?;
-        for (measure, values) in read.iter().zip(&mut values) {
-            values.push(measure.of(&folder).map_err(refused)?);
-        }
+    let last = u32::try_from(levels - 1).unwrap_or(u32::MAX);
+    let finest = refined(&written, Halvings::of_both(last))?;
+    let longer = refined(&written, Halvings { mesh: last, increments: last - 1 })?;
+    for level in 0..=last {
+        let found = measured(&format!("level_{level}"), refined(&written, Halvings::of_both(level))?)?;
+        values.iter_mut().zip(found).for_each(|(values, found)| values.push(found));
     }
+    // Explicit increments follow from the mesh: there are no others on it.
+    let has_longer = finest.document != longer.document;
+    let longer = if has_longer { measured(&format!("level_{last}_longer_increments"), longer)? } else { Vec::new() };
+    let fractions = values.iter().zip(&longer).map(|(values, longer)| fraction_of_increments(values, *longer));
+    let fractions: Vec<Option<f64>> = fractions.chain(std::iter::repeat(None)).take(read.len()).collect();
     let judged = values.iter().map(|values| judge(values).map_err(Failure::Stopped));
     let judged = judged.collect::<Result<Vec<_>, _>>()?;
-    for (measure, judged) in measures.iter().zip(&judged) {
-        print(&format!("{measure}: {}\n", told(judged)))?;
+    for ((measure, judged), fraction) in measures.iter().zip(&judged).zip(fractions) {
+        print(&format!("{measure}: {}\n", told(judged, fraction)))?;
     }
     let fails = measures.iter().zip(&judged).find(|(_, judged)| judged.bar.is_none());
     fails.map_or(Ok(()), |(measure, judged)| Err(Failure::Stopped(format!("{measure} {}", judged.verdict))))
 }
 
-/// Values of all levels, and the judgement.
-fn told(Convergence { values, extrapolated, bar, verdict, .. }: &Convergence) -> String {
+/// Values of all levels, the judgement, and the fraction of the last difference that is due to the increments.
+fn told(Convergence { values, extrapolated, bar, verdict, .. }: &Convergence, fraction: Option<f64>) -> String {
     let values: Vec<String> = values.iter().map(f64::to_string).collect();
     let sure = extrapolated.zip(*bar).map_or(String::new(), |(extrapolated, bar)| {
         format!("\n  extrapolated {extrapolated}, error bar of the last {}", number(bar))
     });
-    format!("{}\n  {verdict}{sure}", values.join(", "))
+    let parts = fraction.map_or(String::new(), |fraction| {
+        let [mesh, increments] = [1.0 - fraction, fraction].map(|part| (100.0 * part).round());
+        format!("\n  of the last difference {mesh} % by the mesh, {increments} % by the increments")
+    });
+    format!("{}\n  {verdict}{sure}{parts}", values.join(", "))
 }
 
 /// Runs one level; its warnings go to stderr.
-fn run(written: Written, folder: &Path, level: usize, interrupt: Interrupt) -> Result<Summary, Failure> {
+fn run(written: Written, folder: &Path, name: String, interrupt: Interrupt) -> Result<Summary, Failure> {
     let mut job = Job::open(Opened::begin(written)?, folder)?;
-    let warn = move |warning: &str| say!("warning: level {level}: {warning}");
+    let warn = move |warning: &str| say!("warning: {name}: {warning}");
     job.model.warnings().iter().for_each(|warning| warn(warning));
     let outcome = job.run(Callbacks {
         warn: Arc::new(warn),

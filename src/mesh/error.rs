@@ -146,6 +146,17 @@ pub enum MeshError {
         /// the two meshes, counted from 0
         meshes: [usize; 2],
     },
+    /// A group of nodes holds both ends of a side of an element, and the mesh is to be refined.
+    #[error(
+        "the group `{group}` holds the nodes {} and {}, the ends of a side: whether nodes between them belong to it cannot be told; \
+         name the side, not its nodes", nodes[0], nodes[1]
+    )]
+    SideOfNodes {
+        /// name of the group
+        group: String,
+        /// tags of the two nodes
+        nodes: [u64; 2],
+    },
     /// A group has no members.
     #[error("the group `{0}` is empty; mesh what it names, or remove it")]
     EmptyGroup(String),

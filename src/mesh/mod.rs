@@ -5,6 +5,7 @@
 //! [`Mesh`], so that every mesh is consistent whatever its source.
 
 mod check;
+mod divided;
 mod error;
 pub mod gmsh;
 mod inline;
@@ -53,6 +54,9 @@ use rigid::RigidBody;
 pub use section::Section;
 pub use shape::ElementKind;
 pub use transfinite::{Block, BlockError, BlockKind, Blocks, Grading};
+
+/// Upper bound of the number of elements of a mesh that is made here.
+pub(crate) const MOST_ELEMENTS: f64 = 4e6;
 
 /// A solid element: its kind and its nodes, counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]

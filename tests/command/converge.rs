@@ -5,7 +5,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use fecontact::case::convergence::{Convergence, judge};
-use fecontact::case::{self, Written};
+use fecontact::case::{self, Halvings, Written};
+use fecontact::mesh::{Group, InlineMesh, Mesh};
 use fecontact::model::Model;
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -54,8 +55,13 @@ fn the_bar_of_a_tube_holds_its_closed_form() {
     assert!((1.8..2.2).contains(&order), "{order}");
     assert!(error < bar && bar < 2.0 * error, "{error:e}, {bar:e}");
     assert!((extrapolated - exact).abs() < 0.1 * error, "{extrapolated}, {exact}");
-    // The mean of the time from the first row on: (dt + 1)/2.
+    // The mean of the time from the first row on: (dt + 1)/2. It goes by the increments alone, and the bore by the mesh alone.
     assert!(said.contains("time:mean: 0.75, 0.625, 0.5625\n"), "{said}");
+    assert!(said.contains("level 2 longer increments: 64 elements, 4 increments"), "{said}");
+    let parts: Vec<&str> = said.lines().filter(|line| line.contains("of the last difference")).map(str::trim).collect();
+    let told =
+        |mesh, increments| format!("of the last difference {mesh} % by the mesh, {increments} % by the increments");
+    assert_eq!(parts, [told(100, 0), told(0, 100)]);
     assert!(folder.path().join("out/tube/level_1/history.csv").exists());
 }
 
@@ -65,7 +71,7 @@ fn a_refined_mesh_has_the_nodes_of_the_coarse_one() {
     let build = |written: &Written| -> Model { case::build(&written.case, &written.path).expect("a model") };
     let (case, _) = tube(5);
     let written = Written::from_text(&case.to_string(), Path::new("test.json")).expect("a case");
-    let refined = case::refined(&written, 2).expect("a refined case");
+    let refined = case::refined(&written, Halvings::of_both(2)).expect("a refined case");
     let (coarse, fine) = (build(&written), build(&refined));
     assert_eq!([coarse.mesh.elements.len(), fine.mesh.elements.len()], [5, 5 * 16]);
     for node in &coarse.mesh.nodes {
@@ -75,7 +81,127 @@ fn a_refined_mesh_has_the_nodes_of_the_coarse_one() {
     let increments = |model: &Model| model.steps[0].increments;
     let (was, is) = (increments(&coarse), increments(&fine));
     assert_eq!([is.initial, is.min, is.max], [was.initial / 4.0, was.min / 4.0, was.max / 4.0]);
-    assert_eq!(was, increments(&build(&case::refined(&written, 0).expect("the case"))));
+    assert_eq!(was, increments(&build(&case::refined(&written, Halvings::of_both(0)).expect("the case"))));
+}
+
+/// A curved and distorted patch of two elements of a kind, with its boundary and a node.
+fn patch(kind: &str) -> Mesh {
+    let map = |s: f64, t: f64| [s + 0.1 * t * t, t + 0.2 * s - 0.15 * s * s];
+    // Two quadrilaterals side by side, and the lower left and upper right half of the first.
+    let corners = |k: f64| [[k, 0.0], [k + 1.0, 0.0], [k + 1.0, 1.0], [k, 1.0]];
+    let (cells, count): (Vec<Vec<[f64; 2]>>, usize) = match kind {
+        "t3" | "t6" => {
+            let [a, b, c, d] = corners(0.0);
+            (vec![vec![a, b, d], vec![b, c, d]], if kind == "t3" { 3 } else { 6 })
+        }
+        kind => (vec![corners(0.0).into(), corners(1.0).into()], kind[1..].parse().expect("a number of nodes")),
+    };
+    let mut nodes: Vec<[f64; 2]> = Vec::new();
+    let mut node = |at: [f64; 2]| {
+        nodes.iter().position(|known| *known == at).unwrap_or_else(|| {
+            nodes.push(at);
+            nodes.len() - 1
+        })
+    };
+    let half = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+    let elements: Vec<Vec<usize>> = cells
+        .iter()
+        .map(|cell| {
+            let n = cell.len();
+            let middles = (0..n).map(|k| half(cell[k], cell[(k + 1) % n]));
+            let all = cell.iter().copied().chain(middles).chain([half(cell[0], cell[2])]);
+            all.take(count).map(&mut node).collect()
+        })
+        .collect();
+    // The side t = 0 of the first element.
+    let side = if count > 4 {
+        vec![elements[0][0], elements[0][1], elements[0][cells[0].len()]]
+    } else {
+        elements[0][..2].to_vec()
+    };
+    let mut mesh = InlineMesh::default();
+    (mesh.nodes, mesh.elements) =
+        (nodes.iter().map(|[s, t]| map(*s, *t)).collect(), [("body".into(), elements)].into());
+    (mesh.edges, mesh.points) = ([("low".into(), vec![side])].into(), [("corner".into(), vec![0])].into());
+    mesh.build().expect("a mesh")
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    let of = |e: usize| -> f64 {
+        let (kind, places) = (mesh.elements[e].kind, mesh.places(e));
+        let jacobian = |at: [f64; 2]| {
+            let columns = kind.derivatives(at).iter().zip(&places).fold([[0.0; 2]; 2], |mut sum, (d, x)| {
+                (0..2).for_each(|i| (0..2).for_each(|j| sum[i][j] += d[i] * x[j]));
+                sum
+            });
+            columns[0][0] * columns[1][1] - columns[0][1] * columns[1][0]
+        };
+        kind.quadrature().iter().map(|point| point.weight * jacobian(point.at)).sum()
+    };
+    (0..mesh.elements.len()).map(of).sum()
+}
+
+/// Every element of any kind becomes four of its kind that cover it exactly, whose sides are those of their neighbours; named sides are
+/// divided, named nodes stay, curved sides too.
+#[test]
+fn elements_become_four() {
+    for (kind, nodes) in [("t3", 9), ("t6", 25), ("q4", 15), ("q8", 37), ("q9", 45)] {
+        let coarse = patch(kind);
+        let fine = coarse.divided().expect("it can be divided").build().expect("a mesh");
+        assert_eq!([fine.elements.len(), fine.nodes.len()], [8, nodes], "{kind}");
+        assert!(fine.elements.iter().all(|element| element.kind == coarse.elements[0].kind), "{kind}");
+        let (was, is) = (area(&coarse), area(&fine));
+        assert!((was - is).abs() < 1e-14, "{kind}: {was} and {is}");
+        assert_eq!(fine.groups["corner"], coarse.groups["corner"], "{kind}");
+        let Group::Edges(low) = &fine.groups["low"] else { panic!("{kind}: a side") };
+        assert_eq!(low.len(), 2, "{kind}");
+        // On the curve y = 0.2 s − 0.15 s² at the quarters of quadratic sides, on its chord at the middle of linear ones.
+        for node in low.iter().flat_map(|edge| &edge.nodes) {
+            let [x, y] = [fine.nodes[*node].x, fine.nodes[*node].y];
+            let expected = if ["t3", "q4"].contains(&kind) { 0.05 * x } else { 0.2 * x - 0.15 * x * x };
+            assert!((y - expected).abs() < 1e-15, "{kind}: ({x}, {y})");
+        }
+    }
+}
+
+/// The lines of a rigid outline, which are sides of no element, stay as they are.
+#[test]
+fn outlines_are_not_divided() {
+    let mut mesh = InlineMesh::default().rectangle("block", [2, 1], [0.0, 0.0], [2.0, 1.0]);
+    mesh.nodes.extend([[3.0, -1.0], [-1.0, -1.0], [1.0, -1.2]]);
+    mesh.edges.insert("die".into(), vec![vec![6, 7, 8]]);
+    let coarse = mesh.build().expect("a mesh");
+    let fine = coarse.divided().expect("it can be divided").build().expect("a mesh");
+    let [Group::Lines(was), Group::Lines(is)] = [&coarse, &fine].map(|mesh| &mesh.groups["die"]) else {
+        panic!("lines")
+    };
+    let places =
+        |lines: &[Vec<(u64, nalgebra::Vector2<f64>)>]| lines.concat().iter().map(|(_, at)| *at).collect::<Vec<_>>();
+    assert_eq!(places(was), places(is));
+    assert_eq!((coarse.elements.len(), fine.elements.len()), (2, 8));
+}
+
+/// Blocks written node by node are refined to the same numbers as the blocks.
+#[test]
+fn other_meshes_are_refined_as_blocks_are() {
+    let folder = TempDir::new().expect("a folder");
+    let (mut case, _) = tube(4);
+    case["mesh"]["blocks"][0]["grading"] = json!([1, 1]);
+    let mut by_nodes = case.clone();
+    let nodes: Vec<[f64; 2]> = (0..10).map(|k| [1.0 + 0.25 * f64::from(k % 5), 0.5 * f64::from(k / 5)]).collect();
+    let elements: Vec<[usize; 4]> = (0..4).map(|k| [k, k + 1, k + 6, k + 5]).collect();
+    let [low, high] = [0, 5].map(|first| (0..4).map(|k| [first + k, first + k + 1]).collect::<Vec<_>>());
+    by_nodes["mesh"] = json!({"nodes": nodes, "elements": {"tube": elements}, "edges": {"bottom": low, "top": high, "bore": [[5, 0]]}});
+    let values = |name: &str, case: &Value| -> Vec<f64> {
+        fs::write(folder.path().join(name), case.to_string()).expect("a case");
+        let output = fecontact(&["converge", name, "--measure", "bore.ux:end"], folder.path());
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+        let line = said.lines().find_map(|line| line.strip_prefix("bore.ux:end: ")).expect("the values");
+        line.split(", ").map(|value| value.parse().expect("a number")).collect()
+    };
+    let [blocks, nodes] = [("blocks.json", &case), ("nodes.json", &by_nodes)].map(|(name, case)| values(name, case));
+    assert!(blocks.iter().zip(&nodes).all(|(a, b)| (a - b).abs() < 1e-13 * a.abs()), "{blocks:?} and {nodes:?}");
 }
 
 /// Orders, extrapolations and bars of sequences that are known: 1 + 2^(−p k), sequences to and fro, and those that do not converge.
@@ -110,13 +236,17 @@ fn bad_studies_are_refused() {
     let folder = TempDir::new().expect("a folder");
     let write = |name: &str, case: &Value| fs::write(folder.path().join(name), case.to_string()).expect("a case");
     let (good, _) = tube(2);
-    let mut by_nodes = good.clone();
-    by_nodes["mesh"] = json!({"nodes": [[1, 0], [2, 0], [2, 1], [1, 1]], "elements": {"tube": [[0, 1, 2, 3]]},
-        "edges": {"bottom": [[0, 1]], "top": [[2, 3]], "bore": [[3, 0]]}});
+    let mut held = good.clone();
+    held["mesh"] = json!({"nodes": [[1, 0], [2, 0], [2, 1], [1, 1]], "elements": {"tube": [[0, 1, 2, 3]]},
+        "edges": {"top": [[2, 3]], "bore": [[3, 0]]}, "points": {"bottom": [0, 1]}});
     write("good.json", &good);
-    write("by_nodes.json", &by_nodes);
+    write("held.json", &held);
     for (arguments, code, told) in [
-        (["by_nodes.json", "--measure", "bore.ux:end", "--levels", "3"], 2, "mesh: is not made of blocks"),
+        (
+            ["held.json", "--measure", "bore.ux:end", "--levels", "3"],
+            2,
+            "mesh: the group `bottom` holds the nodes 0 and 1, the ends of a side",
+        ),
         (["good.json", "--measure", "bore.ux", "--levels", "3"], 2, "`bore.ux` is no measure: give COLUMN:max"),
         (["good.json", "--measure", "bore.ux:last", "--levels", "3"], 2, "`last` is nothing that is taken of a column"),
         (["good.json", "--measure", "bor.ux:end", "--levels", "3"], 2, "the history has no column `bor.ux`; there are"),

@@ -24,12 +24,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::InlineMesh;
+use super::{InlineMesh, MOST_ELEMENTS};
 pub use grid::Grading;
 use grid::Grid;
-
-/// Upper bound of the total number of elements of all blocks.
-const MOST: f64 = 4e6;
 
 /// Element kind of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -228,8 +225,8 @@ impl Blocks {
                 return Err(BlockError::new(place, "is 0 along a side: must be at least 1"));
             }
             total += elements[0] as f64 * elements[1] as f64;
-            if total > MOST {
-                let message = format!("makes {total:.0} elements, more than {MOST:.0}: take fewer");
+            if total > MOST_ELEMENTS {
+                let message = format!("makes {total:.0} elements, more than {MOST_ELEMENTS:.0}: take fewer");
                 return Err(BlockError::new(place, message));
             }
         }
