@@ -28,6 +28,8 @@ pub struct Ways {
     pub told_in_time: bool,
     /// numbers changed in the 12th digit
     pub noise: Option<u64>,
+    /// tolerance of Newton's method times this
+    pub looser: f64,
     /// all loads and motions times this
     pub load: f64,
     /// densities times this
@@ -64,6 +66,7 @@ impl Ways {
             drive: None,
             told_in_time: false,
             noise: None,
+            looser: 1.0,
             load: 1.0,
             density: 1.0,
             stiffer: 1.0,
@@ -302,7 +305,7 @@ impl Writer<'_> {
         watch.extend((!self.is_rigid()).then(|| self.group("ground_bottom")));
         case.insert("watch".into(), json!(watch));
         case.insert("probes".into(), self.probes());
-        case.insert("newton".into(), json!({"tolerance": 1e-10, "max_iterations": 25}));
+        case.insert("newton".into(), json!({"tolerance": 1e-10 * self.ways.looser, "max_iterations": 25}));
         let mut output = json!({"fields": false, "report": false, "checkpoint": null});
         let dt = self.dt();
         if self.has("times") {

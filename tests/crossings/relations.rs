@@ -42,11 +42,14 @@ impl<'a> Base<'a> {
 
     /// How far the plain run moves when its numbers change in the 12th digit: what round-off can do to this model.
     pub fn sensitivity(&self, skip: &dyn Fn(&str) -> bool) -> f64 {
-        let of = |noise| {
-            let record = self.run(&Ways { noise: Some(noise), ..self.ways.clone() });
-            if record.ended == self.record.ended { compare(&self.record, &record, skip).share } else { f64::INFINITY }
-        };
+        let of = |noise| self.moves_by(Ways { noise: Some(noise), ..self.ways.clone() }, skip);
         (1..=NOISES).map(of).fold(0.0, f64::max)
+    }
+
+    /// How far the plain run moves when it is run in another way.
+    fn moves_by(&self, ways: Ways, skip: &dyn Fn(&str) -> bool) -> f64 {
+        let record = self.run(&ways);
+        if record.ended == self.record.ended { compare(&self.record, &record, skip).share } else { f64::INFINITY }
     }
 
     /// The same problem written in another way has the same answer.
@@ -84,9 +87,15 @@ impl<'a> Base<'a> {
         if difference.share <= tolerance { Outcome::Holds } else { self.judged(difference, skip) }
     }
 
-    /// A difference that round-off can make is none.
+    /// A difference that round-off can make is none, nor is a small one that the tolerance of Newton's method makes.
     fn judged(&self, difference: Difference, skip: &dyn Fn(&str) -> bool) -> Outcome {
-        if difference.share <= AMPLIFIED * self.sensitivity(skip) { Outcome::Idle } else { Outcome::Broken(difference) }
+        let by_tolerance =
+            || LOOSER * self.moves_by(Ways { looser: LOOSER, ..self.ways.clone() }, skip).min(SAME_BY_TOLERANCE);
+        if difference.share <= AMPLIFIED * self.sensitivity(skip) || difference.share <= by_tolerance() {
+            Outcome::Idle
+        } else {
+            Outcome::Broken(difference)
+        }
     }
 
     fn has_ended_well(&self) -> bool {
@@ -109,6 +118,12 @@ const NOISES: u64 = 12;
 /// A relation may miss by so many times what a change in the 12th digit of its numbers does: far from the origin positions are rounded in
 /// the tenth.
 const AMPLIFIED: f64 = 1000.0;
+
+/// What the tolerance of Newton's method does is seen at one so many times as large.
+const LOOSER: f64 = 10.0;
+
+/// At most so much of a difference is put down to it, before the factor.
+const SAME_BY_TOLERANCE: f64 = 1e-6;
 
 /// What is the same is the same to this share: a hundred times what Newton's method leaves.
 const SAME: f64 = 1e-8;
