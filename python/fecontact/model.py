@@ -1681,10 +1681,10 @@ class CaseKeys(TypedDict, total=False):
     # on one act on both
     periodic: Sequence[Sequence[str]]
     # Loading plates: groups whose nodes all have the same displacement, as if bonded to a rigid platen that does
-    # not rotate. A support, force, spring or dashpot on one of its nodes acts once on the whole plate, as does a
-    # `total_force` on its group. Its reaction counts in the watched groups that contain the whole plate. In
-    # axisymmetry a plate keeps its radius, ux = 0. Other plates are given by `moves`: only one component equal, or
-    # a rigid body that can rotate
+    # not rotate. A support of a node of it holds the whole plate, and a force, spring or dashpot at a node acts on
+    # the whole plate: on its group once for every node, a `total_force` once. Its reaction counts in the watched
+    # groups that contain the whole plate. In axisymmetry a plate keeps its radius, ux = 0. Other plates are given
+    # by `moves`: only one component equal, or a rigid body that can rotate
     plates: Sequence[LoadingPlate]
     # Point masses by the name of a mesh group: a mass at each of its nodes
     point_masses: Mapping[str, PointMass]

@@ -46,7 +46,8 @@ def test_the_bar_of_a_tube_holds_its_closed_form(tmp_path: Path) -> None:
     assert error < found.bar < 2 * error
     assert found.extrapolated == pytest.approx(exact, abs=0.1 * error)
     assert f"converges with the order {found.order:.3g}" in found.verdict and "±" in repr(found)
-    assert found.by_increments == 0
+    # A linear body: the increments change no more than round-off.
+    assert found.by_increments == pytest.approx(0, abs=1e-9)
     assert fc.Result(tmp_path / "level_2").history["bore.ux"].iloc[-1] == found.value
 
 

@@ -7,10 +7,12 @@
 //! ```
 //! What the case leaves open has the default of the finer mesh; `alpha_n` then grows with 1/h.
 
+use serde_json::Value;
+
 use super::file::{Amount, BlockInput, BlocksInput, Case, GradingInput, MeshSource, MiddleInput, evaluated};
 use super::{CaseError, Written, build, build_on, mesh};
-use crate::mesh::{Block, Blocks, Grading, MOST_ELEMENTS, Mesh};
-use crate::model::builder::{Checked, IncrementSettings, LoadStep, ModelError, refuse_if};
+use crate::mesh::{Block, Blocks, Grading, Group, MOST_ELEMENTS, Mesh};
+use crate::model::builder::{Checked, IncrementSettings, Load, LoadStep, ModelError, Place, refuse_if};
 use crate::model::scheme::Scheme;
 use crate::model::{Increments, Model, Step};
 
@@ -36,7 +38,8 @@ impl Halvings {
 /// Returns a case whose elements and increments are halved so many times. It writes no fields and no page.
 ///
 /// # Errors
-/// Returns [`CaseError`] if the case is invalid or begins with another one, or if nodes of its mesh stand for a side.
+/// Returns [`CaseError`] if the case is invalid or begins with another one, if nodes of its mesh stand for a side, or if it names nodes by
+/// their tags or loads every node of a body or a side, which another mesh makes another problem.
 pub fn refined(written: &Written, halvings: Halvings) -> Result<Written, CaseError> {
     let Written { path, case, .. } = written;
     let refined_mesh = || {
@@ -47,7 +50,7 @@ pub fn refined(written: &Written, halvings: Halvings) -> Result<Written, CaseErr
         }
     };
     let finer = refined_mesh().map_err(|complaint| complaint.in_file(path))?;
-    Ok(with(written, finer, &build(case, path)?, halvings.increments))
+    with(written, finer, &build(case, path)?, halvings)
 }
 
 /// Returns a case on a mesh in memory as [`refined`]; its own mesh is the finer one, unless elements are not halved.
@@ -58,7 +61,7 @@ pub fn refined_on(written: &Written, mesh: &Mesh, halvings: Halvings) -> Result<
     let Written { path, case, .. } = written;
     let refined_mesh = || check(case, halvings.mesh).and_then(|()| divided(&case.mesh, mesh.clone(), halvings.mesh));
     let finer = refined_mesh().map_err(|complaint| complaint.in_file(path))?;
-    Ok(with(written, finer, &build_on(case, mesh.clone(), path)?, halvings.increments))
+    with(written, finer, &build_on(case, mesh.clone(), path)?, halvings)
 }
 
 /// Refuses what cannot be refined.
@@ -69,16 +72,56 @@ fn check(case: &Case, times: u32) -> Checked<()> {
     refuse_if(times > MOST, "mesh", format_args!("cannot be halved {times} times: {MOST} are the most"))
 }
 
+/// Refuses what another mesh makes another problem: nodes by their tags, and what acts at every node of a body or a side.
+fn check_nodes(Written { case, document, .. }: &Written, mesh: &Mesh) -> Checked<()> {
+    let instead = "a mesh that is refined has others: name a single node by its place, {\"near\": [x, y]}";
+    if let Some(place) = tagged(document, "") {
+        return Err(ModelError::new(place, format!("is a node by its tag, and {instead}")));
+    }
+    let grows = |group: &String| !matches!(mesh.groups.get(group), Some(Group::Nodes(_)) | None);
+    for (k, step) in case.steps.iter().enumerate() {
+        for (i, Load { on, force, spring, dashpot, .. }) in step.loads.iter().enumerate() {
+            let kinds = [("force", force.is_some()), ("spring", spring.is_some()), ("dashpot", dashpot.is_some())];
+            let Some((kind, _)) = kinds.into_iter().find(|(_, given)| *given) else { continue };
+            let Place::Group(group) = on else { continue };
+            let message =
+                format_args!("acts at every node of `{group}`, and {instead}, or give a total_force or a traction");
+            refuse_if(grows(group), &format!("steps[{k}].loads[{i}].{kind}"), message)?;
+        }
+    }
+    for group in case.point_masses.keys() {
+        let message = format_args!("is at every node of the group, and {instead}, or give a density");
+        refuse_if(grows(group), &format!("point_masses.{group}"), message)?;
+    }
+    Ok(())
+}
+
+/// Where a value of a case names a node by its tag.
+fn tagged(value: &Value, place: &str) -> Option<String> {
+    match value {
+        Value::Object(keys) if keys.len() == 1 && keys.get("node").is_some_and(Value::is_u64) => Some(place.into()),
+        Value::Object(keys) => keys.iter().find_map(|(key, value)| {
+            tagged(value, &if place.is_empty() { key.clone() } else { format!("{place}.{key}") })
+        }),
+        Value::Array(list) => list.iter().enumerate().find_map(|(k, value)| tagged(value, &format!("{place}[{k}]"))),
+        _ => None,
+    }
+}
+
 /// The case on another mesh, with increments that are halved so many times.
-fn with(Written { path, case, .. }: &Written, mesh: MeshSource, model: &Model, times: u32) -> Written {
+fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) -> Result<Written, CaseError> {
+    let Written { path, case, .. } = written;
+    if halvings.mesh > 0 {
+        check_nodes(written, &model.mesh).map_err(|complaint| complaint.in_file(path))?;
+    }
     let mut case = Case { mesh, ..case.clone() };
     for (given, step) in case.steps.iter_mut().zip(&model.steps) {
-        refine_increments(given, step, 2.0_f64.powi(times as i32));
+        refine_increments(given, step, 2.0_f64.powi(halvings.increments as i32));
     }
     (case.output.fields, case.output.report) = (false, false);
     // Values read from JSON can be written as JSON.
     let document = serde_json::to_value(&case).unwrap_or_default();
-    Written { path: path.clone(), document, case }
+    Ok(Written { path: path.clone(), document, case })
 }
 
 fn of_blocks(input: &BlocksInput, times: u32) -> Checked<MeshSource> {

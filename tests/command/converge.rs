@@ -241,11 +241,44 @@ fn bad_studies_are_refused() {
         "edges": {"top": [[2, 3]], "bore": [[3, 0]]}, "points": {"bottom": [0, 1]}});
     write("good.json", &good);
     write("held.json", &held);
+    // What another mesh makes another problem.
+    let with = |name: &str, pointer: &str, value: Value| {
+        let mut changed = good.clone();
+        *changed.pointer_mut(pointer).expect("a place") = value;
+        write(name, &changed);
+    };
+    let load = |kind: &str, of: Value| json!([{"on": "bore", kind: of}]);
+    with("force.json", "/steps/0/loads", load("force", json!({"x": 1})));
+    with("spring.json", "/steps/0/loads", load("spring", json!({"kx": 1})));
+    with("tag.json", "/steps/0/supports/1/on", json!({"node": 1}));
+    let mut mass = good.clone();
+    mass["point_masses"] = json!({"bore": {"mass": 1}});
+    write("mass.json", &mass);
     for (arguments, code, told) in [
         (
             ["held.json", "--measure", "bore.ux:end", "--levels", "3"],
             2,
             "mesh: the group `bottom` holds the nodes 0 and 1, the ends of a side",
+        ),
+        (
+            ["force.json", "--measure", "bore.ux:end", "--levels", "3"],
+            2,
+            "steps[0].loads[0].force: acts at every node of `bore`, and a mesh",
+        ),
+        (
+            ["spring.json", "--measure", "bore.ux:end", "--levels", "3"],
+            2,
+            "steps[0].loads[0].spring: acts at every node of `bore`",
+        ),
+        (
+            ["tag.json", "--measure", "bore.ux:end", "--levels", "3"],
+            2,
+            "steps[0].supports[1].on: is a node by its tag, and a mesh",
+        ),
+        (
+            ["mass.json", "--measure", "bore.ux:end", "--levels", "3"],
+            2,
+            "point_masses.bore: is at every node of the group",
         ),
         (["good.json", "--measure", "bore.ux", "--levels", "3"], 2, "`bore.ux` is no measure: give COLUMN:max"),
         (["good.json", "--measure", "bore.ux:last", "--levels", "3"], 2, "`last` is nothing that is taken of a column"),
@@ -258,6 +291,10 @@ fn bad_studies_are_refused() {
         assert!(output.status.code() == Some(code) && said.contains(told), "{arguments:?}: {said}");
         assert!(!folder.path().join("out").exists(), "{arguments:?}");
     }
+    // A force at a place stays one force.
+    with("near.json", "/steps/0/loads", json!([{"on": {"near": [1, 0]}, "force": {"x": 1}}]));
+    let output = fecontact(&["converge", "near.json", "--measure", "bore.ux:end"], folder.path());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 /// Every level warns as a run of its own: a block that strikes the floor within a single increment loses energy, less in shorter ones.

@@ -49,10 +49,10 @@ pub struct Case {
     #[serde(default)]
     pub periodic: Vec<[String; 2]>,
     /// Loading plates: groups whose nodes all have the same displacement, as if bonded to a rigid platen that does not
-    /// rotate. A support, force, spring or dashpot on one of its nodes acts once on the whole plate, as does a
-    /// `total_force` on its group. Its reaction counts in the watched groups that contain the whole plate. In
-    /// axisymmetry a plate keeps its radius, ux = 0. Other plates are given by `moves`: only one component equal, or a
-    /// rigid body that can rotate
+    /// rotate. A support of a node of it holds the whole plate, and a force, spring or dashpot at a node acts on the
+    /// whole plate: on its group once for every node, a `total_force` once. Its reaction counts in the watched groups that
+    /// contain the whole plate. In axisymmetry a plate keeps its radius, ux = 0. Other plates are given by `moves`: only
+    /// one component equal, or a rigid body that can rotate
     #[serde(default)]
     pub plates: Vec<LoadingPlateInput>,
     /// Moving rigid bodies, by a name of your choice: rigid masters of contacts refer to them. Supports on the name prescribe
