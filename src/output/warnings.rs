@@ -1,12 +1,12 @@
 //! Warnings about results: deep penetration, pressure above the uniqueness bound of the law, time errors above the tolerance,
-//! fronts not resolved by the mesh, contacts that never close, and energy errors.
+//! fronts not resolved by the mesh, contacts that never close, linear bodies far from their range, and energy errors.
 //!
 //! This includes warnings about single points of a contact.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::audit::Audit;
@@ -35,6 +35,7 @@ const UNSEEN: f64 = 0.05;
 pub struct Warnings {
     /// the warnings so far
     pub list: Vec<String>,
+    /// Kinds by the number of their contact or body
     given: BTreeSet<(usize, Kind)>,
     /// Names of the steps with a warning about their time error
     inexact: BTreeSet<String>,
@@ -80,6 +81,9 @@ impl Observer for Warnings {
         self.error_of_touch(attempt);
         self.lost_pivots(attempt);
         self.passed(attempt, state);
+        if attempt.ends_step(state) {
+            self.far_from_linear(model, state);
+        }
         self.audit.record(model, attempt.step, attempt.old, state);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
@@ -217,6 +221,38 @@ impl Warnings {
         }
     }
 
+    /// Linear bodies that have turned or stretched too far for one.
+    fn far_from_linear(&mut self, model: &Model, state: &State) {
+        let largest = |element: usize| {
+            let (solid, u) = (&model.solids[element], model.mesh.vectors(element, &state.displacement));
+            let hoops = solid.hoops(&u).unwrap_or_default().into_iter().map(|hoop| (hoop - 1.0).abs());
+            let planes =
+                solid.deformations(&u).into_iter().map(|deformation| (deformation - Matrix2::identity()).norm());
+            planes.chain(hoops).fold(0.0, f64::max)
+        };
+        for (number, body) in model.bodies.iter().enumerate() {
+            if !body.material.description().is_linear || self.given.contains(&(number, Kind::FarFromLinear)) {
+                continue;
+            }
+            let own = (0..model.solids.len()).filter(|&element| model.body_of_element[element] == number);
+            let Some((element, gradient)) = own.map(|e| (e, largest(e))).max_by(|a, b| a.1.total_cmp(&b.1)) else {
+                continue;
+            };
+            if gradient <= FAR_FROM_LINEAR {
+                continue;
+            }
+            self.given.insert((number, Kind::FarFromLinear));
+            let nodes = &model.mesh.elements[element].nodes;
+            let at = nodes.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / nodes.len() as f64;
+            let quasi_dynamic = model.steps.iter().any(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }));
+            let remedy = if quasi_dynamic { "quasi_dynamic steps have no other bodies" } else { "take neo_hookean" };
+            self.list.push(format!(
+                "body `{}` at ({:.6}, {:.6}), t = {}: strains and rotations of {:.1} %, of whose squares a linear body knows nothing: {remedy}",
+                body.name, at.x, at.y, time_text(state.time), 100.0 * gradient
+            ));
+        }
+    }
+
     /// A reaction that jumped past the target value of its step.
     fn passed(&mut self, attempt: &Attempt, state: &State) {
         let Step { name, until: Some(until), .. } = attempt.step else { return };
@@ -283,6 +319,9 @@ fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
     format!("{start}, and {found}; lower dt.min")
 }
 
+/// Norm of the displacement gradient of a linear body that causes a warning: its strains are wrong by about half of that.
+const FAR_FROM_LINEAR: f64 = 0.1;
+
 /// Penetration that causes a warning, as a fraction of the slave's edge.
 const DEEP: f64 = 0.01;
 
@@ -297,7 +336,7 @@ const OF_DEPTH: f64 = 0.2;
 /// 332, 527; Day et al. (2005), J. Geophys. Res. 110, B12307.
 const PROCESS_ZONE: f64 = 9.0 * std::f64::consts::PI / 32.0;
 
-/// Kinds of warnings about a contact, each issued once.
+/// Kinds of warnings about a contact or a body, each issued once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Kind {
     /// A slave point penetrates the master
@@ -318,6 +357,8 @@ enum Kind {
     StretchedFar,
     /// Dilatancy does more work than friction dissipates
     YieldsWork,
+    /// A linear body has turned or stretched far
+    FarFromLinear,
 }
 
 /// Warning about a pressure above the bound of uniqueness.

@@ -1117,9 +1117,13 @@ impl Writer<'_> {
                 let k = if on == "block_top" { 20.0 } else { 5.0 };
                 let mut spring = json!({"kx": k * per_length, "ky": k * per_length});
                 if value == "driven" {
-                    // As an expression, for a number would be reached with the end of the step, and the steps may be others.
+                    // As an expression, for a number would be reached with the end of the step, and the steps may be others. From
+                    // rest: what slides before there is a pressure weakens, or does not, by the sign of a gap of round-off.
                     let at = f.vector(Kind::Length, [0.001 * self.ways.load, 0.0]);
-                    spring["driver"] = json!({"x": format!("{}", at[0]), "y": format!("{}", at[1])});
+                    let span = self.write(Kind::Time, self.duration());
+                    let risen = format!("max(0,min(1,(t-({}))/({span})))^2", self.at(0.0));
+                    spring["driver"] =
+                        json!({"x": format!("({})*{risen}", at[0]), "y": format!("({})*{risen}", at[1])});
                 }
                 loads.push(json!({"on": self.group(on), "spring": spring}));
             }
