@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .calibration import Fit
+    from .convergence import Convergence
 
 def friction(result: Result, contact: str | None = None, *, x: str = "time", ax: Axes | None = None, **line: Any) -> Axes:
     """|Q|/N of contacts over time, or over another column of the history.
@@ -189,6 +190,25 @@ def residuals(found: Fit, *, ax: Axes | None = None, **points: Any) -> Axes:
     ax.set(xlabel="sample", ylabel="fitted − measured, standard deviations [-]")
     if len(found.residuals) > 1:
         ax.legend()
+    return ax
+
+
+def convergence(found: Convergence, *, ax: Axes | None = None, **points: Any) -> Axes:
+    """A number over the size of elements and increments, that of the first run being 1; where it converges, with the error bar of the last
+    run, and the extrapolated value at the size 0."""
+    ax = _axes(ax)
+    sizes = 0.5 ** np.arange(len(found.runs))
+    values = found.runs["value"]
+    ax.plot(sizes, values, **{"marker": "o", "linestyle": "none", "color": "C0", "label": "runs", **points})
+    if found.bar is not None and found.extrapolated is not None:
+        ax.errorbar(sizes[-1], found.value, yerr=found.bar, color="C0", capsize=4, label=f"± {found.bar:.2g}")
+        ax.plot(0, found.extrapolated, marker="x", linestyle="none", color="C1", label="extrapolated", clip_on=False)
+        if found.order is not None:
+            size = np.linspace(0, 1, 101)
+            last = (found.value - found.extrapolated) * (size / sizes[-1]) ** found.order
+            ax.plot(size, found.extrapolated + last, color="C1", linewidth=0.8, label=f"order {found.order:.3g}")
+    ax.set(xlabel="size of elements and increments, relative [-]", ylabel=found.measure, xlim=(0, 1.04), title=found.verdict)
+    ax.legend()
     return ax
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import fecontact as fc
@@ -48,6 +49,15 @@ def test_the_bar_of_a_tube_holds_its_closed_form(tmp_path: Path) -> None:
     assert f"converges with the order {found.order:.3g}" in found.verdict and "±" in repr(found)
     # A linear body: the increments change no more than round-off.
     assert found.by_increments == pytest.approx(0, abs=1e-9)
+    ax = fc.plot.convergence(found)
+    lines = {str(line.get_label()): np.asarray(line.get_ydata(), float) for line in ax.get_lines()}
+    assert lines["runs"] == pytest.approx(found.runs["value"].to_numpy())
+    assert lines["extrapolated"] == pytest.approx(found.extrapolated)
+    # The last two runs lie on the curve of the order, which ends at the extrapolated value.
+    curve = lines[f"order {found.order:.3g}"]
+    assert [curve[0], curve[25]] == pytest.approx([found.extrapolated, found.value])
+    assert curve[50] == pytest.approx(found.runs["value"].iloc[1])
+    assert ax.get_title() == found.verdict
     assert fc.Result(tmp_path / "level_2").history["bore.ux"].iloc[-1] == found.value
 
 

@@ -86,12 +86,12 @@ fn check_nodes(Written { case, document, .. }: &Written, mesh: &Mesh) -> Checked
             let Place::Group(group) = on else { continue };
             let message =
                 format_args!("acts at every node of `{group}`, and {instead}, or give a total_force or a traction");
-            refuse_if(grows(group), &format!("steps[{k}].loads[{i}].{kind}"), message)?;
+            refuse_if(grows(group), format!("steps[{k}].loads[{i}].{kind}"), message)?;
         }
     }
     for group in case.point_masses.keys() {
         let message = format_args!("is at every node of the group, and {instead}, or give a density");
-        refuse_if(grows(group), &format!("point_masses.{group}"), message)?;
+        refuse_if(grows(group), format!("point_masses.{group}"), message)?;
     }
     Ok(())
 }

@@ -653,8 +653,8 @@ fn dilating(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     let Ended::Stopped(why) = &base.record.ended else { return Outcome::Holds };
-    // A body whose material fails on the way is no contact that does not close.
-    if why.contains(": element ") {
+    // A body whose material fails on the way is no contact that does not close, nor is one that is augmented too slowly.
+    if why.contains(": element ") || why.contains("augmentations") {
         return Outcome::Idle;
     }
     let without = Base::new(&plainer);
