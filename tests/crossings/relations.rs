@@ -719,8 +719,10 @@ fn resultants(base: &Base) -> Outcome {
         let [normal, tangential, x, y] =
             ["normal_force", "tangential_force", "force_x", "force_y"].map(|name| of(&format!("c.{name}")).abs());
         let whole = normal.hypot(tangential);
-        // A block that is not held may turn, and where one hits the ground again and again that is bent by half a right angle.
-        let compared = match draft.is("press", "displacement") && !moves(draft) {
+        // A block that is not held may turn, where one hits the ground again and again that is bent by half a right angle, and a block
+        // sinks into clay askew.
+        let straight = draft.is("press", "displacement") && !moves(draft) && !draft.is("ground_law", "cam_clay");
+        let compared = match straight {
             true => vec![("along", [tangential, x]), ("across", [normal, y])],
             false => vec![("as a whole", [whole, x.hypot(y)])],
         };
