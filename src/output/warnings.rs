@@ -247,7 +247,7 @@ impl Warnings {
             let quasi_dynamic = model.steps.iter().any(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }));
             let remedy = if quasi_dynamic { "quasi_dynamic steps have no other bodies" } else { "take neo_hookean" };
             self.list.push(format!(
-                "body `{}` at ({:.6}, {:.6}), t = {}: strains and rotations of {:.1} %, of whose squares a linear body knows nothing: {remedy}",
+                "body `{}` at ({:.6}, {:.6}), t = {}: strains and rotations of {:.1} %, whose squares a linear body neglects: {remedy}",
                 body.name, at.x, at.y, time_text(state.time), 100.0 * gradient
             ));
         }

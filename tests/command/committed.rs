@@ -26,7 +26,7 @@ const SHOWN: &[(&str, &str, &str)] = &[
     ),
     (
         "validation/hertz_q8_small_strain.json",
-        "of whose squares a linear body knows nothing",
+        "whose squares a linear body neglects",
         "what small strains leave out is compared with large ones (docs/validation/cylinder_on_block.md)",
     ),
 ];
