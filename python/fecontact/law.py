@@ -277,12 +277,12 @@ def friction_law(
 
     Args:
         name: name of the law in cases.
-        variables: internal variables, at most 16 numbers per point, with their values at first contact. They appear in results by
+        variables: internal variables, any number of them, with their values at first contact. They appear in results by
             their names, which begin with a letter, consist of letters, digits and ``_``, and differ from those of other results
             (``slip``, ``pressure``, ``q``); ``mu`` is shown in results as μ.
 
     Raises:
-        ValueError: a name is invalid, or there are too many variables.
+        ValueError: a name is invalid.
     """
 
     if not isinstance(variables or {}, Mapping):

@@ -180,15 +180,16 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
     let mut samples = course.time.iter().peekable();
     let mut steps = Vec::new();
     let (mut old, mut before) =
-        (test.start, test.path.first().map_or([0.0; 2], |first| [first.start(), first.slip(first.start())]));
+        (test.start.clone(), test.path.first().map_or([0.0; 2], |first| [first.start(), first.slip(first.start())]));
     let (_, ended) = test.run(|LawRow { time, slip, response, gap, .. }| {
         goes_on(raised)?;
         let state = &response.state;
         let sampled = samples.next_if(|sample| *sample == time).is_some();
         if !by.is_empty() {
             let sliding = Sliding { slip: slip - before[1], pressure: state.pressure, dt: time - before[0] };
+            let old = std::mem::replace(&mut old, state.clone());
             steps.push(Step { old, sliding, sampled });
-            (old, before) = (*state, [*time, *slip]);
+            before = [*time, *slip];
         }
         if !sampled {
             return Ok(());
@@ -247,7 +248,7 @@ fn varied_by(
     let mut states = parameters.map(|name| name.map_or(Variation::default(), |name| law.start(name)));
     let mut rows = [Vec::new(), Vec::new()];
     for Step { old, sliding, sampled } in steps.iter().take_while(|_| !raised.is_set()) {
-        let along = |k: usize| Direction { state: states[k], parameter: parameters[k], ..Direction::default() };
+        let along = |k: usize| Direction { state: states[k].clone(), parameter: parameters[k], ..Direction::default() };
         states = law.vary(old, *sliding, [along(0), along(1)])?;
         if *sampled {
             (0..2).for_each(|k| rows[k].push(parameters[k].map_or(f64::NAN, |_| states[k].traction)));

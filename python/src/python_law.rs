@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use fecontact::laws::friction::MOST_VARIABLES;
 use fecontact::laws::friction::{
-    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, observables,
-    register,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, Variables,
+    observables, register,
 };
 use fecontact::run::error::Error;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
@@ -25,7 +24,7 @@ struct PythonLaw {
     alpha_t: f64,
     /// names of its variables, and their values at first touch
     variables: &'static [&'static str],
-    initial: [f64; MOST_VARIABLES],
+    initial: Variables,
 }
 
 /// Let cases use `{"law": "registered", "name": name}`; `variables` with their values at first touch.
@@ -36,24 +35,21 @@ pub fn register_law(name: &str, call: Bound<PyAny>, variables: Vec<(String, f64)
     }
     let call = call.unbind();
     let bad = |message: String| Err(PyValueError::new_err(format!("law `{name}`: {message}")));
-    if variables.len() > MOST_VARIABLES {
-        return bad(format!("has {} variables: at most {MOST_VARIABLES} are allowed", variables.len()));
-    }
     if let Some((variable, value)) = variables.iter().find(|(_, value)| !value.is_finite()) {
         return bad(format!("variable `{variable}` is {value} at first touch: must be a finite number"));
     }
-    let mut initial = [0.0; MOST_VARIABLES];
-    initial.iter_mut().zip(&variables).for_each(|(to, (_, value))| *to = *value);
+    let initial: Variables = variables.iter().map(|(_, value)| *value).collect();
     // A law is registered for as long as the process lives.
     let names: Vec<&'static str> = variables.into_iter().map(|(name, _)| &*String::leak(name)).collect();
     let (variables, call, own): (&'static [_], _, Arc<str>) = (Vec::leak(names), Arc::new(call), name.into());
     let (parameters, alpha_t) = (BTreeMap::new(), 1.0);
-    let law = PythonLaw { name: own.clone(), call: call.clone(), parameters, alpha_t, variables, initial };
+    let law =
+        PythonLaw { name: own.clone(), call: call.clone(), parameters, alpha_t, variables, initial: initial.clone() };
     if let Err(error) = observables::check_names(&law.description()) {
         return bad(error.to_string());
     }
     register(name, move |parameters, alpha_t| {
-        let (name, call, parameters) = (own.clone(), call.clone(), parameters.clone());
+        let (name, call, parameters, initial) = (own.clone(), call.clone(), parameters.clone(), initial.clone());
         Ok(Box::new(PythonLaw { name, call, parameters, alpha_t, variables, initial }))
     });
     Ok(())
@@ -65,13 +61,14 @@ impl FrictionLaw for PythonLaw {
     }
 
     fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
-        FrictionState { variables: self.initial, ..FrictionState::default() }.loaded(pressure, traction)
+        FrictionState { variables: self.initial.clone(), ..FrictionState::default() }.loaded(pressure, traction)
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let mut answer = [Err(LawFailure::Registered)];
-        self.respond_many(&[*old], &[sliding], &mut answer);
-        answer[0]
+        self.respond_many(std::slice::from_ref(old), &[sliding], &mut answer);
+        let [answer] = answer;
+        answer
     }
 
     fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
@@ -139,14 +136,13 @@ impl PythonLaw {
             let (old, pressure) = (&old[i], sliding[i].pressure);
             // The trapezoidal rule for ∫ |q| dλ, unless the law knows better.
             let trapezoid = 0.5 * (old.traction + traction[j]) * plastic[j];
-            let mut state = FrictionState {
+            let state = FrictionState {
                 plastic_slip: old.plastic_slip + plastic[j],
                 plastic_increment: plastic[j],
                 dissipation: old.dissipation + dissipated.as_ref().map_or(trapezoid, |given| given[j]),
                 regime: if plastic[j] == 0.0 { Regime::Stick } else { Regime::Slip },
-                ..old.stuck(traction[j], pressure)
+                ..old.stuck(traction[j], pressure).with_variables(variables.iter().map(|values| values[j]))
             };
-            state.variables.iter_mut().zip(&variables).for_each(|(to, values)| *to = values[j]);
             let tangent = (by_slip[j], by_pressure[j]);
             FrictionResponse { state, dtraction_dslip: tangent.0, dtraction_dpressure: tangent.1, ..Default::default() }
                 .checked(self.alpha_t)

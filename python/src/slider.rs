@@ -149,7 +149,7 @@ impl Slider<'_> {
     fn ride(&self, keep: bool) -> Result<Ride, Halt> {
         let scale = self.course.iter().map(|[_, _, pressure]| pressure.abs()).fold(0.0, f64::max);
         let mut motion = Motion { slip: 0.0, rate: 0.0, acceleration: 0.0 };
-        let mut state = self.start;
+        let mut state = self.start.clone();
         let mut ride = Ride { rows: vec![self.row(self.course[0][1], &motion)], steps: Vec::new() };
         let (mut longest, mut taken) = (f64::INFINITY, 0);
         for pair in self.course.windows(2) {
@@ -264,7 +264,7 @@ impl Slider<'_> {
             du += dslip;
             state = given;
             state.traction += by_slip.traction * dslip;
-            state.variables.iter_mut().zip(by_slip.variables).for_each(|(to, by)| *to += by * dslip);
+            state.variables.values_mut().zip(by_slip.variables.values()).for_each(|(to, by)| *to += by * dslip);
             if *sampled {
                 rows.push(dstiffness * stretch - self.stiffness * du);
             }

@@ -187,7 +187,8 @@ impl<'a> PointEvaluation<'a> {
         let PointPlace { gap, foot, closes, fluid, .. } = self.place;
         if !closes {
             let length = closed.push_open(self.kinematics, fluid).unwrap_or(self.old.length);
-            let parted = ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, elastic_slip: 0.0, ..*self.old };
+            let parted =
+                ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, elastic_slip: 0.0, ..self.old.clone() };
             return Ok(ContactState { friction: response.state, foot, gap, length, fluid, pores: 0.0, ..parted });
         }
         let (pressure, carried) = (self.agree(&mut response)?, self.asked);
@@ -226,6 +227,7 @@ impl<'a> PointEvaluation<'a> {
         let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
         let pores = pressure - seen;
         closed.push(kinematics, &response, Beside { radiates, fluid, pores }, promised);
+        let elastic_slip = pair.left_of_stick(law, old, response.state.traction);
         Ok(ContactState {
             friction: response.state,
             foot,
@@ -236,7 +238,7 @@ impl<'a> PointEvaluation<'a> {
             radiated: old.radiated + 0.5 * (old.radiation + radiation) * sliding.slip,
             // The next increment starts with the same pressure, but the given stiffness.
             multiplier: old.multiplier - (alpha_n - pair.alpha_n) * clearance,
-            elastic_slip: pair.left_of_stick(law, old, response.state.traction),
+            elastic_slip,
             fluid,
             pores,
         })

@@ -323,7 +323,7 @@ impl ContactPair {
     pub fn multiplied(&self, old: &[ContactState], found: &[ContactState]) -> Vec<ContactState> {
         let points = self.points.iter().zip(old.iter().zip(found));
         let again = |(slave, (old, new)): (&SlavePoint, (&ContactState, &ContactState))| {
-            let mut again = *old;
+            let mut again = old.clone();
             again.multiplier = if self.penetration.is_some() { new.contact_pressure() } else { 0.0 };
             again.friction.traction += self.law(slave).description.stiffness * new.elastic_slip;
             again

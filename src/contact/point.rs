@@ -164,7 +164,7 @@ pub struct MasterPoint {
 }
 
 /// Memory of one contact point between increments.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
     /// State of friction
     pub friction: FrictionState,

@@ -246,7 +246,7 @@ impl Chunk {
             }
             let answers = answered.answers(laws, points, old, &sliding[..points.len()]);
             for (i, (loading, answer)) in loadings.into_iter().flatten().zip(answers).enumerate() {
-                match loading.finish(*answer, closed) {
+                match loading.finish(answer.clone(), closed) {
                     Ok(state) => states[i] = state,
                     Err(cause) => {
                         *failure = Some((first + i, cause));
@@ -262,9 +262,9 @@ impl Default for Together {
     fn default() -> Self {
         Self {
             laws: Vec::new(),
-            old: [FrictionState::default(); TOGETHER],
+            old: std::array::from_fn(|_| FrictionState::default()),
             sliding: [Sliding { slip: 0.0, pressure: 0.0, dt: 0.0 }; TOGETHER],
-            answers: [Ok(FrictionResponse::default()); TOGETHER],
+            answers: std::array::from_fn(|_| Ok(FrictionResponse::default())),
         }
     }
 }
@@ -281,7 +281,7 @@ impl Together {
         if !self.were_asked(laws, points, old, sliding) {
             self.laws.clear();
             self.laws.extend(points.iter().map(|slave| laws[slave.law].clone()));
-            self.old.iter_mut().zip(old).for_each(|(own, old)| *own = old.friction);
+            self.old.iter_mut().zip(old).for_each(|(own, old)| own.clone_from(&old.friction));
             self.sliding[..sliding.len()].copy_from_slice(sliding);
             let mut start = 0;
             for alike in points.chunk_by(|a, b| a.law == b.law) {

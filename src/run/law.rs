@@ -80,13 +80,13 @@ impl LawTest {
         let Some(first) = self.path.first() else { return Ok(()) };
         let mut time = first.start();
         let mut slip = first.slip(time);
-        let mut state = self.start;
+        let mut state = self.start.clone();
         let mut step = |to: f64, phase: &Phase| {
             let confined = self.confinement.confined(phase.pressure(to), self.start.pressure);
             let sliding = Sliding { slip: phase.slip(to) - slip, pressure: confined.pressure, dt: to - time };
             let response = self.law.respond_confined(&state, sliding, confined);
             let response = response.map_err(|cause| Error::Law { time, cause })?;
-            (time, slip, state) = (to, phase.slip(to), response.state);
+            (time, slip, state) = (to, phase.slip(to), response.state.clone());
             record(&self.row(time, slip, response))
         };
         step(first.start(), first)?;
@@ -95,8 +95,8 @@ impl LawTest {
 
     fn row(&self, time: f64, slip: f64, response: FrictionResponse) -> LawRow {
         let state = &response.state;
-        let gap = self.confinement.gap(state, self.start.pressure);
-        LawRow { time, slip, response, mu: self.law.observe("mu", state), gap }
+        let (gap, mu) = (self.confinement.gap(state, self.start.pressure), self.law.observe("mu", state));
+        LawRow { time, slip, response, mu, gap }
     }
 
     /// Warns once of a pressure above which the response may not be unique.
@@ -364,7 +364,7 @@ fn highest(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// One step along the path.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LawRow {
     /// t [T]
@@ -466,12 +466,12 @@ impl LawReport {
     /// Records the next row.
     #[doc(hidden)]
     pub fn note(&mut self, row: &LawRow) {
-        let FrictionResponse { state, evaluations, .. } = row.response;
-        let FrictionState { pressure, traction, dissipation, .. } = state;
+        let FrictionResponse { state, evaluations, .. } = &row.response;
+        let FrictionState { pressure, traction, dissipation, .. } = *state;
         // The first row is the start.
         self.steps += usize::from(self.peaks.last.is_some());
         self.peaks.note(PathPoint::new(row.time, row.slip, pressure, traction, row.mu));
-        self.most_evaluations = self.most_evaluations.max(evaluations);
+        self.most_evaluations = self.most_evaluations.max(*evaluations);
         self.dissipation = dissipation;
     }
 }

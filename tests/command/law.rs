@@ -283,14 +283,14 @@ fn an_oscillation_by_expression_is_right_at_any_increment() {
     let law = serde_json::from_value::<FrictionParameters>(paper()).unwrap().build(f64::NAN).unwrap();
     let mut fine = vec![(0.0, start)];
     for turn in [0.5 * PI, 1.5 * PI, 5.0] {
-        let (begin, mut state) = *fine.last().unwrap();
+        let (begin, mut state) = fine.last().cloned().unwrap();
         let parts = ((turn - begin) / 1e-5).ceil();
         let at = |k: f64| begin + (turn - begin) * k / parts;
         for k in 1..=parts as usize {
             let [t0, t1] = [k - 1, k].map(|k| at(k as f64));
             let sliding = Sliding { slip: t1.sin() - t0.sin(), pressure: PRESSURE, dt: t1 - t0 };
             state = law.respond(&state, sliding).unwrap().state;
-            fine.push((t1, state));
+            fine.push((t1, state.clone()));
         }
     }
     for dt in [1e-3, 1e-2, 0.1, 0.3] {
@@ -300,7 +300,7 @@ fn an_oscillation_by_expression_is_right_at_any_increment() {
         }));
         for (time, traction) in done.column("time").iter().zip(done.column("traction")).skip(1) {
             let after = fine.partition_point(|(t, _)| t < time).min(fine.len() - 1);
-            let [(t0, before), (t1, after)] = [fine[after - 1], fine[after]];
+            let [(t0, before), (t1, after)] = [fine[after - 1].clone(), fine[after].clone()];
             let share = (time - t0) / (t1 - t0);
             let expected = before.traction + share * (after.traction - before.traction);
             close(&format!("Δt = {dt}: friction at {time}"), *traction, expected, 1e-3 * 0.2 * PRESSURE);

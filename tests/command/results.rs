@@ -439,13 +439,14 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
     drop((history, fields));
 
     let (frames, mut slipping) = (folder.path().join("contact"), 0);
-    let held = record.states.iter().find(|state| state.time > 3.0 - 1e-9).expect("a state").contacts[0][0].friction;
+    let held =
+        record.states.iter().find(|state| state.time > 3.0 - 1e-9).expect("a state").contacts[0][0].friction.clone();
     close("no slip, no change", held.traction, mu * 10.0, 1e-9);
     close("pressure", held.pressure, 20.0, 1e-9);
     for (number, state) in record.states.iter().enumerate() {
         let friction = &state.contacts[0][0].friction;
         let piece = frame(&frames.join(format!("{:05}.vtu", number + 1)));
-        for (name, value) in ["psi_1", "psi_2"].iter().zip(friction.variables) {
+        for (name, value) in ["psi_1", "psi_2"].iter().zip(friction.variables.values()) {
             close(name, values(&piece.data.point, name)[0], value, 0.0);
         }
         if state.time > 3.0 + 1e-9 {

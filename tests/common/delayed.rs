@@ -50,7 +50,7 @@ impl FrictionLaw for DelayedPressure {
             return FrictionResponse::elastic(old.parted(alpha_t).with_variables([0.0; 2]), 0.0).checked(alpha_t);
         }
         let touches = old.pressure <= 0.0;
-        let [first, second, ..] = old.variables;
+        let [first, second] = [0, 1].map(|k| old.variables[k]);
         let psi = if touches { shares.map(|share| share * pressure) } else { [first, second] };
         let trial = old.traction + alpha_t * slip;
         let excess =

@@ -118,7 +118,7 @@ fn respond(
     pair.respond(old, configurations, during, |_| Presumption::default(), Request::Tangent, &mut response)
         .expect("an answer");
     let closed = |k| response.closed(k).map(contribution);
-    response.states.iter().enumerate().map(|(k, state)| (*state, closed(k))).collect()
+    response.states.iter().enumerate().map(|(k, state)| (state.clone(), closed(k))).collect()
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
@@ -251,7 +251,7 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
             let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
             let mut closed = 0;
             for k in 0..pair.points.len() {
-                let (state, _) = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x);
+                let (state, _) = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed.clone(), -0.02), &x);
                 if state.regime() == Regime::Open {
                     continue;
                 }
@@ -265,7 +265,7 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
                     (-1.4, -0.02, "backward slip over two segments"),
                     (0.02, 0.03, "touch within the increment"),
                 ] {
-                    let friction = if gap > 0.0 { pair.laws[0].law.initial_state(0.0, 0.0) } else { pressed };
+                    let friction = if gap > 0.0 { pair.laws[0].law.initial_state(0.0, 0.0) } else { pressed.clone() };
                     let old = pulled(&pair, k, &x, back, friction, gap);
                     check_tangent(&pair, k, &old, &x, &format!("{law}, {what}, radiation {radiation}"));
                 }
@@ -420,7 +420,7 @@ fn tangent_equals_differences_on_rigid_bodies() {
             let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
             for k in 0..2 {
                 for (back, gap) in [(1e-4, -0.02), (0.01, -0.02), (-0.2, -0.02), (0.02, 0.03)] {
-                    let old = pulled(&pair, k, &x, back, pressed, gap);
+                    let old = pulled(&pair, k, &x, back, pressed.clone(), gap);
                     check_tangent(&pair, k, &old, &x, &format!("{:?}", pair.master));
                 }
             }
@@ -616,7 +616,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let before: Positions = rest.iter().map(|x| x - Vector2::new(way, 0.0)).collect();
                 let before = if moves { seen(&before, [0.3, -0.4], 0.5) } else { before };
                 let friction = pair.laws[0].law.initial_state(0.0, 0.0);
-                let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction };
+                let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction.clone() };
                 let friction = if gap > 0.0 { friction } else { pressed };
                 let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
                 let old = vec![
@@ -678,11 +678,11 @@ fn tangent_equals_differences_on_quadratic_edges() {
             let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
             let mut closed = 0;
             for k in 0..pair.points.len() {
-                let open =
-                    evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x).0.regime() == Regime::Open;
+                let open = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed.clone(), -0.02), &x).0.regime()
+                    == Regime::Open;
                 for back in [1e-4, 0.01, 0.2, -0.3] {
                     if !open {
-                        check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, law);
+                        check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed.clone(), -0.02), &x, law);
                         closed += 1;
                     }
                 }
@@ -718,7 +718,7 @@ fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
                     force.as_slice()[..2 * slave].chunks(2).map(|f| Vector2::new(f[0], f[1])).sum::<Vector2<f64>>();
                 assert!((total.norm() - size).abs() < 1e-12 * size, "{total}");
                 for (back, what) in [(1e-4, "stick"), (0.3, "full slip"), (-1.4, "backward slip over two segments")] {
-                    let old = pulled(&pair, k, &x, back, state.friction, state.gap);
+                    let old = pulled(&pair, k, &x, back, state.friction.clone(), state.gap);
                     check_tangent(&pair, k, &old, &x, &format!("closed across a gap, {what}"));
                 }
             }
@@ -1071,7 +1071,8 @@ fn a_law_that_dilates_presses_and_its_tangent_equals_differences() {
     let mut closed = 0;
     for k in 0..points.points.len() {
         for (back, gap) in [(0.01, -0.02), (0.2, -0.02), (-0.2, -0.02), (0.2, 0.03)] {
-            let friction = if gap > 0.0 { FrictionState { opening: 0.004, ..Default::default() } } else { pressed };
+            let friction =
+                if gap > 0.0 { FrictionState { opening: 0.004, ..Default::default() } } else { pressed.clone() };
             let old = pulled(&points, k, &x, back, friction, gap);
             let (state, contribution) = evaluate(&points, k, &old, &x);
             if contribution.is_none() {

@@ -54,7 +54,7 @@ fn drag(dt: f64, more: Value) -> Value {
 fn ways(run: &Finished) -> Vec<(&State, f64)> {
     let mut way = 0.0;
     let along = |state| -> (&State, f64) {
-        let point = |state: &State| state.contacts[0][0];
+        let point = |state: &State| state.contacts[0][0].clone();
         way += point(state).friction.plastic_increment.abs();
         (state, way)
     };
@@ -174,7 +174,7 @@ fn a_box_that_comes_down_sliding_rides_up() {
             let left = 1.0 - touch;
             let give = if normal.get("penetration").is_some() { 0.0 } else { 1.0 / ALPHA_N };
             let pressure = stiffness * left * (down + rate * along) / (AREA + stiffness * (rate * MU / ALPHA_T + give));
-            let friction = run.last().contacts[0][0].friction;
+            let friction = run.last().contacts[0][0].friction.clone();
             close("p", friction.pressure, pressure, 1e-3 * pressure);
             close("d", friction.opening, rate * (along * left - MU * pressure / ALPHA_T), 1e-3 * friction.opening);
             assert!(run.last().contacts[0][0].gap > 0.0, "the gap is open");
@@ -301,7 +301,7 @@ fn box_under_constant(name: &str, run: Finished, dilation: fn(f64) -> f64) -> f6
     let start = LOAD / AREA;
     let (mut slid, mut last) = (0, [0.0; 2]);
     for (state, way) in ways(&run) {
-        let friction = state.contacts[0][0].friction;
+        let friction = state.contacts[0][0].friction.clone();
         let d = dilation(way);
         let pressure = match name {
             // The spring has no force at u_y = 0.
@@ -368,7 +368,7 @@ fn a_rigid_box_wears_by_its_way() {
     let run = sheared(&json!({"wear": wear}), drag(0.05, json!({})));
     let pressure = LOAD / AREA;
     for (state, way) in ways(&run) {
-        let friction = state.contacts[0][0].friction;
+        let friction = state.contacts[0][0].friction.clone();
         close("w", friction.wear, wear * pressure * way, 1e-9 * wear * pressure);
         close("u_y", state.displacement[1], -pressure / ALPHA_N - friction.wear, 1e-12);
     }
@@ -414,7 +414,7 @@ fn explicit_increments_dilate_and_wear() {
     for (contact, dilates) in [(dilatancy, true), (json!({"wear": wear}), false)] {
         let run = sheared(&contact, step.clone());
         for state in &run.states {
-            let friction = state.contacts[0][0].friction;
+            let friction = state.contacts[0][0].friction.clone();
             let way = friction.plastic_slip;
             if dilates {
                 close("d", friction.opening, dilation(way), 1e-9 * DILATANCY[1]);
@@ -424,7 +424,7 @@ fn explicit_increments_dilate_and_wear() {
                 close("w", friction.wear, (start - friction.pressure) / ALPHA_N, 1e-9);
             }
         }
-        let (state, friction) = (run.last(), run.last().contacts[0][0].friction);
+        let (state, friction) = (run.last(), run.last().contacts[0][0].friction.clone());
         close("way", friction.plastic_slip, 0.3 - friction.traction / ALPHA_T, 1e-12);
         close("energy", state.energy.error(), 0.0, 1e-3 * state.energy.external_work);
     }
@@ -438,7 +438,7 @@ fn friction_knows_the_effective_pressure_and_the_fluid_lifts() {
     let run = sheared(&json!({"fluid_pressure": "30*max(t - 1, 0)"}), drag(0.0125, json!({"loads": spring})));
     let (mut closed, mut open) = (0, 0);
     for state in run.states.iter().filter(|state| state.time > 1.0) {
-        let (point, fluid) = (state.contacts[0][0], 30.0 * (state.time - 1.0));
+        let (point, fluid) = (state.contacts[0][0].clone(), 30.0 * (state.time - 1.0));
         assert_eq!(point.fluid, fluid);
         // p A + p_w A = N + K u_y, u_y = −p/α_n while it is closed.
         let pressure = (LOAD - AREA * fluid) / (AREA + stiffness / ALPHA_N);
@@ -563,7 +563,7 @@ fn a_cylinder_that_is_rubbed_wears_flat() {
         let (mut volume, mut work) = (0.0, 0.0);
         for pair in run.states.windows(2) {
             for (old, new) in pair[0].contacts[0].iter().zip(&pair[1].contacts[0]) {
-                let (before, now) = (old.friction, new.friction);
+                let (before, now) = (old.friction.clone(), new.friction.clone());
                 let mean = 0.5 * (before.pressure + now.pressure);
                 volume += new.length * k * mean * now.plastic_increment.abs();
                 work += new.length * (now.dissipation - before.dissipation - mean * (now.wear - before.wear));

@@ -97,7 +97,7 @@ fn a_periodic_block_slides_for_ever_under_uniform_tractions() {
         let state = run.last();
         close("way", state.contacts[0][0].friction.plastic_slip, 100.0, 0.1);
         // Uniaxial strain: p = −P₂₂ of the law at F = diag(1, 1 − e), the spring of the contact in line with it.
-        let first = state.contacts[0][0].friction;
+        let first = state.contacts[0][0].friction.clone();
         assert!(first.pressure > 0.4, "{first:?}");
         for contact in &state.contacts[0] {
             close("pressure", contact.friction.pressure, first.pressure, allowed);

@@ -352,7 +352,10 @@ fn a_stick_slip_run_turns_with_its_plane() {
             ..Default::default()
         };
         let run = slider.run();
-        run.states.iter().map(|state| (slider.displacement(state), state.contacts[0][0].friction)).collect::<Vec<_>>()
+        run.states
+            .iter()
+            .map(|state| (slider.displacement(state), state.contacts[0][0].friction.clone()))
+            .collect::<Vec<_>>()
     };
     let level = pulled(0.0);
     let slipped = level.last().unwrap().1.plastic_slip;

@@ -69,7 +69,7 @@ fn same(what: &str, a: &[ContactState], b: &[ContactState], tolerance: f64) {
     let largest = a.iter().fold(1.0f64, |most, state| most.max(state.friction.pressure));
     for (a, b) in a.iter().zip(b) {
         let of = |state: &ContactState| {
-            let friction = state.friction;
+            let friction = state.friction.clone();
             [friction.pressure, friction.traction, 1e3 * state.gap, 1e3 * friction.plastic_slip]
         };
         for (a, b) in of(a).into_iter().zip(of(b)) {
@@ -368,7 +368,7 @@ fn a_roller_that_turns_slides_below_a_point() {
         ]
     });
     let run = finish(&case);
-    let (state, point) = (run.last(), run.last().contacts[0][0]);
+    let (state, point) = (run.last(), run.last().contacts[0][0].clone());
     let (pressure, arm) = (weight / area, radius - weight / area / alpha_n);
     close("p", point.friction.pressure, pressure, 1e-9);
     // Counter-clockwise the top goes to −x: the point goes to +x on it, along s.
@@ -409,7 +409,7 @@ fn a_slope_rises_until_what_lies_on_it_slides() {
     let held = finish(&case(0.28));
     for state in held.states.iter().filter(|state| state.time > 1.0) {
         let angle = 0.28 * (state.time - 1.0);
-        let friction = state.contacts[0][0].friction;
+        let friction = state.contacts[0][0].friction.clone();
         close("p", friction.pressure * area, weight * angle.cos(), 1e-9);
         // Downhill is to −x, where −s points.
         close("q", friction.traction * area, -weight * angle.sin(), 1e-9);

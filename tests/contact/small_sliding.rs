@@ -309,7 +309,7 @@ fn a_periodic_fault_slides_under_uniform_tractions() {
         case["bodies"]["upper"]["damping"] = json!({"mass": 5});
         case["periodic"] = json!([["lower_left", "lower_right"], ["upper_left", "upper_right"]]);
         let run = finish(&case);
-        let first = run.last().contacts[0][0].friction;
+        let first = run.last().contacts[0][0].friction.clone();
         assert!(first.plastic_slip > 0.3, "{scheme}: {first:?}");
         for state in &run.last().contacts[0] {
             close("pressure", state.friction.pressure, 1.0, 1e-9);

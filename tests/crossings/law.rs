@@ -1,7 +1,7 @@
 //! A law that the program does not know, with as many variables as a point has room for.
 
 use fecontact::laws::friction::{
-    Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, MOST_VARIABLES, Regime, Sliding, register,
+    Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, register,
 };
 
 /// Viscous friction above a threshold that grows with what it has slipped.
@@ -15,7 +15,7 @@ struct Viscous {
     threshold: f64,
 }
 
-const VARIABLES: [&str; MOST_VARIABLES] = [
+const VARIABLES: [&str; 20] = [
     "slipped",
     "loads",
     "closed_increments",
@@ -31,6 +31,10 @@ const VARIABLES: [&str; MOST_VARIABLES] = [
     "count_13",
     "count_14",
     "count_15",
+    "count_16",
+    "count_17",
+    "count_18",
+    "count_19",
     "last_sign",
 ];
 
@@ -42,14 +46,12 @@ impl FrictionLaw for Viscous {
             return FrictionResponse::elastic(old.stuck(traction, pressure.max(0.0)), 0.0).checked(1.0);
         }
         // What it remembers makes it more viscous; a variable that is lost is seen in forces.
-        let [slipped, loads, closed, counts @ .., last] = old.variables;
+        let [slipped, loads, closed, last] = [0, 1, 2, VARIABLES.len() - 1].map(|k| old.variables[k]);
         let growth = 1.0 + 0.01 * closed.min(10.0) + 0.02 * last;
         let dtraction_dslip = self.viscosity * growth / dt;
         let traction = dtraction_dslip * slip;
-        let mut variables = [0.0; MOST_VARIABLES];
-        variables[..3].copy_from_slice(&[slipped + slip, loads + 1.0, closed + 1.0]);
-        variables[3..MOST_VARIABLES - 1].copy_from_slice(&counts.map(|count| count + 1.0));
-        variables[MOST_VARIABLES - 1] = 1.0;
+        let counts = (3..VARIABLES.len() - 1).map(|k| old.variables[k] + 1.0);
+        let variables = [slipped + slip, loads + 1.0, closed + 1.0].into_iter().chain(counts).chain([1.0]).collect();
         let state = FrictionState {
             plastic_slip: old.plastic_slip + slip,
             plastic_increment: slip,

@@ -50,7 +50,7 @@ fn driven(law: &dyn FrictionLaw, increments: usize) -> Vec<FrictionResponse> {
             let pressure = pressure(k) + share * i as f64 * (pressure(k + 1) - pressure(k));
             let sliding = Sliding::new(rate(k) * SAMPLE * share, pressure, SAMPLE * share);
             last = law.respond(&state, sliding).expect("an answer");
-            state = last.state;
+            state = last.state.clone();
         }
         last
     };
@@ -135,7 +135,7 @@ fn sensitivities_along_records_are_those_of_the_answers() {
                 let sliding = Sliding::new(rate(k) * SAMPLE, pressure(k + 1), SAMPLE);
                 let along = with!(Direction::default(), state: by, slip: 0.0, parameter: Some(*name));
                 [by, _] = sensitive.vary(&old, sliding, [along, Direction::default()]).expect("an answer");
-                (old, found) = (answer.state, [found, vec![by]].concat());
+                (old, found) = (answer.state.clone(), [found, vec![by.clone()]].concat());
             }
             let shifted = |share: f64| driven(&*self::law(&with(&parameters, name, share)), 1);
             let h = 1e-3;

@@ -50,14 +50,14 @@ fn drive(law: &dyn FrictionLaw, start: FrictionState, slip: f64, duration: f64, 
     (0..steps)
         .map(|_| {
             state = respond(law, &state, slip / parts, PRESSURE, duration / parts).state;
-            state
+            state.clone()
         })
         .collect()
 }
 
 /// The state after `steps` equal increments from first touch.
 fn loaded(law: &dyn FrictionLaw, slip: f64, duration: f64, steps: usize) -> FrictionState {
-    *drive(law, law.initial_state(0.0, 0.0), slip, duration, steps).last().expect("at least one step")
+    drive(law, law.initial_state(0.0, 0.0), slip, duration, steps).pop().expect("at least one step")
 }
 
 fn assert_close(actual: f64, expected: f64, tolerance: f64, what: &str) {
@@ -234,14 +234,14 @@ fn the_integration_converges_to_the_rate_equations_at_first_order() {
     let pressure = |t: f64| PRESSURE * (1.0 + 0.2 * (3.0 * t).sin());
     let law = law(&parameters);
     let start = with!(law.initial_state(0.0, 0.0), pressure: PRESSURE);
-    let expected = rate_form(&parameters, start, end, |t| amplitude * t.cos(), &pressure);
+    let expected = rate_form(&parameters, start.clone(), end, |t| amplitude * t.cos(), &pressure);
     let traction = |steps: usize| {
         let dt = end / steps as f64;
         let advance = |state, i: usize| {
             let (t0, t1) = (i as f64 * dt, (i + 1) as f64 * dt);
             respond(&law, &state, amplitude * (t1.sin() - t0.sin()), pressure(t1), dt).state
         };
-        (0..steps).fold(start, advance).traction
+        (0..steps).fold(start.clone(), advance).traction
     };
     let error = |steps| (traction(steps) - expected).abs();
     assert_first_order(error(2000), error(4000), "traction");
@@ -599,19 +599,19 @@ fn tangents_agree_with_differences() {
         let full = loaded(&law, 9.0, 90.0, 900);
         let cases = [
             ("first touch", law.initial_state(0.0, 0.0), 0.02, PRESSURE),
-            ("stick", stick, 0.003, PRESSURE),
-            ("unloading", stick, -0.003, PRESSURE),
+            ("stick", stick.clone(), 0.003, PRESSURE),
+            ("unloading", stick.clone(), -0.003, PRESSURE),
             ("reversal of stick", stick, -0.03, PRESSURE),
-            ("slip", slide, 0.01, PRESSURE),
-            ("full sliding", full, 0.01, PRESSURE),
-            ("large slip", slide, 10.0, PRESSURE),
-            ("reversal of slip", slide, -0.05, PRESSURE),
+            ("slip", slide.clone(), 0.01, PRESSURE),
+            ("full sliding", full.clone(), 0.01, PRESSURE),
+            ("large slip", slide.clone(), 10.0, PRESSURE),
+            ("reversal of slip", slide.clone(), -0.05, PRESSURE),
             ("large reversal", full, -10.0, PRESSURE),
-            ("pressure rise in slip", slide, 0.03, 1.5 * PRESSURE),
-            ("pressure rise", slide, 0.001, 1.5 * PRESSURE),
-            ("pressure fall", slide, 0.01, 0.6 * PRESSURE),
-            ("pressure fall against slip", slide, -0.002, 0.6 * PRESSURE),
-            ("almost open", slide, 0.01, 1e-3 * PRESSURE),
+            ("pressure rise in slip", slide.clone(), 0.03, 1.5 * PRESSURE),
+            ("pressure rise", slide.clone(), 0.001, 1.5 * PRESSURE),
+            ("pressure fall", slide.clone(), 0.01, 0.6 * PRESSURE),
+            ("pressure fall against slip", slide.clone(), -0.002, 0.6 * PRESSURE),
+            ("almost open", slide.clone(), 0.01, 1e-3 * PRESSURE),
             ("opening", slide, 0.01, -1.0),
         ];
         for (what, old, slip, pressure) in cases {
@@ -744,7 +744,7 @@ impl Derivative {
             .filter(|h| self.noise < 1e-6 * self.scale * h)
             .filter_map(|h| {
                 let points = [respond(-2.0 * h)?, respond(-h)?, respond(h)?, respond(2.0 * h)?];
-                let [a, b, c, d] = points.map(|(_, answer)| answer.state.traction);
+                let [a, b, c, d] = points.clone().map(|(_, answer)| answer.state.traction);
                 let difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h);
                 let agrees = (difference - self.value).abs() < 1e-5 * self.scale;
                 let same_steps = points.iter().all(|(_, point)| point.evaluations == answer.evaluations);
@@ -770,7 +770,7 @@ fn answer_random_increments(integration: Integration, sample: usize) {
             if random.chance(0.3) || !(1e-8..1e8).contains(&(state.pressure / alpha_t)) {
                 state = random_state(&mut random, &parameters);
             }
-            let old = state;
+            let old = state.clone();
             let at = random_sliding(&mut random, &parameters, &old);
             let Sliding { slip, pressure, dt, .. } = at;
             let answer = match law.respond(&old, at) {
@@ -782,7 +782,7 @@ fn answer_random_increments(integration: Integration, sample: usize) {
             };
             check_answer(&parameters, &old, &answer);
 
-            state = answer.state;
+            state = answer.state.clone();
             if !(seed as usize * INCREMENTS + increment).is_multiple_of(sample) {
                 continue;
             }
@@ -846,9 +846,9 @@ fn absurd_increments_are_answered_or_refused() {
     for slip in numbers {
         for pressure in numbers {
             for dt in numbers {
-                for old in states {
-                    if let Ok(answer) = law.respond(&old, Sliding::new(slip, pressure, dt)) {
-                        check_answer(&PAPER, &old, &answer);
+                for old in &states {
+                    if let Ok(answer) = law.respond(old, Sliding::new(slip, pressure, dt)) {
+                        check_answer(&PAPER, old, &answer);
                         answered += i32::from(answer.state.traction > 0.0);
                     }
                 }

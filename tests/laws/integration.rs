@@ -41,7 +41,7 @@ fn follow(law: &dyn FrictionLaw, start: FrictionState, corners: &[[f64; 3]], par
             let sliding = Sliding::new((u1 - u0) * share, pressure, (t1 - t0) * share);
             state = law.respond(&state, sliding).unwrap().state;
         }
-        states.push(state);
+        states.push(state.clone());
     }
     states
 }
@@ -69,7 +69,7 @@ fn closed_forms_hold_for_any_number_of_increments() {
             let law = law(json!({"kappa": kappa}));
             for parts in [1, 2, 3, 10, 100, 1000, 10_000] {
                 let path = [[0.0, 0.0, PRESSURE], [1.0, end, PRESSURE]];
-                let state = follow(&*law, pressed(MU_S, 0.0), &path, parts)[0];
+                let state = follow(&*law, pressed(MU_S, 0.0), &path, parts)[0].clone();
                 let error = (state.traction - traction).abs();
                 assert!(error < MICRO, "κ = {kappa}, R = {ratio}, {parts} increments: off by {error:e}");
                 let error = (mu_of(&state) - mu).abs() * PRESSURE;
@@ -100,7 +100,7 @@ fn forced_oscillation_is_right_on_its_polyline_at_any_increment() {
         let corners: Vec<_> =
             (0..=(10.0 / dt) as usize).map(|k| k as f64 * dt).map(|t| [t, t.sin(), PRESSURE]).collect();
         let start = pressed(MU_K, MU_K * PRESSURE);
-        let coarse = follow(&*law, start, &corners, 1);
+        let coarse = follow(&*law, start.clone(), &corners, 1);
         let fine = follow(&*law, start, &corners, (dt / 1e-5).round() as usize);
         for (k, (coarse, fine)) in coarse.iter().zip(&fine).enumerate() {
             let error = (coarse.traction - fine.traction).abs();
@@ -307,11 +307,12 @@ fn sensitivities_are_those_of_differences() {
             let (mut old, mut states) = (law.initial_state(0.0, 0.0), [sensitive.start(name), Variation::default()]);
             let mut exact = Vec::new();
             for sliding in increments() {
-                let by_parameter = with!(Direction::default(), state: states[0], slip: 0.0, parameter: Some(*name));
-                let by_slip = with!(Direction::default(), state: states[1], slip: sliding.slip);
+                let by_parameter =
+                    with!(Direction::default(), state: states[0].clone(), slip: 0.0, parameter: Some(*name));
+                let by_slip = with!(Direction::default(), state: states[1].clone(), slip: sliding.slip);
                 states = sensitive.vary(&old, sliding, [by_parameter, by_slip]).unwrap();
                 old = law.respond(&old, sliding).unwrap().state;
-                exact.push(states.map(|state| state.traction));
+                exact.push(states.clone().map(|state| state.traction));
             }
             let moved = |by: f64| {
                 let mut other = given.clone();
@@ -342,7 +343,7 @@ fn sensitivities_begin_with_the_first_contact() {
         for name in ["mu_s", "mu_k", "alpha_t", "r", "kappa", "xi"] {
             let sensitive = law.sensitivities().unwrap();
             let by = with!(Direction::default(), state: sensitive.start(name), parameter: Some(name));
-            let [found, _] = sensitive.vary(&law.initial_state(0.0, 0.0), sliding, [by, by]).unwrap();
+            let [found, _] = sensitive.vary(&law.initial_state(0.0, 0.0), sliding, [by.clone(), by]).unwrap();
             let of = given[name].as_f64().unwrap();
             let moved = |to: f64| {
                 let mut other = given.clone();

@@ -148,7 +148,7 @@ fn tangents_of_opening_by_structure_equal_differences() {
         for (dilatancy, wear) in [(Dilatancy::of_structure(D), None), (with_limit, Some(2e-4))] {
             let moving = moving(&structured(0.2, more), Some(dilatancy), wear).expect("good parameters");
             let touch = moving.law.initial_state(20.0, 0.0);
-            for start in [touch, answer(&moving, &touch, 0.03, 22.0)] {
+            for start in [touch.clone(), answer(&moving, &touch, 0.03, 22.0)] {
                 for (slip, pressure) in [(2e-3, 22.0), (2e-2, 25.0), (-6e-2, 18.0), (0.4, 21.0)] {
                     let at = |slip, pressure| answer(&moving, &start, slip, pressure).opening;
                     let response = moving.respond(&start, Sliding::new(slip, pressure, 0.1)).expect("an answer");

@@ -336,7 +336,7 @@ impl Observer for Afresh {
         let Some(new) = attempt.accepted else { return Ok(()) };
         // The multipliers of the last pass, as they are at the stiffness given; 0 for the plain penalty.
         let multiplied =
-            |(old, new): (&ContactState, &ContactState)| ContactState { multiplier: new.multiplier, ..*old };
+            |(old, new): (&ContactState, &ContactState)| ContactState { multiplier: new.multiplier, ..old.clone() };
         let contacts = attempt.old.contacts.iter().zip(&new.contacts);
         let contacts = contacts.map(|(old, new)| old.iter().zip(new).map(multiplied).collect()).collect();
         let old = State { contacts, ..attempt.old.clone() };

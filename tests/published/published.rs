@@ -227,7 +227,7 @@ fn a_slip_annulus_weakens_as_it_grows_and_heals_in_a_hold() {
         let points = run.model.contacts[0].points.iter().zip(&state.contacts[0]);
         let mut found: Vec<_> = points
             .filter(|(_, contact)| contact.regime() != Regime::Open)
-            .map(|(point, contact)| (point.at(&x).x, contact.friction))
+            .map(|(point, contact)| (point.at(&x).x, contact.friction.clone()))
             .collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         found

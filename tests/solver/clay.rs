@@ -191,7 +191,7 @@ fn clay_slips_on_its_interface_below_the_critical_stress_ratio() {
         }));
         let last = run.last();
         for point in &last.contacts[0] {
-            let friction = point.friction;
+            let friction = point.friction.clone();
             close("total pressure", point.contact_pressure(), 120.0, 0.5);
             if share < 1.0 {
                 close("q/p", friction.traction.abs() / friction.pressure, mu, 1e-9);

@@ -1,6 +1,7 @@
 //! A state is all that the next increment needs: dropped attempts, restarts and threads leave no trace in it.
 
 use crate::common::{self, Blocks, Finished, close, finish};
+use fecontact::laws::friction::FrictionState;
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
 use fecontact::model::state::State;
@@ -11,7 +12,7 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// μ, the one variable of the super/subloading law.
-fn mu_of(state: &fecontact::laws::friction::FrictionState) -> f64 {
+fn mu_of(state: &FrictionState) -> f64 {
     state.variables[0]
 }
 
@@ -117,6 +118,22 @@ fn a_state_survives_its_file() {
     let resumed = advance_all(&run.model, 1, read, &increments, &mut workspace(&run.model));
     for (uninterrupted, resumed) in states[6..].iter().zip(&resumed) {
         close("difference", difference(uninterrupted, resumed), 0.0, 1e-11);
+    }
+}
+
+/// A state remembers as many variables as a law sets, whatever their order; those never set are 0.
+#[test]
+fn a_state_remembers_any_number_of_variables() {
+    let mut state = FrictionState::default().with_variables([1.0, 2.0]);
+    state.variables[40] = 40.0;
+    state.variables[3] = 3.0;
+    state.variables[4] += 4.0;
+    let read: FrictionState = serde_json::from_str(&serde_json::to_string(&state).unwrap()).unwrap();
+    assert_eq!(read, state);
+    let set = [(0, 1.0), (1, 2.0), (3, 3.0), (4, 4.0), (40, 40.0)];
+    for k in 0..50 {
+        let expected = set.iter().find(|(index, _)| *index == k).map_or(0.0, |(_, value)| *value);
+        assert_eq!(read.variables[k], expected, "variable {k}");
     }
 }
 

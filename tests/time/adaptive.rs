@@ -366,7 +366,7 @@ fn wilson_commits_the_law_at_the_end_of_the_increment() {
     let slider = Slider { velocity: 10.0, push: -30.0, duration: 5.0, ..Slider::default() };
     let run = finish(&slider.case(&json!({"wilson": {}}), json!({"initial": 1e-3})));
     for state in &run.states {
-        let friction = state.contacts[0][0].friction;
+        let friction = state.contacts[0][0].friction.clone();
         close("slip", friction.plastic_slip + friction.traction / CONTACT, state.displacement[0], 1e-12);
     }
     assert!(deviation(&run, &slider.phases()) < 0.01);

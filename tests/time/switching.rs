@@ -69,7 +69,7 @@ fn a_slow_step_breaks_explicitly_and_goes_on_slowly() {
     let slow = |from: f64, to: f64| run.states.iter().filter(|s| (from..to).contains(&s.time)).count();
     assert!(slow(0.0, near - 0.05) < 400 && slow(near + 0.05, 1.5) < 400);
     let [a, b] = [&run.states[run.states.len() - 2], run.last()];
-    let [before, after] = [a, b].map(|state| state.contacts[0][80].friction);
+    let [before, after] = [a, b].map(|state| state.contacts[0][80].friction.clone());
     let rate = (after.plastic_slip - before.plastic_slip) / (b.time - a.time);
     close("slip rate at the end", rate.abs(), 1.2e-4, 2e-6);
     close("friction at the end", after.traction.abs() / after.pressure, 0.4, 1e-6);

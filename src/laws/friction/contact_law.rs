@@ -252,7 +252,7 @@ impl ContactLaw {
         self.law.respond_many(old, sliding, answers);
         if self.offsets != Offsets::default() {
             let asked = old.iter().zip(sliding).zip(answers);
-            asked.for_each(|((old, sliding), answer)| *answer = self.moved(old, *sliding, *answer));
+            asked.for_each(|((old, sliding), answer)| *answer = self.moved(old, *sliding, answer.clone()));
         }
     }
 

@@ -17,7 +17,8 @@ impl FrictionLaw for Frictionless {
             true => Regime::Slip,
         };
         let (plastic_slip, pressure) = (old.plastic_slip + slip, pressure.max(0.0));
-        let state = FrictionState { traction: 0.0, pressure, plastic_slip, plastic_increment: slip, regime, ..*old };
+        let state =
+            FrictionState { traction: 0.0, pressure, plastic_slip, plastic_increment: slip, regime, ..old.clone() };
         FrictionResponse { state, ..FrictionResponse::default() }.checked(0.0)
     }
 }

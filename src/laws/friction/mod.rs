@@ -44,7 +44,7 @@ pub use prescribed::{PrescribedSlip, PrescribedSlipParameters};
 pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
 pub use sensitivity::SensitiveLaw;
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
-pub use state::{FrictionState, MOST_VARIABLES, Regime};
+pub use state::{FrictionState, Regime, Variables};
 pub use super_subloading::{Approach, Integration, Onset, Rise, SuperSubloading, SuperSubloadingParameters};
 pub(crate) use tie::Tie;
 
@@ -61,7 +61,7 @@ const LEAST_SLOPE: f64 = 1.0 / STEEPEST;
 /// ```text
 /// δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd = ∂d/∂Δu_t δΔu_t + ∂d/∂p δp        d: opening, 0 for most laws
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct FrictionResponse {
@@ -145,7 +145,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///
 /// The following example is a law with one parameter, an oil film. A law that implements `Clone` can be used as the friction of
 /// a contact directly, `Contact::new("base", "block_bottom", "ground_top", Oil { viscosity: 2.0 })`; no registration is needed.
-/// It names its internal variables, at most [`MOST_VARIABLES`] numbers, in [`Description::variables`] (the k-th name is that of
+/// It names its internal variables, any number of them, in [`Description::variables`] (the k-th name is that of
 /// `state.variables[k]`); they appear by name in tables, frames and `Simulation::contact_field`:
 ///
 /// ```
@@ -214,7 +214,7 @@ pub trait FrictionLaw: Debug + Send + Sync {
 
     /// Value of an observable in a state, by default that of a variable; `None` if the law does not define it.
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
-        let variables = self.description().variables.iter().zip(state.variables);
+        let variables = self.description().variables.iter().zip(state.variables.values());
         variables.into_iter().find_map(|(own, value)| (*own == name).then_some(value))
     }
 

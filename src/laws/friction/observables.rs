@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 
-use super::state::MOST_VARIABLES;
 use super::{Description, FrictionLaw, FrictionState};
 
 /// Observables with a column in every table, and their value for laws that do not define them: without friction
@@ -61,10 +60,6 @@ pub struct InvalidNames(String);
 #[doc(hidden)]
 pub fn check_names(description: &Description) -> Result<(), InvalidNames> {
     let Description { variables, opening, .. } = description;
-    if variables.len() > MOST_VARIABLES {
-        let message = format!("it has {} variables: at most {MOST_VARIABLES} are allowed", variables.len());
-        return Err(InvalidNames(message));
-    }
     if let Some(name) = opening.iter().find(|name| !OF_OPENING.contains(name)) {
         let [dilation, wear] = OF_OPENING;
         return Err(InvalidNames(format!("an opening has no part `{name}`: outputs show `{dilation}` and `{wear}`")));

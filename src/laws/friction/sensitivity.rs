@@ -3,21 +3,21 @@
 use std::fmt::Debug;
 
 use super::dual::Dual;
-use super::state::MOST_VARIABLES;
+use super::state::Variables;
 use super::{FrictionState, LawFailure, Sliding};
 
 /// Derivatives of a state with respect to a quantity.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Variation {
     /// of q [F/L²]
     pub traction: f64,
     /// of the law's variables
-    pub variables: [f64; MOST_VARIABLES],
+    pub variables: Variables,
 }
 
 /// Variation of the inputs of a response, at constant time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Direction {
     /// of the state at the start
@@ -57,7 +57,7 @@ pub trait SensitiveLaw: Debug + Send + Sync {
 }
 
 /// Inputs of a response with their derivatives along two directions, of a law with one internal variable.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Inputs {
     /// q at the start [F/L²]
     pub traction: Dual,
@@ -93,7 +93,7 @@ impl Inputs {
 
     /// A parameter of the law with its derivatives: 1 along its own direction.
     pub(super) fn parameter(&self, name: &str, value: f64) -> Dual {
-        Dual { value, by: self.directions.map(|by| f64::from(u8::from(by.parameter == Some(name)))) }
+        Dual { value, by: self.directions.each_ref().map(|by| f64::from(u8::from(by.parameter == Some(name)))) }
     }
 
     /// q at the end if it is elastic up to a strength.
@@ -122,9 +122,7 @@ pub(super) fn variations(traction: Dual, variable: Dual) -> [Variation; 2] {
 impl Variation {
     /// Variation of a law with one internal variable.
     pub(super) fn new(traction: f64, variable: f64) -> Self {
-        let mut variables = [0.0; MOST_VARIABLES];
-        variables[0] = variable;
-        Self { traction, variables }
+        Self { traction, variables: [variable].into_iter().collect() }
     }
 }
 
@@ -133,7 +131,7 @@ impl Direction {
     pub(super) const TANGENT: [Self; 2] = [Self::of_inputs(1.0, 0.0), Self::of_inputs(0.0, 1.0)];
 
     const fn of_inputs(slip: f64, pressure: f64) -> Self {
-        let state = Variation { traction: 0.0, variables: [0.0; MOST_VARIABLES] };
+        let state = Variation { traction: 0.0, variables: Variables::ZERO };
         Self { state, slip, pressure, parameter: None }
     }
 }

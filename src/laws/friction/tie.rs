@@ -19,7 +19,7 @@ impl FrictionLaw for Tie {
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Sliding { slip, pressure, .. } = sliding.checked()?;
         let traction = old.traction + self.alpha_t * slip;
-        let state = FrictionState { pressure, traction, regime: Regime::Tied, ..*old };
+        let state = FrictionState { pressure, traction, regime: Regime::Tied, ..old.clone() };
         FrictionResponse { state, dtraction_dslip: self.alpha_t, ..FrictionResponse::default() }.checked(self.alpha_t)
     }
 }

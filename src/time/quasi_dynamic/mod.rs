@@ -151,7 +151,7 @@ impl QuasiDynamic {
         let mut state = |pair, slave, old: &ContactState| {
             let k = numbers.next().unwrap_or_default();
             let Rates { slip_rate, traction, pressure, radiation, .. } = steps.now()[k];
-            let mut new = *old;
+            let mut new = old.clone();
             new.friction.traction = traction;
             new.friction.pressure = pressure;
             new.friction.plastic_slip += steps.z[k];
@@ -159,7 +159,7 @@ impl QuasiDynamic {
             new.friction.dissipation += steps.works[k][0];
             let remembered = with_rates(pair, slave, time, |law| {
                 let x = steps.z[n + k];
-                let friction = law.remember(x, new.friction);
+                let friction = law.remember(x, new.friction.clone());
                 crate::laws::friction::FrictionState { regime: law.regime(x, slip_rate), ..friction }
             });
             new.friction = remembered.unwrap_or(new.friction);

@@ -155,7 +155,7 @@ impl RateAndState {
         if dt == 0.0 || pressure <= 0.0 || trial == 0.0 {
             // No slip, for zero time or zero traction.
             let aged = |theta| if dt == 0.0 { theta } else { law.theta(relaxation.log_state_after(0.0).0) };
-            let old = old.with_variables([aged(old.variables[0])]);
+            let old = old.clone().with_variables([aged(old.variables[0])]);
             if pressure <= 0.0 {
                 return Ok((FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t)?, None));
             }

@@ -41,7 +41,7 @@ const RESOLVED: f64 = 2.0;
 type Entry = [Dual; 4];
 
 /// State at an integration point along the path, with the derivatives of its traction and θ.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct PathState {
     state: FrictionState,
     pub traction: Dual,
@@ -60,13 +60,13 @@ pub(super) struct Ramp<'a> {
 
 impl<'a> Ramp<'a> {
     pub(super) fn new(law: &'a RateAndState, old: &FrictionState, inputs: Inputs) -> Self {
-        let start = PathState { state: *old, traction: inputs.traction, theta: inputs.variable };
+        let start = PathState { state: old.clone(), traction: inputs.traction, theta: inputs.variable };
         Self { law, coefficients: law.coefficients.along(&inputs), start, inputs, evaluations: 0 }
     }
 
     /// Response at the end of the increment; the derivatives are those of the consistent tangent.
     pub(super) fn answer(mut self) -> Answer {
-        let old = self.start.state;
+        let old = self.start.state.clone();
         let PathState { state, traction, .. } = self.end()?;
         let regime = match state.pressure > 0.0 {
             true => RateLaw::regime(self.law, self.law.evolving(&state), self.rate(&state)),
@@ -87,7 +87,7 @@ impl<'a> Ramp<'a> {
     /// # Errors
     /// The same as for the response.
     pub(super) fn single(&mut self) -> Result<PathState, LawFailure> {
-        let start = self.start;
+        let start = self.start.clone();
         self.increments(&start, 0, WHOLE, 1)
     }
 
@@ -98,7 +98,7 @@ impl<'a> Ramp<'a> {
 
     /// State at the end: sub-steps are halved until their error is below the tolerance, and doubled where possible.
     pub(super) fn end(&mut self) -> Result<PathState, LawFailure> {
-        let (mut path_state, mut at, mut step) = (self.start, 0, WHOLE);
+        let (mut path_state, mut at, mut step) = (self.start.clone(), 0, WHOLE);
         for _ in 0..MOST_ATTEMPTS {
             let (next, error) = match self.extrapolated(&path_state, at, step) {
                 Ok(found) => found,
@@ -148,7 +148,7 @@ impl<'a> Ramp<'a> {
     /// Source: Deuflhard (1985), SIAM Review 27, 505; Hairer & Wanner, Solving Ordinary Differential Equations II, IV.9.
     fn extrapolated(&mut self, from: &PathState, at: u64, step: u64) -> Result<(PathState, f64), LawFailure> {
         let (mut rows, mut error): (Vec<Entry>, f64) = (Vec::with_capacity(MOST_ROWS), f64::INFINITY);
-        let mut fine = *from;
+        let mut fine = from.clone();
         for j in 1..=MOST_ROWS {
             fine = self.increments(from, at, step, j)?;
             let mut entry = self.entry(&fine);
@@ -172,8 +172,9 @@ impl<'a> Ramp<'a> {
 
     /// A sub-step by `count` increments.
     fn increments(&mut self, from: &PathState, at: u64, step: u64, count: usize) -> Result<PathState, LawFailure> {
-        let (law, Inputs { slip, pressure, dt, .. }) = (self.coefficients, self.inputs);
-        let mut path_state = *from;
+        let Inputs { slip, pressure, dt, .. } = self.inputs;
+        let law = self.coefficients;
+        let mut path_state = from.clone();
         for i in 1..=count {
             let part = share(step) / count as f64;
             let x = if i == count { share(at + step) } else { share(at) + i as f64 * part };

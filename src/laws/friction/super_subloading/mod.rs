@@ -122,7 +122,7 @@ impl SuperSubloading {
     /// Reduces a traction above the strength μ p to it, instantaneously and by plastic slip only.
     fn within_strength(&self, old: &FrictionState) -> FrictionState {
         let mu = self.evolution.clamp(mu_of(old));
-        let old = FrictionState { plastic_increment: 0.0, ..*old }.with_variables([mu]);
+        let old = FrictionState { plastic_increment: 0.0, ..old.clone() }.with_variables([mu]);
         let strength = mu * old.pressure.max(0.0);
         if old.traction.abs() <= strength * (1.0 + EXCESS) {
             return old;
@@ -220,7 +220,7 @@ impl SuperSubloading {
                 plastic_slip: old.plastic_slip + plastic_slip,
                 plastic_increment: old.plastic_increment + plastic_slip,
                 dissipation: old.dissipation + end.work,
-                ..old.with_variables([end.mu.value])
+                ..old.clone().with_variables([end.mu.value])
             }),
             dtraction_dslip: sign * end.traction.by[0],
             dtraction_dpressure: sign * end.traction.by[1],
