@@ -214,7 +214,7 @@ def test_a_law_remembers_any_number_of_variables(document: dict[str, Any]) -> No
 
     slips = np.arange(50.0)
     drive = fc.law("registered", name="remembering", alpha_t=2.0).drive(slips, slips**2, 1.0)
-    assert [drive[name].iloc[-1] for name in names] == [97.0 - 2.0 * k for k in range(40)]
+    assert [drive[name][-1] for name in names] == [97.0 - 2.0 * k for k in range(40)]
 
     document["contacts"]["base"]["friction"] = {"law": "registered", "name": "remembering", "alpha_t": 2e3}
     whole, half = fc.Simulation(document), fc.Simulation(document)
