@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
 use crate::laws::bulk::MaterialFailure;
-use crate::linear::system::Contribution;
 use crate::model::Model;
 use crate::model::element::Memory;
 
@@ -63,11 +62,14 @@ impl Evolving {
             }
             let answers: Vec<Result<_, TrialFailure>> = batch.into_par_iter().map(one).collect();
             for answer in answers {
-                let (([stored, lost], contribution), work, yields) = answer?;
+                let (Answer { nodes, force, tangent, energies: [stored, lost] }, work, yields) = answer?;
                 all.stored += stored;
                 *(if yields { &mut all.plastic } else { &mut all.dissipated }) += lost;
                 all.heating += work;
-                sums.contribute(&contribution);
+                sums.push(nodes, &force);
+                if wanted {
+                    sums.couple(nodes, &tangent);
+                }
             }
         }
         Ok(all)
@@ -87,19 +89,27 @@ pub struct Evolved {
     pub heating: f64,
 }
 
-/// Contribution of one element, with its stored energy and dissipation.
-fn evolve(
-    model: &Model,
+/// Force and tangent of one element, with its stored energy and dissipation.
+struct Answer<'a> {
+    nodes: &'a [usize],
+    force: Vec<f64>,
+    /// column by column, or empty where none is wanted
+    tangent: Vec<f64>,
+    energies: [f64; 2],
+}
+
+fn evolve<'a>(
+    model: &'a Model,
     e: usize,
     memory: Memory,
     u: &[f64],
-    tangent: bool,
-) -> Result<([f64; 2], Contribution), MaterialFailure> {
-    let local = model.mesh.vectors(e, u);
-    let mut contribution = Contribution::zero(model.mesh.elements[e].nodes.clone());
-    let Contribution { force, tangent: matrix, .. } = &mut contribution;
-    let matrix = tangent.then_some(matrix.as_mut_slice());
+    wanted: bool,
+) -> Result<Answer<'a>, MaterialFailure> {
+    let (local, nodes) = (model.mesh.vectors(e, u), &*model.mesh.elements[e].nodes);
+    let dofs = 2 * nodes.len();
+    let (mut force, mut tangent) = (vec![0.0; dofs], vec![0.0; if wanted { dofs * dofs } else { 0 }]);
     let material = &*model.bodies[model.body_of_element[e]].material;
-    let energies = model.solids[e].evolve(material, memory, &local, force.as_mut_slice(), matrix)?;
-    Ok((energies, contribution))
+    let matrix = wanted.then_some(&mut *tangent);
+    let energies = model.solids[e].evolve(material, memory, &local, &mut force, matrix)?;
+    Ok(Answer { nodes, force, tangent, energies })
 }

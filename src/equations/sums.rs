@@ -6,7 +6,6 @@ use thiserror::Error;
 use super::coupling::Layout;
 use crate::laws::bulk::MaterialFailure;
 use crate::laws::friction::LawFailure;
-use crate::linear::system::Contribution;
 use crate::linear::{BlockPosition, SparseMatrix};
 use crate::model::Model;
 use crate::model::scheme::time_text;
@@ -38,12 +37,6 @@ impl Sums<'_> {
         if let Some(tangent) = &mut self.tangent {
             tangent.add_own(self.layout.original(node), (i, j), stiffness);
         }
-    }
-
-    /// Adds the forces and the tangent of one contact point or element.
-    pub fn contribute(&mut self, contribution: &Contribution) {
-        self.push(&contribution.nodes, contribution.force.as_slice());
-        self.couple(&contribution.nodes, contribution.tangent.as_slice());
     }
 
     /// Adds forces of some nodes.

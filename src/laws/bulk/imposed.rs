@@ -72,19 +72,19 @@ impl Imposed {
 
     /// F and F₃₃ of the underlying law, without the thermal strain.
     fn elastic<'a>(&self, straining: &Straining<'a>, strain: f64) -> Straining<'a> {
-        let Straining { deformation, stretch, dt, old } = *straining;
+        let Straining { deformation, stretch, .. } = *straining;
         let own = self.law.description();
-        let old = &old[..own.variables.len()];
+        let old = &straining.old[..own.variables.len()];
         match own.is_linear {
             true => Straining {
                 deformation: deformation - Matrix2::from_diagonal_element(strain),
                 stretch: stretch - strain,
-                dt,
                 old,
+                ..*straining
             },
             false => {
                 let theta = 1.0 + strain;
-                Straining { deformation: deformation / theta, stretch: stretch / theta, dt, old }
+                Straining { deformation: deformation / theta, stretch: stretch / theta, old, ..*straining }
             }
         }
     }
@@ -202,7 +202,7 @@ impl Material for Imposed {
         }
         let heat = self.names.len().saturating_sub(TEMPERATURE.len());
         let strain = self.expansion.map_or(0.0, |alpha| alpha * old[heat]);
-        let elastic = self.elastic(&Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old }, strain);
+        let elastic = self.elastic(&Straining::new(*deformation, old), strain);
         self.law.stretch_across(&elastic.deformation, elastic.old).map(|own| own + strain)
     }
 
@@ -248,6 +248,6 @@ impl Material for Imposed {
     }
 
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
-        self.cauchy(&Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old })
+        self.cauchy(&Straining::new(*deformation, old))
     }
 }

@@ -154,12 +154,14 @@ pub struct Straining<'a> {
     pub dt: f64,
     /// The committed [`variables`](MaterialDescription::variables)
     pub old: &'a [f64],
+    /// Whether the tangent is wanted; otherwise a law may leave it 0
+    pub tangent: bool,
 }
 
 impl<'a> Straining<'a> {
     /// Creates a straining in plane strain, without duration.
     pub fn new(deformation: Matrix2<f64>, old: &'a [f64]) -> Self {
-        Self { deformation, stretch: 1.0, dt: 0.0, old }
+        Self { deformation, stretch: 1.0, dt: 0.0, old, tangent: true }
     }
 }
 
@@ -305,7 +307,7 @@ pub trait Material: Debug + Send + Sync {
     /// As [`Material::respond`].
     fn at_once(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, MaterialFailure> {
         let old = vec![0.0; self.description().variables.len()];
-        let straining = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &old };
+        let straining = Straining::new(*deformation, &old);
         self.respond(&straining, &mut old.clone())
     }
 
@@ -408,7 +410,7 @@ pub trait Material: Debug + Send + Sync {
     /// # Errors
     /// As [`Material::respond`].
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
-        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+        let now = Straining::new(*deformation, old);
         // Compiled for each law: the tangent that is not asked for costs nothing.
         let response = match old {
             [] => self.respond(&now, &mut [])?,

@@ -189,7 +189,7 @@ impl<L: Spatial> PlaneStress<L> {
         let mut rest = 0.0;
         for _ in 0..ITERATIONS {
             let h = 1.0 + ln_h.exp_m1();
-            let answer = self.law.stretched(&Straining { stretch: h, ..*straining }, new)?;
+            let answer = self.law.stretched(&Straining { stretch: h, tangent: true, ..*straining }, new)?;
             let stress = h * answer.stress[4];
             let slope = stress + h * h * answer.tangent[(4, 4)];
             if !(slope > 0.0 && slope.is_finite() && answer.tangent[(4, 4)] > 0.0) {
@@ -241,12 +241,12 @@ impl<L: Spatial> Material for PlaneStress<L> {
     }
 
     fn stretch_across(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<f64, MaterialFailure> {
-        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+        let now = Straining::new(*deformation, old);
         self.solved(&now, &mut old.to_vec()).map(|(h, _)| h)
     }
 
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
-        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+        let now = Straining::new(*deformation, old);
         let (h, answer) = self.solved(&now, &mut old.to_vec())?;
         let sigma = plane(&answer.stress) * deformation.transpose() / (deformation.determinant() * h);
         Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: 0.0, xy: sigma.m12 })

@@ -187,6 +187,6 @@ impl Material for Undrained {
     }
 
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
-        self.cauchy(&Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old })
+        self.cauchy(&Straining::new(*deformation, old))
     }
 }

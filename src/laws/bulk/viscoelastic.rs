@@ -159,7 +159,7 @@ impl Material for Viscoelastic {
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        let Straining { deformation: f, stretch, dt, old } = *straining;
+        let Straining { deformation: f, stretch, dt, old, .. } = *straining;
         let mut response = self.behind.at_stretch(&f, stretch)?;
         let (arm, before) = (Tensor::from(&old[..4]), Tensor::from(&old[4..]));
         // E by the displacement gradient D, which loses no digits when it is small: sym(D) + ½ DᵀD

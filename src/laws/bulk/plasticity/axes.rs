@@ -1,7 +1,7 @@
 //! From F to principal trial strains, and from what a law answers there back to P, ∂P/∂F and C_p⁻¹: (1), (3) and (6) of
 //! [`Elastoplastic`](super::Elastoplastic).
 
-use nalgebra::{Matrix2, Matrix4, Matrix5, Vector3, Vector4, Vector5};
+use nalgebra::{Matrix2, Matrix4, Matrix5, RowVector4, Vector3, Vector4, Vector5};
 
 use super::Returned;
 use crate::laws::bulk::MaterialFailure;
@@ -15,6 +15,8 @@ pub(super) struct Axes {
     turn: Matrix2<f64>,
     /// F⁻¹ Q
     pulled: Matrix2<f64>,
+    /// Rᵀ Q: the axes before the rotation R of F = R U
+    unrotated: Matrix2<f64>,
     /// b₁, b₂, b₃
     squares: Vector3<f64>,
     /// ε_i = ½ ln b_i
@@ -28,7 +30,7 @@ impl Axes {
         let (d, c) = (f - Matrix2::identity(), Matrix2::new(state[0], state[2], state[2], state[1]));
         let b = d + d.transpose() + d * d.transpose() + f * c * f.transpose();
         let (mean, half, off) = (0.5 * (b.m11 + b.m22), 0.5 * (b.m11 - b.m22), b.m12);
-        let radius = half.hypot(off);
+        let radius = radius(half, off);
         let across = (stretch - 1.0) * (stretch + 1.0) + stretch * stretch * state[3];
         let less_one = Vector3::new(mean + radius, mean - radius, across);
         let squares = less_one.add_scalar(1.0);
@@ -38,17 +40,18 @@ impl Axes {
         let turn = principal_turn(half, off, radius);
         let inverse = Matrix2::new(f.m22, -f.m12, -f.m21, f.m11) / f.determinant();
         let strains = less_one.map(|e| 0.5 * e.ln_1p());
-        Ok(Self { deformation: *f, stretch, turn, pulled: inverse * turn, squares, strains })
+        let unrotated = rotation(f).transpose() * turn;
+        Ok(Self { deformation: *f, stretch, turn, pulled: inverse * turn, unrotated, squares, strains })
     }
 
     /// Turn an unrotated tensor (xx, yy, zz, xy) into the axes.
     pub fn enter(&self, tensor: &mut [f64]) {
-        turned(&(self.turn.transpose() * rotation(&self.deformation)), tensor);
+        turned(&self.unrotated.transpose(), tensor);
     }
 
     /// Turn a tensor in the axes back.
     pub fn leave(&self, tensor: &mut [f64]) {
-        turned(&(rotation(&self.deformation).transpose() * self.turn), tensor);
+        turned(&self.unrotated, tensor);
     }
 
     /// C_p⁻¹ − 1 after a plastic strain; unchanged bits without one.
@@ -76,21 +79,26 @@ impl Axes {
         state[3] += b.z * (-2.0 * plastic[2]).exp_m1() / (stretch * stretch);
     }
 
-    /// P and ∂P/∂F of a stress and tangent in the axes, see (6); with the spin of tensors of the history.
-    pub fn first_piola_kirchhoff(&self, found: &Returned, spins: bool) -> (Vector5<f64>, Matrix5<f64>) {
-        let [t11, t22, t33, t12]: [f64; 4] = found.stress.into();
-        let pull = self.pull();
-        let mut stress = Vector5::zeros();
-        stress.fixed_rows_mut::<4>(0).copy_from(&(pull * Vector4::new(t11, t12, t12, t22)));
-        stress[4] = t33 / self.stretch;
+    /// P of a stress in the axes, and the matrix that takes X (11, 21, 12, 22 in the axes) to Q X Qᵀ F⁻ᵀ.
+    pub fn first_piola_kirchhoff(&self, stress: &Vector4<f64>) -> (Vector5<f64>, Matrix4<f64>) {
+        let [t11, t22, t33, t12]: [f64; 4] = (*stress).into();
+        let (q, g) = (&self.turn, &self.pulled);
+        let pull = Matrix4::from_fn(|row, column| q[(row % 2, column % 2)] * g[(row / 2, column / 2)]);
+        let in_plane = pull * Vector4::new(t11, t12, t12, t22);
+        (Vector5::new(in_plane[0], in_plane[1], in_plane[2], in_plane[3], t33 / self.stretch), pull)
+    }
 
+    /// ∂P/∂F of a stress and tangent in the axes, see (6); with the spin of tensors of the history.
+    pub fn moduli(&self, found: &Returned, pull: &Matrix4<f64>, spins: bool) -> Matrix5<f64> {
+        let [t11, t22, t33, t12]: [f64; 4] = found.stress.into();
         // dτ by l₁₁, l₂₁, l₁₂, l₂₂, l₃₃
         let d = &found.tangent;
         let [by_12, by_21] = self.shear_of_gradient();
         let shear = d.column(3);
-        let columns = [d.column(0).into(), by_21 * shear, by_12 * shear, d.column(1).into(), d.column(2).into()];
-        let mut moduli =
-            Matrix5::from_columns(&columns.map(|c: Vector4<f64>| Vector5::new(c[0], c[3], c[3], c[1], c[2])));
+        let columns = [d.column(0).into(), by_21 * shear, by_12 * shear, d.column(1).into()];
+        let mut moduli = Matrix4::from_columns(&columns.map(|c: Vector4<f64>| Vector4::new(c[0], c[3], c[3], c[1])));
+        let by_across = Vector4::new(d[(0, 2)], d[(3, 2)], d[(3, 2)], d[(1, 2)]);
+        let across = RowVector4::from(columns.map(|c| c[2]));
         // τ lᵀ
         let of_stress = [
             [(0, 0, t11), (0, 2, t12), (1, 0, t12), (1, 2, t22)],
@@ -99,31 +107,29 @@ impl Axes {
         for (row, column, part) in of_stress.into_iter().flatten() {
             moduli[(row, column)] -= part;
         }
-        moduli[(4, 4)] -= t33;
 
-        let mut whole = Matrix5::zeros();
-        whole.fixed_view_mut::<4, 4>(0, 0).copy_from(&pull);
-        whole[(4, 4)] = 1.0 / self.stretch;
-        let mut tangent = whole * moduli * whole.transpose();
+        let inverse = 1.0 / self.stretch;
+        let back = pull.transpose();
+        let mut tangent = Matrix5::zeros();
+        tangent.fixed_view_mut::<4, 4>(0, 0).copy_from(&product(&product(pull, &moduli), &back));
+        tangent.fixed_view_mut::<4, 1>(0, 4).copy_from(&(inverse * (pull * by_across)));
+        tangent.fixed_view_mut::<1, 4>(4, 0).copy_from(&(inverse * (across * back)));
+        tangent[(4, 4)] = inverse * inverse * (d[(2, 2)] - t33);
         if spins {
             let difference = self.strains.x - self.strains.y;
             let follow = -difference * shear;
-            let follow = Vector5::new(
+            let across = inverse * follow[2];
+            let follow = Vector4::new(
                 follow[0] - 2.0 * t12,
                 follow[3] + t11 - t22,
                 follow[3] + t11 - t22,
                 follow[1] + 2.0 * t12,
-                follow[2],
             );
-            tangent += whole * follow * spin(&self.deformation).transpose();
+            let follow = pull * follow;
+            let follow = Vector5::new(follow[0], follow[1], follow[2], follow[3], across);
+            tangent += follow * spin(&self.deformation).transpose();
         }
-        (stress, tangent)
-    }
-
-    /// Matrix that takes X (11, 21, 12, 22 in the axes) to Q X Qᵀ F⁻ᵀ.
-    fn pull(&self) -> Matrix4<f64> {
-        let (q, g) = (&self.turn, &self.pulled);
-        Matrix4::from_fn(|row, column| q[(row % 2, column % 2)] * g[(row / 2, column / 2)])
+        tangent
     }
 
     /// ∂ε₁₂/∂l₁₂ and ∂ε₁₂/∂l₂₁: (ε₁ − ε₂)/(b₁ − b₂) times b₂ and b₁, ½ where the strains are equal.
@@ -134,6 +140,19 @@ impl Axes {
             false => [0.5 * twice / twice.exp_m1(), -0.5 * twice / (-twice).exp_m1()],
         }
     }
+}
+
+/// A B, written out: each column is a sum of the columns of A.
+fn product(a: &Matrix4<f64>, b: &Matrix4<f64>) -> Matrix4<f64> {
+    let column = |j: usize| {
+        a.column(0) * b[(0, j)] + a.column(1) * b[(1, j)] + a.column(2) * b[(2, j)] + a.column(3) * b[(3, j)]
+    };
+    Matrix4::from_columns(&[0, 1, 2, 3].map(column))
+}
+
+/// √(a² + b²) of numbers whose squares do not overflow
+fn radius(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
 }
 
 /// The axes of a symmetric tensor: of half the difference of its diagonal, its shear, and the radius of both.
@@ -158,7 +177,7 @@ fn principal_turn(half: f64, off: f64, radius: f64) -> Matrix2<f64> {
 /// exp(A) − 1 of a symmetric tensor (11, 22, 33, 12).
 pub(super) fn exponential_less_one(a: &Vector4<f64>) -> Vector4<f64> {
     let (mean, half, off) = (0.5 * (a[0] + a[1]), 0.5 * (a[0] - a[1]), a[3]);
-    let radius = half.hypot(off);
+    let radius = radius(half, off);
     let [high, low] = [(mean + radius).exp_m1(), (mean - radius).exp_m1()];
     let (middle, slope) = (0.5 * (high + low), if radius > 0.0 { 0.5 * (high - low) / radius } else { 0.0 });
     Vector4::new(middle + slope * half, middle - slope * half, a[2].exp_m1(), slope * off)
@@ -173,7 +192,7 @@ fn turned(m: &Matrix2<f64>, tensor: &mut [f64]) {
 /// R of F = R U.
 fn rotation(f: &Matrix2<f64>) -> Matrix2<f64> {
     let (along, around) = (f.m11 + f.m22, f.m21 - f.m12);
-    let size = along.hypot(around);
+    let size = radius(along, around);
     Matrix2::new(along, -around, around, along) / size
 }
 

@@ -16,10 +16,11 @@ mod elasticity;
 mod mohr_coulomb;
 mod von_mises;
 
+use std::borrow::Cow;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use nalgebra::{Matrix4, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix4, Matrix5, Vector2, Vector3, Vector4};
 
 use super::spatial::{Stretched, positive_stretch};
 use super::{
@@ -258,7 +259,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
 
     /// The axes of b, the law's answer there at the end of the increment, and what was dissipated.
     fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned, f64), MaterialFailure> {
-        let Straining { deformation, stretch, dt, old } = *straining;
+        let Straining { deformation, stretch, dt, old, .. } = *straining;
         positive_stretch(straining)?;
         positive_jacobian(&deformation)?;
         let axes = Axes::of(&deformation, stretch, old)?;
@@ -292,9 +293,11 @@ impl<L: ReturnMap> Elastoplastic<L> {
     }
 
     /// A committed history in the axes.
-    fn history_in(&self, axes: &Axes, variables: &[f64]) -> Vec<f64> {
-        let mut history = variables[HISTORY..].to_vec();
-        self.tensors(&mut history).for_each(|tensor| axes.enter(tensor));
+    fn history_in<'a>(&self, axes: &Axes, variables: &'a [f64]) -> Cow<'a, [f64]> {
+        let mut history = Cow::from(&variables[HISTORY..]);
+        if self.law.tensors() > 0 {
+            self.tensors(history.to_mut()).for_each(|tensor| axes.enter(tensor));
+        }
         history
     }
 
@@ -338,7 +341,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
     }
 
     /// Stress and history in the axes where the law remembers `straining.old`.
-    fn committed(&self, straining: &Straining) -> Result<(Vector4<f64>, Vec<f64>), MaterialFailure> {
+    fn committed<'a>(&self, straining: &Straining<'a>) -> Result<(Vector4<f64>, Cow<'a, [f64]>), MaterialFailure> {
         let axes = Axes::of(&straining.deformation, straining.stretch, straining.old)?;
         let history = self.history_in(&axes, straining.old);
         Ok((self.law.elasticity(&history).kirchhoff(&in_axes(&axes.strains)), history))
@@ -348,7 +351,11 @@ impl<L: ReturnMap> Elastoplastic<L> {
 impl<L: ReturnMap> Spatial for Elastoplastic<L> {
     fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         let (axes, found, dissipation) = self.answer(straining, new)?;
-        let (stress, tangent) = axes.first_piola_kirchhoff(&found, self.law.tensors() > 0);
+        let (stress, pull) = axes.first_piola_kirchhoff(&found.stress);
+        let tangent = match straining.tangent {
+            true => axes.moduli(&found, &pull, self.law.tensors() > 0),
+            false => Matrix5::zeros(),
+        };
         let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - straining.old[AT_START];
         Ok(Stretched { stress, tangent, energy, dissipation })
     }

@@ -147,6 +147,9 @@ impl VonMises {
 
     /// Y and dY/dε̄.
     fn strength(&self, equivalent: f64) -> [f64; 2] {
+        if self.saturation == 0.0 {
+            return [self.strength + self.hardening * equivalent, self.hardening];
+        }
         let decay = (-self.b * equivalent).exp();
         let rest = -(-self.b * equivalent).exp_m1();
         [

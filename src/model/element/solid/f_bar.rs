@@ -21,11 +21,10 @@
 
 use std::array;
 
-use nalgebra::{Vector2, Vector5};
+use nalgebra::{Matrix5, Vector2, Vector5};
 
 use super::SolidElement;
 use super::ring::{At, inverse_transpose, jacobian};
-use crate::laws::bulk::spatial::{components, plane};
 use crate::laws::bulk::{CauchyStress, MaterialFailure, Stretched};
 use crate::model::element::Formulation;
 
@@ -149,30 +148,34 @@ impl Mean<'_> {
         Ok([energy, dissipated])
     }
 
-    /// Tangent (6), column by column.
+    /// Tangent (6), column by column. With δF̄ by (4) it is that of moduli of F alone and products of h:
+    ///
+    /// ```text
+    /// δu·K·du = ∫ [δF:M:dF + α dh + δh β + c δh dh] dV,   M_iJkL = r² Ā_iJkL + m (v − ⟨v⟩) F⁻¹_Li F⁻¹_Jk
+    /// α = r δF:(Ā:F̄ + P̄),   β = r (F̄:Ā + P̄):dF,   c = F̄:Ā:F̄ + w
+    /// ```
     fn add_tangent(&self, answers: &[Stretched; POINTS], tangent: &mut [f64]) {
-        let varied = self.points.map(|now| array::from_fn::<_, DOFS, _>(|dof| now.at.variation(dof)));
         let share = self.points.map(|now| now.volume / self.volume);
         // n, and ⟨n⟩, of each dof
-        let change: [[f64; DOFS]; POINTS] =
-            array::from_fn(|k| varied[k].map(|varied| self.points[k].inverse_transpose.dot(&varied)));
+        let change = self.points.map(|now| now.at.along(&now.inverse_transpose));
         let mean: [f64; DOFS] = array::from_fn(|dof| (0..POINTS).map(|k| share[k] * change[k][dof]).sum());
         let works: [f64; POINTS] = array::from_fn(|k| answers[k].stress.dot(&self.points[k].seen));
         let beyond: [f64; POINTS] = array::from_fn(|k| works[k] - self.points[k].initial);
         let mean_beyond: f64 = (0..POINTS).map(|k| share[k] * beyond[k]).sum();
         for (k, (now, answer)) in self.points.iter().zip(answers).enumerate() {
+            let Stretched { stress, tangent: moduli, .. } = answer;
             let h: [f64; DOFS] = array::from_fn(|dof| self.exponent * (mean[dof] - change[k][dof]));
-            // δF̄ of each dof
-            let seen: [Vector5<f64>; DOFS] = array::from_fn(|dof| now.stretch * varied[k][dof] + h[dof] * now.seen);
-            let stress = seen.map(|seen| answer.stress.dot(&seen));
-            let turned = varied[k].map(|varied| now.pulled_back(&varied));
-            let geometric = self.exponent * (beyond[k] - mean_beyond);
+            let [by_seen, of_seen] = [moduli * now.seen, moduli.tr_mul(&now.seen)];
+            let own = now.volume * (now.seen.dot(&by_seen) + works[k]);
+            let size = now.volume * now.stretch;
+            let [alpha, beta] = [by_seen, of_seen].map(|with| now.at.along(&(size * (with + stress))));
+            let alpha: [f64; DOFS] = array::from_fn(|dof| alpha[dof] + own * h[dof]);
+            let moduli = size * now.stretch * moduli
+                + now.volume * self.exponent * (beyond[k] - mean_beyond) * now.geometric_moduli();
             for (j, column) in tangent.chunks_exact_mut(DOFS).enumerate() {
-                let dstress = answer.tangent * seen[j];
+                now.at.add_force(&(moduli * now.at.variation(j)), column);
                 for (i, entry) in column.iter_mut().enumerate() {
-                    *entry += now.volume
-                        * (seen[i].dot(&dstress) + stress[i] * h[j] + h[i] * stress[j] - works[k] * h[i] * h[j]
-                            + geometric * trace_of_product(&turned[i], &turned[j]));
+                    *entry += alpha[i] * h[j] + h[i] * beta[j];
                 }
             }
         }
@@ -180,14 +183,15 @@ impl Mean<'_> {
 }
 
 impl Now<'_> {
-    /// F⁻¹δF
-    fn pulled_back(&self, varied: &Vector5<f64>) -> Vector5<f64> {
+    /// F⁻¹_Li F⁻¹_Jk, of which δF:(·):dF = tr(F⁻¹δF F⁻¹dF)
+    fn geometric_moduli(&self) -> Matrix5<f64> {
         let t = &self.inverse_transpose;
-        components(&(plane(t).transpose() * plane(varied)), t[4] * varied[4])
+        let mut moduli = Matrix5::zeros();
+        for (row, column) in (0..4).flat_map(|row| (0..4).map(move |column| (row, column))) {
+            let [(i, j), (k, l)] = [(row % 2, row / 2), (column % 2, column / 2)];
+            moduli[(row, column)] = t[i + 2 * l] * t[k + 2 * j];
+        }
+        moduli[(4, 4)] = t[4] * t[4];
+        moduli
     }
-}
-
-/// tr(X Y)
-fn trace_of_product(x: &Vector5<f64>, y: &Vector5<f64>) -> f64 {
-    x[0] * y[0] + x[2] * y[1] + x[1] * y[2] + x[3] * y[3] + x[4] * y[4]
 }

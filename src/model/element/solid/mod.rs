@@ -168,16 +168,15 @@ impl SolidElement {
             return mean.respond(answer, force, Some(tangent)).map(|[energy, _]| energy);
         }
         force.fill(0.0);
-        tangent.fill(0.0);
         let mut energy = 0.0;
         let mut blocks = [[[[0.0; 2]; 2]; N]; N];
         for (gradients, &volume) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes) {
             let response = material.at_once(&deformation_gradient(gradients, u))?;
             energy += volume * response.energy;
             add_force(gradients, &(volume * response.stress), force);
-            add_tangent(gradients, &(volume * response.tangent), &mut blocks);
+            add_tangent::<N, true>(gradients, &(volume * response.tangent), &mut blocks);
         }
-        add_blocks(&blocks, tangent);
+        write_blocks::<N, true>(&blocks, tangent);
         Ok(energy)
     }
 
@@ -201,9 +200,8 @@ fn add_force(gradients: &[Vector2<f64>], stress: &Matrix2<f64>, force: &mut [f64
     }
 }
 
-/// K_ai,bk += N_a,J A_iJkL N_b,L in `blocks[b][a][k][i]` for a ≥ b: A derives from an energy, so the rest follows by
-/// symmetry.
-fn add_tangent<const N: usize>(
+/// K_ai,bk += N_a,J A_iJkL N_b,L in `blocks[b][a][k][i]`, of a symmetric A for a ≥ b alone: the rest follows.
+fn add_tangent<const N: usize, const SYMMETRIC: bool>(
     gradients: &[Vector2<f64>; N],
     tangent: &Matrix4<f64>,
     blocks: &mut [[[[f64; 2]; 2]; N]; N],
@@ -211,7 +209,7 @@ fn add_tangent<const N: usize>(
     for (b, (at_b, columns)) in gradients.iter().zip(blocks).enumerate() {
         // A_iJkL N_b,L for both k
         let stress = [0, 1].map(|k| tangent.column(k) * at_b.x + tangent.column(k + 2) * at_b.y);
-        for (at_a, block) in gradients.iter().zip(columns).skip(b) {
+        for (at_a, block) in gradients.iter().zip(columns).skip(if SYMMETRIC { b } else { 0 }) {
             for (column, stress) in block.iter_mut().zip(&stress) {
                 column[0] += stress[0] * at_a.x + stress[2] * at_a.y;
                 column[1] += stress[1] * at_a.x + stress[3] * at_a.y;
@@ -220,27 +218,20 @@ fn add_tangent<const N: usize>(
     }
 }
 
-/// Adds the blocks and their transposes to the tangent, column by column.
-fn add_blocks<const N: usize>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f64]) {
+/// Writes the blocks, and the transposes of symmetric ones, into the tangent, column by column.
+fn write_blocks<const N: usize, const SYMMETRIC: bool>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f64]) {
     for (b, columns) in blocks.iter().enumerate() {
-        for (a, block) in columns.iter().enumerate().skip(b) {
+        for (a, block) in columns.iter().enumerate().skip(if SYMMETRIC { b } else { 0 }) {
             for (k, column) in block.iter().enumerate() {
                 for (i, value) in column.iter().enumerate() {
-                    tangent[(2 * b + k) * 2 * N + 2 * a + i] += value;
-                    if a > b {
-                        tangent[(2 * a + i) * 2 * N + 2 * b + k] += value;
+                    tangent[(2 * b + k) * 2 * N + 2 * a + i] = *value;
+                    if SYMMETRIC && a > b {
+                        tangent[(2 * a + i) * 2 * N + 2 * b + k] = *value;
                     }
                 }
             }
         }
     }
-}
-
-/// Contraction A_iJkL F_kL.
-fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
-    let stress =
-        tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
-    Matrix2::new(stress[0], stress[2], stress[1], stress[3])
 }
 
 impl SolidElement {
@@ -319,39 +310,61 @@ impl SolidElement {
         memory: Memory,
         u: &[Vector2<f64>],
         force: &mut [f64],
-        mut tangent: Option<&mut [f64]>,
+        tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], MaterialFailure> {
         if self.hoop.is_some() {
             return self.ring(material, memory, u, force, tangent);
         }
-        let Memory { dt, old, new } = memory;
+        match (self.kind, material.description().is_symmetric) {
+            (ElementKind::T3, true) => self.evolve_by::<3, true>(material, memory, u, force, tangent),
+            (ElementKind::T3, false) => self.evolve_by::<3, false>(material, memory, u, force, tangent),
+            (ElementKind::T6, true) => self.evolve_by::<6, true>(material, memory, u, force, tangent),
+            (ElementKind::T6, false) => self.evolve_by::<6, false>(material, memory, u, force, tangent),
+            (ElementKind::Q4, true) => self.evolve_by::<4, true>(material, memory, u, force, tangent),
+            (ElementKind::Q4, false) => self.evolve_by::<4, false>(material, memory, u, force, tangent),
+            (ElementKind::Q8, true) => self.evolve_by::<8, true>(material, memory, u, force, tangent),
+            (ElementKind::Q8, false) => self.evolve_by::<8, false>(material, memory, u, force, tangent),
+            (ElementKind::Q9, true) => self.evolve_by::<9, true>(material, memory, u, force, tangent),
+            (ElementKind::Q9, false) => self.evolve_by::<9, false>(material, memory, u, force, tangent),
+        }
+    }
+
+    /// The same of an element in plane, whose number of nodes and symmetry are known at compile time.
+    fn evolve_by<const N: usize, const SYMMETRIC: bool>(
+        &self,
+        material: &dyn Material,
+        memory: Memory,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<[f64; 2], MaterialFailure> {
+        let (Memory { dt, old, new }, wanted) = (memory, tangent.is_some());
         let count = material.description().variables.len();
         if let Some(mean) = self.mean(u)? {
             let answer = |k: usize, seen: &Vector5<f64>| {
                 let own = k * count..(k + 1) * count;
-                let straining = Straining { deformation: plane(seen), stretch: 1.0, dt, old: &old[own.clone()] };
+                let straining = Straining { dt, tangent: wanted, ..Straining::new(plane(seen), &old[own.clone()]) };
                 material.respond(&straining, &mut new[own]).map(Stretched::from)
             };
             return mean.respond(answer, force, tangent);
         }
         force.fill(0.0);
-        if let Some(tangent) = tangent.as_deref_mut() {
-            tangent.fill(0.0);
-        }
         let [mut energy, mut dissipated] = [0.0; 2];
-        for (k, (gradients, volume)) in self.points().enumerate() {
+        let mut blocks = wanted.then_some([[[[0.0; 2]; 2]; N]; N]);
+        for (k, (gradients, &volume)) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes).enumerate() {
             let own = k * count..(k + 1) * count;
             let deformation = deformation_gradient(gradients, u);
-            let straining = Straining { deformation, stretch: 1.0, dt, old: &old[own.clone()] };
+            let straining = Straining { dt, tangent: wanted, ..Straining::new(deformation, &old[own.clone()]) };
             let response = material.respond(&straining, &mut new[own])?;
             energy += volume * response.energy;
             dissipated += volume * response.dissipation;
             add_force(gradients, &(volume * response.stress), force);
-            let Some(tangent) = tangent.as_deref_mut() else { continue };
-            for (dof, column) in tangent.chunks_exact_mut(2 * u.len()).enumerate() {
-                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
-                add_force(gradients, &(volume * contract(&response.tangent, &varied)), column);
+            if let Some(blocks) = &mut blocks {
+                add_tangent::<N, SYMMETRIC>(gradients, &(volume * response.tangent), blocks);
             }
+        }
+        if let (Some(blocks), Some(tangent)) = (blocks, tangent) {
+            write_blocks::<N, SYMMETRIC>(&blocks, tangent);
         }
         Ok([energy, dissipated])
     }

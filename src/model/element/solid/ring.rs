@@ -29,10 +29,11 @@ impl SolidElement {
         mut tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], MaterialFailure> {
         let (law, count) = (spatial(material), material.description().variables.len());
+        let wanted = tangent.is_some();
         if let Some(mean) = self.mean(u)? {
             let answer = |k: usize, seen: &Vector5<f64>| {
                 let own = k * count..(k + 1) * count;
-                law.stretched(&straining(seen, dt, &old[own.clone()]), &mut new[own])
+                law.stretched(&Straining { tangent: wanted, ..straining(seen, dt, &old[own.clone()]) }, &mut new[own])
             };
             return mean.respond(answer, force, tangent);
         }
@@ -43,7 +44,10 @@ impl SolidElement {
         let [mut energy, mut dissipated] = [0.0; 2];
         for (k, (at, volume)) in self.everywhere().enumerate() {
             let own = k * count..(k + 1) * count;
-            let answer = law.stretched(&straining(&at.deformation(u), dt, &old[own.clone()]), &mut new[own])?;
+            let answer = law.stretched(
+                &Straining { tangent: wanted, ..straining(&at.deformation(u), dt, &old[own.clone()]) },
+                &mut new[own],
+            )?;
             energy += volume * answer.energy;
             dissipated += volume * answer.dissipation;
             at.add_force(&(volume * answer.stress), force);
@@ -143,6 +147,13 @@ impl At<'_> {
         }
     }
 
+    /// δF:X of each dof of a Q4.
+    pub fn along(&self, x: &Vector5<f64>) -> [f64; 8] {
+        let mut each = [0.0; 8];
+        self.add_force(x, &mut each);
+        each
+    }
+
     pub fn add_force(&self, stress: &Vector5<f64>, force: &mut [f64]) {
         for ((force, gradient), hoop) in force.chunks_exact_mut(2).zip(self.gradients).zip(self.hoop) {
             force[0] += stress[0] * gradient.x + stress[2] * gradient.y + stress[4] * hoop;
@@ -153,7 +164,7 @@ impl At<'_> {
 
 /// Input of a law at F in three dimensions.
 pub(super) fn straining<'a>(seen: &Vector5<f64>, dt: f64, old: &'a [f64]) -> Straining<'a> {
-    Straining { deformation: plane(seen), stretch: seen[4], dt, old }
+    Straining { stretch: seen[4], dt, ..Straining::new(plane(seen), old) }
 }
 
 /// J = det F in three dimensions, known to be positive.
