@@ -25,6 +25,7 @@ pub(super) struct Axes {
 
 impl Axes {
     /// The trial state of F, F₃₃ and C_p⁻¹ − 1 (xx, yy, xy, zz). b − 1 is formed from F − 1, so that small strains lose no digits.
+    #[inline(always)]
     pub fn of(deformation: &Matrix2<f64>, stretch: f64, state: &[f64]) -> Result<Self, MaterialFailure> {
         let f = deformation;
         let (d, c) = (f - Matrix2::identity(), Matrix2::new(state[0], state[2], state[2], state[1]));
@@ -80,6 +81,7 @@ impl Axes {
     }
 
     /// P of a stress in the axes, and the matrix that takes X (11, 21, 12, 22 in the axes) to Q X Qᵀ F⁻ᵀ.
+    #[inline(always)]
     pub fn first_piola_kirchhoff(&self, stress: &Vector4<f64>) -> (Vector5<f64>, Matrix4<f64>) {
         let [t11, t22, t33, t12]: [f64; 4] = (*stress).into();
         let (q, g) = (&self.turn, &self.pulled);
@@ -90,15 +92,26 @@ impl Axes {
 
     /// ∂P/∂F of a stress and tangent in the axes, see (6); with the spin of tensors of the history.
     pub fn moduli(&self, found: &Returned, pull: &Matrix4<f64>, spins: bool) -> Matrix5<f64> {
-        let [t11, t22, t33, t12]: [f64; 4] = found.stress.into();
-        // dτ by l₁₁, l₂₁, l₁₂, l₂₂, l₃₃
         let d = &found.tangent;
-        let [by_12, by_21] = self.shear_of_gradient();
-        let shear = d.column(3);
-        let columns = [d.column(0).into(), by_21 * shear, by_12 * shear, d.column(1).into()];
-        let mut moduli = Matrix4::from_columns(&columns.map(|c: Vector4<f64>| Vector4::new(c[0], c[3], c[3], c[1])));
+        let inverse = 1.0 / self.stretch;
         let by_across = Vector4::new(d[(0, 2)], d[(3, 2)], d[(3, 2)], d[(1, 2)]);
-        let across = RowVector4::from(columns.map(|c| c[2]));
+        let mut across = inverse * (RowVector4::from(self.by_gradient(found).map(|c| c[2])) * pull.transpose());
+        if spins {
+            across -= inverse * (self.strains.x - self.strains.y) * d[(2, 3)] * spin(&self.deformation).transpose();
+        }
+        let mut tangent = Matrix5::zeros();
+        tangent.fixed_view_mut::<4, 4>(0, 0).copy_from(&self.moduli_in_plane(found, pull, spins));
+        tangent.fixed_view_mut::<4, 1>(0, 4).copy_from(&(inverse * (pull * by_across)));
+        tangent.fixed_view_mut::<1, 4>(4, 0).copy_from(&across);
+        tangent[(4, 4)] = inverse * inverse * (d[(2, 2)] - found.stress[2]);
+        tangent
+    }
+
+    /// The part of these moduli in plane.
+    pub fn moduli_in_plane(&self, found: &Returned, pull: &Matrix4<f64>, spins: bool) -> Matrix4<f64> {
+        let [t11, t22, _, t12]: [f64; 4] = found.stress.into();
+        let columns = self.by_gradient(found).map(|c| Vector4::new(c[0], c[3], c[3], c[1]));
+        let mut moduli = Matrix4::from_columns(&columns);
         // τ lᵀ
         let of_stress = [
             [(0, 0, t11), (0, 2, t12), (1, 0, t12), (1, 2, t22)],
@@ -107,29 +120,22 @@ impl Axes {
         for (row, column, part) in of_stress.into_iter().flatten() {
             moduli[(row, column)] -= part;
         }
-
-        let inverse = 1.0 / self.stretch;
-        let back = pull.transpose();
-        let mut tangent = Matrix5::zeros();
-        tangent.fixed_view_mut::<4, 4>(0, 0).copy_from(&product(&product(pull, &moduli), &back));
-        tangent.fixed_view_mut::<4, 1>(0, 4).copy_from(&(inverse * (pull * by_across)));
-        tangent.fixed_view_mut::<1, 4>(4, 0).copy_from(&(inverse * (across * back)));
-        tangent[(4, 4)] = inverse * inverse * (d[(2, 2)] - t33);
+        let mut tangent = product(&product(pull, &moduli), &pull.transpose());
         if spins {
-            let difference = self.strains.x - self.strains.y;
-            let follow = -difference * shear;
-            let across = inverse * follow[2];
-            let follow = Vector4::new(
-                follow[0] - 2.0 * t12,
-                follow[3] + t11 - t22,
-                follow[3] + t11 - t22,
-                follow[1] + 2.0 * t12,
-            );
-            let follow = pull * follow;
-            let follow = Vector5::new(follow[0], follow[1], follow[2], follow[3], across);
-            tangent += follow * spin(&self.deformation).transpose();
+            let follow = (self.strains.y - self.strains.x) * found.tangent.column(3);
+            let [along, shear] = [t11 - t22, 2.0 * t12];
+            let follow = Vector4::new(follow[0] - shear, follow[3] + along, follow[3] + along, follow[1] + shear);
+            tangent += pull * follow * spin(&self.deformation).transpose();
         }
         tangent
+    }
+
+    /// dτ by l₁₁, l₂₁, l₁₂, l₂₂
+    #[inline(always)]
+    fn by_gradient(&self, found: &Returned) -> [Vector4<f64>; 4] {
+        let (d, [by_12, by_21]) = (&found.tangent, self.shear_of_gradient());
+        let shear = d.column(3);
+        [d.column(0).into(), by_21 * shear, by_12 * shear, d.column(1).into()]
     }
 
     /// ∂ε₁₂/∂l₁₂ and ∂ε₁₂/∂l₂₁: (ε₁ − ε₂)/(b₁ − b₂) times b₂ and b₁, ½ where the strains are equal.
@@ -143,6 +149,7 @@ impl Axes {
 }
 
 /// A B, written out: each column is a sum of the columns of A.
+#[inline(always)]
 fn product(a: &Matrix4<f64>, b: &Matrix4<f64>) -> Matrix4<f64> {
     let column = |j: usize| {
         a.column(0) * b[(0, j)] + a.column(1) * b[(1, j)] + a.column(2) * b[(2, j)] + a.column(3) * b[(3, j)]
@@ -197,7 +204,7 @@ fn rotation(f: &Matrix2<f64>) -> Matrix2<f64> {
 }
 
 /// ∂θ/∂F of the angle of R.
-fn spin(f: &Matrix2<f64>) -> Vector5<f64> {
+fn spin(f: &Matrix2<f64>) -> Vector4<f64> {
     let (along, around) = (f.m11 + f.m22, f.m21 - f.m12);
-    Vector5::new(-around, along, -along, -around, 0.0) / (along * along + around * around)
+    Vector4::new(-around, along, -along, -around) / (along * along + around * around)
 }

@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix4, Matrix5, Vector2, Vector3, Vector4};
 
-use super::spatial::{Stretched, positive_stretch};
+use super::spatial::{Stretched, plane, positive_stretch};
 use super::{
     CauchyStress, Flow, InadmissibleStress, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse,
     PlaneStress, Spatial, Straining, positive_jacobian,
@@ -258,6 +258,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
     }
 
     /// The axes of b, the law's answer there at the end of the increment, and what was dissipated.
+    #[inline(always)]
     fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned, f64), MaterialFailure> {
         let Straining { deformation, stretch, dt, old, .. } = *straining;
         positive_stretch(straining)?;
@@ -423,7 +424,15 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        self.in_plane_strain(straining, new)
+        let (axes, found, dissipation) = self.answer(straining, new)?;
+        let (stress, pull) = axes.first_piola_kirchhoff(&found.stress);
+        let tangent = match straining.tangent {
+            true => axes.moduli_in_plane(&found, &pull, self.law.tensors() > 0),
+            false => Matrix4::zeros(),
+        };
+        let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - straining.old[AT_START];
+        let stress_zz = stress[4] / straining.deformation.determinant();
+        Ok(MaterialResponse { stress: plane(&stress), tangent, energy, stress_zz, dissipation })
     }
 
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {

@@ -243,6 +243,7 @@ impl ReturnMap for VonMises {
         self.back.len()
     }
 
+    #[inline(always)]
     fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure> {
         let Lame { shear, .. } = self.elastic;
         let mut answer = Returned::elastic(self.elastic, trial);
@@ -279,9 +280,11 @@ impl ReturnMap for VonMises {
         Ok(answer)
     }
 
+    #[inline]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
-        let back = history[TENSORS..].chunks_exact(4).map(Vector4::from_column_slice).sum::<Vector4<f64>>();
-        equivalent(&(deviator(stress).0 - back)) - self.strength(history[0])[0]
+        let mut beyond = deviator(stress).0;
+        history[TENSORS..].chunks_exact(4).for_each(|back| beyond -= Vector4::from_column_slice(back));
+        equivalent(&beyond) - self.strength(history[0])[0]
     }
 
     fn stored(&self, history: &[f64]) -> f64 {
