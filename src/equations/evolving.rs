@@ -4,16 +4,23 @@ use rayon::prelude::*;
 
 use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
-use crate::laws::bulk::MaterialFailure;
 use crate::model::Model;
 use crate::model::element::Memory;
 
 /// Number of elements whose contributions are held at once before they are added.
 const BATCH: usize = 1024;
 
-/// Whether each element belongs to such a body; empty if none does.
+/// Elements of such bodies, evaluated each time.
 #[derive(Clone, Debug)]
-pub(super) struct Evolving(Vec<bool>);
+pub(super) struct Evolving {
+    /// Whether each element is one of them; empty if none is
+    own: Vec<bool>,
+    /// Most dofs of one
+    dofs: usize,
+    /// Forces and tangents of a batch, column by column, in chunks for as many dofs each
+    forces: Vec<f64>,
+    tangents: Vec<f64>,
+}
 
 /// Whether a body is one of them.
 pub(super) fn evolves(model: &Model, body: usize) -> bool {
@@ -24,14 +31,19 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 impl Evolving {
     /// Finds the evolving elements of the bodies, except those that are `constant`.
     pub fn new(model: &Model, constant: &[bool]) -> Self {
-        let own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
-        let all: Vec<bool> = model.body_of_element.iter().zip(constant).map(own).collect();
-        Self(if all.contains(&true) { all } else { Vec::new() })
+        let is_own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
+        let mut own: Vec<bool> = model.body_of_element.iter().zip(constant).map(is_own).collect();
+        let elements = model.mesh.elements.iter().zip(&own);
+        let dofs = elements.filter(|(_, own)| **own).map(|(element, _)| 2 * element.nodes.len()).max();
+        if dofs.is_none() {
+            own.clear();
+        }
+        Self { own, dofs: dofs.unwrap_or_default(), forces: Vec::new(), tangents: Vec::new() }
     }
 
     /// Adds the forces of these elements, and stores their internal variables at the end of the trial in `memory`.
     pub fn add(
-        &self,
+        &mut self,
         model: &Model,
         trial: Trial,
         u: &[f64],
@@ -43,32 +55,44 @@ impl Evolving {
             // The initial stress of constant elements is unchanged.
             memory.clone_from(old);
         }
-        let mut all = Evolved::default();
+        let Self { own, dofs, forces, tangents } = self;
+        let (dofs, size) = (*dofs, *dofs * *dofs);
+        let count = BATCH.min(own.len());
+        forces.resize(count * dofs, 0.0);
+        tangents.resize(count * size, 0.0);
         let wanted = sums.tangent.is_some();
-        let one = |(e, new): (usize, &mut [f64])| {
+        let one = |((e, new), (force, tangent)): ((usize, &mut [f64]), (&mut [f64], &mut [f64]))| {
             let old = model.memories.of(e, old);
             model.write_temperatures(trial.step, trial.moment(), e, old, new);
-            let found = evolve(model, e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted);
-            let found = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
-            let yields = model.bodies[model.body_of_element[e]].material.description().flow.is_some();
-            Ok((found, model.heating(e, [old, new]), yields))
+            let body = &model.bodies[model.body_of_element[e]];
+            let (local, memory) = (model.mesh.vectors(e, u), Memory { dt: trial.dt, old, new: &mut *new });
+            let dofs = 2 * local.len();
+            let tangent = wanted.then_some(&mut tangent[..dofs * dofs]);
+            let found = model.solids[e].evolve(&*body.material, memory, &local, &mut force[..dofs], tangent);
+            let energies = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
+            let yields = body.material.description().flow.is_some();
+            Ok((e, energies, model.heating(e, [old, new]), yields))
         };
-        let elements = model.memories.each_mut(memory).enumerate().zip(&self.0);
-        let mut own = elements.filter_map(|(element, own)| own.then_some(element));
-        loop {
-            let batch: Vec<(usize, &mut [f64])> = own.by_ref().take(BATCH).collect();
+        let mut all = Evolved::default();
+        let elements = model.memories.each_mut(memory).enumerate().zip(&*own);
+        let mut elements = elements.filter_map(|(element, own)| own.then_some(element));
+        while dofs > 0 {
+            let batch: Vec<(usize, &mut [f64])> = elements.by_ref().take(BATCH).collect();
             if batch.is_empty() {
                 break;
             }
-            let answers: Vec<Result<_, TrialFailure>> = batch.into_par_iter().map(one).collect();
-            for answer in answers {
-                let (Answer { nodes, force, tangent, energies: [stored, lost] }, work, yields) = answer?;
+            let places = forces.par_chunks_exact_mut(dofs).zip(tangents.par_chunks_exact_mut(size));
+            let answers: Vec<Result<_, TrialFailure>> = batch.into_par_iter().zip(places).map(one).collect();
+            let places = forces.chunks_exact(dofs).zip(tangents.chunks_exact(size));
+            for (answer, (force, tangent)) in answers.into_iter().zip(places) {
+                let (e, [stored, lost], work, yields) = answer?;
                 all.stored += stored;
                 *(if yields { &mut all.plastic } else { &mut all.dissipated }) += lost;
                 all.heating += work;
-                sums.push(nodes, &force);
+                let nodes = &model.mesh.elements[e].nodes;
+                sums.push(nodes, &force[..2 * nodes.len()]);
                 if wanted {
-                    sums.couple(nodes, &tangent);
+                    sums.couple_element(e, nodes.len(), &tangent[..4 * nodes.len() * nodes.len()]);
                 }
             }
         }
@@ -87,29 +111,4 @@ pub struct Evolved {
     pub plastic: f64,
     /// Work of the temperature change
     pub heating: f64,
-}
-
-/// Force and tangent of one element, with its stored energy and dissipation.
-struct Answer<'a> {
-    nodes: &'a [usize],
-    force: Vec<f64>,
-    /// column by column, or empty where none is wanted
-    tangent: Vec<f64>,
-    energies: [f64; 2],
-}
-
-fn evolve<'a>(
-    model: &'a Model,
-    e: usize,
-    memory: Memory,
-    u: &[f64],
-    wanted: bool,
-) -> Result<Answer<'a>, MaterialFailure> {
-    let (local, nodes) = (model.mesh.vectors(e, u), &*model.mesh.elements[e].nodes);
-    let dofs = 2 * nodes.len();
-    let (mut force, mut tangent) = (vec![0.0; dofs], vec![0.0; if wanted { dofs * dofs } else { 0 }]);
-    let material = &*model.bodies[model.body_of_element[e]].material;
-    let matrix = wanted.then_some(&mut *tangent);
-    let energies = model.solids[e].evolve(material, memory, &local, &mut force, matrix)?;
-    Ok(Answer { nodes, force, tangent, energies })
 }

@@ -46,6 +46,13 @@ impl Sums<'_> {
         }
     }
 
+    /// Adds the tangent of an element of some nodes, column by column.
+    pub fn couple_element(&mut self, element: usize, nodes: usize, local: &[f64]) {
+        if let Some(tangent) = &mut self.tangent {
+            add_blocks(tangent, self.layout.blocks_of(element), local, nodes);
+        }
+    }
+
     /// Adds a tangent of some nodes, column by column.
     pub fn couple(&mut self, nodes: &[usize], local: &[f64]) {
         if let Some(tangent) = &mut self.tangent {
