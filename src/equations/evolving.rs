@@ -22,6 +22,9 @@ pub(super) struct Evolving {
     tangents: Vec<f64>,
 }
 
+/// Memory for the force and the tangent of an element.
+type Place<'a> = (&'a mut [f64], &'a mut [f64]);
+
 /// Whether a body is one of them.
 pub(super) fn evolves(model: &Model, body: usize) -> bool {
     let material = &model.bodies[body].material;
@@ -55,13 +58,16 @@ impl Evolving {
             // The initial stress of constant elements is unchanged.
             memory.clone_from(old);
         }
+        if self.own.is_empty() {
+            return Ok(Evolved::default());
+        }
         let Self { own, dofs, forces, tangents } = self;
         let (dofs, size) = (*dofs, *dofs * *dofs);
         let count = BATCH.min(own.len());
         forces.resize(count * dofs, 0.0);
         tangents.resize(count * size, 0.0);
         let wanted = sums.tangent.is_some();
-        let one = |((e, new), (force, tangent)): ((usize, &mut [f64]), (&mut [f64], &mut [f64]))| {
+        let one = |((e, new), (force, tangent)): ((usize, &mut [f64]), Place)| {
             let old = model.memories.of(e, old);
             model.write_temperatures(trial.step, trial.moment(), e, old, new);
             let body = &model.bodies[model.body_of_element[e]];
@@ -76,7 +82,7 @@ impl Evolving {
         let mut all = Evolved::default();
         let elements = model.memories.each_mut(memory).enumerate().zip(&*own);
         let mut elements = elements.filter_map(|(element, own)| own.then_some(element));
-        while dofs > 0 {
+        loop {
             let batch: Vec<(usize, &mut [f64])> = elements.by_ref().take(BATCH).collect();
             if batch.is_empty() {
                 break;
