@@ -149,7 +149,7 @@ impl<'a> PointEvaluation<'a> {
 
     /// d at p → 0: a law has no response at 0, but near 0 it no longer changes.
     fn parting(&self) -> Result<f64, LawFailure> {
-        let (old, slip) = (&self.old.friction, self.whole * self.counted(0.0).0);
+        let (old, slip) = (&self.old.friction, self.whole * self.counted(0.0).share);
         let size = old.pressure + old.traction.abs() + (self.alpha_n + self.law.description.stiffness) * slip.abs();
         if size == 0.0 {
             return Ok(old.opening);
@@ -160,7 +160,7 @@ impl<'a> PointEvaluation<'a> {
 
     /// Sets a pressure, and the slip that counts under it.
     fn load(&mut self, pressure: f64) {
-        self.sliding.slip = self.whole * self.counted(pressure).0;
+        self.sliding.slip = self.whole * self.counted(pressure).share;
         self.asked = pressure;
         self.sliding.pressure = self.effective(pressure)[0];
     }
@@ -172,10 +172,13 @@ impl<'a> PointEvaluation<'a> {
 
     /// Fraction of the slip that counts under a pressure, d/(g₀ + d) in an increment that starts open and 1 otherwise, and the
     /// derivative of the slip with respect to pressure.
-    fn counted(&self, pressure: f64) -> (f64, f64) {
-        let Some(compliance) = self.compliance else { return (1.0, 0.0) };
+    fn counted(&self, pressure: f64) -> Counted {
+        let Some(compliance) = self.compliance else { return Counted { share: 1.0, dslip_dpressure: 0.0 } };
         let (way, old_gap) = (compliance * pressure, self.old.clearance());
-        (way / (old_gap + way), self.whole * compliance * old_gap / (old_gap + way).powi(2))
+        Counted {
+            share: way / (old_gap + way),
+            dslip_dpressure: self.whole * compliance * old_gap / (old_gap + way).powi(2),
+        }
     }
 
     /// Computes the state of the point from the response of its law; contributions of a closed point are added to `closed`.
@@ -194,7 +197,7 @@ impl<'a> PointEvaluation<'a> {
         let (pressure, carried) = (self.agree(&mut response)?, self.asked);
         let (seen, [_, by_pressure]) = (self.effective(pressure)[0], self.effective(carried));
         response.dtraction_dpressure *= by_pressure;
-        let (share, dslip_dpressure) = self.counted(carried);
+        let counted = self.counted(carried);
         // To a node the point is held by α_n in either direction: where it was off the node by more than it goes in, no other
         // tractions turn as its own do.
         let at_node = foot.is_some_and(|foot| foot.xi == 1.0) && self.increment.presumption.astride.is_some();
@@ -206,9 +209,9 @@ impl<'a> PointEvaluation<'a> {
             response.dtraction_dslip = stiffness;
             response.dtraction_dpressure = 0.0;
         }
-        let opening_rate = response.dopening_dpressure + response.dopening_dslip * dslip_dpressure;
+        let opening_rate = response.dopening_dpressure + response.dopening_dslip * counted.dslip_dpressure;
         if carried > 0.0 {
-            let along = response.dtraction_dpressure + response.dtraction_dslip * dslip_dpressure;
+            let along = response.dtraction_dpressure + response.dtraction_dslip * counted.dslip_dpressure;
             response.state.traction += along * (pressure - carried);
             response.state.opening += opening_rate * (pressure - carried);
             response.state.pressure = seen;
@@ -221,7 +224,7 @@ impl<'a> PointEvaluation<'a> {
         kinematics.slip = sliding.slip;
         if kinematics.varied {
             let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
-            let counted = compliance.map(|_| (share, dslip_dpressure));
+            let counted = compliance.map(|_| counted);
             vary(kinematics, alpha, alpha * response.dopening_dslip, counted, closed);
         }
         let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
@@ -257,35 +260,49 @@ impl<'a> PointEvaluation<'a> {
         let [mut low, mut high] = [0.0, f64::INFINITY];
         for _ in 0..MOST_ANSWERS {
             let asked = self.asked;
-            let dslip = self.counted(asked).1;
+            let dslip = self.counted(asked).dslip_dpressure;
             let opened = response.state.opening - self.old.friction.opening;
             let rate = response.dopening_dpressure + response.dopening_dslip * dslip;
             let lifted = self.alpha_n * (opened + rate * (self.free - asked)) / (1.0 - self.alpha_n * rate);
             let pressure = self.free + lifted;
             // Round-off of the opening affects a small pressure.
-            let size = asked.abs() + self.alpha_n * (opened.abs() + response.state.opening.abs());
+            let mut size = asked.abs() + self.alpha_n * (opened.abs() + response.state.opening.abs());
+            let side = if asked < self.free + self.alpha_n * opened { &mut low } else { &mut high };
+            *side = asked;
+            let middle = 0.5 * (low + high.min(4.0 * asked));
+            // With no number left between them, the opening is as exact as the slip from which the law splits off the elastic one.
+            if middle <= low || high <= middle {
+                size += self.alpha_n * self.sliding.slip.abs();
+            }
             if presumed || (pressure - asked).abs() <= AGREE * size {
                 return Ok(pressure);
             }
-            let side = if asked < self.free + self.alpha_n * opened { &mut low } else { &mut high };
-            *side = asked;
             // At the onset of slip the opening has a kink, across which tangent steps alternate.
             let between = low < pressure && pressure < high;
-            self.load(if between { pressure } else { 0.5 * (low + high.min(4.0 * asked)) });
+            self.load(if between { pressure } else { middle });
             *response = self.met(self.law.respond(&self.old.friction, self.sliding)?);
         }
         Err(LawFailure::Opening { opening: response.state.opening, pressure: self.asked })
     }
 }
 
+/// The slip of an increment that counts under a pressure.
+#[derive(Clone, Copy)]
+struct Counted {
+    /// Fraction of the whole slip [-]
+    share: f64,
+    /// Derivative of the counted slip with respect to pressure [L³/F]
+    dslip_dpressure: f64,
+}
+
 /// δp = −α δg + lift (fraction δΔu_t), with α = α_n/(1 − α_n dd/dp) and lift = α ∂d/∂Δu_t; if slip is `counted` by a
 /// pressure-dependent fraction, its variation becomes that of the counted slip.
-fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<(f64, f64)>, closed: &mut ClosedPoints) {
-    if let Some((share, _)) = counted {
+fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<Counted>, closed: &mut ClosedPoints) {
+    if let Some(Counted { share, .. }) = counted {
         k.dslip.iter_mut().for_each(|dslip| *dslip *= share);
     }
     closed.push_dpressure(k, [-alpha, lift]);
-    if let Some((_, dslip_dpressure)) = counted {
+    if let Some(Counted { dslip_dpressure, .. }) = counted {
         let rates = k.dslip.iter_mut().zip(&k.dgap);
         rates.for_each(|(dslip, dgap)| {
             *dslip = *dslip * (1.0 + lift * dslip_dpressure) - dgap * (alpha * dslip_dpressure);

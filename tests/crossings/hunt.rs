@@ -190,6 +190,12 @@ const ONCE_BROKEN: &[(u64, &str, &str)] = &[
         "later",
         "block_law:mohr_coulomb friction:registered massless:yes master:plane scheme:hht times:yes wear:yes",
     ),
+    (
+        2124,
+        "dilating",
+        "dilatancy:limited friction:rate_and_state gauss_points:4 ground_element:q8 normal:augmented plate:rigid \
+         press:dead_pressure spring:ground stress:components",
+    ),
 ];
 
 #[test]
