@@ -3,12 +3,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use criterion::{BenchmarkId, Criterion, criterion_group};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
 use fecontact::contact::pair::{ContactIncrement, ContactPair, LawsInTime, Presumption};
 use fecontact::contact::response::PairResponse;
-use fecontact::contact::search::Index;
+use fecontact::contact::search::{Index, KeptSearch};
+use fecontact::contact::segment_grid::SegmentGrid;
+use fecontact::contact::segment_search::{Exhaustive, SegmentSearch};
+use fecontact::contact::segment_tree::SegmentTree;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
 use fecontact::laws::friction::{
     Coulomb, CoulombParameters, FrictionParameters, LawFailure, SlipWeakeningParameters, SuperSubloadingParameters,
@@ -79,13 +83,13 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
     for n in sizes {
         let (nodes, pair) = surfaces(n);
         let x = Configuration::undeformed(&nodes);
-        group.bench_function(BenchmarkId::new("index", n), |bench| {
-            bench.iter(|| matches!(Index::new(&pair.master, &x), Index::Mesh(..)));
-        });
-        let index = Index::new(&pair.master, &x);
-        group.bench_function(BenchmarkId::new("search", n), |bench| {
-            bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
-        });
+        searched::<SegmentTree>(&mut group, "tree", n, &pair, &x);
+        if n <= 30_000 {
+            searched::<SegmentGrid>(&mut group, "grid", n, &pair, &x);
+        }
+        if n <= 1_000 {
+            searched::<Exhaustive>(&mut group, "all segments", n, &pair, &x);
+        }
         let old = pair.initial_states(&x);
         let increment =
             ContactIncrement { dt: 1.0, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
@@ -97,6 +101,24 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
         });
     }
     group.finish();
+}
+
+/// The index of one search, and all points projected by it.
+fn searched<S: SegmentSearch>(
+    group: &mut BenchmarkGroup<WallTime>,
+    method: &str,
+    n: usize,
+    pair: &ContactPair,
+    x: &Configuration,
+) {
+    group.bench_function(BenchmarkId::new(format!("index by {method}"), n), |bench| {
+        bench.iter(|| matches!(Index::kept(&pair.master, [x, x], &mut KeptSearch::<S>::default()), Index::Mesh(..)));
+    });
+    let mut kept = KeptSearch::<S>::default();
+    let index = Index::kept(&pair.master, [x, x], &mut kept);
+    group.bench_function(BenchmarkId::new(format!("search by {method}"), n), |bench| {
+        bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, x).is_some()).count());
+    });
 }
 
 fn two_surfaces(criterion: &mut Criterion) {

@@ -10,7 +10,6 @@
 //! right-handed. The gap g = (x_slave − x_m)·n is positive when open, the pressure p positive in compression, and
 //! the traction on the slave is t = p n − q s.
 
-pub mod boxes;
 pub mod dual;
 pub mod force;
 pub mod kinematics;
@@ -25,6 +24,9 @@ pub mod pores;
 pub mod projection;
 pub mod response;
 pub mod search;
+pub mod segment_grid;
+pub mod segment_search;
+pub mod segment_tree;
 pub mod sight;
 pub mod small_sliding;
 pub mod surface;

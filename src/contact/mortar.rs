@@ -39,7 +39,7 @@ pub use super::mortar_segments::Overlaps;
 use super::mortar_segments::{CutEdge, Frame, Line, Overlap};
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
 use super::projection::{Projection, tangent_of};
-use super::search::{Index, Trees};
+use super::search::{Index, KeptSearch};
 use super::surface::{CORNER, Segment, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::section::Section;
@@ -62,7 +62,7 @@ pub struct Committed {
     section: Section,
     /// X and u of all nodes on both sides
     places: Vec<(usize, [Vector2<f64>; 2])>,
-    trees: Trees,
+    search: KeptSearch,
     overlaps: Overlaps,
     /// Buffers, each for several points
     rooms: Vec<Room>,
@@ -128,14 +128,14 @@ impl Mortar {
         let segments = || surface.segments.iter().flat_map(Segment::nodes);
         let nodes = || self.edges.iter().flatten().copied().chain(segments());
         let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
-        let Committed { section, places: kept, trees, overlaps, rooms, weights } = committed;
+        let Committed { section, places: kept, search, overlaps, rooms, weights } = committed;
         if *section == x.section() && weights.len() == self.at.len() && places().eq(kept.iter().copied()) {
             return;
         }
         *section = x.section();
         kept.clear();
         kept.extend(places());
-        self.cut(surface, &Index::kept(master, [x, x], trees), x, overlaps);
+        self.cut(surface, &Index::kept(master, [x, x], search), x, overlaps);
         weights.resize_with(self.at.len(), Weights::default);
         rooms.resize_with(self.at.len().div_ceil(TOGETHER), Room::default);
         let parts = weights.par_chunks_mut(TOGETHER).zip(rooms).enumerate();

@@ -12,7 +12,7 @@ use super::mortar::{Committed, Overlaps, Room};
 use super::nodal_forces::{Closed, ClosedPoints};
 use super::pair::ContactPair;
 use super::point::{ContactIncrement, ContactState, PointIncrement, Presumption};
-use super::search::{Index, Trees};
+use super::search::{Index, KeptSearch};
 use super::surface::SlavePoint;
 use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
 use crate::linear::system::Request;
@@ -53,8 +53,8 @@ struct Together {
 /// Search data that are reused while they stay valid.
 #[derive(Clone, Debug, Default)]
 struct Kept {
-    /// Trees of the master
-    trees: Trees,
+    /// Search on the master
+    search: KeptSearch,
     /// Mortar weights in the committed configuration, and mortar segments in the trial configuration
     committed: Committed,
     overlaps: Overlaps,
@@ -133,16 +133,16 @@ impl ContactPair {
         answer
     }
 
-    /// Evaluates all points, with a search in the master's tree.
+    /// Evaluates all points, with a search on the master.
     fn respond_by<P: Fn(usize) -> Presumption + Sync>(
         &self,
         question: &Question<P>,
         old: &[ContactState],
         [before, x]: [&Configuration; 2],
-        Kept { trees, committed, overlaps }: &mut Kept,
+        Kept { search, committed, overlaps }: &mut Kept,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
-        let index = Index::kept(&self.master, [before, x], trees);
+        let index = Index::kept(&self.master, [before, x], search);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             mortar.commit(&self.master, surface, before, committed);
             mortar.cut(surface, &index, x, overlaps);

@@ -4,39 +4,41 @@ use std::borrow::Cow;
 
 use nalgebra::Vector2;
 
-use super::boxes::{Box2, Boxes};
 use super::master::{Master, Rigid};
 pub use super::projection::FACING;
 use super::projection::{Bound, Projection, at_node, normal_of, on_curve, on_segment};
-use super::sight::{Branches, Sight};
+use super::segment_search::{Branch, SegmentSearch, bounding_box};
+use super::segment_tree::SegmentTree;
+use super::sight::{NormalTree, Sight};
 use super::surface::{MasterPoint, Path, SlavePoint, Surface};
+use crate::mesh::boxes::Box2;
 use crate::mesh::configuration::Configuration;
 
 /// Number of segments examined before a point counts as free. As the nearest come first, further ones do not face it.
 const CANDIDATES: usize = 8;
 
 /// Spatial index of the master at the current positions.
-pub enum Index<'a> {
-    /// Segments of a mesh surface in a tree of boxes, and the visibility in self-contact
-    Mesh(&'a Surface, Cow<'a, Boxes>, Option<Sight<'a>>),
+pub enum Index<'a, S: SegmentSearch = SegmentTree> {
+    /// Segments of a mesh surface, their search, and the visibility in self-contact
+    Mesh(&'a Surface, Cow<'a, S>, Option<Sight<'a>>),
     /// A rigid body, which needs no index
     Rigid(&'a Rigid),
 }
 
-/// Search trees of a mesh surface.
+/// What the search on a mesh surface keeps from one configuration to the next.
 #[derive(Clone, Debug, Default)]
-pub struct Trees {
-    boxes: Boxes,
-    /// Search tree for self-contact
-    branches: Branches,
+pub struct KeptSearch<S = SegmentTree> {
+    segments: S,
+    /// Normals of the segments, for self-contact
+    normals: NormalTree,
 }
 
-impl Trees {
-    /// Updates the trees for the configuration `x` of an increment that began in `before`.
+impl<S: SegmentSearch> KeptSearch<S> {
+    /// Updates it for the configuration `x` of an increment that began in `before`.
     fn update(&mut self, surface: &Surface, [before, x]: [&Configuration; 2]) {
-        self.boxes.update(surface, x);
+        self.segments.update(surface, x);
         if surface.own_depth.is_some() {
-            self.branches.update(surface, before);
+            self.normals.update(surface, before);
         }
     }
 }
@@ -47,24 +49,26 @@ impl<'a> Index<'a> {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
             Master::Mesh(surface) => {
-                let mut trees = Trees::default();
-                trees.update(surface, [x, x]);
-                let sight = |depth| Sight::new(surface, depth, x, Cow::Owned(trees.branches));
-                Self::Mesh(surface, Cow::Owned(trees.boxes), surface.own_depth.map(sight))
+                let mut search = KeptSearch::default();
+                search.update(surface, [x, x]);
+                let sight = |depth| Sight::new(surface, depth, x, Cow::Owned(search.normals));
+                Self::Mesh(surface, Cow::Owned(search.segments), surface.own_depth.map(sight))
             }
         }
     }
+}
 
-    /// Indexes the master in the configuration `x` of an increment that began in `before`, by trees that are rebuilt only
-    /// where they are no longer valid.
-    pub fn kept(master: &'a Master, [before, x]: [&'a Configuration<'a>; 2], trees: &'a mut Trees) -> Self {
+impl<'a, S: SegmentSearch> Index<'a, S> {
+    /// Indexes the master in the configuration `x` of an increment that began in `before`, with what is kept of the search
+    /// renewed only where it is no longer valid.
+    pub fn kept(master: &'a Master, [before, x]: [&'a Configuration<'a>; 2], kept: &'a mut KeptSearch<S>) -> Self {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
             Master::Mesh(surface) => {
-                trees.update(surface, [before, x]);
-                let Trees { boxes, branches } = trees;
-                let sight = |depth| Sight::new(surface, depth, before, Cow::Borrowed(&*branches));
-                Self::Mesh(surface, Cow::Borrowed(&*boxes), surface.own_depth.map(sight))
+                kept.update(surface, [before, x]);
+                let KeptSearch { segments, normals } = kept;
+                let sight = |depth| Sight::new(surface, depth, before, Cow::Borrowed(&*normals));
+                Self::Mesh(surface, Cow::Borrowed(&*segments), surface.own_depth.map(sight))
             }
         }
     }
@@ -80,7 +84,7 @@ impl<'a> Index<'a> {
                 let outward = slave.outward(x);
                 let viewer = sight.as_ref().and_then(|sight| sight.point(slave));
                 let meets = |segment: usize| match (sight, &viewer) {
-                    (Some(sight), Some(viewer)) => sight.may_meet(viewer, 0, segment),
+                    (Some(sight), Some(viewer)) => sight.may_meet(viewer, Branch::of(segment)),
                     _ => faces(surface, segment, outward, x),
                 };
                 Some(behind_ridge(slave, surface, nearest, from, meets, x))
@@ -101,31 +105,33 @@ impl<'a> Index<'a> {
         is_valley.then(|| at_node(slave, surface, first, second, 1.0, x)).filter(|at| at.gap < 0.0)
     }
 
-    /// Projection on the nearest segment, by the search tree, optionally starting at the segment `near`.
+    /// Projection on the nearest segment, which may be searched from the segment `near`.
     fn nearest(&self, slave: &SlavePoint, near: Option<usize>, x: &Configuration) -> Option<Projection> {
         match self {
             Self::Rigid(body) => body.project(slave, x),
-            Self::Mesh(surface, boxes, sight) => {
+            Self::Mesh(surface, segments, sight) => {
                 if let Some(sight) = sight {
                     let viewer = sight.point(slave)?;
-                    let may_meet = |level, number| sight.may_meet(&viewer, level, number);
-                    let nearest = boxes.nearest_one(slave, surface, x, near, may_meet)?;
+                    let may_meet = |branch| sight.may_meet(&viewer, branch);
+                    let nearest = segments.nearest(slave, surface, x, near, may_meet)?;
                     // A point can lie behind the common node of two segments only if it may be in contact with both: points on
                     // the other side of a wall see the far side of a hole beyond its end, through the body.
                     let beside = |at: &Projection| {
                         if at.foot.xi > 0.0 { surface.next(at.foot.segment) } else { surface.previous(at.foot.segment) }
                     };
                     return on_segment(slave, surface, nearest, x).filter(|at| {
-                        at.gap >= 0.0 || at.bound == Bound::Segment || beside(at).is_some_and(|k| may_meet(0, k))
+                        at.gap >= 0.0
+                            || at.bound == Bound::Segment
+                            || beside(at).is_some_and(|k| may_meet(Branch::of(k)))
                     });
                 }
                 let outward = slave.outward(x);
                 let facing = |segment: usize| faces(surface, segment, outward, x);
-                let first = boxes.nearest_one(slave, surface, x, near, |_, _| true).filter(|&segment| facing(segment));
+                let first = segments.nearest(slave, surface, x, near, |_| true).filter(|&segment| facing(segment));
                 if let Some(found) = first.and_then(|segment| on_segment(slave, surface, segment, x)) {
                     return Some(found);
                 }
-                let nearest = boxes.nearest(slave, surface, x).take(CANDIDATES);
+                let nearest = segments.by_distance(slave, surface, x).take(CANDIDATES);
                 let mut facing = nearest.filter(|&segment| facing(segment)).enumerate();
                 // A node is the projection only if no nearer segment faces the point: beyond the end of a surface, where the
                 // last segment has no projection, each inner node would be one, far away and deep.
@@ -140,17 +146,16 @@ impl<'a> Index<'a> {
     /// Lists the segments of a mesh surface within a distance of a slave edge's bounding box, in order along the surface.
     pub fn around(&self, edge: &[usize], reach: f64, x: &Configuration, found: &mut Vec<usize>) {
         found.clear();
-        let Self::Mesh(surface, boxes, sight) = self else { return };
-        let reach = Vector2::new(reach, reach);
-        let at = |node: usize| x.between(boxes.origin, node);
-        let each = edge.iter().map(|&node| Box2 { low: at(node) - reach, high: at(node) + reach });
-        if let Some(all) = each.reduce(|sum, one| sum.around(&one)) {
-            boxes.meeting(&all, found);
-            found.retain(|&segment| Box2::of(&surface.segments[segment], boxes.origin, x).meets(&all));
+        let Self::Mesh(surface, segments, sight) = self else { return };
+        let origin = surface.origin();
+        if let Some(own) = Box2::around(edge.iter().map(|&node| x.between(origin, node))) {
+            let all = own.wider(reach);
+            segments.meeting(surface, x, &all, found);
+            found.retain(|&segment| bounding_box(&surface.segments[segment], origin, x).meets(&all));
         }
         if let Some(sight) = sight {
             let viewer = sight.edge(edge);
-            found.retain(|&segment| sight.may_meet(&viewer, 0, segment));
+            found.retain(|&segment| sight.may_meet(&viewer, Branch::of(segment)));
         }
     }
 }

@@ -18,9 +18,10 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector2;
 
-use super::boxes::Box2;
 use super::projection::{FACING, normal_of};
+use super::segment_search::{Branch, bounding_box};
 use super::surface::{Segment, SlavePoint, Surface};
+use crate::mesh::boxes::Box2;
 use crate::mesh::configuration::Configuration;
 
 /// A surface at the start of the increment.
@@ -28,22 +29,22 @@ pub struct Sight<'a> {
     surface: &'a Surface,
     before: &'a Configuration<'a>,
     depth: f64,
-    branches: Cow<'a, Branches>,
+    tree: Cow<'a, NormalTree>,
 }
 
 /// Tree of a surface in one configuration; valid as long as no node of the surface moves.
 #[derive(Clone, Debug, Default)]
-pub struct Branches {
+pub struct NormalTree {
     /// X and u of the nodes of the segments
     places: Vec<(usize, [Vector2<f64>; 2])>,
-    /// Levels as in [`super::boxes::Boxes`]
-    levels: Vec<Vec<Branch>>,
+    /// Bounds of every branch, by its level and number
+    levels: Vec<Vec<Bounds>>,
 }
 
-/// A range of consecutive segments.
+/// Bounds of the segments of a branch.
 #[derive(Clone, Copy, Debug)]
-struct Branch {
-    bounds: Box2,
+struct Bounds {
+    place: Box2,
     /// Range of the angles of their normals, continued from segment to segment
     turn: [f64; 2],
 }
@@ -77,7 +78,7 @@ impl Own<'_> {
     }
 }
 
-impl Branches {
+impl NormalTree {
     /// Rebuilds the tree unless it is that of a surface in the configuration `x`, O(N).
     pub(super) fn update(&mut self, surface: &Surface, x: &Configuration) {
         let nodes = || surface.segments.iter().flat_map(Segment::nodes);
@@ -88,20 +89,20 @@ impl Branches {
         self.places.clear();
         self.places.extend(places());
         let mut angle = 0.0;
-        let branch = |segment: &Segment| {
+        let bounds = |segment: &Segment| {
             let normal = normal_of(x.between(segment.ends[0], segment.ends[1]));
             angle += turn(normal.y.atan2(normal.x) - angle);
-            Branch { bounds: Box2::of(segment, surface.origin(), x), turn: [angle; 2] }
+            Bounds { place: bounding_box(segment, surface.origin(), x), turn: [angle; 2] }
         };
         let count = usize::BITS - surface.segments.len().saturating_sub(1).leading_zeros();
         self.levels.resize_with(1 + count as usize, Vec::new);
         let (leaves, above) = self.levels.split_at_mut(1);
         leaves[0].clear();
-        leaves[0].extend(surface.segments.iter().map(branch));
+        leaves[0].extend(surface.segments.iter().map(bounds));
         let mut below = &leaves[0];
         for level in above {
             level.clear();
-            level.extend(below.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], Branch::joined)));
+            level.extend(below.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], Bounds::joined)));
             below = level;
         }
     }
@@ -110,8 +111,8 @@ impl Branches {
 impl<'a> Sight<'a> {
     /// Creates the visibility of a self-contact surface in the configuration before the increment, with its tree; `depth` is
     /// the largest depth of a point behind a segment that it may contact.
-    pub fn new(surface: &'a Surface, depth: f64, before: &'a Configuration<'a>, branches: Cow<'a, Branches>) -> Self {
-        Self { surface, before, depth, branches }
+    pub fn new(surface: &'a Surface, depth: f64, before: &'a Configuration<'a>, tree: Cow<'a, NormalTree>) -> Self {
+        Self { surface, before, depth, tree }
     }
 
     /// A slave point as an observer; `None` without edges.
@@ -128,13 +129,13 @@ impl<'a> Sight<'a> {
         Viewer::new(middle, -normal_of(along.normalize()), Own::Edge(edge))
     }
 
-    /// Whether an observer may contact a segment (level 0), or any below a branch; conservative for branches.
-    pub fn may_meet(&self, viewer: &Viewer, level: usize, number: usize) -> bool {
-        if level > 0 {
-            let branch = &self.branches.levels[level][number];
-            return branch.faces(viewer) && branch.is_before(viewer, self.depth);
+    /// Whether an observer may contact any segment of a branch; conservative for more than one.
+    pub fn may_meet(&self, viewer: &Viewer, branch: Branch) -> bool {
+        if branch.level > 0 {
+            let bounds = &self.tree.levels[branch.level][branch.number];
+            return bounds.faces(viewer) && bounds.is_before(viewer, self.depth);
         }
-        let segment = &self.surface.segments[number];
+        let segment = &self.surface.segments[branch.number];
         let [start, end] = segment.ends;
         let normal = normal_of(self.before.between(start, end).normalize());
         normal.dot(&viewer.outward) < FACING
@@ -149,10 +150,10 @@ impl<'a> Viewer<'a> {
     }
 }
 
-impl Branch {
+impl Bounds {
     fn joined(self, other: &Self) -> Self {
         let turn = [self.turn[0].min(other.turn[0]), self.turn[1].max(other.turn[1])];
-        Self { bounds: self.bounds.around(&other.bounds), turn }
+        Self { place: self.place.with(other.place), turn }
     }
 
     /// Smallest angle between a direction and those of the branch, 0 to π.
@@ -168,8 +169,9 @@ impl Branch {
 
     /// Whether the observer is in front of some segment or not deeper behind it than `depth`.
     fn is_before(&self, viewer: &Viewer, depth: f64) -> bool {
-        let offset = viewer.at - self.bounds.centre();
-        offset.norm() * self.away(offset.y.atan2(offset.x)).cos() + self.bounds.radius() > -depth
+        let offset = viewer.at - self.place.centre();
+        let radius = 0.5 * self.place.size().norm();
+        offset.norm() * self.away(offset.y.atan2(offset.x)).cos() + radius > -depth
     }
 }
 

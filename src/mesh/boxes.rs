@@ -18,7 +18,8 @@ impl Box2 {
     }
 
     /// Returns the bounding box of two boxes.
-    fn with(self, other: Self) -> Self {
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
@@ -33,7 +34,18 @@ impl Box2 {
         self.high - self.low
     }
 
-    fn meets(&self, other: &Self) -> bool {
+    /// Middle of the box.
+    pub fn centre(&self) -> Vector2<f64> {
+        0.5 * (self.low + self.high)
+    }
+
+    /// Squared distance of a point from the box, 0 inside it.
+    pub fn squared_distance(&self, point: Vector2<f64>) -> f64 {
+        (self.low - point).sup(&(point - self.high)).sup(&Vector2::zeros()).norm_squared()
+    }
+
+    /// Whether two boxes intersect.
+    pub fn meets(&self, other: &Self) -> bool {
         (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
 }

@@ -12,6 +12,7 @@ mod points;
 mod random;
 mod rigid_bodies;
 mod rings;
+mod search;
 mod self_contact;
 mod small_sliding;
 mod stabilization;
