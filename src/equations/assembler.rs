@@ -278,8 +278,10 @@ impl Assembler {
             return;
         };
         [&mut inertia.force, &mut inertia.weighted].into_iter().for_each(|forces| model.linkage.gather(forces));
-        let wanted = tangent.then_some((&mut system.tangent, mass));
-        inertia.add(model, [&trial.old.force, force], &mut system.residual, wanted);
+        inertia.balance(&trial.old.force, force, &mut system.residual);
+        if tangent {
+            inertia.weigh(model, mass, &mut system.tangent);
+        }
         magnitudes.iter_mut().zip(&inertia.force).for_each(|(magnitude, inertia)| *magnitude += inertia.abs());
         let held = links::relieved(model, u, &inertia.force);
         let supports = reactions.iter_mut().zip(&trial.step.supports);

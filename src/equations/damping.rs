@@ -146,7 +146,7 @@ pub(super) fn add_dampers(
         }
         sums.add(dof, -pull);
         damping[dof] += pull;
-        sums.stiffen(dof / 2, (dof % 2, dof % 2), dashpot.coefficient * dvelocity);
+        sums.stiffen(dof, dof, dashpot.coefficient * dvelocity);
     }
     for Absorber { node, coefficients } in &trial.step.loads.absorbers {
         let rates = [0, 1].map(|i| velocity(2 * node + i));
@@ -155,7 +155,7 @@ pub(super) fn add_dampers(
             let pull = -coefficients[(i, j)] * velocity;
             sums.add(2 * node + i, -pull);
             damping[2 * node + i] += pull;
-            sums.stiffen(*node, (i, j), coefficients[(i, j)] * dvelocity);
+            sums.stiffen(2 * node + i, 2 * node + j, coefficients[(i, j)] * dvelocity);
         }
     }
     Ok(())
@@ -234,7 +234,7 @@ pub(super) fn add_stabilization(trial: Trial, u: &[f64], damping: &mut [f64], su
         sums.add(dof, -pull);
         damping[dof] += pull;
         squares += pull * pull;
-        sums.stiffen(dof / 2, (dof % 2, dof % 2), coefficient);
+        sums.stiffen(dof, dof, coefficient);
     }
     squares.sqrt()
 }

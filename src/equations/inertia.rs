@@ -97,22 +97,18 @@ impl Inertia {
         Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme, dt })
     }
 
-    /// (1) of [`crate::model::scheme`]: weights the forces and their tangent, and adds the inertia.
-    pub fn add(
-        &self,
-        model: &Model,
-        [old, force]: [&[f64]; 2],
-        residual: &mut Vec<f64>,
-        tangent: Option<(&mut SparseMatrix, &SparseMatrix)>,
-    ) {
-        let alpha_f = self.scheme.alpha_f;
+    /// (1) of [`crate::model::scheme`]: the residual of the weighted forces, those at the start of the increment and those at
+    /// the trial displacement, and the inertia.
+    pub fn balance(&self, old_force: &[f64], force: &[f64], residual: &mut Vec<f64>) {
         residual.clear();
-        let blended = old.iter().zip(force).map(|(&old, &force)| blend(alpha_f, old, force));
+        let blended = old_force.iter().zip(force).map(|(&old, &force)| blend(self.scheme.alpha_f, old, force));
         residual.extend(blended.zip(&self.weighted).map(|(force, inertia)| force + inertia));
-        if let Some((tangent, mass)) = tangent {
-            tangent.values.iter_mut().for_each(|value| *value *= 1.0 - alpha_f);
-            self.stiffen(model, mass, tangent);
-        }
+    }
+
+    /// Weights the tangent of the forces alike, and adds that of the inertia.
+    pub fn weigh(&self, model: &Model, mass: &SparseMatrix, tangent: &mut SparseMatrix) {
+        tangent.values.iter_mut().for_each(|value| *value *= 1.0 - self.scheme.alpha_f);
+        self.stiffen(model, mass, tangent);
     }
 
     /// Adds the tangent of the weighted inertia.

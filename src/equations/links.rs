@@ -125,13 +125,13 @@ pub fn gather_rows(model: &Model, matrix: &mut SparseMatrix) {
         for (i, _) in follower.dofs() {
             for (leader, g) in &follower.leaders {
                 for j in (0..2).filter(|&j| g[(i, j)] != 0.0) {
-                    matrix.add_row((follower.node, i), (*leader, j), g[(i, j)]);
+                    matrix.add_row(2 * follower.node + i, 2 * leader + j, g[(i, j)]);
                 }
             }
         }
     }
     for &[a, b] in &model.linkage.rigid {
-        (0..2).for_each(|i| matrix.add_row((b, i), (a, i), 1.0));
+        (0..2).for_each(|i| matrix.add_row(2 * b + i, 2 * a + i, 1.0));
     }
 }
 

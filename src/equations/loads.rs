@@ -96,7 +96,7 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
         let position = model.mesh.nodes[spring.dof / 2];
         let driver = spring.driver.as_ref().map_or(0.0, |driver| driver.value(position, at));
         loads[spring.dof] += spring.stiffness * (driver - u[spring.dof]);
-        sums.stiffen(spring.dof / 2, (spring.dof % 2, spring.dof % 2), spring.stiffness);
+        sums.stiffen(spring.dof, spring.dof, spring.stiffness);
     }
     for at in &step.released {
         at.add(at.of(&old.step_start.reaction) * (1.0 - step.span.share(time)), loads);

@@ -32,10 +32,11 @@ impl Sums<'_> {
         }
     }
 
-    /// Adds ∂f_i/∂u_j between the dofs of one node.
-    pub fn stiffen(&mut self, node: usize, (i, j): (usize, usize), stiffness: f64) {
+    /// Adds ∂f_row/∂u_column between two dofs of one node.
+    pub fn stiffen(&mut self, row: usize, column: usize, stiffness: f64) {
         if let Some(tangent) = &mut self.tangent {
-            tangent.add_own(self.layout.original(node), (i, j), stiffness);
+            let own = 2 * self.layout.original(row / 2);
+            tangent.add_own(own + row % 2, own + column % 2, stiffness);
         }
     }
 

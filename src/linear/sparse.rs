@@ -165,14 +165,13 @@ impl SparseMatrix {
 
     /// Adds `value` to the diagonal entry of one dof: A_ii += value.
     pub fn add_diagonal(&mut self, dof: usize, value: f64) {
-        let (node, d) = (dof / 2, dof % 2);
-        self.add_own(node, (d, d), value);
+        self.add_own(dof, dof, value);
     }
 
-    /// Adds to an entry (i, j) of a node's diagonal block.
-    pub fn add_own(&mut self, node: usize, (i, j): (usize, usize), value: f64) {
-        if let Some(block) = self.pattern.block(node, node) {
-            self.values[block.value(i, j)] += value;
+    /// Adds to the entry of two dofs of one node.
+    pub fn add_own(&mut self, row: usize, column: usize, value: f64) {
+        if let Some(block) = self.pattern.block(row / 2, column / 2) {
+            self.values[block.value(row % 2, column % 2)] += value;
         }
     }
 
@@ -238,9 +237,9 @@ impl SparseMatrix {
         }
     }
 
-    /// Adds a multiple of the equation of one dof, (node, component), to that of another, which must be coupled with the same
-    /// nodes.
-    pub fn add_row(&mut self, (from, i): (usize, usize), (to, j): (usize, usize), share: f64) {
+    /// Adds a multiple of the equation of one dof to that of another, whose node must be coupled with the same nodes.
+    pub fn add_row(&mut self, from_dof: usize, to_dof: usize, share: f64) {
+        let [from, to] = [from_dof / 2, to_dof / 2];
         for k in self.pattern.starts[from]..self.pattern.starts[from + 1] {
             let column = self.pattern.rows[k];
             let (Some(source), Some(target)) = (self.pattern.block(from, column), self.pattern.block(to, column))
@@ -248,7 +247,7 @@ impl SparseMatrix {
                 continue;
             };
             for c in 0..2 {
-                self.values[target.value(j, c)] += share * self.values[source.value(i, c)];
+                self.values[target.value(to_dof % 2, c)] += share * self.values[source.value(from_dof % 2, c)];
             }
         }
     }

@@ -41,7 +41,7 @@ impl Rows for ProbeRows {
         let values = values(model, state, &self.0);
         for (probe, stencil) in model.requests.probes.iter().zip(&self.0) {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
-                Reading::by((stencil, &values), probe, model, state);
+                Reading::by(stencil, &values, probe, model, state);
             let CauchyStress { xx, yy, zz, xy } = stress;
             let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
@@ -77,11 +77,11 @@ impl Reading {
     /// accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
         let stencils = stencils(model, std::slice::from_ref(probe));
-        Self::by((&stencils[0], &values(model, state, &stencils)), probe, model, state)
+        Self::by(&stencils[0], &values(model, state, &stencils), probe, model, state)
     }
 
     /// The same with the values at the quadrature points of the elements around.
-    fn by((stencil, values): (&Stencil, &Values), probe: &Probe, model: &Model, state: &State) -> Self {
+    fn by(stencil: &Stencil, values: &Values, probe: &Probe, model: &Model, state: &State) -> Self {
         let shares = model.mesh.elements[probe.element].kind.values(probe.at);
         let nodal = |of: &[f64]| model.mesh.vectors(probe.element, of).iter().zip(&shares).map(|(of, n)| of * *n).sum();
         let mut sums = [0.0; 8];

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::control::{Candidate, Midway, Outcome, Outputs, Phase, RESULTS};
+use super::control::{Candidate, Midway, Outcome, Outputs, Phase, RESULTS, WatchedSlip};
 use super::error::Error;
 use super::observer::Verdict;
 use super::simulation::Simulation;
@@ -101,9 +101,8 @@ impl Simulation {
         Phase::Rupture { outputs: Outputs::new(self.state.time, interval), before: self.state.clone(), pace: 0.0 }
     }
 
-    /// Tries explicit increments to the next output. In a rupture, `watched` is the state since which slip is monitored, and
-    /// the fastest slip before it.
-    pub(super) fn explicit(&mut self, outputs: Outputs, watched: Option<(Arc<State>, f64)>) -> Candidate {
+    /// Tries explicit increments to the next output. In a rupture, slip is monitored.
+    pub(super) fn explicit(&mut self, outputs: Outputs, watched: Option<WatchedSlip>) -> Candidate {
         let (time, following) = outputs.next(self.step.span, self.model.requests.next_time(self.state.time));
         let (from, before_pause) =
             self.midway.as_ref().map_or((&self.state, 0), |midway| (&midway.state, midway.increments));
@@ -170,8 +169,8 @@ impl Simulation {
     }
 
     /// Phase after an output; a rupture ends when no point has slipped fast during the calm time.
-    fn after_output(&self, outputs: Outputs, watched: Option<(Arc<State>, f64)>, state: &Arc<State>) -> Phase {
-        let (Some((before, pace)), Some(rupture)) = (watched, &self.step.rupture) else {
+    fn after_output(&self, outputs: Outputs, watched: Option<WatchedSlip>, state: &Arc<State>) -> Phase {
+        let (Some(WatchedSlip { before, pace }), Some(rupture)) = (watched, &self.step.rupture) else {
             return Phase::Explicit(outputs);
         };
         if state.time - before.time < rupture.calm {

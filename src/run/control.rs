@@ -87,6 +87,14 @@ pub fn is_of(state: &State, model: &Model) -> bool {
         && state.contacts.iter().zip(&model.contacts).all(contact)
 }
 
+/// Slip monitored within a rupture.
+pub(super) struct WatchedSlip {
+    /// State since which slip is monitored
+    pub before: Arc<State>,
+    /// Fastest slip in the calm time before that state [L/T]
+    pub pace: f64,
+}
+
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum Phase {
     /// Before the first increment of a step

@@ -18,7 +18,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::control::{Candidate, Control, Increment, Midway, Outcome, Phase, RunReport, WallSeconds, is_of};
+use super::control::{
+    Candidate, Control, Increment, Midway, Outcome, Phase, RunReport, WallSeconds, WatchedSlip, is_of,
+};
 use super::error::Error;
 use super::observer::{Attempt, Row};
 use crate::linear::Multifrontal;
@@ -181,7 +183,9 @@ impl Simulation {
             Phase::Implicit { dt, attempt, touching } => Some(self.implicit(dt, attempt, touching)),
             Phase::Explicit(outputs) => Some(self.explicit(outputs, None)),
             Phase::QuasiDynamic { dt } => Some(self.quasi_dynamic(dt)),
-            Phase::Rupture { outputs, before, pace } => Some(self.explicit(outputs, Some((before, pace)))),
+            Phase::Rupture { outputs, before, pace } => {
+                Some(self.explicit(outputs, Some(WatchedSlip { before, pace })))
+            }
         })
     }
 

@@ -150,7 +150,8 @@ impl Point {
         &self,
         aids: Aids,
         pair: &ContactPair,
-        (state, closed): (&ContactState, &Closed),
+        state: &ContactState,
+        closed: &Closed,
         old: &ContactState,
         acted: &mut Acted,
     ) {
@@ -310,7 +311,7 @@ impl ContactIteration {
         for ((points, pair), (response, old)) in self.points.iter().zip(&model.contacts).zip(responses) {
             for (k, (point, (state, old))) in points.iter().zip(response.states.iter().zip(old)).enumerate() {
                 if let Some(closed) = response.closed(k) {
-                    point.count(aids, pair, (state, &closed), old, &mut self.acted);
+                    point.count(aids, pair, state, &closed, old, &mut self.acted);
                 }
             }
         }

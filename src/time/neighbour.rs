@@ -114,7 +114,8 @@ impl Neighbour {
     fn pass(
         &mut self,
         lead: &Lead,
-        (pass, other): (&Pass, &[f64]),
+        pass: &Pass,
+        other: &[f64],
         tangent: &mut Tangent,
         mut way: OnItsWay,
     ) -> Result<OnItsWay, IncrementFailure> {
@@ -170,9 +171,9 @@ fn ahead(
             multiply(&middle.model, tangent.contacts(), &mut old);
         }
         tangent.of(lead.trial(&old, lead.step, pass), pass)?;
-        first = middle.pass(lead, (pass, &pass.displacement), tangent, first)?;
+        first = middle.pass(lead, pass, &pass.displacement, tangent, first)?;
         let each = neighbours.iter_mut().zip(ways);
-        ways = each.map(|(neighbour, way)| neighbour.pass(lead, (pass, &first.u), tangent, way?)).collect();
+        ways = each.map(|(neighbour, way)| neighbour.pass(lead, pass, &first.u, tangent, way?)).collect();
     }
     middle.accept(lead, first)?;
     Ok(neighbours.iter_mut().zip(ways).map(|(neighbour, way)| neighbour.accept(lead, way?)).collect())

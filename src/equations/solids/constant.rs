@@ -388,6 +388,22 @@ pub(super) enum Pass<'a> {
     Both { u: &'a [f64], v: &'a [f64] },
 }
 
+/// What the nodal forces of a block are computed from.
+#[derive(Clone, Copy)]
+struct Matrices<'a> {
+    /// The distinct K_e of its kind
+    stiffness: &'a [f64],
+    /// Forces of the initial stress; empty if there is none
+    initial: &'a [f64],
+}
+
+/// A motion of all nodes, and the factor of its forces.
+#[derive(Clone, Copy)]
+struct Motion<'a> {
+    nodes: &'a [[f64; 2]],
+    factor: f64,
+}
+
 /// First node whose columns are stored. Motions are relative to the first node, whose own columns then are not needed, except
 /// for x in axisymmetry, where a common motion stretches the hoops.
 const fn first(ring: bool) -> usize {
@@ -416,20 +432,22 @@ impl Block {
         pass: Pass,
         sums: [&mut [Vector2<f64>]; 2],
     ) -> f64 {
-        let (elastic, viscous) = ((stiffness, &self.initial[..]), (stiffness, &[][..]));
+        let elastic = Matrices { stiffness, initial: &self.initial };
+        let viscous = Matrices { stiffness, initial: &[] };
+        let by = |motion, factor| Motion { nodes: all(motion), factor };
         match pass {
-            Pass::Elastic { u, scaled: false } => self.of_kind::<1, false, RING>(elastic, [(all(u), 1.0)], sums),
-            Pass::Elastic { u, scaled: true } => self.of_kind::<1, true, RING>(elastic, [(all(u), 1.0)], sums),
-            Pass::Viscous { v, scaled: false } => self.of_kind::<1, false, RING>(viscous, [(all(v), tau)], sums),
-            Pass::Viscous { v, scaled: true } => self.of_kind::<1, true, RING>(viscous, [(all(v), tau)], sums),
-            Pass::Both { u, v } => self.of_kind::<2, false, RING>(elastic, [(all(u), 1.0), (all(v), tau)], sums),
+            Pass::Elastic { u, scaled: false } => self.of_kind::<1, false, RING>(elastic, [by(u, 1.0)], sums),
+            Pass::Elastic { u, scaled: true } => self.of_kind::<1, true, RING>(elastic, [by(u, 1.0)], sums),
+            Pass::Viscous { v, scaled: false } => self.of_kind::<1, false, RING>(viscous, [by(v, tau)], sums),
+            Pass::Viscous { v, scaled: true } => self.of_kind::<1, true, RING>(viscous, [by(v, tau)], sums),
+            Pass::Both { u, v } => self.of_kind::<2, false, RING>(elastic, [by(u, 1.0), by(v, tau)], sums),
         }
     }
 
     fn of_kind<const M: usize, const SCALED: bool, const RING: bool>(
         &self,
-        matrices: (&[f64], &[f64]),
-        motions: [(&[[f64; 2]], f64); M],
+        matrices: Matrices,
+        motions: [Motion; M],
         sums: [&mut [Vector2<f64>]; 2],
     ) -> f64 {
         match self.kind {
@@ -443,20 +461,20 @@ impl Block {
 
     fn dispatched<const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool>(
         &self,
-        (stiffness, initial): (&[f64], &[f64]),
-        motions: [(&[[f64; 2]], f64); M],
+        matrices: Matrices,
+        motions: [Motion; M],
         sums: [&mut [Vector2<f64>]; 2],
     ) -> f64 {
         let mut moved = [[[0.0; 2]; M]; NODES];
         for (moved, &node) in moved.iter_mut().zip(&self.nodes) {
-            moved.iter_mut().zip(&motions).for_each(|(moved, (motion, _))| *moved = motion[node as usize]);
+            moved.iter_mut().zip(&motions).for_each(|(moved, motion)| *moved = motion.nodes[node as usize]);
         }
-        let factors = motions.map(|(_, factor)| factor);
+        let factors = motions.map(|motion| motion.factor);
         let mut total = [[[0.0; 2]; 2]; NODES];
         let elements = Elements::<N, R, M, SCALED, RING> {
             block: self,
-            stiffness,
-            initial,
+            stiffness: matrices.stiffness,
+            initial: matrices.initial,
             moved: &moved,
             factors,
             total: &mut total,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
-use super::spatial::plane;
+use super::spatial::{OutOfPlane, plane};
 use super::{
     CauchyStress, InadmissibleStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress,
     Spatial, Straining, Stretched,
@@ -95,28 +95,33 @@ impl Imposed {
             Some(law) => law.stretched(elastic, new),
             None => {
                 let MaterialResponse { stress, tangent, energy, dissipation, .. } = self.law.respond(elastic, new)?;
-                Ok(Stretched {
-                    dissipation,
-                    ..Stretched::new((stress, tangent), (0.0, Default::default(), 0.0), energy)
-                })
+                Ok(Stretched { dissipation, ..Stretched::new(stress, tangent, OutOfPlane::default(), energy) })
             }
         }
     }
 
-    /// The initial stress in plane and across it, which stays as it is.
-    fn initial(&self, old: &[f64], new: &mut [f64]) -> Option<(Matrix2<f64>, f64)> {
+    /// The initial stress, which stays as it is.
+    fn initial(&self, old: &[f64], new: &mut [f64]) -> Option<InitialStress> {
         let own = self.law.description().variables.len();
         let own = own..own + INITIAL_STRESS.len();
         self.stressed.then(|| {
             new[own.clone()].copy_from_slice(&old[own.clone()]);
             let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| old[own.start + k]);
-            (Matrix2::new(xx, xy, xy, yy), zz)
+            InitialStress { plane: Matrix2::new(xx, xy, xy, yy), across: zz }
         })
     }
 }
 
-/// Add the stress, tangent and energy of an initial stress.
-fn add_initial(answer: &mut Stretched, elastic: &Straining, (plane, across): (Matrix2<f64>, f64), linear: bool) {
+/// σ₀ [F/L²]
+struct InitialStress {
+    plane: Matrix2<f64>,
+    /// σ₀,zz
+    across: f64,
+}
+
+/// Adds the stress, tangent and energy of an initial stress.
+fn add_initial(answer: &mut Stretched, elastic: &Straining, initial: &InitialStress, linear: bool) {
+    let InitialStress { plane, across } = *initial;
     let (f, h) = (elastic.deformation, elastic.stretch);
     let strain = match linear {
         true => 0.5 * (f + f.transpose()) - Matrix2::identity(),
@@ -163,7 +168,7 @@ impl Spatial for Imposed {
         let (elastic, linear) = (self.elastic(straining, strain), self.law.description().is_linear);
         let mut answer = self.answer(&elastic, &mut new[..elastic.old.len()])?;
         if let Some(initial) = self.initial(straining.old, new) {
-            add_initial(&mut answer, &elastic, initial, linear);
+            add_initial(&mut answer, &elastic, &initial, linear);
         }
         if self.expansion.is_none() {
             return Ok(answer);

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix2, Vector4};
 
+use super::spatial::OutOfPlane;
 use super::{MaterialFailure, MaterialResponse, Stretched, cofactor, positive_jacobian};
 
 /// The two invariants of an isotropic law in plane strain, and their derivatives.
@@ -93,6 +94,6 @@ impl Invariants {
         let Across { w_h, w_mh, w_jh, w_hh } = *across;
         let coupling = 2.0 * w_mh * self.deviation + w_jh * self.cofactor;
         let coupling = Vector4::from_column_slice(coupling.as_slice());
-        Stretched::new((plane.stress, plane.tangent), (w_h, coupling, w_hh), plane.energy)
+        Stretched::new(plane.stress, plane.tangent, OutOfPlane { stress: w_h, coupling, stiffness: w_hh }, plane.energy)
     }
 }

@@ -1,5 +1,6 @@
 use nalgebra::{Matrix2, Matrix4, Vector4};
 
+use super::spatial::OutOfPlane;
 use super::{
     CauchyStress, ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, Spatial,
     Straining, Stretched,
@@ -105,6 +106,7 @@ impl Spatial for Linear {
         let stress = stress + Matrix2::from_diagonal_element(lambda * strain);
         let energy = energy + lambda * trace * strain + 0.5 * modulus * strain * strain;
         let coupling = Vector4::new(lambda, 0.0, 0.0, lambda);
-        Ok(Stretched::new((stress, tangent), (lambda * trace + modulus * strain, coupling, modulus), energy))
+        let across = OutOfPlane { stress: lambda * trace + modulus * strain, coupling, stiffness: modulus };
+        Ok(Stretched::new(stress, tangent, across, energy))
     }
 }

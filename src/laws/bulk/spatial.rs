@@ -6,7 +6,7 @@
 //!
 //! Plates: no out-of-plane stress.
 
-use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix5, Vector2, Vector4, Vector5};
 
 use super::{
     CauchyStress, InadmissibleStress, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining,
@@ -25,13 +25,21 @@ pub struct Stretched {
     pub dissipation: f64,
 }
 
+/// The part of a response out of plane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct OutOfPlane {
+    /// P₃₃ [F/L²]
+    pub stress: f64,
+    /// ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ [F/L²]
+    pub coupling: Vector4<f64>,
+    /// ∂P₃₃/∂F₃₃ [F/L²]
+    pub stiffness: f64,
+}
+
 impl Stretched {
-    /// Creates the response from its in-plane part and the out-of-plane part: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
-    pub(super) fn new(
-        (stress, tangent): (Matrix2<f64>, nalgebra::Matrix4<f64>),
-        (stress_33, coupling, stiffness): (f64, Vector4<f64>, f64),
-        energy: f64,
-    ) -> Self {
+    /// Creates the response from its parts in plane, P and ∂P/∂F, and out of it.
+    pub(super) fn new(stress: Matrix2<f64>, tangent: Matrix4<f64>, across: OutOfPlane, energy: f64) -> Self {
+        let OutOfPlane { stress: stress_33, coupling, stiffness } = across;
         let mut whole = Matrix5::zeros();
         whole.fixed_view_mut::<4, 4>(0, 0).copy_from(&tangent);
         whole.fixed_view_mut::<4, 1>(0, 4).copy_from(&coupling);
@@ -44,7 +52,7 @@ impl Stretched {
 /// Takes a response in plane strain, without the out-of-plane parts, which do no work.
 impl From<MaterialResponse> for Stretched {
     fn from(MaterialResponse { stress, tangent, energy, dissipation, .. }: MaterialResponse) -> Self {
-        Self { dissipation, ..Self::new((stress, tangent), (0.0, Vector4::zeros(), 0.0), energy) }
+        Self { dissipation, ..Self::new(stress, tangent, OutOfPlane::default(), energy) }
     }
 }
 

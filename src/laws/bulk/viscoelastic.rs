@@ -2,7 +2,7 @@ use nalgebra::{Matrix2, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::spatial::{Spatial, Stretched, positive_stretch};
+use super::spatial::{OutOfPlane, Spatial, Stretched, positive_stretch};
 use super::{
     ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, NeoHookean, PlaneStress,
     Straining,
@@ -205,7 +205,7 @@ impl Spatial for Viscoelastic {
         let f = Vector4::from_column_slice(straining.deformation.as_slice());
         let coupling = behind.tangent.fixed_view::<4, 1>(0, 4) + f * (phi * self.arm.lambda * h);
         let stiffness = behind.tangent[(4, 4)] + held + phi * self.arm.constrained_modulus() * h * h;
-        let across = (behind.stress[4] + h * held, coupling, stiffness);
-        Ok(Stretched { dissipation, ..Stretched::new((stress, tangent), across, energy) })
+        let across = OutOfPlane { stress: behind.stress[4] + h * held, coupling, stiffness };
+        Ok(Stretched { dissipation, ..Stretched::new(stress, tangent, across, energy) })
     }
 }

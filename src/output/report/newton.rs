@@ -66,30 +66,31 @@ struct Attempt {
 
 /// Required columns of the table; `None` where they are missing.
 struct Table<'a> {
-    step: (&'a [f64], &'a [String]),
+    step: Words<'a>,
     increment: &'a [f64],
     attempt: &'a [f64],
     time: &'a [f64],
     iteration: &'a [f64],
     residual: &'a [f64],
     counts: [&'a [f64]; 3],
-    verdict: Option<(&'a [f64], &'a [String])>,
-    reason: Option<(&'a [f64], &'a [String])>,
+    verdict: Option<Words<'a>>,
+    reason: Option<Words<'a>>,
 }
 
 impl<'a> Table<'a> {
     fn of(newton: &'a Columns) -> Option<Self> {
         let get = |name| newton.get(name).ok();
+        let words = |name| Some(Words { numbers: get(name)?, words: newton.words(name)? });
         Some(Self {
-            step: (get("step")?, newton.words("step")?),
+            step: words("step")?,
             increment: get("increment")?,
             attempt: get("attempt")?,
             time: get("time")?,
             iteration: get("iteration")?,
             residual: get("residual")?,
             counts: [get("open")?, get("stick")?, get("slip")?],
-            verdict: get("verdict").zip(newton.words("verdict")),
-            reason: get("reason").zip(newton.words("reason")),
+            verdict: words("verdict"),
+            reason: words("reason"),
         })
     }
 
@@ -116,19 +117,29 @@ impl<'a> Table<'a> {
 
     /// Outcome of an attempt, if the table contains it.
     fn verdict(&self, rows: &Range<usize>) -> Option<&str> {
-        word(self.verdict?, rows.end - 1)
+        self.verdict?.at(rows.end - 1)
     }
 
     /// Reason of a rejected attempt according to the table.
     fn why(&self, rows: &Range<usize>) -> &str {
-        let reason = self.reason.and_then(|reason| word(reason, rows.end - 1)).filter(|reason| !reason.is_empty());
+        let reason = self.reason.and_then(|reason| reason.at(rows.end - 1)).filter(|reason| !reason.is_empty());
         reason.or_else(|| self.verdict(rows)).unwrap_or("not solved")
     }
 }
 
-/// Word of a row in a column of words.
-fn word<'a>((values, words): (&[f64], &'a [String]), row: usize) -> Option<&'a str> {
-    words.get(values[row] as usize).map(String::as_str)
+/// A column of words.
+#[derive(Clone, Copy)]
+struct Words<'a> {
+    /// Number of each row's word
+    numbers: &'a [f64],
+    words: &'a [String],
+}
+
+impl<'a> Words<'a> {
+    /// Word of a row.
+    fn at(self, row: usize) -> Option<&'a str> {
+        self.words.get(self.numbers[row] as usize).map(String::as_str)
+    }
 }
 
 /// Every increment with its solves, and every rejected attempt with its reason as far as known.
@@ -153,7 +164,7 @@ pub fn attempts(newton: &Columns, complete: bool) -> Value {
             given_up.push(json!({
                 "time": start,
                 "dt": time - start,
-                "step": table.step.1.get(table.step.0[last] as usize),
+                "step": table.step.at(last),
                 "increment": table.increment[last],
                 "attempt": table.attempt[last],
                 "iterations": table.iteration[last],

@@ -109,7 +109,7 @@ impl Series {
     /// Upper bound of the size of a frame [bytes].
     fn estimate(&self) -> usize {
         let size = self.size();
-        self.frames.iter().map(|frame| self.packed(frame, size).size()).max().unwrap_or(0).max(1)
+        self.frames.iter().map(|(frame, grid)| self.packed(frame, grid, size).size()).max().unwrap_or(0).max(1)
     }
 
     /// Times of the frames.
@@ -123,7 +123,7 @@ impl Series {
         all.filter(|u| u.is_finite()).fold(0.0, |size, u| u.abs().max(size))
     }
 
-    fn packed(&self, (frame, grid): &(Frame, Grid), size: f64) -> PackedFrame {
+    fn packed(&self, frame: &Frame, grid: &Grid, size: f64) -> PackedFrame {
         let moved = displacement(grid).map(|u| {
             let values: Vec<f64> = u.values.chunks_exact(u.components).flat_map(|u| [u[0], u[1]]).collect();
             Packed::stepped(&values, 2, size, DISPLACEMENT_ERROR)
@@ -150,7 +150,8 @@ impl Series {
         let grid = &self.frames[0].1;
         let size = self.size();
         let chosen: Vec<&(Frame, Grid)> = self.frames.iter().filter(|(frame, _)| times.contains(&frame.time)).collect();
-        let packed: Vec<PackedFrame> = chosen.into_par_iter().map(|frame| self.packed(frame, size)).collect();
+        let packed: Vec<PackedFrame> =
+            chosen.into_par_iter().map(|(frame, grid)| self.packed(frame, grid, size)).collect();
         let origin = middle(&grid.points);
         let places: Vec<f64> = grid.points.iter().flat_map(|x| [x[0] - origin[0], x[1] - origin[1]]).collect();
         let of_cells = |name: &str| grid.at_cells.iter().find(|array| array.name == name);

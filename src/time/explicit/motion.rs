@@ -3,6 +3,7 @@
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 
+use super::plates::Pulled;
 use super::{CHUNK, Explicit};
 use crate::equations::damping;
 use crate::equations::sums::TrialFailure;
@@ -71,7 +72,7 @@ impl Explicit {
         // A released support has no reaction any more.
         state.reaction.fill(0.0);
         self.plates.begin(0.0, state);
-        self.plates.accelerate((model, 0.0), (&self.displacement, &found.force), |k| starts[k], state);
+        self.plates.accelerate(model, 0.0, &self.displacement, &found.force, |k| starts[k], state);
         step.supports.iter().zip(&starts).for_each(|(support, start)| support.at.set(*start, &mut state.acceleration));
         self.plates.spread(model, &self.displacement, state);
         for (support, start) in step.supports.iter().zip(starts) {
@@ -128,8 +129,7 @@ impl Explicit {
         self.plates.begin(dt, state);
         self.accelerate(dt, state, &found.force);
         let (places, supported) = (&self.places, |(places, before)| supported_rates(places, before, dt).1);
-        let there = (&self.displacement[..], &found.force[..]);
-        self.plates.accelerate((model, dt), there, |k| supported(places[k]), state);
+        self.plates.accelerate(model, dt, &self.displacement, &found.force, |k| supported(places[k]), state);
         self.damp(time, dt, state);
         for (support, &(places, before)) in step.supports.iter().zip(&self.places) {
             let (velocity, acceleration) = supported_rates(places, before, dt);
@@ -181,8 +181,8 @@ impl Explicit {
                 state.velocity[2 * node + i] += 0.5 * dt * change[i];
             }
         }
-        let (dampers, there) = ((&self.dampers[..], &self.pulls[..]), (&self.displacement[..], &self.mass[..]));
-        self.plates.damp((&self.model, dt), dampers, there, state);
+        let pulled = Pulled { dampers: &self.dampers, pulls: &self.pulls };
+        self.plates.damp(&self.model, dt, pulled, &self.displacement, &self.mass, state);
     }
 
     /// Subtracts the damper forces at a velocity from the forces found, and books their work as damping.

@@ -35,6 +35,15 @@ pub(super) struct Plates {
     members: Vec<bool>,
 }
 
+/// Dampers and their forces.
+#[derive(Clone, Copy)]
+pub(super) struct Pulled<'a> {
+    /// Sorted by node
+    pub dampers: &'a [Absorber],
+    /// Force of each [F]
+    pub pulls: &'a [Vector2<f64>],
+}
+
 /// A platen with one equal component.
 #[derive(Clone)]
 struct Alike {
@@ -86,8 +95,10 @@ impl Plates {
     /// Second half of (8) at the displacement `u` under the gathered forces, with prescribed accelerations of supports.
     pub fn accelerate(
         &mut self,
-        (model, dt): (&Model, f64),
-        (u, force): (&[f64], &[f64]),
+        model: &Model,
+        dt: f64,
+        u: &[f64],
+        force: &[f64],
         supported: impl Fn(usize) -> f64,
         state: &mut State,
     ) {
@@ -95,18 +106,13 @@ impl Plates {
             let a = -force[plate.leader()] / plate.mass;
             plate.rates = [plate.rates[0] + 0.5 * dt * a, a];
         }
-        self.rigid.iter_mut().for_each(|plate| plate.accelerate(dt, (u, force), &supported));
+        self.rigid.iter_mut().for_each(|plate| plate.accelerate(dt, u, force, &supported));
         self.tell(model, u, state);
     }
 
     /// (8) for dampers on platens; see [`super::Explicit::damp`].
-    pub fn damp(
-        &mut self,
-        (model, dt): (&Model, f64),
-        (dampers, pulls): (&[Absorber], &[Vector2<f64>]),
-        (u, mass): (&[f64], &[f64]),
-        state: &mut State,
-    ) {
+    pub fn damp(&mut self, model: &Model, dt: f64, pulled: Pulled, u: &[f64], mass: &[f64], state: &mut State) {
+        let Pulled { dampers, pulls } = pulled;
         if dampers.is_empty() || self.members.is_empty() {
             return;
         }
@@ -129,7 +135,7 @@ impl Plates {
         for (plate, (inertia, pull)) in self.alike.iter_mut().zip(own) {
             plate.rates = [plate.rates[0] + 0.5 * dt * pull / inertia, plate.rates[1] + pull / inertia];
         }
-        self.rigid.iter_mut().for_each(|plate| plate.damp(dt, (dampers, pulls), u));
+        self.rigid.iter_mut().for_each(|plate| plate.damp(dt, pulled, u));
         self.tell(model, u, state);
     }
 
@@ -288,7 +294,7 @@ impl Rigid {
     }
 
     /// Second half of (8) at the displacement `u` under the gathered forces, with prescribed accelerations of supports.
-    pub fn accelerate(&mut self, dt: f64, (u, force): (&[f64], &[f64]), supported: &impl Fn(usize) -> f64) {
+    pub fn accelerate(&mut self, dt: f64, u: &[f64], force: &[f64], supported: &impl Fn(usize) -> f64) {
         let [a, b] = self.leaders;
         let e = self.arm + relative(self.leaders, u);
         let [of_a, of_b] = [a, b].map(|node| vector(force, node));
@@ -301,7 +307,8 @@ impl Rigid {
     }
 
     /// (8) for dampers on the platen.
-    pub fn damp(&mut self, dt: f64, (dampers, pulls): (&[Absorber], &[Vector2<f64>]), u: &[f64]) {
+    pub fn damp(&mut self, dt: f64, pulled: Pulled, u: &[f64]) {
+        let Pulled { dampers, pulls } = pulled;
         let e = self.arm + relative(self.leaders, u);
         let (mut resisting, mut pulled) = (Matrix3::zeros(), Vector3::zeros());
         for (node, share) in &self.nodes {

@@ -178,7 +178,7 @@ impl Stability {
         let (model, retardation, u) = (&self.model, &self.retardation, &state.displacement);
         let look = |&e: &usize| {
             let memory = model.memories.of(e, &state.memory);
-            Element::at(model, retardation[model.body_of_element[e]], e, (u, memory))
+            Element::at(model, retardation[model.body_of_element[e]], e, u, memory)
         };
         let found: Vec<Result<Element, TrialFailure>> = elements.par_iter().with_min_len(64).map(look).collect();
         let (own, seen) = (Arc::make_mut(&mut self.elements), Arc::make_mut(&mut self.seen));
@@ -291,7 +291,8 @@ impl Element {
         model: &Model,
         retardation: f64,
         e: usize,
-        (u, memory): (&[f64], &[f64]),
+        u: &[f64],
+        memory: &[f64],
     ) -> Result<Self, TrialFailure> {
         let body = &model.bodies[model.body_of_element[e]];
         let local = model.mesh.vectors(e, u);
@@ -300,7 +301,7 @@ impl Element {
         if size < CRUSHED * undeformed {
             return Err(TrialFailure::crushed(model, e, size / undeformed));
         }
-        Ok(Self { bounds: bounds(model, retardation, e, (&local, memory))?, size })
+        Ok(Self { bounds: bounds(model, retardation, e, &local, memory)?, size })
     }
 }
 
@@ -324,7 +325,8 @@ fn bounds(
     model: &Model,
     retardation: f64,
     e: usize,
-    (local, memory): (&[Vector2<f64>], &[f64]),
+    local: &[Vector2<f64>],
+    memory: &[f64],
 ) -> Result<[f64; 2], TrialFailure> {
     let body = &model.bodies[model.body_of_element[e]];
     let n = 2 * local.len();
