@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -80,10 +82,12 @@ impl MohrCoulombParameters {
 /// [`MaterialFailure::NotConverged`] when there is no such set and no tip, or γ_p is not found: it softens faster than it unloads.
 ///
 /// Source: de Souza Neto, Perić & Owen (2008), Computational Methods for Plasticity, §8.2; Koiter (1953), Q. Appl. Math. 11, 350 (corners).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MohrCoulomb {
     elastic: Lame,
     virgin: Strength,
+    /// The sets of planes of a constant strength, `None` where they do not meet; empty if it softens
+    ready: Vec<Option<Planes>>,
     /// Residual strength, and γ_p at which it is reached
     residual: Option<(Strength, f64)>,
     tension: Option<f64>,
@@ -93,35 +97,61 @@ pub struct MohrCoulomb {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Strength {
     c: f64,
+    phi: Angle,
+    psi: Angle,
+}
+
+/// An angle, its sine and its cosine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Angle {
     /// [rad]
+    value: f64,
+    sin: f64,
+    cos: f64,
+}
+
+/// Rates of c, φ and ψ with γ_p.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rates {
+    c: f64,
     phi: f64,
-    /// [rad]
     psi: f64,
+}
+
+impl Angle {
+    fn new(value: f64) -> Self {
+        let (sin, cos) = value.sin_cos();
+        Self { value, sin, cos }
+    }
 }
 
 impl Strength {
     fn new(c: f64, phi: f64, psi: f64) -> Self {
-        Self { c, phi: phi.to_radians(), psi: psi.to_radians() }
+        Self { c, phi: Angle::new(phi.to_radians()), psi: Angle::new(psi.to_radians()) }
     }
 
-    /// Returns the strength at a share of the way to another one, and its rate along it.
-    fn towards(self, other: Self, share: f64) -> (Self, Self) {
-        let rate = Self { c: other.c - self.c, phi: other.phi - self.phi, psi: other.psi - self.psi };
-        let at =
-            Self { c: self.c + share * rate.c, phi: self.phi + share * rate.phi, psi: self.psi + share * rate.psi };
-        (at, rate)
+    /// Returns the strength at a share of the way to another one, and its rates along it.
+    fn towards(&self, other: &Self, share: f64) -> (Self, Rates) {
+        let [phi, psi] = [other.phi.value - self.phi.value, other.psi.value - self.psi.value];
+        let rates = Rates { c: other.c - self.c, phi, psi };
+        let at = Self {
+            c: self.c + share * rates.c,
+            phi: Angle::new(self.phi.value + share * phi),
+            psi: Angle::new(self.psi.value + share * psi),
+        };
+        (at, rates)
     }
 
     /// c cot φ
     fn tip(&self) -> f64 {
-        if self.phi > 0.0 { self.c / self.phi.tan() } else { f64::INFINITY }
+        if self.phi.value > 0.0 { self.c * self.phi.cos / self.phi.sin } else { f64::INFINITY }
     }
 
-    /// Normal, flow and strength of a plane.
-    fn plane(&self, number: usize) -> (Vector3<f64>, Vector3<f64>) {
+    /// Normal and flow of a plane.
+    fn plane(&self, number: usize) -> [Vector3<f64>; 2] {
         match PAIRS.get(number) {
-            Some(&(i, j)) => (sheared(i, j, self.phi.sin()), sheared(i, j, self.psi.sin())),
-            None => (Vector3::ith(number - PAIRS.len(), 1.0), Vector3::ith(number - PAIRS.len(), 1.0)),
+            Some(&(i, j)) => [self.phi.sin, self.psi.sin].map(|s| sheared(i, j, s)),
+            None => [Vector3::ith(number - PAIRS.len(), 1.0); 2],
         }
     }
 }
@@ -137,8 +167,10 @@ fn sheared(i: usize, j: usize, s: f64) -> Vector3<f64> {
 const PAIRS: [(usize, usize); 3] = [(0, 2), (1, 2), (0, 1)];
 
 /// Sets of planes that may be active, those of shear alone before those with tension.
-const SHEAR: [&[usize]; 3] = [&[0], &[0, 1], &[0, 2]];
-const TENSION: [&[usize]; 17] = [
+const SETS: [&[usize]; 20] = [
+    &[0],
+    &[0, 1],
+    &[0, 2],
     &[3],
     &[0, 3],
     &[1, 3],
@@ -158,6 +190,9 @@ const TENSION: [&[usize]; 17] = [
     &[3, 4, 5],
 ];
 
+/// Number of sets of shear alone.
+const SHEAR: usize = 3;
+
 /// Share of the trial stress that round-off may leave.
 const ROUNDED: f64 = 1e-12;
 
@@ -171,8 +206,9 @@ const KNOWN: f64 = 1e-14;
 #[derive(Clone, Copy, Debug)]
 struct OnPlanes {
     stress: Vector3<f64>,
-    tangent: Matrix3<f64>,
-    planes: &'static [usize],
+    /// Number of the set; without one it is a return to the tip
+    set: Option<usize>,
+    /// Δγ of each plane
     multipliers: Vector3<f64>,
 }
 
@@ -204,19 +240,21 @@ impl MohrCoulomb {
             require("softening.strain", left.strain, left.strain > slowest, snap)?;
         }
         let residual = softening.map(|left| (Strength::new(left.c, left.phi, left.psi), left.strain));
-        let law = Self { elastic, virgin: Strength::new(c, phi, psi), residual, tension };
+        let mut law = Self { elastic, virgin: Strength::new(c, phi, psi), ready: Vec::new(), residual, tension };
+        if law.residual.is_none() {
+            law.ready = SETS.iter().map(|numbers| Planes::of(&law, &law.virgin, numbers)).collect();
+        }
         Elastoplastic::new(law, density, viscosity)
     }
 
     /// c, φ and ψ at a plastic shear strain, and how they change with it.
-    fn strength(&self, slip: f64) -> (Strength, Strength) {
-        let still = Strength { c: 0.0, phi: 0.0, psi: 0.0 };
-        match self.residual {
-            None => (self.virgin, still),
-            Some((residual, strain)) if slip >= strain => (residual, still),
+    fn strength(&self, slip: f64) -> (Strength, Rates) {
+        match &self.residual {
+            None => (self.virgin, Rates::default()),
+            Some((residual, strain)) if slip >= *strain => (*residual, Rates::default()),
             Some((residual, strain)) => {
                 let (at, rate) = self.virgin.towards(residual, slip / strain);
-                (at, Strength { c: rate.c / strain, phi: rate.phi / strain, psi: rate.psi / strain })
+                (at, Rates { c: rate.c / strain, phi: rate.phi / strain, psi: rate.psi / strain })
             }
         }
     }
@@ -233,127 +271,138 @@ impl MohrCoulomb {
 
     /// f of sorted principal stresses: the largest of all planes.
     fn excess(&self, strength: &Strength, sorted: &Vector3<f64>) -> f64 {
-        let shear = sheared(0, 2, strength.phi.sin()).dot(sorted) - strength.c * strength.phi.cos();
+        let Angle { sin, cos, .. } = strength.phi;
+        let shear = 0.5 * ((1.0 + sin) * sorted[0] - (1.0 - sin) * sorted[2]) - strength.c * cos;
         self.cut_off(strength).map_or(shear, |tension| shear.max(sorted[0] - tension))
     }
 
     /// Strength of a plane.
     fn limit(&self, strength: &Strength, plane: usize) -> f64 {
         match plane < PAIRS.len() {
-            true => strength.c * strength.phi.cos(),
+            true => strength.c * strength.phi.cos,
             false => self.tension.unwrap_or(f64::INFINITY),
         }
     }
 
     /// The return (5) at a strength.
     fn at_strength(&self, strength: &Strength, trial: &Vector3<f64>) -> Option<OnPlanes> {
-        let stiffness = self.stiffness();
         let rounded = ROUNDED * (trial.amax() + strength.c);
         let within = |stress: &Vector3<f64>| {
             stress[0] >= stress[1] - rounded
                 && stress[1] >= stress[2] - rounded
                 && self.excess(strength, stress) <= rounded
         };
-        let tension: &[&'static [usize]] = if self.cut_off(strength).is_some() { &TENSION } else { &[] };
-        for &planes in SHEAR.iter().chain(tension) {
-            let Some(found) = self.projected(strength, trial, planes, &stiffness) else { continue };
+        let sets = if self.cut_off(strength).is_some() { SETS.len() } else { SHEAR };
+        for set in 0..sets {
+            let Some(found) = self.projected(strength, trial, set) else { continue };
             if found.multipliers.min() >= -rounded / self.elastic.shear && within(&found.stress) {
                 return Some(found);
             }
         }
         let highest = self.highest(strength);
-        highest.is_finite().then(|| OnPlanes {
-            stress: Vector3::repeat(highest),
-            tangent: FLOOR * stiffness,
-            planes: &[],
-            multipliers: Vector3::zeros(),
-        })
+        let tip = OnPlanes { stress: Vector3::repeat(highest), set: None, multipliers: Vector3::zeros() };
+        highest.is_finite().then_some(tip)
     }
 
-    /// C of principal stresses.
-    fn stiffness(&self) -> Matrix3<f64> {
-        Matrix3::repeat(self.elastic.lambda) + Matrix3::from_diagonal_element(2.0 * self.elastic.shear)
-    }
-
-    /// (5) on some planes; none where they do not meet in a point, a line or a plane.
-    fn projected(
-        &self,
-        strength: &Strength,
-        trial: &Vector3<f64>,
-        planes: &'static [usize],
-        stiffness: &Matrix3<f64>,
-    ) -> Option<OnPlanes> {
-        let system = System::of(strength, planes, stiffness);
-        let inverse = system.inverse()?;
-        let mut over = Vector3::zeros();
-        for (k, &plane) in planes.iter().enumerate() {
-            over[k] = system.normals.column(k).dot(trial) - self.limit(strength, plane);
+    /// What (5) needs of a set of planes; none where they do not meet in a point, a line or a plane.
+    #[inline(always)]
+    fn planes(&self, strength: &Strength, set: usize) -> Option<Cow<'_, Planes>> {
+        match self.ready.get(set) {
+            Some(ready) => ready.as_ref().map(Cow::Borrowed),
+            None => Planes::of(self, strength, SETS[set]).map(Cow::Owned),
         }
-        let multipliers = inverse * over;
-        let stress = trial - stiffness * system.flows * multipliers;
-        let tangent = stiffness - stiffness * system.flows * inverse * system.normals.transpose() * stiffness;
-        Some(OnPlanes { stress, tangent, planes, multipliers })
+    }
+
+    /// C v of principal values.
+    fn stiffened(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        (2.0 * self.elastic.shear * v).add_scalar(self.elastic.lambda * v.sum())
+    }
+
+    /// C⁻¹ v of principal values.
+    fn strain(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        let Lame { lambda, shear } = self.elastic;
+        v.add_scalar(-lambda / (3.0 * lambda + 2.0 * shear) * v.sum()) / (2.0 * shear)
+    }
+
+    /// (5) on a set of planes, if they meet.
+    #[inline(always)]
+    fn projected(&self, strength: &Strength, trial: &Vector3<f64>, set: usize) -> Option<OnPlanes> {
+        let planes = self.planes(strength, set)?;
+        let mut over = Vector3::zeros();
+        for (k, &plane) in planes.numbers.iter().enumerate() {
+            over[k] = planes.normals[k].dot(trial) - self.limit(strength, plane);
+        }
+        let multipliers = planes.inverse * over;
+        Some(OnPlanes { stress: trial - planes.returned(&multipliers), set: Some(set), multipliers })
+    }
+
+    /// D of (5), of a return at constant strength.
+    fn tangent(&self, strength: &Strength, found: &OnPlanes) -> Matrix3<f64> {
+        let mut tangent =
+            Matrix3::repeat(self.elastic.lambda) + Matrix3::from_diagonal_element(2.0 * self.elastic.shear);
+        let Some(planes) = found.set.and_then(|set| self.planes(strength, set)) else { return FLOOR * tangent };
+        let count = planes.numbers.len();
+        for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
+            tangent.ger(-planes.inverse[(a, b)], &planes.stiff_flows[a], &planes.stiff_normals[b], 1.0);
+        }
+        tangent
     }
 
     /// ∂τ/∂γ_p of a return at constant trial stress, by the rates of c, φ and ψ.
-    fn softened(&self, (strength, rate): (&Strength, &Strength), found: &OnPlanes) -> Vector3<f64> {
-        let (sin, cos) = strength.phi.sin_cos();
-        if found.planes.is_empty() {
+    fn softened(&self, strength: &Strength, rate: &Rates, found: &OnPlanes) -> Vector3<f64> {
+        let Angle { sin, cos, .. } = strength.phi;
+        let Some(planes) = found.set.and_then(|set| self.planes(strength, set)) else {
             let is_tip = self.cut_off(strength).is_none() && sin > 0.0;
             let tip = if is_tip { rate.c * cos / sin - strength.c * rate.phi / (sin * sin) } else { 0.0 };
             return Vector3::repeat(tip);
-        }
-        let stiffness = self.stiffness();
-        let system = System::of(strength, found.planes, &stiffness);
-        let Some(inverse) = system.inverse() else { return Vector3::zeros() };
-        let (mut varied, mut over) = (Matrix3::zeros(), Vector3::zeros());
-        for (k, &plane) in found.planes.iter().enumerate().filter(|(_, plane)| **plane < PAIRS.len()) {
+        };
+        let (mut turned, mut over) = (Vector3::zeros(), Vector3::zeros());
+        for (k, &plane) in planes.numbers.iter().enumerate().filter(|(_, plane)| **plane < PAIRS.len()) {
             let (i, j) = PAIRS[plane];
-            let by = |rate: f64| {
-                let mut by = Vector3::zeros();
-                (by[i], by[j]) = (0.5 * rate, 0.5 * rate);
-                by
-            };
-            varied.set_column(k, &by(strength.psi.cos() * rate.psi));
-            over[k] = by(cos * rate.phi).dot(&found.stress) - rate.c * cos + strength.c * sin * rate.phi;
+            for axis in [i, j] {
+                turned[axis] += 0.5 * strength.psi.cos * rate.psi * found.multipliers[k];
+            }
+            let mean = 0.5 * (found.stress[i] + found.stress[j]);
+            over[k] = cos * rate.phi * mean - rate.c * cos + strength.c * sin * rate.phi;
         }
-        let turned = varied * found.multipliers;
-        let multipliers = inverse * (over - system.normals.transpose() * stiffness * turned);
-        -stiffness * (turned + system.flows * multipliers)
+        for k in 0..planes.numbers.len() {
+            over[k] -= planes.stiff_normals[k].dot(&turned);
+        }
+        -self.stiffened(&turned) - planes.returned(&(planes.inverse * over))
     }
 
-    /// The return with γ_p at the end of the increment, and that.
-    fn sorted(&self, trial: &Vector3<f64>, before: f64) -> Result<(OnPlanes, f64), MaterialFailure> {
+    /// The return with γ_p at the end of the increment, its tangent, and γ_p.
+    fn sorted(&self, trial: &Vector3<f64>, before: f64) -> Result<(Vector3<f64>, Matrix3<f64>, f64), MaterialFailure> {
         let none = || MaterialFailure::NotConverged {
             law: self.name(),
             residual: self.excess(&self.strength(before).0, trial) / trial.amax(),
         };
-        let compliance = self.stiffness().try_inverse().ok_or_else(none)?;
         let at = |slip: f64| {
             let found = self.at_strength(&self.strength(slip).0, trial).ok_or_else(none)?;
-            let plastic = compliance * (trial - found.stress);
+            let plastic = self.strain(&(trial - found.stress));
             Ok((found, plastic, before + plastic.abs().sum() - slip))
         };
         if self.residual.is_none_or(|(_, strain)| before >= strain) {
             let (found, _, slip) = at(before)?;
-            return Ok((found, before + slip));
+            return Ok((found.stress, self.tangent(&self.strength(before).0, &found), before + slip));
         }
         // γ_p,n + Σ |Δε_p,i(γ_p)| − γ_p has its root between γ_p,n, where it is positive, and where it is not
-        let [mut low, mut high] = [before, before + (compliance * trial).abs().sum()];
+        let [mut low, mut high] = [before, before + self.strain(trial).abs().sum()];
         while at(high)?.2 > 0.0 {
             (low, high) = (high, 2.0 * high);
         }
         let mut now = low;
         for _ in 0..ITERATIONS {
-            let (mut found, plastic, rest) = at(now)?;
+            let (found, plastic, rest) = at(now)?;
             let (strength, rate) = self.strength(now);
-            let by_slip = self.softened((&strength, &rate), &found);
+            let by_slip = self.softened(&strength, &rate, &found);
             let signs = plastic.map(f64::signum);
-            let slope = -signs.dot(&(compliance * by_slip)) - 1.0;
+            let slope = -signs.dot(&self.strain(&by_slip)) - 1.0;
             if rest.abs() <= KNOWN {
-                let of_strain = signs - found.tangent.transpose() * compliance * signs;
-                found.tangent -= by_slip * of_strain.transpose() / slope;
-                return Ok((found, now));
+                let mut tangent = self.tangent(&strength, &found);
+                let of_strain = signs - tangent.transpose() * self.strain(&signs);
+                tangent -= by_slip * of_strain.transpose() / slope;
+                return Ok((found.stress, tangent, now));
             }
             if rest > 0.0 {
                 low = now
@@ -367,33 +416,47 @@ impl MohrCoulomb {
     }
 }
 
-/// A, B and A C B of some planes, filled up to three.
-struct System {
-    /// Normals in columns
-    normals: Matrix3<f64>,
-    /// Flows in columns
-    flows: Matrix3<f64>,
-    product: Matrix3<f64>,
+/// Some planes, at most three, and what (5) needs of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Planes {
+    numbers: &'static [usize],
+    /// A
+    normals: [Vector3<f64>; 3],
+    /// C Aᵀ
+    stiff_normals: [Vector3<f64>; 3],
+    /// C B
+    stiff_flows: [Vector3<f64>; 3],
+    /// (A C B)⁻¹, 0 beyond the planes
+    inverse: Matrix3<f64>,
 }
 
-impl System {
-    fn of(strength: &Strength, planes: &[usize], stiffness: &Matrix3<f64>) -> Self {
-        let (mut normals, mut flows) = (Matrix3::zeros(), Matrix3::zeros());
-        for (k, &plane) in planes.iter().enumerate() {
-            let (normal, flow) = strength.plane(plane);
-            normals.set_column(k, &normal);
-            flows.set_column(k, &flow);
+impl Planes {
+    fn of(law: &MohrCoulomb, strength: &Strength, numbers: &'static [usize]) -> Option<Self> {
+        let mut planes = Self { numbers, ..Self::default() };
+        for (k, &number) in numbers.iter().enumerate() {
+            let [normal, flow] = strength.plane(number);
+            planes.normals[k] = normal;
+            [planes.stiff_normals[k], planes.stiff_flows[k]] = [normal, flow].map(|v| law.stiffened(&v));
         }
-        let mut product = normals.transpose() * stiffness * flows;
-        for k in planes.len()..3 {
-            product[(k, k)] = 1.0;
+        let product = |a: usize, b: usize| planes.normals[a].dot(&planes.stiff_flows[b]);
+        if numbers.len() == 1 {
+            planes.inverse[(0, 0)] = 1.0 / product(0, 0);
+            return Some(planes);
         }
-        Self { normals, flows, product }
+        let inner = |k: usize| k < numbers.len();
+        let filled = Matrix3::from_fn(|a, b| if inner(a) && inner(b) { product(a, b) } else { f64::from(a == b) });
+        let scale: f64 = filled.column_iter().map(|column| column.norm()).product();
+        if filled.determinant().abs() <= ROUNDED * scale {
+            return None;
+        }
+        planes.inverse = filled.try_inverse()?;
+        (numbers.len()..3).for_each(|k| planes.inverse[(k, k)] = 0.0);
+        Some(planes)
     }
 
-    fn inverse(&self) -> Option<Matrix3<f64>> {
-        let scale: f64 = self.product.column_iter().map(|column| column.norm()).product();
-        if self.product.determinant().abs() <= ROUNDED * scale { None } else { self.product.try_inverse() }
+    /// C B Δγ
+    fn returned(&self, multipliers: &Vector3<f64>) -> Vector3<f64> {
+        (0..self.numbers.len()).map(|k| multipliers[k] * self.stiff_flows[k]).sum()
     }
 }
 
@@ -412,18 +475,19 @@ impl ReturnMap for MohrCoulomb {
 
     fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure> {
         let mut answer = Returned::elastic(self.elastic, trial);
-        if self.yield_indicator(&answer.stress, history) <= ROUND_OFF * self.elastic.shear {
-            return Ok(answer);
-        }
         let mut order = [0, 1, 2];
         order.sort_by(|&i, &j| trial[j].total_cmp(&trial[i]));
         let sorted = Vector3::from(order.map(|i| answer.stress[i]));
-        let (found, slip) = self.sorted(&sorted, history.get(OWN).copied().unwrap_or(0.0))?;
+        let before = history.get(OWN).copied().unwrap_or(0.0);
+        if self.excess(&self.strength(before).0, &sorted) <= ROUND_OFF * self.elastic.shear {
+            return Ok(answer);
+        }
+        let (stress, moduli, slip) = self.sorted(&sorted, before)?;
         let mut tangent = Matrix4::zeros();
         for (a, &i) in order.iter().enumerate() {
-            answer.stress[i] = found.stress[a];
+            answer.stress[i] = stress[a];
             for (b, &j) in order.iter().enumerate() {
-                tangent[(i, j)] = found.tangent[(a, b)];
+                tangent[(i, j)] = moduli[(a, b)];
             }
         }
         // The axes of τ are those of the strains.
@@ -446,7 +510,7 @@ impl ReturnMap for MohrCoulomb {
     }
 
     fn flow(&self) -> Flow {
-        if self.virgin.psi > 0.0 { Flow::Dilating } else { Flow::Isochoric }
+        if self.virgin.psi.value > 0.0 { Flow::Dilating } else { Flow::Isochoric }
     }
 
     fn is_associated(&self) -> bool {
@@ -464,13 +528,13 @@ impl ReturnMap for MohrCoulomb {
     fn beyond(&self, stress: &CauchyStress) -> String {
         let CauchyStress { xx, yy, zz, xy } = *stress;
         let sorted = principal(&Vector4::new(xx, yy, zz, xy));
-        let sin = self.virgin.phi.sin();
+        let sin = self.virgin.phi.sin;
         format!(
             "its principal stresses reach from {:.6} to {:.6}; with phi = {} degrees and c = {} a ratio of pressures such as K0 is at \
              least (1 - sin phi)/(1 + sin phi) = {:.4}, somewhat less for the cohesion; raise K0, c or phi",
             sorted[2],
             sorted[0],
-            (self.virgin.phi.to_degrees() * 1e9).round() / 1e9,
+            (self.virgin.phi.value.to_degrees() * 1e9).round() / 1e9,
             self.virgin.c,
             (1.0 - sin) / (1.0 + sin)
         )
@@ -486,8 +550,14 @@ const EQUAL: f64 = 1e-10;
 /// Principal values of a tensor, sorted.
 fn principal(stress: &Vector4<f64>) -> Vector3<f64> {
     let [xx, yy, zz, xy]: [f64; 4] = (*stress).into();
-    let (mean, radius) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
-    let mut values = [mean + radius, mean - radius, zz];
-    values.sort_by(|a, b| b.total_cmp(a));
-    values.into()
+    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+    let radius = (half * half + xy * xy).sqrt();
+    let [high, low] = [mean + radius, mean - radius];
+    if zz > high {
+        Vector3::new(zz, high, low)
+    } else if zz > low {
+        Vector3::new(high, zz, low)
+    } else {
+        Vector3::new(high, low, zz)
+    }
 }
