@@ -17,7 +17,7 @@ use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSliding};
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{Description, FrictionState, Regime};
-use crate::mesh::configuration::Configuration;
+use crate::mesh::configuration::{Configuration, vector};
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::step::Until;
@@ -43,6 +43,10 @@ pub struct Warnings {
     doubtful: BTreeSet<String>,
     /// Steps with a warning about their linear systems
     perturbed: BTreeSet<String>,
+    /// How far linear bodies had been strained when they were looked at, as [`strained`] estimates it
+    strained: f64,
+    /// Linear bodies beyond their range in this step, with the largest norm of a displacement gradient
+    far: BTreeMap<usize, (f64, String)>,
     /// Contacts that have not closed yet, with name and smallest gap
     open: BTreeMap<usize, (String, Option<f64>)>,
     /// Contacts that have closed once
@@ -81,9 +85,7 @@ impl Observer for Warnings {
         self.error_of_touch(attempt);
         self.lost_pivots(attempt);
         self.passed(attempt, state);
-        if attempt.ends_step(state) {
-            self.far_from_linear(model, state);
-        }
+        self.linear_bodies(model, state, attempt.ends_step(state));
         self.audit.record(model, attempt.step, attempt.old, state);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
@@ -113,6 +115,7 @@ impl Observer for Warnings {
     }
 
     fn finish(&mut self) -> Result<(), Error> {
+        self.tell_far();
         for (name, gap) in self.open.values() {
             let near = gap.map_or("no slave point had a projection on the master".into(), |gap| {
                 format!("its smallest gap was {gap:.3e}")
@@ -221,8 +224,24 @@ impl Warnings {
         }
     }
 
-    /// Linear bodies that have turned or stretched too far for one.
-    fn far_from_linear(&mut self, model: &Model, state: &State) {
+    /// Linear bodies that have turned or stretched too far for one: told at the end of the step, with what was the farthest.
+    fn linear_bodies(&mut self, model: &Model, state: &State, ends_step: bool) {
+        let pending = |body: usize| {
+            model.bodies[body].material.description().is_linear && !self.given.contains(&(body, Kind::FarFromLinear))
+        };
+        let pending: Vec<usize> = (0..model.bodies.len()).filter(|&body| pending(body)).collect();
+        let elements = (0..model.solids.len()).filter(|&element| pending.contains(&model.body_of_element[element]));
+        let now = elements.map(|element| strained(model, element, &state.displacement)).fold(0.0, f64::max);
+        if ends_step || now > (FURTHER * self.strained).max(LEAST_STRAINED) {
+            self.strained = now.max(self.strained);
+            pending.iter().for_each(|&body| self.far_from_linear(body, model, state));
+        }
+        if ends_step {
+            self.tell_far();
+        }
+    }
+
+    fn far_from_linear(&mut self, number: usize, model: &Model, state: &State) {
         let largest = |element: usize| {
             let (solid, u) = (&model.solids[element], model.mesh.vectors(element, &state.displacement));
             let hoops = solid.hoops(&u).unwrap_or_default().into_iter().map(|hoop| (hoop - 1.0).abs());
@@ -230,26 +249,29 @@ impl Warnings {
                 solid.deformations(&u).into_iter().map(|deformation| (deformation - Matrix2::identity()).norm());
             planes.chain(hoops).fold(0.0, f64::max)
         };
-        for (number, body) in model.bodies.iter().enumerate() {
-            if !body.material.description().is_linear || self.given.contains(&(number, Kind::FarFromLinear)) {
-                continue;
-            }
-            let own = (0..model.solids.len()).filter(|&element| model.body_of_element[element] == number);
-            let Some((element, gradient)) = own.map(|e| (e, largest(e))).max_by(|a, b| a.1.total_cmp(&b.1)) else {
-                continue;
-            };
-            if gradient <= FAR_FROM_LINEAR {
-                continue;
-            }
+        let own = (0..model.solids.len()).filter(|&element| model.body_of_element[element] == number);
+        let farthest = own.map(|e| (e, largest(e))).max_by(|a, b| a.1.total_cmp(&b.1));
+        let so_far = self.far.get(&number).map_or(FAR_FROM_LINEAR, |(gradient, _)| *gradient);
+        let Some((element, gradient)) = farthest.filter(|(_, gradient)| *gradient > so_far) else { return };
+        let nodes = &model.mesh.elements[element].nodes;
+        let at = nodes.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / nodes.len() as f64;
+        let quasi_dynamic = model.steps.iter().any(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }));
+        let remedy = if quasi_dynamic { "quasi_dynamic steps have no other bodies" } else { "take neo_hookean" };
+        let message = format!(
+            "body `{}` at ({:.6}, {:.6}), t = {}: strains and rotations of {:.1} %, whose squares a linear body neglects: {remedy}",
+            model.bodies[number].name,
+            at.x,
+            at.y,
+            time_text(state.time),
+            100.0 * gradient
+        );
+        self.far.insert(number, (gradient, message));
+    }
+
+    fn tell_far(&mut self) {
+        for (number, (_, message)) in std::mem::take(&mut self.far) {
             self.given.insert((number, Kind::FarFromLinear));
-            let nodes = &model.mesh.elements[element].nodes;
-            let at = nodes.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / nodes.len() as f64;
-            let quasi_dynamic = model.steps.iter().any(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }));
-            let remedy = if quasi_dynamic { "quasi_dynamic steps have no other bodies" } else { "take neo_hookean" };
-            self.list.push(format!(
-                "body `{}` at ({:.6}, {:.6}), t = {}: strains and rotations of {:.1} %, whose squares a linear body neglects: {remedy}",
-                body.name, at.x, at.y, time_text(state.time), 100.0 * gradient
-            ));
+            self.list.push(message);
         }
     }
 
@@ -318,6 +340,26 @@ fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
         format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, time_text(old.time));
     format!("{start}, and {found}; lower dt.min")
 }
+
+/// Estimates how far an element is strained and turned, at less cost than its deformation at the integration points: the largest
+/// displacement of a node against the first one, over the root of the area of the corners; in axisymmetry at least u_r/r.
+fn strained(model: &Model, element: usize, displacement: &[f64]) -> f64 {
+    let element = &model.mesh.elements[element];
+    let (first, place) = (element.nodes[0], |a: usize| model.mesh.nodes[element.nodes[a]]);
+    let against = |&node: &usize| (vector(displacement, node) - vector(displacement, first)).norm_squared();
+    let farthest = element.nodes.iter().map(against).fold(0.0, f64::max);
+    let corners = element.kind.corners();
+    let twice = |a: usize| (place(a) - place(0)).perp(&(place((a + 1) % corners) - place(0)));
+    let area = 0.5 * (1..corners).map(twice).sum::<f64>().abs();
+    let hoop = if model.mesh.section.is_axisymmetric() { displacement[2 * first] / place(0).x } else { 0.0 };
+    (farthest / area).sqrt().max(if hoop.is_finite() { hoop.abs() } else { 0.0 })
+}
+
+/// Estimate below which no linear body is strained as far as a tenth.
+const LEAST_STRAINED: f64 = 0.01;
+
+/// Growth of the estimate after which linear bodies are looked at again.
+const FURTHER: f64 = 1.02;
 
 /// Norm of the displacement gradient of a linear body that causes a warning: its strains are wrong by about half of that.
 const FAR_FROM_LINEAR: f64 = 0.1;

@@ -139,12 +139,14 @@ impl Axes {
     }
 
     /// ∂ε₁₂/∂l₁₂ and ∂ε₁₂/∂l₂₁: (ε₁ − ε₂)/(b₁ − b₂) times b₂ and b₁, ½ where the strains are equal.
+    ///
+    /// ```text
+    /// ½ x/(eˣ − 1)   and   ½ x/(1 − e⁻ˣ) = ½ x/(eˣ − 1) + ½ x,   x = 2 (ε₁ − ε₂) ≥ 0
+    /// ```
     fn shear_of_gradient(&self) -> [f64; 2] {
         let twice = 2.0 * (self.strains.x - self.strains.y);
-        match twice == 0.0 {
-            true => [0.5, 0.5],
-            false => [0.5 * twice / twice.exp_m1(), -0.5 * twice / (-twice).exp_m1()],
-        }
+        let lesser = if twice == 0.0 { 0.5 } else { 0.5 * twice / twice.exp_m1() };
+        [lesser, lesser + 0.5 * twice]
     }
 }
 
