@@ -270,7 +270,8 @@ impl<'a> PointEvaluation<'a> {
             let side = if asked < self.free + self.alpha_n * opened { &mut low } else { &mut high };
             *side = asked;
             let middle = 0.5 * (low + high.min(4.0 * asked));
-            // With no number left between them, the opening is as exact as the slip from which the law splits off the elastic one.
+            // Where they are neighbouring numbers: the law takes the plastic slip as a difference from the whole slip, so its
+            // opening is only as exact as that.
             if middle <= low || high <= middle {
                 size += self.alpha_n * self.sliding.slip.abs();
             }

@@ -43,18 +43,22 @@ impl SegmentGrid {
         Block([0, 1].map(|axis| low[axis]..=high[axis]))
     }
 
-    fn segments(&self, block: &Block) -> impl Iterator<Item = usize> {
-        let Block([across, up]) = block.clone();
+    fn segments(&self, Block([across, up]): Block) -> impl Iterator<Item = usize> {
         let cells = up.flat_map(move |row| across.clone().map(move |column| row * self.counts[0] + column));
         cells.flat_map(|cell| self.cells[cell].iter().copied())
     }
 
     /// Segments whose nearest cell is in the ring of cells at a distance of so many cells from one, ascending.
     fn ring(&self, around: [usize; 2], distance: usize) -> Vec<usize> {
-        let within = |axis: usize| {
-            let last = self.counts[axis] - 1;
-            around[axis].saturating_sub(distance)..=(around[axis] + distance).min(last)
-        };
+        let [column, row] = around;
+        let clipped = |axis: usize, from: usize, to: usize| from..=to.min(self.counts[axis] - 1);
+        let across = clipped(0, column.saturating_sub(distance), column + distance);
+        let sides = [row.checked_sub(distance), Some(row + distance)].map(|row| (row, across.clone()));
+        let sides = sides.into_iter().filter_map(|(row, across)| Some(Block([across, clipped(1, row?, row?)])));
+        let between = clipped(1, (row + 1).saturating_sub(distance), (row + distance).saturating_sub(1));
+        let ends = [column.checked_sub(distance), Some(column + distance)].map(|column| (column, between.clone()));
+        let ends =
+            ends.into_iter().filter_map(|(column, between)| Some(Block([clipped(0, column?, column?), between])));
         let is_nearest = |&segment: &usize| {
             let away = [0, 1].map(|axis| {
                 let touched = &self.blocks[segment].0[axis];
@@ -62,7 +66,8 @@ impl SegmentGrid {
             });
             away[0].max(away[1]) == distance
         };
-        let mut found: Vec<usize> = self.segments(&Block([0, 1].map(within))).filter(is_nearest).collect();
+        let cells = sides.chain(ends);
+        let mut found: Vec<usize> = cells.flat_map(|cells| self.segments(cells)).filter(is_nearest).collect();
         found.sort_unstable();
         found.dedup();
         found
@@ -70,7 +75,7 @@ impl SegmentGrid {
 }
 
 impl SegmentSearch for SegmentGrid {
-    /// Rebuilds the grid, O(n): the cells are as large as a segment on average, and at most about four times as many.
+    /// Rebuilds the grid of at most 3 n + 1 cells, each at least as large as a segment on average.
     fn update(&mut self, surface: &Surface, x: &Configuration) {
         let boxes: Vec<Box2> =
             surface.segments.iter().map(|segment| bounding_box(segment, surface.origin(), x)).collect();
@@ -94,7 +99,7 @@ impl SegmentSearch for SegmentGrid {
         if self.cells.is_empty() {
             return;
         }
-        found.extend(self.segments(&self.block(other)));
+        found.extend(self.segments(self.block(other)));
         found.sort_unstable();
         found.dedup();
     }

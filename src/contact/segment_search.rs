@@ -4,7 +4,7 @@ use super::surface::{Segment, SlavePoint, Surface};
 use crate::mesh::boxes::Box2;
 use crate::mesh::configuration::Configuration;
 
-/// A search of segments by their place. Every one gives the same answers, to the bit: the distances compared are those of the
+/// A search of segments by their place. Every one gives the same answers for finite positions, to the bit: the distances compared are those of the
 /// segments themselves, and of two equally near segments the one of lower number comes first.
 ///
 /// Positions are relative to the surface's origin, so that round-off of coordinates far from (0, 0) does not affect the choice.
@@ -12,7 +12,8 @@ pub trait SegmentSearch: Clone + Default {
     /// Prepares the search on a surface in the configuration `x`; what still serves from before is kept.
     fn update(&mut self, surface: &Surface, x: &Configuration);
 
-    /// Adds the segments that may intersect a box, ascending: every one whose bounding box does, and perhaps others.
+    /// Adds the segments that may intersect a box to an empty list, ascending: every one whose bounding box does, and perhaps
+    /// others.
     fn meeting(&self, surface: &Surface, x: &Configuration, other: &Box2, found: &mut Vec<usize>);
 
     /// Segments by their distance from a point, nearest first.

@@ -13,9 +13,6 @@ use crate::mesh::configuration::Configuration;
 /// A binary tree of bounding boxes of the segments of a surface. Consecutive segments are adjacent, so the tree halves their
 /// range.
 ///
-/// Positions are relative to a node of the surface, so that round-off of coordinates far from the origin does not affect the
-/// choice of the nearest segment.
-///
 /// The boxes are extended by a margin. As long as no node has moved by more than the margin relative to the origin, the boxes
 /// still contain their segments, and the tree can be reused. The result is bitwise the same, since the final comparison uses
 /// the distances of the segments themselves: the nearest segment is the first by (distance, number) for any valid tree, as the

@@ -43,8 +43,8 @@ pub struct Warnings {
     doubtful: BTreeSet<String>,
     /// Steps with a warning about their linear systems
     perturbed: BTreeSet<String>,
-    /// How far linear bodies had been strained when they were looked at, as [`strained`] estimates it
-    strained: f64,
+    /// How far each linear body had been strained in this step when it was looked at, as [`strained`] estimates it
+    strained: BTreeMap<usize, f64>,
     /// Linear bodies beyond their range in this step, with the largest norm of a displacement gradient
     far: BTreeMap<usize, (f64, String)>,
     /// Contacts that have not closed yet, with name and smallest gap
@@ -224,19 +224,28 @@ impl Warnings {
         }
     }
 
-    /// Linear bodies that have turned or stretched too far for one: told at the end of the step, with what was the farthest.
+    /// Linear bodies that have turned or stretched too far for one: told at the end of the step, with what was the farthest, to 2 %
+    /// of it.
     fn linear_bodies(&mut self, model: &Model, state: &State, ends_step: bool) {
         let pending = |body: usize| {
             model.bodies[body].material.description().is_linear && !self.given.contains(&(body, Kind::FarFromLinear))
         };
-        let pending: Vec<usize> = (0..model.bodies.len()).filter(|&body| pending(body)).collect();
-        let elements = (0..model.solids.len()).filter(|&element| pending.contains(&model.body_of_element[element]));
-        let now = elements.map(|element| strained(model, element, &state.displacement)).fold(0.0, f64::max);
-        if ends_step || now > (FURTHER * self.strained).max(LEAST_STRAINED) {
-            self.strained = now.max(self.strained);
-            pending.iter().for_each(|&body| self.far_from_linear(body, model, state));
+        let mut now: BTreeMap<usize, f64> =
+            (0..model.bodies.len()).filter(|&body| pending(body)).map(|b| (b, 0.0)).collect();
+        for (element, body) in model.body_of_element.iter().enumerate() {
+            if let Some(largest) = now.get_mut(body) {
+                *largest = largest.max(strained(model, element, &state.displacement));
+            }
+        }
+        for (body, now) in now {
+            let so_far = self.strained.get(&body).copied().unwrap_or(0.0);
+            if ends_step || now > (FURTHER * so_far).max(LEAST_STRAINED) {
+                self.strained.insert(body, now.max(so_far));
+                self.far_from_linear(body, model, state);
+            }
         }
         if ends_step {
+            self.strained.clear();
             self.tell_far();
         }
     }
@@ -342,7 +351,7 @@ fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
 }
 
 /// Estimates how far an element is strained and turned, at less cost than its deformation at the integration points: the largest
-/// displacement of a node against the first one, over the root of the area of the corners; in axisymmetry at least u_r/r.
+/// displacement of a node against the first one, over the area of the corners by their largest distance; in axisymmetry at least u_r/r.
 fn strained(model: &Model, element: usize, displacement: &[f64]) -> f64 {
     let element = &model.mesh.elements[element];
     let (first, place) = (element.nodes[0], |a: usize| model.mesh.nodes[element.nodes[a]]);
@@ -351,8 +360,9 @@ fn strained(model: &Model, element: usize, displacement: &[f64]) -> f64 {
     let corners = element.kind.corners();
     let twice = |a: usize| (place(a) - place(0)).perp(&(place((a + 1) % corners) - place(0)));
     let area = 0.5 * (1..corners).map(twice).sum::<f64>().abs();
+    let longest = (1..corners).map(|a| (place(a) - place(a - 1)).norm_squared()).fold(0.0, f64::max);
     let hoop = if model.mesh.section.is_axisymmetric() { displacement[2 * first] / place(0).x } else { 0.0 };
-    (farthest / area).sqrt().max(if hoop.is_finite() { hoop.abs() } else { 0.0 })
+    ((farthest * longest).sqrt() / area).max(if hoop.is_finite() { hoop.abs() } else { 0.0 })
 }
 
 /// Estimate below which no linear body is strained as far as a tenth.

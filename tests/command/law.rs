@@ -494,6 +494,26 @@ fn constant_stiffness_tends_to_constant_load_and_to_constant_volume() {
     }
 }
 
+/// Coulomb sliding at constant volume, where hardly any slip is plastic: q = α_t (u − λ) = μ p and p = p₀ + α_n tan ψ λ, so
+/// λ = (α_t u − μ p₀)/(α_t + μ α_n tan ψ). One unit in the last place of p is many of the opening's.
+#[test]
+fn a_stiff_interface_dilates_at_constant_volume() {
+    let [mu, alpha_t, psi, start, way] = [0.6, 1000.0, 0.4, 100.0, 0.5];
+    for alpha_n in [1e5, 1e6, 1e7, 1e9] {
+        let done = Done::of(&json!({
+            "friction": {"law": "coulomb", "mu": mu, "alpha_t": alpha_t},
+            "dilatancy": {"rate": psi}, "normal": {"constant_volume": true, "alpha_n": alpha_n},
+            "initial": {"pressure": start}, "path": [{"duration": 1, "slip": {"rate": way}}]
+        }));
+        let plastic = (alpha_t * way - mu * start) / (alpha_t + mu * alpha_n * psi);
+        let pressure = start + alpha_n * psi * plastic;
+        close("pressure", done.last("pressure"), pressure, 1e-9 * pressure);
+        close("traction", done.last("traction"), mu * pressure, 1e-9 * pressure);
+        // What is split off from the slip is as exact as that.
+        close("dilation", done.last("dilation"), psi * plastic, 1e-9 * psi * plastic + 1e-14 * way);
+    }
+}
+
 /// A spring behind an interface lets go of nothing but what it holds: the load falls away, and the surfaces part where the spring has
 /// no force left, p_a + K d ≤ 0.
 #[test]

@@ -45,13 +45,14 @@ fn a_contact_that_never_closes_is_told() {
 #[test]
 fn linear_bodies_that_strain_far_are_told() {
     let sheared = |model: &str, gamma: &str| {
-        let moved = |on: &str| json!({"on": on, "ux": format!("y * {gamma}"), "uy": 0});
+        let supports =
+            ["bottom", "top", "left", "right"].map(|on| json!({"on": on, "ux": format!("y * {gamma}"), "uy": 0}));
         warnings(&json!({
             "mesh": {"blocks": [{"body": "block", "corners": [[0, 0], [2, 0], [2, 1], [0, 1]], "elements": [4, 2],
                                  "sides": ["bottom", "right", "top", "left"]}]},
             "bodies": {"block": {"material": {"model": model, "E": E, "nu": NU}}},
             "steps": [{"name": "shear", "duration": 1, "scheme": "static", "dt": {"initial": 0.25},
-                       "supports": ["bottom", "top", "left", "right"].map(moved)}]
+                       "supports": supports}]
         }))
     };
     let told = sheared("linear", "0.11 * t");
@@ -60,6 +61,37 @@ fn linear_bodies_that_strain_far_are_told() {
     assert_eq!(sheared("neo_hookean", "0.11 * t"), Vec::<String>::new());
     let told = sheared("linear", "1.2 * t * (1 - t)");
     assert!(told.len() == 1 && told[0].contains("t = 0.5: strains and rotations of 30.0 %"), "{told:?}");
+}
+
+/// One body that strains far does not hide another that does so later, and less far, and is back at the end of its step.
+#[test]
+fn each_linear_body_is_told() {
+    let block = |body: &str, x: f64| {
+        let sides = ["bottom", "right", "top", "left"].map(|side| format!("{body}_{side}"));
+        let corners = [[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]];
+        json!({"body": body, "corners": corners, "elements": [2, 2], "sides": sides})
+    };
+    let sheared = |body: &str, gamma: &str| {
+        ["bottom", "right", "top", "left"]
+            .map(|side| json!({"on": format!("{body}_{side}"), "ux": format!("y * {gamma}"), "uy": 0}))
+    };
+    let step = |name: &str, supports: Vec<Value>| json!({"name": name, "duration": 1, "scheme": "static", "dt": {"initial": 0.25}, "supports": supports});
+    let material = json!({"material": {"model": "linear", "E": E, "nu": NU}});
+    let steps = [
+        step("one", [sheared("first", "0.5 * t"), sheared("second", "0")].concat()),
+        step("two", [sheared("first", "0.5"), sheared("second", "1.2 * (t - 1) * (2 - t)")].concat()),
+    ];
+    let told = warnings(&json!({
+        "mesh": {"blocks": [block("first", 0.0), block("second", 5.0)]},
+        "bodies": {"first": material, "second": material},
+        "steps": steps
+    }));
+    let said =
+        ["body `first`", "body `second`"].map(|body| told.iter().filter(|warning| warning.starts_with(body)).count());
+    assert!(
+        told.len() == 2 && said == [1, 1] && told[1].contains("t = 1.5: strains and rotations of 30.0 %"),
+        "{told:?}"
+    );
 }
 
 /// The right side runs into a circle of which the bottom knows nothing; one that it has been inside of from the start is meant.

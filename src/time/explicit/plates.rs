@@ -310,15 +310,15 @@ impl Rigid {
     pub fn damp(&mut self, dt: f64, pulled: Pulled, u: &[f64]) {
         let Pulled { dampers, pulls } = pulled;
         let e = self.arm + relative(self.leaders, u);
-        let (mut resisting, mut pulled) = (Matrix3::zeros(), Vector3::zeros());
+        let (mut resisting, mut pull) = (Matrix3::zeros(), Vector3::zeros());
         for (node, share) in &self.nodes {
             let Ok(k) = dampers.binary_search_by_key(node, |damper| damper.node) else { continue };
             let turned = perpendicular(share * e);
             let motion = Matrix2x3::new(1.0, 0.0, turned.x, 0.0, 1.0, turned.y);
             resisting += motion.transpose() * dampers[k].coefficients * motion;
-            pulled += motion.transpose() * pulls[k];
+            pull += motion.transpose() * pulls[k];
         }
-        let found = self.solve(e, resisting * (0.5 * dt), pulled, &|_| 0.0);
+        let found = self.solve(e, resisting * (0.5 * dt), pull, &|_| 0.0);
         self.rates = [self.rates[0] + found * (0.5 * dt), self.rates[1] + found];
     }
 
