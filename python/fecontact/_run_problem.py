@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from numbers import Real
 from typing import Any
@@ -11,9 +10,8 @@ import numpy as np
 
 from ._fit_problem import Problem
 from ._fit_space import Array, Space
-from ._plain import names, refused, told
+from ._plain import names
 from ._run_record import Run
-from .case import Case
 from .errors import CaseError, Stopped
 
 # Range of a value that has none given, either way.
@@ -31,12 +29,12 @@ class Places(Space):
 class RunProblem(Problem):
     """Residuals of all runs; a point is run once, with its derivatives."""
 
-    model = "case"
     # Far below what noise leaves uncertain, above what the tolerance of runs does.
     accuracy = 1e-6
 
     def __init__(self, records: Sequence[Run], space: Space, threads: int | None) -> None:
         super().__init__(records, space, threads)
+        self.model = records[0].fitted
         self.runs = 0
         self._known: dict[bytes, tuple[Array, Array] | None] = {}
 
@@ -86,10 +84,7 @@ def run_problem(records: Sequence[Run], free: Any, start: Any, threads: int | No
         raise ValueError(f"start: is a {type(start).__name__}: give values by place")
     if not given:
         raise ValueError("free: is empty: name what is to be found, such as contacts.base.friction.mu_k")
-    for place in given:
-        if "." not in place:
-            raise ValueError(f"free: {place}: runs are fitted by places of their cases, such as contacts.base.friction.mu_k")
-    found = {place: [_value(record.case, place) for record in records] for place in given}
+    found = {place: [record.value(place) for record in records] for place in given}
     written = {place: own[0][0] for place, own in found.items()}
     # Two ways to write a place are one place.
     if twice := [place for k, place in enumerate(given) if written[place] in [written[other] for other in given[:k]]]:
@@ -112,39 +107,3 @@ def run_problem(records: Sequence[Run], free: Any, start: Any, threads: int | No
 
 def _range(value: float) -> tuple[float, float]:
     return (value / FACTOR, value * FACTOR) if value > 0 else (value * FACTOR, value / FACTOR)
-
-
-def _value(case: Case, place: str) -> tuple[str, float]:
-    """A place as :meth:`Case.replace` has it, and the number there, which may be a default.
-
-    Raises:
-        CaseError: there is no number at the place, or 0.
-    """
-    written, value = _found(case, case._document, place)
-    if value is None:
-        written, value = _found(case, case.resolved()._document, place)
-    if value is None:
-        # Says what there is instead.
-        case.replace({written: 1.0})
-        raise refused(case._path, place, "has no value here: give one in the case")
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise refused(case._path, place, f"is {told(value)}: only a number can be fitted")
-    if value == 0:
-        raise refused(case._path, place, "is 0: values are varied by shares of them: give another in the case")
-    return written, float(value)
-
-
-def _found(case: Case, document: Any, place: str) -> tuple[str, Any]:
-    """A place with numbers for steps that it names, and what stands there; None if nothing does."""
-    written, at = "", document
-    for part in re.findall(r"[^.\[\]]+", place):
-        if not isinstance(at, list):
-            written, at = f"{written}.{part}" if written else part, at.get(part) if isinstance(at, Mapping) else None
-            continue
-        of_name = {entry["name"]: k for k, entry in enumerate(at) if isinstance(entry, Mapping) and "name" in entry}
-        k = of_name.get(part, int(part) if part.isascii() and part.isdigit() else len(at))
-        if k >= len(at):
-            there = ", ".join([f"0 to {len(at) - 1}", *of_name])
-            raise refused(case._path, place, f"there is no `{part}` in {written}; there is {there}")
-        written, at = f"{written}[{k}]", at[k]
-    return written, at

@@ -12,11 +12,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from ._places import value_at
 from ._plain import refused
 from ._records import Array, array_of, noise_of
 from ._study_run import lean
 from .case import Case
 from .errors import RunWarning, Stopped
+from .result import Result
 
 
 class Run:
@@ -32,6 +34,9 @@ class Run:
         sigma: standard deviation of the noise: a number, or by column a number or shape (n,); by default estimated by the fit. Several columns need it.
         weight: weight of this record relative to others.
     """
+
+    # What is fitted.
+    fitted = "case"
 
     def __init__(
         self,
@@ -84,12 +89,27 @@ class Run:
         values = {place: float(np.ravel(value)[0]) for place, value in parameters.items()}
         return self.solved(values, [], threads)[0][None]
 
+    def place(self, name: str) -> str:
+        """The place of the case at which a free value stands."""
+        return name
+
+    def value(self, name: str) -> tuple[str, float]:
+        """The name of a free value as the case writes it, and the number there, which may be a default.
+
+        Raises:
+            ValueError: it is no place.
+            CaseError: there is no number at the place, or 0.
+        """
+        if "." not in name:
+            raise ValueError(f"free: {name}: runs are fitted by places of their cases, such as contacts.base.friction.mu_k")
+        return value_at(self.case, name)
+
     def with_values(self, values: Mapping[str, float]) -> Case:
-        """The case with values by place."""
-        return self.case.replace(values)
+        """The case with values by name."""
+        return self.case.replace({self.place(name): value for name, value in values.items()})
 
     def solved(self, values: Mapping[str, float], by: Sequence[str], threads: int | None) -> tuple[Array, Array]:
-        """What the run predicts, (n,), and its derivatives by places, (n, by).
+        """What the run predicts, (n,), and its derivatives by free values, (n, by).
 
         Raises:
             CaseError: the case has no such place, does not accept a value, or its run does not have what was measured.
@@ -98,28 +118,42 @@ class Run:
         with warnings.catch_warnings():
             # Those of every trial are the same; whoever runs the fitted case is told.
             warnings.simplefilter("ignore", RunWarning)
-            result = lean(self.with_values(values)).run(threads=threads, progress=False, gradients=by)
-        history = result.history
+            places = [self.place(name) for name in by]
+            result = lean(self.with_values(values)).run(threads=threads, progress=False, gradients=places)
+        history = self._measurable(result.history)
         self._check(history)
-        predicted = np.concatenate([np.interp(time, history["time"], history[column]) for column, time in self._times.items()])
-        if not by:
-            return predicted, np.zeros((predicted.size, 0))
-        gradients = result.gradients
-        slopes = np.empty((predicted.size, len(by)))
-        for k, place in enumerate(by):
-            of = [f"d({column})/d({place})" for column in self._times]
-            for column, name in zip(self._times, of):
-                if name not in gradients:
-                    raise refused("fit", f"measured.{column}", "has no derivatives: give a force, displacement or energy of the history")
-            own = [np.interp(time, gradients["time"], gradients[name]) for name, time in zip(of, self._times.values())]
-            slopes[:, k] = np.concatenate(own)
+        slopes = np.empty((self.measured.size, len(by)))
+        for k, place in enumerate(places):
+            derivatives = self._derivatives(result, place)
+            slopes[:, k] = self._sampled(derivatives)
             if not np.isfinite(slopes[:, k]).all():
-                lost = gradients["time"][~np.isfinite(gradients[of].to_numpy(dtype=float)).all(axis=1)].min()
+                lost = derivatives["time"][~np.isfinite(derivatives.to_numpy(dtype=float)).all(axis=1)].min()
                 raise Stopped(
-                    f"the derivatives by {place} are lost at time {lost:g} (docs/guide/gradients.md): give shorter increments there, or fix it",
+                    f"the derivatives by {by[k]} are lost at time {lost:g} (docs/guide/gradients.md): give shorter increments there, or fix it",
                     result,
                 )
-        return predicted, slopes
+        return self._sampled(history), slopes
+
+    def _measurable(self, history: pd.DataFrame) -> pd.DataFrame:
+        """A history with the columns that were measured."""
+        return history
+
+    def _derivatives(self, result: Result, place: str) -> pd.DataFrame:
+        """Derivatives of the columns that were measured, over time.
+
+        Raises:
+            CaseError: a column has none.
+        """
+        gradients, table = result.gradients, {}
+        for column in self._times:
+            if (name := f"d({column})/d({place})") not in gradients:
+                raise refused("fit", f"measured.{column}", "has no derivatives: give a force, displacement or energy of the history")
+            table[column] = gradients[name]
+        return pd.DataFrame({"time": gradients["time"], **table})
+
+    def _sampled(self, table: pd.DataFrame) -> Array:
+        """The columns at the times when they were measured, one after another."""
+        return np.concatenate([np.interp(time, table["time"], table[column]) for column, time in self._times.items()])
 
     def _check(self, history: pd.DataFrame) -> None:
         """Check that a history has what was measured.

@@ -20,6 +20,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from ._element_tests import ElementTest, Oedometer, Triaxial
 from ._fit_names import check_names, check_room, no_room
 from ._fit_problem import End, plain_of, search
 from ._fit_problem import Problem as _Problem
@@ -33,7 +34,7 @@ from .case import Case
 from .law import Law
 from .law import law as law_of
 
-__all__ = ["Fit", "Holds", "Interface", "Run", "SpringSlider", "fit"]
+__all__ = ["Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit"]
 
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128
@@ -167,7 +168,7 @@ class Fit:
     """A fitted law, or fitted parameters of cases.
 
     Attributes:
-        parameters: all parameters, including the given ones; of a fit through runs the fitted ones, by place.
+        parameters: all parameters, including the given ones; of a fit through runs the fitted ones, by place; of tests of samples those of the law.
         table: one row per free parameter: ``value``, ``low`` and ``high`` of its 95 % interval, from zero to infinity where the data do not
             determine it, ``std`` (of its logarithm where ``log``).
         correlation: correlation of the free parameters.
@@ -179,10 +180,10 @@ class Fit:
         runs: number of finite-element runs that it took; 0 for records of a point.
     """
 
-    def __init__(self, problem: _Problem, ends: list[End]) -> None:
+    def __init__(self, problem: _Problem, ends: list[End], tested: Mapping[str, Any] | None = None) -> None:
         from scipy.stats import t
 
-        self._problem, self._best = problem, ends[0]
+        self._problem, self._best, self._tested = problem, ends[0], tested
         best, space, samples = ends[0], problem.space, ends[0].residuals.size
         free, sigma = len(space.names), problem.records[0].sigma is not None
         self.noise = float(np.sqrt(best.squares / (samples - free)))
@@ -227,22 +228,49 @@ class Fit:
         return [record.with_values(self.parameters) for record in self._problem.records if isinstance(record, Run)]
 
     @property
-    def law(self) -> Law:
-        """The law with these parameters.
+    def material(self) -> dict[str, Any]:
+        """The law of tests of samples with these parameters, as the ``material`` of a body.
 
         Raises:
-            ValueError: cases were fitted.
+            ValueError: something else was fitted.
+        """
+        if self._tested is None:
+            raise ValueError("material: no tests of samples were fitted: see law, or cases")
+        document: dict[str, Any] = self.cases[0].document
+        return dict(document["bodies"]["sample"]["material"])
+
+    @property
+    def law(self) -> Law:
+        """The law of an interface with these parameters.
+
+        Raises:
+            ValueError: cases or tests of samples were fitted.
         """
         if isinstance(self._problem, RunProblem):
-            raise ValueError("law: cases were fitted, not a law alone: they are in cases")
+            kind = "cases were fitted, not a law alone: they are in cases" if self._tested is None else "the law of a body is in material"
+            raise ValueError(f"law: {kind}")
         return law_of({name: value for name, value in self.parameters.items() if name not in MACHINE})
 
-    def predicted(self, record: Record | Run) -> Array:
-        """Prediction for a record, also for one that was not fitted, shape (n,); of a :class:`Run` its columns, one after another."""
+    def _with_law(self, record: Record | Run | ElementTest) -> Record | Run:
+        """A record that predicts; that of a test of a sample by the law that was fitted.
+
+        Raises:
+            ValueError: it is a test of a sample, but none were fitted.
+        """
+        if not isinstance(record, ElementTest):
+            return record
+        if self._tested is None:
+            raise ValueError("record: is a test of a sample, whose law was not fitted")
+        return record.of(self._tested)
+
+    def predicted(self, record: Record | Run | ElementTest) -> Array:
+        """Prediction for a record, also for one that was not fitted, shape (n,); of a :class:`Run` or a test of a sample its columns or
+        quantities, one after another, of the latter without the start."""
+        record = self._with_law(record)
         sets = {name: np.array([value]) if isinstance(value, float) else value for name, value in self.parameters.items()}
         return np.asarray(record.predicted(sets)[0])
 
-    def band(self, record: Record | Run) -> pd.DataFrame:
+    def band(self, record: Record | Run | ElementTest) -> pd.DataFrame:
         """Prediction for a record, also for one that was not fitted, and how sure it is::
 
             y ± t₀.₉₇₅ √diag(J cov Jᵀ),   J = ∂y/∂x
@@ -251,6 +279,7 @@ class Fit:
             One row per sample: ``predicted``, and ``low`` and ``high``, between which the curve of the true parameters lies in 95 % of all
             cases; noise of a measurement comes on top.
         """
+        record = self._with_law(record)
         other = type(self._problem)([record], self._problem.space, self._problem.threads)
         scale = other.scales[0] / record.weight
         predicted = other.at(self._best.point) * scale + record.measured
@@ -295,8 +324,8 @@ class Fit:
 
 
 def fit(
-    data: Record | Run | Iterable[Record | Run],
-    law: str = LAW,
+    data: Record | Run | ElementTest | Iterable[Record | Run | ElementTest],
+    law: str | Mapping[str, Any] = LAW,
     free: Sequence[str] | Mapping[str, tuple[float, float]] = ("mu_s", "mu_k", "r", "kappa", "xi"),
     *,
     start: Mapping[str, float] | None = None,
@@ -308,15 +337,18 @@ def fit(
     """Fit a law to measured curves, or parameters of cases to measured histories of their runs.
 
     A fit through runs has one search, by Gauss–Newton steps in a trust region with :attr:`Result.gradients` as derivatives: a run a step.
+    Tests of samples are fitted so as well, through the run of one element.
 
     Args:
-        data: records: :class:`Interface`, :class:`SpringSlider`, :class:`Holds`, or several of them; or :class:`Run`, one or several.
-            Records of different kinds need a ``sigma`` each.
-        law: name of the law; cases have theirs.
+        data: records: :class:`Interface`, :class:`SpringSlider`, :class:`Holds`, or several of them; or :class:`Run`, one or several; or tests
+            of samples, :class:`Triaxial` and :class:`Oedometer`. Records of different kinds need a ``sigma`` each.
+        law: name of the law of an interface; of tests of samples the ``material`` of the body with its constants, at which the search begins:
+            ``{"model": "cam_clay", "lambda": 0.2, …}``; cases have theirs.
         free: parameters to be found, with their ranges; positive ranges are searched by the logarithm. Without ranges
             (super/subloading friction only) wide ones are derived from the records. Ranges may overlap: trials that the law does not accept,
             such as ``mu_d`` above ``mu_s``, are skipped. Of runs they are places that every case has, such as
-            ``"contacts.base.friction.mu_k"``; without ranges a factor of 10 either way of the value in the first case.
+            ``"contacts.base.friction.mu_k"``, of tests of samples constants of the law; without ranges a factor of 10 either way of the
+            value in the first case, or in the law.
         start: start of the first search: values of free parameters, within their ranges; others are taken from the
             best starting point of the other searches, through runs from the first case (where outside its range, the middle of that).
         starts: number of completed searches; three times as many are started from the best of 128 points spread over the ranges.
@@ -334,7 +366,7 @@ def fit(
         Interrupted: Ctrl-C was pressed during a run.
     """
     records = _records(data)
-    if any(isinstance(record, Run) for record in records):
+    if any(isinstance(record, (Run, ElementTest)) for record in records):
         return _through_runs(records, law, free, start or {}, starts, threads, fixed)
     free = free if isinstance(free, Mapping) else [free] if isinstance(free, str) else free
     names(list(free) if isinstance(free, Mapping) else free, "free", "fit")
@@ -343,7 +375,8 @@ def fit(
     starts, seed, threads = count(starts, "starts") or 0, count(seed, "seed") or 0, count(threads, "threads")
     _check(records, free, fixed, starts)
     _check_fixed(fixed)
-    check_names(a_name(law, "law", "fit"), [*free, *fixed])
+    law = a_name(law, "law", "fit")
+    check_names(law, [*free, *fixed])
     ranges = dict(free) if isinstance(free, Mapping) else _ranges(law, free, records)
     space = Space(law, ranges, fixed)
     check_room(law, ranges, fixed)
@@ -357,24 +390,27 @@ def fit(
 
 
 def _through_runs(
-    records: Sequence[Any], law: str, free: Any, start: Any, starts: int, threads: int | None, fixed: Mapping[str, Any]
+    records: Sequence[Any], law: Any, free: Any, start: Any, starts: int, threads: int | None, fixed: Mapping[str, Any]
 ) -> Fit:
-    """The fit of cases.
+    """The fit of cases, or of tests of samples.
 
     Raises:
         ValueError: an argument is one of a law alone, or not what it must be.
     """
-    if not all(isinstance(record, Run) for record in records):
-        raise ValueError("data: there are runs and records of a point: fit them one after another")
-    given = [name for name, own in (("law", law == LAW), ("starts", starts == STARTS)) if not own] + list(fixed)
+    tests = all(isinstance(record, ElementTest) for record in records)
+    if not tests and not all(isinstance(record, Run) for record in records):
+        raise ValueError("data: there are runs and records of a point, or tests of samples: fit them one after another")
+    given = [name for name, own in (("law", law == LAW or tests), ("starts", starts == STARTS)) if not own] + list(fixed)
     if given:
-        raise ValueError(f"{given[0]}: a fit through runs has none: values that are not free are those of its cases, and its one search begins at start")
-    problem, shares = run_problem(records, [free] if isinstance(free, str) else free, start, count(threads, "threads"))
-    _check(records, problem.space.names, {}, 1)
+        theirs = "the law" if tests else "its cases"
+        raise ValueError(f"{given[0]}: a fit through runs has none: values that are not free are those of {theirs}, and its one search begins at start")
+    runs = [record.of(law) for record in records] if tests else records
+    problem, shares = run_problem(runs, [free] if isinstance(free, str) else free, start, count(threads, "threads"))
+    _check(runs, problem.space.names, {}, 1)
     end = search(problem, shares, MOST_RUNS)
     if end is None:
         raise problem.refusal or ValueError("start: the runs have no answer there: give another start")
-    return Fit(problem, [end])
+    return Fit(problem, [end], law if tests else None)
 
 
 def _records(data: Any) -> list[Any]:
@@ -385,8 +421,8 @@ def _records(data: Any) -> list[Any]:
     """
     records: list[Any] = [data] if isinstance(data, np.ndarray) or not isinstance(data, Iterable) else list(data)
     for record in records:
-        if not isinstance(record, (Interface, Holds, Run)):
-            raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider, Holds or Run, or several of them")
+        if not isinstance(record, (Interface, Holds, Run, ElementTest)):
+            raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider, Holds, Run, Triaxial or Oedometer, or several of them")
     return records
 
 
