@@ -47,18 +47,17 @@ def thick_sphere(program):
     return rows
 
 
-def footing(program, material, element, kind, columns, rows, width, settlement):
+def footing(program, body, kind, columns, rows, width, settlement, surcharge=0, **step):
     """Half of a rigid rough footing of width 1 that is bonded to the ground: the mean pressure under it over its settlement."""
     half, beside, depth = 0.5, width, 2
     near, far = columns
     mesh = [block("ground", [[0, -depth], [half, -depth], [half, 0], [0, 0]], [near[0], rows[0]], ["bottom", None, "footing", "middle"],
                   kind=kind, grading=[near[1], rows[1]]),
-            block("ground", [[half, -depth], [beside, -depth], [beside, 0], [half, 0]], [far[0], rows[0]], ["bottom", "side", None, None],
+            block("ground", [[half, -depth], [beside, -depth], [beside, 0], [half, 0]], [far[0], rows[0]], ["bottom", "side", "surface", None],
                   kind=kind, grading=[far[1], rows[1]])]
-    step = {"name": "settle", "duration": 1, "dt": {"initial": 0.02, "max": 0.05, "min": 1e-5},
+    step = {"name": "settle", "duration": 1, "dt": {"initial": 0.02, "max": 0.05, "min": 1e-5}, **step, "loads": [{"on": "surface", "pressure": str(surcharge)}],
             "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}, {"on": "middle", "ux": 0},
                          {"on": "footing", "ux": 0, "uy": -settlement}]}
-    body = {"material": material, "element": element}
     return Run(program, {"mesh": {"blocks": mesh}, "bodies": {"ground": body}, "steps": [step], "watch": ["footing"], "output": {"fields": False}})
 
 
@@ -72,8 +71,44 @@ def strip_footing(program):
     clay = {**von_mises(3**0.5), "E": 1e4}
     for name, kind, element in (("Q4 F-bar, B/100", "Q4", "f_bar"), ("Q8 reduced, B/100", "Q8", "reduced"), ("T6, B/80", "T6", "displacement"),
                                 ("Q4 in full, B/100", "Q4", "displacement")):
-        run = footing(program, clay, element, kind, *FINE[kind], 2.5, 0.004)
+        run = footing(program, {"material": clay, "element": element}, kind, *FINE[kind], 2.5, 0.004)
         rows.append([name, *row("N_c", 2 + pi, -run.last("footing.fy") / 0.5, 4)])
+    return rows
+
+
+def cam_clay(stiffer, overconsolidation=1):
+    """Undrained Cam-clay under an isotropic effective stress of 100, with slopes and compliance that are divided: the body, and its s_u."""
+    pressure, critical, slopes, shear = 100, 1.2, [0.1 / stiffer, 0.02 / stiffer], 3000 * stiffer
+    lam, kappa = (slope / (1 + slope) for slope in slopes)
+    fluid = 50 * (pressure / slopes[1] + 4 / 3 * shear)
+    body = {"material": {"model": "cam_clay", "lambda": lam, "kappa": kappa, "M": critical, "G": shear, "OCR": overconsolidation, "p_min": 1},
+            "initial_stress": {"components": {"xx": -pressure, "yy": -pressure, "zz": -pressure}},
+            "pore_fluid": {"bulk_modulus": fluid, "porosity": 0.5}}
+    return body, critical * pressure * (overconsolidation / 2) ** 0.8 / 3**0.5
+
+
+def footing_on_cam_clay(program):
+    """The same of Cam-clay, whose s_u = M p_f/√3 comes of its stress: stiff, and soft with a settlement of a tenth of the width, beside von Mises."""
+    rows = [["clay", "elements", "settlement", *HEAD]]
+    kinds = {"Q8 reduced": ("Q8", "reduced", [[10, 0.15], [14, 30]], [14, 0.04]), "Q4 F-bar": ("Q4", "f_bar", [[14, 0.15], [20, 40]], [22, 0.04]),
+             "Q8 reduced, B/100": ("Q8", "reduced", *FINE["Q8"])}
+    fine = {"initial": 0.01, "max": 0.01, "min": 1e-6}
+
+    def add(name, elements, body, strength, settlement, surcharge):
+        kind, element, columns, across = kinds[elements]
+        run = footing(program, {**body, "element": element}, kind, columns, across, 2.5, settlement, surcharge, dt=fine)
+        bearing = (-run.last("footing.fy") / 0.5 - surcharge) / strength
+        rows.append([name, elements, f"{settlement:g} B", *row("N_c", 2 + pi, bearing, 4)])
+
+    for name, elements, stiffer, over, settlement in (
+        ("OCR 1, G/s_u = 7500", "Q8 reduced", 100, 1, 0.001), ("the same", "Q4 F-bar", 100, 1, 0.001), ("the same, OCR 2, G/s_u = 4300", "Q8 reduced", 100, 2, 0.001),
+        ("OCR 1, G/s_u = 75", "Q8 reduced", 1, 1, 0.1),
+    ):
+        body, strength = cam_clay(stiffer, over)
+        add(name, elements, body, strength, settlement, 100)
+    for name, elements, ratio, settlement in (("von Mises, G/s_u = 7500", "Q8 reduced", 7500, 0.001), ("von Mises, G/s_u = 75", "Q8 reduced", 75, 0.1),
+                                              ("the same", "Q8 reduced, B/100", 75, 0.1), ("the same", "Q4 F-bar", 75, 0.1)):
+        add(name, elements, {"material": {"model": "von_mises", "E": 2 * 1.49 * ratio, "nu": 0.49, "sigma_y": 3**0.5}}, 1, settlement, 0)
     return rows
 
 
@@ -84,7 +119,7 @@ def footing_on_soil(program):
     rows = [["flow", *HEAD]]
     for psi, viscosity, kind, element in ((20, 0, "Q8", "reduced"), (20, 0, "Q4", "f_bar"), (5, 1e-4, "Q8", "reduced"), (5, 1e-4, "Q4", "f_bar")):
         soil = {"model": "mohr_coulomb", "E": 1e4, "nu": NU, "c": 1, "phi": 20, "psi": psi, "viscosity": viscosity}
-        run = footing(program, soil, element, kind, *FINE[kind], 4, 0.01)
+        run = footing(program, {"material": soil, "element": element}, kind, *FINE[kind], 4, 0.01)
         name = f"ψ = {psi}°, {kind} {element.replace('f_bar', 'F-bar')}" + (f", viscosity {viscosity:g} of the duration" if viscosity else "")
         rows.append([name, *row("N_c", exact, -run.last("footing.fy") / 0.5, 4)])
     return rows
@@ -94,5 +129,6 @@ LIMIT = {
     "hills_tube": hills_tube,
     "thick_sphere": thick_sphere,
     "strip_footing": strip_footing,
+    "footing_on_cam_clay": footing_on_cam_clay,
     "footing_on_soil": footing_on_soil,
 }

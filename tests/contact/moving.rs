@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, close, finish, model};
+use fecontact::contact::force::ContactState;
 use fecontact::laws::friction::Regime;
 use fecontact::model::state::State;
 use fecontact::output::warnings::Warnings;
@@ -400,6 +401,60 @@ fn a_shear_box_presses_as_its_spring_and_its_halves_do() {
     let expected = before + dilation / (1.0 / 800.0 + 80.0 * (1.0 - 0.04) / (2000.0 * 100.0));
     close("normal force", normal / expected, 1.0, 0.01);
     close("friction", tangential.abs() / normal, 0.5, 0.005);
+}
+
+/// Lengths, forces, mean slip and mean dilation of a contact.
+struct Sums {
+    normal: f64,
+    tangential: f64,
+    slip: f64,
+    dilation: f64,
+}
+
+fn sums(state: &State, contact: usize) -> Sums {
+    let points = &state.contacts[contact];
+    let length: f64 = points.iter().map(|at| at.length).sum();
+    let sum = |of: &dyn Fn(&ContactState) -> f64| points.iter().map(|at| at.length * of(at)).sum::<f64>();
+    Sums {
+        normal: sum(&|at| at.friction.pressure),
+        tangential: sum(&|at| at.friction.traction).abs(),
+        slip: sum(&|at| at.friction.plastic_slip).abs() / length,
+        dilation: sum(&|at| at.friction.opening) / length,
+    }
+}
+
+/// Sand between two plates, `cases/soil_shear_box.json`. Beside a smooth plate all slip is there, friction comes down to its μ_k, and the normal force stays.
+/// Between rough plates the weaker one slips and opens by d (μ_s − μ_k)/κ, and the normal force is that of the spring and of the sand
+/// that cannot widen in series, N₀ + δ/(1/K + H/(M L)), while the sand is elastic; where it yields, it dilates as well, and presses more.
+#[test]
+fn sand_slips_at_the_smooth_plate_and_rough_plates_press_by_their_dilation() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/soil_shear_box.json");
+    let case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
+    let mut elastic = case.clone();
+    for body in ["sand", "other_sand"] {
+        elastic["bodies"][body]["material"] = json!({"model": "hencky", "E": 3e4, "nu": 0.25});
+    }
+    for (case, yields) in [(case, true), (elastic, false)] {
+        let run = crate::common::finish_at(&case, &path);
+        assert_eq!(run.report.cutbacks, 0);
+        // In the order of their names.
+        let [rough, below_rough, below_smooth, smooth] = [0, 1, 2, 3].map(|contact| sums(run.last(), contact));
+        assert!(smooth.slip > 0.99 * 8e-3 - 1e-4 && below_smooth.slip < 2e-5, "{} {}", smooth.slip, below_smooth.slip);
+        close("friction of the smooth plate", smooth.tangential / smooth.normal, 0.2, 1e-3);
+        close("both plates", smooth.tangential / below_smooth.tangential, 1.0, 1e-6);
+        close("its normal force", smooth.normal, 10.0, 0.1);
+
+        close("friction of the rough plate", rough.tangential / rough.normal, 0.45, 3e-3);
+        close("dilation", rough.dilation, 0.5 * 0.2 / 300.0, 5e-6);
+        assert!(below_rough.slip < 0.02 * rough.slip, "{}", below_rough.slip);
+        let modulus = 3e4 * 0.75 / (1.25 * 0.5);
+        let series = 10.0 + (rough.dilation + below_rough.dilation) / (1.0 / 2e4 + 0.04 / (modulus * 0.1));
+        if yields {
+            assert!(rough.normal > series + 0.2 && rough.normal < series + 1.0, "{} {series}", rough.normal);
+        } else {
+            close("normal force", rough.normal / series, 1.0, 2e-3);
+        }
+    }
 }
 
 /// By explicit increments, dragged one way under constant volume: p = N/A + α_n d by dilation, p = N/A exp(−α_n k λ) by wear, and
