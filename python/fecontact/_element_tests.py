@@ -66,7 +66,7 @@ class ElementTest:
         """
         return ElementRun(self, law, self._measured, sigma=self._noise, weight=self.weight)
 
-    def quantities(self, columns: Mapping[str, Any]) -> dict[str, Any]:
+    def _quantities(self, columns: Mapping[str, Any]) -> dict[str, Any]:
         """What is measured of the columns of the history; complex numbers carry derivatives."""
         raise NotImplementedError
 
@@ -163,7 +163,7 @@ class Triaxial(ElementTest):
         way = float(np.abs(np.diff(self.axial_strain)).sum())
         super().__init__(measured, sigma, weight, way / INCREMENTS if increment is None else increment)
 
-    def quantities(self, columns: Mapping[str, Any]) -> dict[str, Any]:
+    def _quantities(self, columns: Mapping[str, Any]) -> dict[str, Any]:
         height, radius = 1.0 + columns["top.uy"], 1.0 + columns["right.ux"]
         axial = -columns["top.fy"] / (math.pi * radius**2)
         if self.drained:
@@ -230,7 +230,7 @@ class Oedometer(ElementTest):
             measured = {"strain": values - values[0]}
         super().__init__(measured, sigma, weight, increment)
 
-    def quantities(self, columns: Mapping[str, Any]) -> dict[str, Any]:
+    def _quantities(self, columns: Mapping[str, Any]) -> dict[str, Any]:
         strain = -columns["top.uy"]
         if "strain" in self._measured:
             return {"strain": strain}
@@ -251,7 +251,7 @@ class Oedometer(ElementTest):
 class ElementRun(Run):
     """A test of a sample with a law: what it measures are quantities made of the history of the run; free values are constants of the law."""
 
-    fitted = "law"
+    _fitted = "law"
 
     def __init__(self, test: ElementTest, law: Mapping[str, Any], measured: Mapping[str, Array], **options: Any) -> None:
         steps = np.arange(1.0, next(iter(measured.values())).size)
@@ -260,10 +260,10 @@ class ElementRun(Run):
         super().__init__(test.case(law), {name: (steps, values[1:]) for name, values in measured.items()}, **options)
         self._test = test
 
-    def place(self, name: str) -> str:
+    def _place(self, name: str) -> str:
         return MATERIAL + name
 
-    def value(self, name: str) -> tuple[str, float]:
+    def _value(self, name: str) -> tuple[str, float]:
         try:
             written, value = value_at(self.case, MATERIAL + name)
         except CaseError as error:
@@ -277,13 +277,13 @@ class ElementRun(Run):
             raise _of_law(error) from None
 
     def _measurable(self, history: pd.DataFrame) -> pd.DataFrame:
-        found = self._test.quantities({name: history[name].to_numpy() for name in COLUMNS})
+        found = self._test._quantities({name: history[name].to_numpy() for name in COLUMNS})
         return pd.DataFrame({"time": history["time"], **found})
 
     def _derivatives(self, result: Result, place: str) -> pd.DataFrame:
         history, gradients = result.history, result.gradients
         columns = {name: history[name].to_numpy() + 1j * IMAGINARY * gradients[f"d({name})/d({place})"].to_numpy() for name in COLUMNS}
-        found = {name: values.imag / IMAGINARY for name, values in self._test.quantities(columns).items()}
+        found = {name: values.imag / IMAGINARY for name, values in self._test._quantities(columns).items()}
         return pd.DataFrame({"time": history["time"], **{name: found[name] for name in self._times}})
 
 

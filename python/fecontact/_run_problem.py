@@ -34,7 +34,7 @@ class RunProblem(Problem):
 
     def __init__(self, records: Sequence[Run], space: Space, threads: int | None) -> None:
         super().__init__(records, space, threads)
-        self.model = records[0].fitted
+        self.model = records[0]._fitted
         self.runs = 0
         self._known: dict[bytes, tuple[Array, Array] | None] = {}
 
@@ -84,7 +84,7 @@ def run_problem(records: Sequence[Run], free: Any, start: Any, threads: int | No
         raise ValueError(f"start: is a {type(start).__name__}: give values by place")
     if not given:
         raise ValueError("free: is empty: name what is to be found, such as contacts.base.friction.mu_k")
-    found = {place: [record.value(place) for record in records] for place in given}
+    found = {place: [record._value(place) for record in records] for place in given}
     written = {place: own[0][0] for place, own in found.items()}
     # Two ways to write a place are one place.
     if twice := [place for k, place in enumerate(given) if written[place] in [written[other] for other in given[:k]]]:

@@ -36,7 +36,7 @@ class Run:
     """
 
     # What is fitted.
-    fitted = "case"
+    _fitted = "case"
 
     def __init__(
         self,
@@ -89,11 +89,11 @@ class Run:
         values = {place: float(np.ravel(value)[0]) for place, value in parameters.items()}
         return self.solved(values, [], threads)[0][None]
 
-    def place(self, name: str) -> str:
+    def _place(self, name: str) -> str:
         """The place of the case at which a free value stands."""
         return name
 
-    def value(self, name: str) -> tuple[str, float]:
+    def _value(self, name: str) -> tuple[str, float]:
         """The name of a free value as the case writes it, and the number there, which may be a default.
 
         Raises:
@@ -106,7 +106,7 @@ class Run:
 
     def with_values(self, values: Mapping[str, float]) -> Case:
         """The case with values by name."""
-        return self.case.replace({self.place(name): value for name, value in values.items()})
+        return self.case.replace({self._place(name): value for name, value in values.items()})
 
     def solved(self, values: Mapping[str, float], by: Sequence[str], threads: int | None) -> tuple[Array, Array]:
         """What the run predicts, (n,), and its derivatives by free values, (n, by).
@@ -118,7 +118,7 @@ class Run:
         with warnings.catch_warnings():
             # Those of every trial are the same; whoever runs the fitted case is told.
             warnings.simplefilter("ignore", RunWarning)
-            places = [self.place(name) for name in by]
+            places = [self._place(name) for name in by]
             result = lean(self.with_values(values)).run(threads=threads, progress=False, gradients=places)
         history = self._measurable(result.history)
         self._check(history)

@@ -34,7 +34,7 @@ from .case import Case
 from .law import Law
 from .law import law as law_of
 
-__all__ = ["Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit"]
+__all__ = ["ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit"]
 
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128

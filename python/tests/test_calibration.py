@@ -338,7 +338,7 @@ def test_eight_parameters_take_seconds() -> None:
         ({"free": {"r": 3.0}}, r"free: r: the range is 3.0: give two numbers"),
         ({"free": {"r": ("low", "high")}}, r"free: r: the range is \('low', 'high'\): give two numbers"),
         ({"free": 3}, "fit: free: is 3: must be a list of names"),
-        ({"data": 3}, "data: is a int: give Interface, SpringSlider, Holds or Run"),
+        ({"data": 3}, "data: is a int: give Interface, SpringSlider, Holds, Run, Triaxial or Oedometer"),
         ({"starts": 0}, "starts: is 0: must be at least 1"),
         ({"starts": 1.5}, "starts: is 1.5: must be a whole number"),
         ({"start": 3}, "start: is a int: give values of free parameters by name"),

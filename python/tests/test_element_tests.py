@@ -108,6 +108,15 @@ def test_a_softening_sample_stays_even() -> None:
     assert q[-1] < 0.9 * q.max()
 
 
+@pytest.mark.parametrize("drained", [True, False])
+def test_units_do_not_matter_and_rows_may_repeat(drained: bool) -> None:
+    strain = np.array([0, 0.01, 0.01, 0.03, 0.02, 0.05])
+    in_kpa = answers(triaxial(strain, cell_pressure=100, drained=drained), {**CLAY, "OCR": 1.3})[0]
+    in_pa = answers(triaxial(strain, cell_pressure=1e5, drained=drained), {**CLAY, "OCR": 1.3, "G": 1e3 * G, "p_min": 1e3})[0]
+    np.testing.assert_allclose(in_pa, 1e3 * in_kpa, rtol=1e-8)
+    assert in_kpa[0] == in_kpa[1] and in_kpa[3] < in_kpa[2] < in_kpa[4]
+
+
 def test_samples_consolidated_with_a_deviator_begin_there() -> None:
     q = answers(triaxial([0, 1e-6, 0.2], cell_pressure=60, initial_deviator=40, drained=False), {**CLAY, "OCR": 1.5})[0]
     assert q[0] == pytest.approx(40 + 3 * G * 1e-6, rel=1e-4)
@@ -244,7 +253,7 @@ def test_derivatives_are_those_of_runs(drained: bool) -> None:
     second = "volumetric_strain" if drained else "pore_pressure"
     run = triaxial(STRAIN[:12], sigma={"deviator": 1.0, second: 1.0}, cell_pressure=100, drained=drained).of({**CLAY, "OCR": 1.5})
     names = ["M", "lambda", "kappa", "G", "OCR"]
-    values = {name: run.value(name)[1] for name in names}
+    values = {name: run._value(name)[1] for name in names}
     _, slopes = run.solved(values, names, None)
     for k, name in enumerate(names):
         sides = [run.solved({**values, name: values[name] * (1 + by)}, [], None)[0] for by in (1e-4, -1e-4)]
