@@ -1,4 +1,4 @@
-"""Measured histories of a case, and what its run predicts for them."""
+"""Measured histories and displacement fields of a case, and what its run predicts for them."""
 
 from __future__ import annotations
 
@@ -21,17 +21,69 @@ from .errors import RunWarning, Stopped
 from .result import Result
 
 
+class DisplacementField:
+    """Displacements of points of a body at one time, as image correlation measures them.
+
+    Args:
+        time: when.
+        x, y: undeformed points, shape (n,).
+        ux, uy: their displacements, shape (n,); NaN where there is none.
+        sigma: standard deviation of their noise: a number or shape (n,).
+        body: the body that they belong to, where two touch.
+    """
+
+    def __init__(
+        self,
+        time: float,
+        x: ArrayLike,
+        y: ArrayLike,
+        ux: ArrayLike,
+        uy: ArrayLike,
+        *,
+        sigma: ArrayLike | None = None,
+        body: str | None = None,
+    ) -> None:
+        self.time = float(array_of("time", time).reshape(()))
+        self.points = np.stack([np.ravel(array_of(name, given)) for name, given in (("x", x), ("y", y))], axis=1)
+        given = [np.ravel(np.asarray(values, dtype=float)) for values in (ux, uy)]
+        if any(values.size != len(self.points) for values in given):
+            raise ValueError(f"ux, uy: have {given[0].size} and {given[1].size} values: give one for each of the {len(self.points)} points")
+        self.displacements = np.stack(given, axis=1)
+        if not np.isfinite(self.displacements).any():
+            raise ValueError("ux, uy: have no finite value")
+        self.sigma = None if sigma is None else np.broadcast_to(np.ravel(array_of("sigma", sigma)), len(self.points))
+        self.body = body
+
+    def probes(self, name: str) -> dict[str, dict[str, Any]]:
+        """Probes at the points that have a displacement."""
+        of_body = {} if self.body is None else {"body": self.body}
+        seen = np.isfinite(self.displacements).any(axis=1)
+        return {f"{name}_{k}": {"at": self.points[k].tolist(), **of_body} for k in np.flatnonzero(seen)}
+
+    def columns(self, name: str) -> list[tuple[str, float, float | None]]:
+        """Column, value and noise of every displacement."""
+        noise = [None] * len(self.points) if self.sigma is None else list(map(float, self.sigma))
+        return [
+            (f"{name}_{k}.{part}", float(value), noise[k])
+            for k, pair in enumerate(self.displacements)
+            for part, value in zip(("ux", "uy"), pair)
+            if np.isfinite(value)
+        ]
+
+
 class Run:
     """Measured histories of a case, for fits of its values through the finite-element run.
 
-    What is predicted is the history of the run, linear in time between its increments: increments should be as close together as
-    what was measured bends.
+    What is predicted is the history of the run and of its probes, linear in time between its increments: increments should be as close
+    together as what was measured bends.
 
     Args:
         case: the case, with everything that is not to be fitted as it was in the experiment.
-        measured: by column of ``history.csv``, such as ``base.tangential_force``, its times, ascending, and values, both (n,); times lie
-            between the first increment and the last.
-        sigma: standard deviation of the noise: a number, or by column a number or shape (n,); by default estimated by the fit. Several columns need it.
+        measured: by column of ``history.csv`` or ``probes.csv``, such as ``base.tangential_force`` or ``gauge.strain_xx``, its times,
+            ascending, and values, both (n,); times lie between the first increment and the last.
+        fields: measured displacement fields.
+        sigma: standard deviation of the noise: a number, or by column a number or shape (n,); by default estimated by the fit. Several columns need it,
+            and so do histories beside fields.
         weight: weight of this record relative to others.
     """
 
@@ -41,19 +93,20 @@ class Run:
     def __init__(
         self,
         case: Case,
-        measured: Mapping[str, tuple[ArrayLike, ArrayLike]],
+        measured: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
         *,
+        fields: Sequence[DisplacementField] = (),
         sigma: float | Mapping[str, ArrayLike] | None = None,
         weight: float = 1.0,
     ) -> None:
         if not isinstance(case, Case):
             raise ValueError(f"case: is a {type(case).__name__}: give a Case")
-        self.case = case
-        if not (isinstance(measured, Mapping) and measured and all(isinstance(column, str) for column in measured)):
+        columns = {} if measured is None and fields else measured
+        if not (isinstance(columns, Mapping) and (columns or fields) and all(isinstance(column, str) for column in columns)):
             raise ValueError('measured: give times and values by column of the history, as {"base.tangential_force": (time, force)}')
         self._times: dict[str, Array] = {}
         values, noises = [], []
-        for column, pair in measured.items():
+        for column, pair in columns.items():
             if not (isinstance(pair, Sequence) and len(pair) == 2) and not (isinstance(pair, np.ndarray) and len(pair) == 2):
                 raise ValueError(f"measured: {column}: give two arrays, (time, values)")
             time = np.atleast_1d(array_of(f"measured: {column}: time", pair[0]))
@@ -62,10 +115,23 @@ class Run:
             self._times[column] = time
             values.append(np.broadcast_to(array_of(f"measured: {column}: values", pair[1], time.size), time.size))
             noises.append(self._noise_of(column, sigma, time.size))
+        self._kinds = sorted(columns) + ["displacements"] * bool(fields)
+        known = [sigma is not None] * bool(columns) + [field.sigma is not None for field in fields]
+        probes: dict[str, Any] = {}
+        for k, field in enumerate(fields):
+            # A name that no probe of the case has.
+            name = f"field {k}"
+            probes.update(field.probes(name))
+            for column, value, noise in field.columns(name):
+                self._times[column] = np.array([field.time])
+                values.append(np.array([value]))
+                noises.append(np.array([1.0 if noise is None else noise]))
+        self.case = case.replace({"probes": {**(case._document.get("probes") or {}), **probes}}) if probes else case
         self.measured = np.concatenate(values)
-        known = None if sigma is None else np.concatenate(noises)
-        self.sigma, self.weight = noise_of(known, weight, self.measured.size)
-        if self.sigma is None and len(measured) > 1:
+        if any(known) and not all(known):
+            raise ValueError("sigma: is given for some of what was measured: give it for all, to the record and to its fields")
+        self.sigma, self.weight = noise_of(np.concatenate(noises) if all(known) else None, weight, self.measured.size)
+        if self.sigma is None and len(self._kinds) > 1:
             raise ValueError("sigma: several columns need it: how large their noise is says what each counts for")
 
     @staticmethod
@@ -82,7 +148,7 @@ class Run:
     @property
     def kind(self) -> str:
         """What the residuals are of."""
-        return ", ".join(sorted(self._times))
+        return ", ".join(self._kinds)
 
     def predicted(self, parameters: Mapping[str, Any], threads: int | None = None) -> Array:
         """What the run predicts with values by place, shape (1, n)."""
@@ -120,7 +186,7 @@ class Run:
             warnings.simplefilter("ignore", RunWarning)
             places = [self._place(name) for name in by]
             result = lean(self.with_values(values)).run(threads=threads, progress=False, gradients=places)
-        history = self._measurable(result.history)
+        history = self._measurable(_tables(result))
         self._check(history)
         slopes = np.empty((self.measured.size, len(by)))
         for k, place in enumerate(places):
@@ -147,7 +213,7 @@ class Run:
         gradients, table = result.gradients, {}
         for column in self._times:
             if (name := f"d({column})/d({place})") not in gradients:
-                raise refused("fit", f"measured.{column}", "has no derivatives: give a force, displacement or energy of the history")
+                raise refused("fit", f"measured.{column}", "has no derivatives: give a force, displacement, strain or energy")
             table[column] = gradients[name]
         return pd.DataFrame({"time": gradients["time"], **table})
 
@@ -167,7 +233,7 @@ class Run:
             if column not in known:
                 near = difflib.get_close_matches(column, known, 1)
                 meant = f"did you mean `{near[0]}`? It" if near else "it"
-                raise refused("fit", f"measured.{column}", f"the history has no such column; {meant} has {', '.join(known)}")
+                raise refused("fit", f"measured.{column}", f"the run has no such column; {meant} has {', '.join(known)}")
             # Times are sums of increments.
             slack = 1e-9 * max(abs(first), abs(last))
             for at in (time[0], time[-1]):
@@ -175,5 +241,14 @@ class Run:
                     raise refused("fit", f"measured.{column}", f"was measured at time {at:g}, but increments end at {first:g} to {last:g}: leave it out")
 
     def __repr__(self) -> str:
-        spans = ", ".join(f"{column} at {time.size} times {time[0]:.6g} to {time[-1]:.6g}" for column, time in self._times.items())
-        return f"<Run of {self.case!r}: {spans}>"
+        times = np.concatenate(list(self._times.values()))
+        return f"<Run of {self.case!r}: {self.kind} at {times.size} times and places, {times.min():.6g} to {times.max():.6g}>"
+
+
+def _tables(result: Result) -> pd.DataFrame:
+    """The history, with the readings of the probes at its rows."""
+    history = result.history
+    if not (result.folder / "probes.csv").is_file():
+        return history
+    probes = result.probes
+    return pd.concat([history, probes[[column for column in probes if column not in history]]], axis=1)

@@ -29,12 +29,12 @@ from ._fit_words import Evidence, words
 from ._plain import a_name, count, names, number
 from ._records import MACHINE, Holds, Interface, Record, SpringSlider
 from ._run_problem import RunProblem, run_problem
-from ._run_record import Run
+from ._run_record import DisplacementField, Run
 from .case import Case
 from .law import Law
 from .law import law as law_of
 
-__all__ = ["ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit"]
+__all__ = ["DisplacementField", "ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit"]
 
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128

@@ -13,7 +13,7 @@ from scipy import stats
 from scipy.optimize import least_squares
 
 import fecontact as fc
-from fecontact.calibration import Interface, Run
+from fecontact.calibration import DisplacementField, Interface, Run
 
 FRICTION = "contacts.base.friction."
 TRUTH = {FRICTION + "mu_s": 0.4, FRICTION + "mu_k": 0.2, FRICTION + "kappa": 20.0}
@@ -251,3 +251,73 @@ def test_a_run_that_stops_says_so() -> None:
     with pytest.raises(fc.Stopped) as stopped:
         fc.fit(Run(case, {FORCE: (history()["time"], history()[FORCE])}), free=[FRICTION + "mu_k"])
     assert stopped.value.result is not None and stopped.value.result.status == "stopped"
+
+
+# Places and times of a camera that looks at the block, away from its sides.
+X, Y = (part.ravel() for part in np.meshgrid(np.linspace(0.3, 2.1, 7), np.linspace(0.05, 0.35, 3)))
+TIMES = (2.0, 3.5, 5.0)
+
+
+@lru_cache
+def seen() -> fc.Result:
+    """The true run, with a gauge and the points that the camera sees."""
+    points = {f"p{k}": {"at": [x, y], "body": "block"} for k, (x, y) in enumerate(zip(X, Y))}
+    return pushed().replace({"probes": {"gauge": {"at": [0.6, 0.1]}, **points}}).run(progress=False)
+
+
+def photograph(time: float, seed: int, noise: float) -> DisplacementField:
+    """Displacements at the time of an increment, with noise; some points are lost."""
+    probes = seen().probes
+    row = int(np.argmin(abs(probes["time"] - time)))
+    random = np.random.default_rng([seed, row])
+    ux, uy = (np.array([probes[f"p{k}.{part}"][row] for k in range(X.size)]) + noise * random.normal(size=X.size) for part in ("ux", "uy"))
+    ux[3] = uy[3] = np.nan
+    return DisplacementField(probes["time"][row], X, Y, ux, uy, sigma=noise, body="block")
+
+
+def test_displacement_fields_alone_tell_the_friction_over_the_stiffness() -> None:
+    noise = 1e-4
+    found = [fc.fit(Run(pushed(), fields=[photograph(time, seed, noise) for time in TIMES]), free=[*TRUTH], start=START) for seed in range(4)]
+    inside = [covered(one)[name] for one in found for name in TRUTH]
+    assert sum(inside) >= 10, [one.table for one in found]
+    for one in found:
+        assert one.parameters[FRICTION + "mu_k"] == pytest.approx(0.2, rel=0.1) and len(one._problem.records[0].measured) == 3 * 2 * (X.size - 1)
+
+
+def test_a_force_a_gauge_and_fields_are_fitted_together_and_tell_more_than_the_force() -> None:
+    true, gauge, free = history()[FORCE].to_numpy(), seen().probes["gauge.strain_xx"].to_numpy(), [*TRUTH, "bodies.block.material.E"]
+    time, random = history()["time"], np.random.default_rng(5)
+    noises = {FORCE: NOISE * abs(true).max(), "gauge.strain_xx": 0.01 * abs(gauge).max()}
+    measured = {FORCE: (time, true + noises[FORCE] * random.normal(size=true.size))}
+    force = fc.fit(Run(pushed(), measured, sigma=noises[FORCE]), free=free, start=START)
+    measured["gauge.strain_xx"] = (time, gauge + noises["gauge.strain_xx"] * random.normal(size=gauge.size))
+    case = pushed().replace({"probes": {"gauge": {"at": [0.6, 0.1]}}})
+    record = Run(case, measured, fields=[photograph(time, 0, 1e-4) for time in TIMES], sigma=noises)
+    both = fc.fit(record, free=free, start=START)
+    truth = {**TRUTH, "bodies.block.material.E": 10.0}
+    inside = [both.table["low"][name] <= value <= both.table["high"][name] for name, value in truth.items()]
+    assert sum(inside) >= 3, both.table
+    width = lambda found: found.table["high"] - found.table["low"]  # noqa: E731
+    assert (width(both) < width(force)).all(), (both.table, force.table)
+    assert both.predicted(record).size == record.measured.size and "displacements" in record.kind
+
+
+def test_derivatives_of_fields_are_those_of_differences() -> None:
+    record = Run(pushed(tolerance=1e-12), fields=[photograph(time, 0, 1e-4) for time in TIMES])
+    values = {FRICTION + "mu_k": 0.2, "bodies.block.material.E": 10.0}
+    slopes = record.solved(values, [*values], None)[1]
+    for k, (name, value) in enumerate(values.items()):
+        high, low = (record.solved({**values, name: value * (1 + step)}, [], None)[0] for step in (1e-4, -1e-4))
+        difference = (high - low) / (2e-4 * value)
+        assert abs(slopes[:, k] - difference).max() < 1e-6 * abs(difference).max()
+
+
+def test_fields_that_are_none_are_refused() -> None:
+    field = lambda **changed: DisplacementField(**{"time": 2.0, "x": X, "y": Y, "ux": X, "uy": Y, **changed})  # noqa: E731
+    for changed, why in [({"ux": X[1:]}, "give one for each"), ({"ux": np.nan * X, "uy": np.nan * X}, "no finite value"), ({"sigma": X[1:]}, "")]:
+        with pytest.raises(ValueError, match=why):
+            field(**changed)
+    with pytest.raises(ValueError, match="some of what was measured"):
+        Run(pushed(), {FORCE: ([2.0], [1.0])}, fields=[field()], sigma=0.1)
+    with pytest.raises(fc.CaseError, match="outside"):
+        fc.fit(Run(pushed(), fields=[field(x=X + 50.0)]), free=[*TRUTH])

@@ -22,7 +22,7 @@ use crate::model::Model;
 use crate::model::builder::{Checked, ModelError, Regime, evaluation, regime};
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
-use crate::output::gradients::Neighbours;
+use crate::output::gradients::Parameter;
 use crate::run::{Saved, SavedRun};
 
 /// Keys that never affect how a run continues.
@@ -46,7 +46,7 @@ pub struct Opened {
     /// mesh in memory, used instead of the one named by the case
     mesh: Option<Mesh>,
     /// neighbours of its run, if its history is differentiated, once the model is built
-    pub neighbours: Option<Neighbours>,
+    pub neighbours: Option<Vec<Parameter>>,
     /// checkpoint at which it starts, if any
     start: Option<Checkpoint>,
     /// whether it resumes the run of that checkpoint

@@ -20,7 +20,7 @@ use crate::model::builder::{Checked, ModelError, refuse_if};
 use crate::model::scheme::Scheme;
 use crate::model::{Model, Step};
 use crate::output::checkpoint::MeshPrint;
-use crate::output::gradients::{Neighbours, Parameter};
+use crate::output::gradients::Parameter;
 use crate::solve::neighbour::TOLERANCE;
 use std::path::Path;
 use std::sync::Arc;
@@ -34,6 +34,9 @@ const STENCILS: [&[(f64, f64)]; 3] =
 
 /// Parts of a case whose values act on its run without changing mesh, increments or output.
 const PARTS: [&str; 7] = ["section", "bodies", "point_masses", "rigid_bodies", "contacts", "initial_velocity", "steps"];
+
+/// Those among them that change the forces of bodies.
+const OF_BODIES: [&str; 2] = ["section", "bodies"];
 
 /// Keys of a step that define its increments.
 const OF_INCREMENTS: [&str; 4] = ["duration", "dt", "until", "rupture"];
@@ -57,11 +60,11 @@ impl Differentiated<'_> {
     ///
     /// # Errors
     /// Returns [`CaseError`] if a place has no value that can vary, or the run has no derivatives.
-    pub fn neighbours(&self, mesh: &Mesh) -> Result<Neighbours, CaseError> {
+    pub fn neighbours(&self, mesh: &Mesh) -> Result<Vec<Parameter>, CaseError> {
         self.neighbours_on(mesh).map_err(|complaint| complaint.in_file(self.path))
     }
 
-    fn neighbours_on(&self, mesh: &Mesh) -> Checked<Neighbours> {
+    fn neighbours_on(&self, mesh: &Mesh) -> Checked<Vec<Parameter>> {
         let places = &self.case.gradients;
         let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
         refuse_if(self.begins_with, "gradients", message)?;
@@ -73,9 +76,7 @@ impl Differentiated<'_> {
             self.parameter(place, &defaults, mesh)
                 .map_err(|message| ModelError::new(at, format!("`{place}`: {message}")))
         };
-        let parameters = places.iter().enumerate().map(one).collect::<Checked<_>>()?;
-        let middle = self.model_of(self.document, mesh)?;
-        Ok(Neighbours { middle: solved_exactly(middle), parameters })
+        places.iter().enumerate().map(one).collect()
     }
 
     fn parameter(&self, place: &str, defaults: &Value, mesh: &Mesh) -> Result<Parameter, String> {
@@ -102,7 +103,8 @@ impl Differentiated<'_> {
         // At the end of its range a value has neighbours on one side only.
         let [both, above, below] = STENCILS;
         let neighbours = beside(both).or_else(|why| beside(above).or_else(|_| beside(below)).map_err(|_| why))?;
-        Ok(Parameter { place: place.into(), neighbours })
+        let is_of_bodies = matches!(&keys[0], Key::Name(part) if OF_BODIES.contains(&part.as_str()));
+        Ok(Parameter { place: place.into(), is_of_bodies, neighbours })
     }
 
     /// The model with another value at a place.

@@ -19,13 +19,13 @@ use crate::equations::damping::ByMass;
 use crate::equations::evaluation::{ContactCounts, Evaluation, Seconds};
 use crate::equations::evolving::Evolving;
 use crate::equations::inertia::{self, Inertia};
-use crate::equations::solids::Solids;
+use crate::equations::solids::{LinearizedSolids, Solids};
 use crate::equations::sums::{Sums, TrialFailure};
 use crate::equations::term::{self, Term};
 use crate::equations::trial::Trial;
 use crate::equations::{contacts, damping, links, loads, supports};
-use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
+use crate::linear::{SparseMatrix, norm};
 use crate::model::Model;
 
 /// Assembles a model; owns the pattern and reused buffers.
@@ -33,6 +33,8 @@ pub struct Assembler {
     model: Arc<Model>,
     layout: Layout,
     solids: Solids,
+    /// What stands for them in a residual beside a known solution
+    linearized: Option<Arc<LinearizedSolids>>,
     evolving: Evolving,
     mass: Option<SparseMatrix>,
     /// η M of the bodies' damping, and the η of each body
@@ -80,6 +82,7 @@ impl Assembler {
             layout: Layout::new(model, term::skew(model)),
             evolving: Evolving::new(model, solids.constant()),
             solids,
+            linearized: None,
             mass: None,
             damping_mass: None,
             weight: supports::weight(model),
@@ -129,6 +132,35 @@ impl Assembler {
         })
     }
 
+    /// Computes the residual beside a solution about which the bodies are linearized.
+    ///
+    /// # Errors
+    /// The same as for [`Assembler::residual`].
+    pub fn residual_beside(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        solids: Option<Arc<LinearizedSolids>>,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        self.linearized = solids;
+        let evaluated = self.residual(trial, u, system);
+        self.linearized = None;
+        evaluated
+    }
+
+    /// Linearizes the forces of the bodies about `u`; `None` where nodes follow others by their rotation, with which forces turn.
+    ///
+    /// # Errors
+    /// Returns [`TrialFailure`] if an element is inverted.
+    pub fn linearized(&mut self, u: &[f64]) -> Result<Option<LinearizedSolids>, TrialFailure> {
+        let Self { model, layout, solids, .. } = self;
+        if !model.linkage.is_empty() {
+            return Ok(None);
+        }
+        solids.linearized(u, layout).map(Some)
+    }
+
     /// Computes the residual, and the tangent on request, at the displacement `u` with the given responses of the contact
     /// points.
     ///
@@ -162,11 +194,17 @@ impl Assembler {
         self.note_contacts(trial, responses);
         self.balance(trial, u, tangent, system);
         supports::prescribe(model, self.weight, trial, u, tangent, system)?;
-        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
         self.equilibrium.retard(model, trial.step);
-        self.equilibrium.measure(model, mass, trial, u, &self.magnitudes, system);
+        system.forces = norm(&self.magnitudes);
+        system.imbalance = self.imbalance(trial, u, &system.residual);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// Returns the largest ‖r‖/‖f‖ of a part of the model, by the forces last evaluated, at the same displacement.
+    pub fn imbalance(&self, trial: Trial, u: &[f64], residual: &[f64]) -> f64 {
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.imbalance(&self.model, mass, trial, u, &self.magnitudes, residual)
     }
 
     /// Computes the forces that depend on the displacement `u` only, and everything else that an accepted state takes from the
@@ -212,7 +250,7 @@ impl Assembler {
         scaled: bool,
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
-        let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
+        let Self { model, layout, solids, linearized, evolving, damping_mass, magnitudes, evaluation, .. } = self;
         let Evaluation {
             force,
             loads,
@@ -237,7 +275,10 @@ impl Assembler {
         for term in terms {
             match term {
                 Term::Solids => {
-                    let elastic = solids.add(u, v, &mut sums)?;
+                    let elastic = match linearized {
+                        Some(linearized) => linearized.add(u, &mut sums),
+                        None => solids.add(u, v, &mut sums)?,
+                    };
                     let evolved = evolving.add(model, trial, u, memory, &mut sums)?;
                     *strain_energy = elastic + evolved.stored;
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);

@@ -19,8 +19,7 @@ use super::trial::Trial;
 use super::{links, supports};
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
-use crate::linear::system::System;
-use crate::linear::{SparseMatrix, norm};
+use crate::linear::SparseMatrix;
 use crate::mesh::configuration::Configuration;
 use crate::model::boundary::Absorber;
 use crate::model::state::State;
@@ -154,21 +153,20 @@ impl ConvergenceCriterion {
 }
 
 impl ConvergenceCriterion {
-    /// Computes the norm of all forces, and the largest relative residual of a part, (1) and (2).
-    pub(super) fn measure(
+    /// Returns the largest relative residual of a part, (1) and (2).
+    pub(super) fn imbalance(
         &self,
         model: &Model,
         mass: Option<&SparseMatrix>,
         trial: Trial,
         u: &[f64],
         magnitudes: &[f64],
-        system: &mut System,
-    ) {
-        system.forces = norm(magnitudes);
+        residual: &[f64],
+    ) -> f64 {
         let tolerance = model.newton.tolerance;
-        let free = supports::free(model, trial.step, &system.residual);
+        let free = supports::free(model, trial.step, residual);
         let mut round_off = None;
-        system.imbalance = missed(model, trial, u);
+        let mut imbalance = missed(model, trial, u);
         for part in &self.parts {
             let norm = |values: &[f64]| part.nodes.iter().map(|&node| square(values, node)).sum::<f64>().sqrt();
             let residual = norm(&free);
@@ -181,8 +179,9 @@ impl ConvergenceCriterion {
                 residual / forces.max(hidden / tolerance)
             };
             // NaN is not an equilibrium.
-            system.imbalance = if share.is_nan() { f64::INFINITY } else { system.imbalance.max(share) };
+            imbalance = if share.is_nan() { f64::INFINITY } else { imbalance.max(share) };
         }
+        imbalance
     }
 
     /// Norm of the nodal forces of each contact at the last evaluation [F].

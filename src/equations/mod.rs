@@ -45,4 +45,5 @@ pub mod trial;
 pub use assembler::Assembler;
 pub use coupling::Coupling;
 pub use evaluation::{ContactCounts, Evaluation, Seconds};
+pub use solids::LinearizedSolids;
 pub use trial::Trial;

@@ -1,4 +1,4 @@
-//! `gradients.csv`: derivatives of the quantities of the history by parameters of the case, at its rows.
+//! `gradients.csv`: derivatives of the quantities of the history and of the probes by parameters of the case, at their rows.
 //!
 //! ```text
 //! dQ/dθ = Σ w_k Q(θ + k ε)/ε        k = −1, 1, w = −½, ½;  k = 0, ±1, ±2, w = ∓3/2, ±2, ∓½ at the end of the range of θ
@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::csv::{self, Rows, Standing, Table};
 use super::history::HistoryRows;
+use super::probes::ProbeRows;
 use super::quantities::INCREMENT;
 use super::warnings::Warn;
 use crate::laws::friction::Regime;
@@ -35,17 +36,10 @@ pub const FILE: &str = "gradients.csv";
 pub struct Parameter {
     /// its place in the case
     pub place: String,
+    /// whether it is one of the bodies
+    pub is_of_bodies: bool,
     /// w_k/ε, and the model with θ + k ε
     pub neighbours: Vec<(f64, Arc<Model>)>,
-}
-
-/// The neighbours of a run.
-#[derive(Clone, Debug)]
-pub struct Neighbours {
-    /// the model of the run, to be solved as exactly as those beside it
-    pub middle: Arc<Model>,
-    /// those of every parameter
-    pub parameters: Vec<Parameter>,
 }
 
 /// Reliability of a derivative.
@@ -58,11 +52,12 @@ pub struct Account {
     pub lost_at: Option<f64>,
 }
 
-/// A neighbour of the run, its weight, and the rows of its history.
+/// A neighbour of the run, its weight, and the rows of its tables.
 struct Side {
     weight: f64,
     neighbour: Neighbour,
-    rows: HistoryRows,
+    history: HistoryRows,
+    probes: ProbeRows,
 }
 
 /// A parameter and its neighbours.
@@ -75,14 +70,13 @@ struct Derivative {
 /// Saved memory of a derivative: its place, its account, and state, step and rows of its neighbours.
 type Memory = (String, Account, Vec<(State, Option<usize>, Vec<u8>)>);
 
-/// Saved memory of all: extent of the table, state and step of the neighbour with the value of the run, and the derivatives.
-type Whole = (Standing, (State, Option<usize>), Vec<Memory>);
+/// Saved memory of all: extent of the table, and the derivatives.
+type Whole = (Standing, Vec<Memory>);
 
 /// Observer that writes `gradients.csv`.
 pub struct Gradients {
     table: Table,
     tangent: Tangent,
-    middle: Neighbour,
     derivatives: Vec<Derivative>,
     /// Number of quantities
     quantities: usize,
@@ -101,12 +95,13 @@ impl Gradients {
     pub fn new(
         folder: &Path,
         model: &Arc<Model>,
-        Neighbours { middle, parameters }: &Neighbours,
+        parameters: &[Parameter],
         goes_on: bool,
         warn: Warn,
     ) -> Result<Self, Error> {
-        let (_, header) = HistoryRows::new(model);
-        let quantities = &header[INCREMENT.len()..];
+        let [history, probes] = [HistoryRows::new(model).1, ProbeRows::new(model).1];
+        let quantities: Vec<String> =
+            history.into_iter().skip(INCREMENT.len()).chain(probes.into_iter().skip(1)).collect();
         let of = |parameter: &Parameter| {
             quantities.iter().map(|quantity| format!("d({quantity})/d({})", parameter.place)).collect::<Vec<_>>()
         };
@@ -114,20 +109,19 @@ impl Gradients {
         let columns: Vec<String> = ["time", "step"].map(String::from).into_iter().chain(columns).collect();
         let path = folder.join(FILE);
         let table = if goes_on { Table::reopen(&path, columns) } else { Table::create(&path, columns) }?;
-        let side = |(weight, model): &(f64, Arc<Model>)| Side {
-            weight: *weight,
-            neighbour: Neighbour::new(model.clone()),
-            rows: HistoryRows::new(model).0,
-        };
-        let derivative = |parameter: &Parameter| Derivative {
-            place: parameter.place.clone(),
-            sides: parameter.neighbours.iter().map(side).collect(),
-            account: Account::default(),
+        let derivative = |parameter: &Parameter| {
+            let side = |(weight, model): &(f64, Arc<Model>)| Side {
+                weight: *weight,
+                neighbour: Neighbour::new(model.clone(), !parameter.is_of_bodies),
+                history: HistoryRows::new(model).0,
+                probes: ProbeRows::new(model).0,
+            };
+            let sides = parameter.neighbours.iter().map(side).collect();
+            Derivative { place: parameter.place.clone(), sides, account: Account::default() }
         };
         Ok(Self {
             table,
             tangent: Tangent::new(model),
-            middle: Neighbour::new(middle.clone()),
             derivatives: parameters.iter().map(derivative).collect(),
             quantities: quantities.len(),
             warn,
@@ -150,8 +144,10 @@ impl Derivative {
 
     /// The derivatives of the row at the accepted state; contact points at a kink there are counted.
     fn row(&mut self) -> Vec<f64> {
-        let one = |Side { weight, neighbour: Neighbour { model, old, state, .. }, rows }: &mut Side| {
-            (*weight, rows.values(model, old, state), statuses(model, state))
+        let one = |Side { weight, neighbour: Neighbour { model, old, state, .. }, history, probes }: &mut Side| {
+            let mut row = history.values(model, old, state);
+            row.extend(probes.values(model, state));
+            (*weight, row, statuses(model, state))
         };
         let all: Vec<_> = self.sides.iter_mut().map(one).collect();
         let Some(((_, first, statuses), others)) = all.split_first() else { return Vec::new() };
@@ -175,19 +171,17 @@ impl Observer for Gradients {
     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(new) = attempt.accepted else { return Ok(()) };
         let clock = Instant::now();
-        let Self { table, tangent, middle, derivatives, quantities, warn, warnings, .. } = self;
+        let Self { table, tangent, derivatives, quantities, warn, warnings, .. } = self;
         let Attempt { step, step_number, ended, old, passes, .. } = *attempt;
         let lead = Lead { step, number: step_number, ended, old, new, passes };
         let alive = derivatives.iter_mut().filter(|derivative| derivative.lives());
-        let mut sides: Vec<&mut Neighbour> =
-            alive.flat_map(|derivative| derivative.sides.iter_mut().map(|side| &mut side.neighbour)).collect();
-        let mut followed = follow(&lead, tangent, middle, &mut sides).into_iter();
+        let groups = alive.map(|derivative| derivative.sides.iter_mut().map(|side| &mut side.neighbour).collect());
+        let mut followed = follow(&lead, tangent, groups.collect()).into_iter();
         table.number(new.time);
         table.text(&step.name);
         for derivative in derivatives.iter_mut() {
             if derivative.lives() {
-                let all: Vec<_> = followed.by_ref().take(derivative.sides.len()).collect();
-                if let Some(failure) = all.into_iter().find_map(Result::err) {
+                if let Some(Err(failure)) = followed.next() {
                     derivative.account.lost_at = Some(new.time);
                     let warning = format!(
                         "gradients.csv: no derivative by {} from t = {} on: a run with a slightly different value cannot make the \
@@ -215,38 +209,34 @@ impl Observer for Gradients {
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         let mut memories: Vec<Memory> = Vec::new();
         for Derivative { place, sides, account } in &self.derivatives {
-            let side = |Side { neighbour, rows, .. }: &Side| {
-                Ok::<_, Error>((neighbour.state.clone(), neighbour.begun, rows.save()?))
+            let side = |Side { neighbour, history, .. }: &Side| {
+                Ok::<_, Error>((neighbour.state.clone(), neighbour.begun, history.save()?))
             };
             memories.push((place.clone(), account.clone(), sides.iter().map(side).collect::<Result<_, _>>()?));
         }
-        csv::remembered(&(self.table.standing()?, (&self.middle.state, self.middle.begun), memories))
+        csv::remembered(&(self.table.standing()?, memories))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, (middle, _), memories) = csv::recalled::<Whole>(memory)?;
+        let (stood, memories) = csv::recalled::<Whole>(memory)?;
         let of_these = |(derivative, (place, _, sides)): (&Derivative, &Memory)| {
             let fits = |(side, (state, ..)): (&Side, &(State, _, _))| is_of(state, &side.neighbour.model);
             let Derivative { place: own, sides: neighbours, .. } = derivative;
             own == place && neighbours.len() == sides.len() && neighbours.iter().zip(sides).all(fits)
         };
-        if !is_of(&middle, &self.middle.model)
-            || memories.len() != self.derivatives.len()
-            || !self.derivatives.iter().zip(&memories).all(of_these)
-        {
+        if memories.len() != self.derivatives.len() || !self.derivatives.iter().zip(&memories).all(of_these) {
             return Err(csv::failed(Path::new(FILE), &"the checkpoint holds derivatives by other parameters"));
         }
         self.table.check(&stood)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, (middle, begun), memories) = csv::recalled::<Whole>(memory)?;
-        self.middle.go_on(middle, begun);
+        let (stood, memories) = csv::recalled::<Whole>(memory)?;
         for (derivative, (_, account, sides)) in self.derivatives.iter_mut().zip(memories) {
             derivative.account = account;
             for (side, (state, begun, row)) in derivative.sides.iter_mut().zip(sides) {
                 side.neighbour.go_on(state, begun);
-                side.rows.restore(&row)?;
+                side.history.restore(&row)?;
             }
         }
         self.table.cut(stood)

@@ -38,16 +38,23 @@ impl Rows for ProbeRows {
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         table.number(state.time);
-        let values = values(model, state, &self.0);
+        table.numbers(self.values(model, state));
+        table.end_row_as(attempt.row)
+    }
+}
+
+impl ProbeRows {
+    /// Numbers of a row behind its time.
+    pub(super) fn values(&self, model: &Model, state: &State) -> Vec<f64> {
+        let known = values(model, state, &self.0);
+        let mut row = Vec::new();
         for (probe, stencil) in model.requests.probes.iter().zip(&self.0) {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
-                Reading::by(stencil, &values, probe, model, state);
-            let CauchyStress { xx, yy, zz, xy } = stress;
-            let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
-            let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
-            table.numbers(all);
+                Reading::by(stencil, &known, probe, model, state);
+            row.extend([u.x, u.y, v.x, v.y].into_iter().chain(strain).chain(stress.components()));
+            row.extend(model.mesh.section.is_axisymmetric().then_some(hoop_strain));
         }
-        table.end_row_as(attempt.row)
+        row
     }
 }
 

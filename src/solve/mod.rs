@@ -68,6 +68,11 @@ impl Workspace {
         }
     }
 
+    /// States of the contact points where the equations were evaluated last.
+    pub fn contacts(&self) -> &[Vec<ContactState>] {
+        &self.assembler.evaluation.contacts
+    }
+
     /// Whether linear bodies are condensed on the contact nodes in a step.
     pub fn condenses(&self, step: &Step) -> bool {
         self.interface.is_some() && is_linear(self.assembler.model(), step)

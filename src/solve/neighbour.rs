@@ -1,28 +1,41 @@
-//! Equilibrium of a model that differs little from the one of a run, at an increment that the run has solved: the tangent of the run
-//! serves both.
+//! Equilibrium of models that differ little from the one of a run, at an increment that the run has solved: the tangent of the run
+//! serves all of them.
 //!
 //! ```text
-//! K Δu = −r′(u′_k),   u′_{k+1} = u′_k + Δu        until every part has ‖r′‖ ≤ 1e-12 ‖f‖
-//! K = ∂r/∂u at the solution of the run, without presumptions, factorized once for all its neighbours
+//! r′(u′) = r(u),   u′ ← u′ − K⁻¹ (r′ − r)              until ‖r′ − r‖ ≤ 1e-12 ‖f‖                               (1)
+//! K = ∂r/∂u at the solution u of the run, without presumptions, factorized once for all its neighbours
 //! ```
 //!
-//! r′ are the neighbour's own equations. Its tangent differs from K by O(ε) if its parameters and its state do, so every
-//! correction leaves a fraction O(ε) of the error: one or two are enough. If a contact point has another status than in the run they are
-//! not, and the neighbour is solved by Newton's method with its own tangents.
+//! r is the residual that the tolerance of the run has left, r′ that of a neighbour by its own equations. Its tangent differs from K by
+//! O(ε) if its parameters and its state do, so a correction leaves a fraction O(ε) of the error: one or two are enough.
+//!
+//! Two neighbours on either side of the run are corrected by what they have apart and what they have in common:
+//! ```text
+//! u± ← u± ∓ K⁻¹ (r+ − r−)/2 − K⁻¹ ((r+ + r−)/2 − r)                                                            (2)
+//! ```
+//! The first part is the derivative. Their tangents differ from K by as much in opposite directions, so a correction leaves a fraction O(ε²)
+//! of it. The second part is O(ε²) and drops out of the difference: it is corrected only where it is larger than that, at kinks.
+//!
+//! Bodies that θ does not act on, and that have no internal variables, are linear so close to the run: K_b (u′ − u) stands for the change of
+//! their forces, with the same tangent for all neighbours.
+//!
+//! If a contact point has another status than in the run, K may not serve. The neighbours are then solved by Newton's method with their
+//! own tangents, r′ = 0.
 //!
 //! Source: the simplified Newton method, Deuflhard (2011), Newton Methods for Nonlinear Problems, 2.1.2.
 
 use std::sync::Arc;
 
-use super::equilibrium::equilibrium;
+use super::equilibrium::{equilibrium, multiply};
 use super::failure::IncrementFailure;
 use super::newton::NewtonFailure;
 use super::{Pass, Workspace};
-use crate::contact::force::ContactState;
-use crate::equations::{Assembler, Trial};
+use crate::equations::sums::TrialFailure;
+use crate::equations::{Assembler, LinearizedSolids, Trial};
 use crate::linear::system::{Request, System};
 use crate::linear::{LinearSolver, Multifrontal};
 use crate::model::Model;
+use crate::model::state::State;
 
 /// Required ‖r‖/‖f‖ of every part of a neighbour's solution [-]
 pub const TOLERANCE: f64 = 1e-12;
@@ -34,11 +47,16 @@ const SLOW: f64 = 0.1;
 /// could be, and larger than round-off is.
 const SURE: f64 = 1e-3;
 
+/// The same of what two neighbours have in common beyond the residual of the run: of second order where nothing has a kink [-]
+const COMMON: f64 = 1e-9;
+
 /// The tangent of a run at a solution, and its factors.
 pub struct Tangent {
     assembler: Assembler,
     system: System,
     solver: Box<dyn LinearSolver>,
+    /// Forces of the bodies there, if neighbours with the same bodies want them
+    solids: Option<Arc<LinearizedSolids>>,
     /// Whether the matrix could be factorized
     serves: bool,
 }
@@ -48,29 +66,31 @@ impl Tangent {
     pub fn new(model: &Arc<Model>) -> Self {
         let assembler = Assembler::new(model);
         let system = assembler.system();
-        Self { assembler, system, solver: Box::<Multifrontal>::default(), serves: false }
+        Self { assembler, system, solver: Box::<Multifrontal>::default(), solids: None, serves: false }
     }
 
     /// Evaluates and factorizes it at the solution of a pass of the run, in the order of elimination of the run: a resumed one has the same
-    /// bits.
+    /// bits. The forces of the bodies are linearized there on request.
     ///
     /// # Errors
     /// Returns [`IncrementFailure`] if the equations cannot be evaluated there.
-    pub fn of(&mut self, trial: Trial, pass: &Pass) -> Result<(), IncrementFailure> {
-        let Self { assembler, system, solver, serves } = self;
+    pub fn of(&mut self, trial: Trial, pass: &Pass, linearize: bool) -> Result<(), IncrementFailure> {
+        let Self { assembler, system, solver, solids, serves } = self;
         assembler.couple(&pass.coupling);
         let u = &pass.displacement;
         let evaluated = assembler.with_responses(trial, u, Request::Tangent, |assembler, responses| {
             assembler.assemble(trial, u, responses, Request::Tangent, system)
         });
-        evaluated.map_err(|failure| IncrementFailure::Newton(NewtonFailure::Evaluation(failure)))?;
+        let linearized = evaluated.and_then(|()| if linearize { assembler.linearized(u) } else { Ok(None) });
+        let found = linearized.map_err(|failure| IncrementFailure::Newton(NewtonFailure::Evaluation(failure)))?;
+        *solids = found.map(Arc::new);
         *serves = solver.factorize(&system.tangent).is_ok();
         Ok(())
     }
 
-    /// States of the contacts of the run where it was evaluated.
-    pub fn contacts(&self) -> &[Vec<ContactState>] {
-        &self.assembler.evaluation.contacts
+    /// Gives the state of the run at the start of the increment the multipliers from what was found where it was evaluated.
+    pub fn multiply(&self, old: &mut State) {
+        multiply(self.assembler.model(), &self.assembler.evaluation.contacts, old);
     }
 
     /// −K⁻¹ r
@@ -81,36 +101,117 @@ impl Tangent {
     }
 }
 
-/// Equilibrium of a neighbour of the run whose tangent is given, from the start value `u`. The equations are evaluated last at the
-/// solution.
+/// A neighbour on its way to equilibrium.
+pub struct Seeker<'a> {
+    /// its model
+    pub model: &'a Model,
+    /// its increment
+    pub trial: Trial<'a>,
+    /// its workspace; the equations are evaluated last at the solution
+    pub work: &'a mut Workspace,
+    /// u [L]
+    pub u: Vec<f64>,
+    /// whether its bodies are those of the run
+    pub has_same_bodies: bool,
+}
+
+/// A combination of the residuals of some neighbours, and what corrections have left of it.
+struct Part {
+    /// Factor of every neighbour
+    factors: Vec<f64>,
+    /// ‖r‖/‖f‖ up to which it counts as nothing [-]
+    tolerance: f64,
+    /// ‖r‖/‖f‖ at the last evaluation, and before it
+    left: f64,
+    before: f64,
+}
+
+impl Part {
+    fn new(factors: Vec<f64>, tolerance: f64) -> Self {
+        Self { factors, tolerance, left: f64::INFINITY, before: f64::INFINITY }
+    }
+
+    /// The parts of (2) of two neighbours, or each by itself, (1).
+    fn of(count: usize) -> Vec<Self> {
+        match count {
+            2 => vec![Self::new(vec![1.0, -1.0], TOLERANCE), Self::new(vec![1.0, 1.0], COMMON)],
+            _ => {
+                let alone = |k: usize| (0..count).map(|other| f64::from(u8::from(other == k))).collect();
+                (0..count).map(|k| Self::new(alone(k), TOLERANCE)).collect()
+            }
+        }
+    }
+
+    /// Σ factor (r′ − r)/Σ |factor|
+    fn residual(&self, neighbours: &[Seeker], own: &[f64]) -> Vec<f64> {
+        let count: f64 = self.factors.iter().map(|factor| factor.abs()).sum();
+        let mut sum = vec![0.0; own.len()];
+        for (factor, neighbour) in self.factors.iter().zip(neighbours).filter(|(factor, _)| **factor != 0.0) {
+            let residuals = neighbour.work.system.residual.iter().zip(own);
+            sum.iter_mut().zip(residuals).for_each(|(sum, (residual, own))| *sum += factor / count * (residual - own));
+        }
+        sum
+    }
+
+    /// Whether nothing is left of it. What has not been corrected yet may be less than its error so far, and grow from increment to
+    /// increment; what neighbours have in common drops out of their difference.
+    fn is_solved(&self) -> bool {
+        let is_sure = self.before.is_finite() && (self.left <= SURE * self.before || self.before <= TOLERANCE);
+        self.left == 0.0 || self.left <= self.tolerance && (is_sure || self.tolerance == COMMON)
+    }
+
+    fn falls(&self) -> bool {
+        self.left <= self.tolerance || self.left <= SLOW * self.before
+    }
+}
+
+impl Seeker<'_> {
+    fn evaluate(&mut self, tangent: &Tangent) -> Result<(), TrialFailure> {
+        let Workspace { assembler, system, .. } = &mut *self.work;
+        let solids = tangent.solids.clone().filter(|_| self.has_same_bodies);
+        assembler.residual_beside(self.trial, &self.u, solids, system)
+    }
+
+    /// Largest ‖r‖/‖f‖ of a residual, by the forces of this neighbour.
+    fn share_of(&self, residual: &[f64]) -> f64 {
+        self.work.assembler.imbalance(self.trial, &self.u, residual)
+    }
+}
+
+/// Equilibrium of neighbours whose difference is a derivative, beside the run whose tangent is given.
 ///
 /// # Errors
-/// Returns [`IncrementFailure`] if there is none near `u`.
-pub fn beside(
-    model: &Model,
-    trial: Trial,
-    mut u: Vec<f64>,
-    tangent: &mut Tangent,
-    work: &mut Workspace,
-) -> Result<Vec<f64>, IncrementFailure> {
-    let mut before = f64::INFINITY;
-    while tangent.serves {
-        let Workspace { assembler, system, .. } = work;
-        if assembler.residual(trial, &u, system).is_err() {
+/// Returns [`IncrementFailure`] if there is none near the run.
+pub fn beside(mut neighbours: Vec<Seeker>, tangent: &mut Tangent) -> Result<Vec<Vec<f64>>, IncrementFailure> {
+    let mut parts = Part::of(neighbours.len());
+    while tangent.serves && neighbours.iter_mut().all(|neighbour| neighbour.evaluate(tangent).is_ok()) {
+        let mut ways = Vec::new();
+        for part in &mut parts {
+            let residual = part.residual(&neighbours, &tangent.system.residual);
+            let own = part.factors.iter().position(|factor| *factor != 0.0).unwrap_or_default();
+            (part.before, part.left) = (part.left, neighbours[own].share_of(&residual));
+            if !part.is_solved() {
+                ways.push((part.factors.clone(), residual));
+            }
+        }
+        if ways.is_empty() {
+            return Ok(neighbours.into_iter().map(|neighbour| neighbour.u).collect());
+        }
+        if !parts.iter().all(Part::falls) {
             break;
         }
-        let begins = before.is_infinite();
-        let share = system.imbalance / before;
-        if !begins && system.imbalance <= TOLERANCE && (share <= SURE || before <= TOLERANCE) {
-            return Ok(u);
+        for (factors, residual) in ways {
+            let way = tangent.correction(&residual);
+            for (neighbour, factor) in neighbours.iter_mut().zip(factors) {
+                neighbour.u.iter_mut().zip(&way).for_each(|(u, way)| *u += factor * way);
+            }
         }
-        if !(share <= SLOW || system.imbalance <= TOLERANCE) {
-            break;
-        }
-        before = system.imbalance;
-        let way = tangent.correction(&system.residual);
-        u.iter_mut().zip(way).for_each(|(u, way)| *u += way);
     }
+    neighbours.into_iter().map(by_itself).collect()
+}
+
+/// Equilibrium of a neighbour by Newton's method.
+fn by_itself(Seeker { model, trial, work, mut u, .. }: Seeker) -> Result<Vec<f64>, IncrementFailure> {
     if !u.iter().all(|u| u.is_finite()) {
         u.clone_from(&trial.old.displacement);
     }

@@ -7,8 +7,7 @@
 //! A neighbour makes the increments that the run has accepted, as they were, and as many passes of the augmented Lagrangian with the
 //! same penalties: the derivative is that of the discrete run. Everything else is its own, by the ordinary equations and
 //! laws: the states of bodies and contact points, starts of steps, accelerations, energies. It is solved with the tangent of the run
-//! ([`crate::solve::neighbour`]), from a solution beside it and its distance from that so far, continued at its pace. That solution is
-//! not the one of the run, which is as inexact as its tolerance allows, but of a neighbour with the same value.
+//! ([`crate::solve::neighbour`]), from the solution of the run and its distance from that so far, continued at its pace.
 
 use std::sync::Arc;
 
@@ -20,7 +19,7 @@ use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::solve::equilibrium::multiply;
 use crate::solve::failure::IncrementFailure;
-use crate::solve::neighbour::{Tangent, beside};
+use crate::solve::neighbour::{Seeker, Tangent, beside};
 use crate::solve::{Pass, Workspace};
 
 /// An accepted increment of the run.
@@ -55,6 +54,8 @@ impl Lead<'_> {
 pub struct Neighbour {
     /// its model
     pub model: Arc<Model>,
+    /// Whether its bodies are those of the run
+    has_same_bodies: bool,
     /// state at the start of the last increment
     pub old: State,
     /// accepted state
@@ -66,21 +67,21 @@ pub struct Neighbour {
     work: Workspace,
 }
 
-/// Solution of a neighbour in a pass.
+/// A neighbour within an increment.
 struct OnItsWay {
     /// The state at the start of the increment, with the multipliers of the pass
     old: State,
-    /// u of the neighbour − u of the run at the last pass, or as expected [L]
-    distance: Vec<f64>,
+    /// u at the last pass, or as expected, and that of the run [L]
     u: Vec<f64>,
+    beside: Vec<f64>,
 }
 
 impl Neighbour {
-    /// Creates a neighbour in the initial state of its model.
-    pub fn new(model: Arc<Model>) -> Self {
+    /// Creates a neighbour in the initial state of its model, whose bodies may be those of the run.
+    pub fn new(model: Arc<Model>, has_same_bodies: bool) -> Self {
         let state = model.initial_state();
         let work = Workspace::new(&model, Box::<Multifrontal>::default());
-        Self { old: state.clone(), state, begun: None, step: None, work, model }
+        Self { old: state.clone(), state, begun: None, step: None, work, model, has_same_bodies }
     }
 
     /// Goes on from a saved state, in the step with this number.
@@ -88,8 +89,8 @@ impl Neighbour {
         (self.state, self.begun, self.step) = (state, begun, None);
     }
 
-    /// Begins the step of the increment if it is a new one. It starts beside this state of another neighbour, or beside the run.
-    fn set_out(&mut self, lead: &Lead, beside: Option<&State>) -> Result<OnItsWay, IncrementFailure> {
+    /// Begins the increment, and its step if that is a new one.
+    fn set_out(&mut self, lead: &Lead) -> Result<OnItsWay, IncrementFailure> {
         let Self { model, state, begun, step, work, .. } = self;
         let new = *begun != Some(lead.number);
         if new || step.is_none() {
@@ -99,36 +100,30 @@ impl Neighbour {
         if let (true, Some(step)) = (new, step) {
             *state = begin(model, step, state, work)?;
         }
-        let other = beside.unwrap_or(lead.old);
-        let mut distance: Vec<f64> =
-            state.displacement.iter().zip(&other.displacement).map(|(own, other)| own - other).collect();
-        if let (Some(own), Some(other)) = (&state.last_increment, &other.last_increment) {
+        let mut way =
+            OnItsWay { u: state.displacement.clone(), beside: lead.old.displacement.clone(), old: state.clone() };
+        if let (Some(own), Some(run)) = (&state.last_increment, &lead.old.last_increment) {
             let share = (lead.new.time - lead.old.time) / own.dt;
-            let ways = own.displacement.iter().zip(&other.displacement);
-            distance.iter_mut().zip(ways).for_each(|(distance, (own, other))| *distance += share * (own - other));
+            let ahead = |u: &mut [f64], way: &[f64]| u.iter_mut().zip(way).for_each(|(u, way)| *u += share * way);
+            ahead(&mut way.u, &own.displacement);
+            ahead(&mut way.beside, &run.displacement);
         }
-        Ok(OnItsWay { old: state.clone(), distance, u: Vec::new() })
+        Ok(way)
     }
 
-    /// Solves a pass, beside the solution `other`.
-    fn pass(
-        &mut self,
-        lead: &Lead,
-        pass: &Pass,
-        other: &[f64],
-        tangent: &mut Tangent,
-        mut way: OnItsWay,
-    ) -> Result<OnItsWay, IncrementFailure> {
-        let Self { model, step, work, .. } = self;
-        let Some(step) = step else { return Ok(way) };
-        if !way.u.is_empty() {
-            multiply(model, &work.assembler.evaluation.contacts, &mut way.old);
-        }
+    /// Prepares a pass.
+    fn seeker<'a>(&'a mut self, lead: &Lead, pass: &Pass, way: &'a OnItsWay) -> Option<Seeker<'a>> {
+        let Self { model, has_same_bodies, step, work, .. } = self;
         work.assembler.couple(&pass.coupling);
-        let start = other.iter().zip(&way.distance).map(|(u, distance)| u + distance).collect();
-        way.u = beside(model, lead.trial(&way.old, step, pass), start, tangent, work)?;
-        way.distance = way.u.iter().zip(other).map(|(own, other)| own - other).collect();
-        Ok(way)
+        let u = pass.displacement.iter().zip(&way.u).zip(&way.beside).map(|((run, own), beside)| run + (own - beside));
+        let u = u.collect();
+        Some(Seeker {
+            model,
+            trial: lead.trial(&way.old, step.as_ref()?, pass),
+            work,
+            u,
+            has_same_bodies: *has_same_bodies,
+        })
     }
 
     /// Accepts the solution of the last pass.
@@ -141,40 +136,52 @@ impl Neighbour {
     }
 }
 
-/// Lets neighbours of a run make the increment that it has accepted, all with the same tangents. One with the value of the run itself goes
-/// ahead: it is solved as exactly as they are, and they start beside it. A neighbour that fails stays behind; none can go on if the first
-/// does.
-pub fn follow(
-    lead: &Lead,
-    tangent: &mut Tangent,
-    middle: &mut Neighbour,
-    neighbours: &mut [&mut Neighbour],
-) -> Vec<Result<(), IncrementFailure>> {
-    match ahead(lead, tangent, middle, neighbours) {
-        Ok(followed) => followed,
-        Err(failure) => neighbours.iter().map(|_| Err(failure.clone())).collect(),
-    }
-}
+/// Neighbours whose difference is one derivative: two on either side of the run, or more on one side.
+pub type Group<'a> = Vec<&'a mut Neighbour>;
 
-fn ahead(
-    lead: &Lead,
-    tangent: &mut Tangent,
-    middle: &mut Neighbour,
-    neighbours: &mut [&mut Neighbour],
-) -> Result<Vec<Result<(), IncrementFailure>>, IncrementFailure> {
-    let mut first = middle.set_out(lead, None)?;
-    let mut ways: Vec<Result<OnItsWay, IncrementFailure>> =
-        neighbours.iter_mut().map(|neighbour| neighbour.set_out(lead, Some(&middle.state))).collect();
+/// Lets neighbours of a run make the increment that it has accepted, all with the same tangents. A group fails as a whole.
+pub fn follow(lead: &Lead, tangent: &mut Tangent, mut groups: Vec<Group>) -> Vec<Result<(), IncrementFailure>> {
+    let set_out = |group: &mut Group| group.iter_mut().map(|neighbour| neighbour.set_out(lead)).collect();
+    let mut all: Vec<Result<Vec<OnItsWay>, _>> = groups.iter_mut().map(set_out).collect();
     let mut old = lead.old.clone();
+    let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies);
     for (k, pass) in lead.passes.iter().enumerate() {
         if k > 0 {
-            multiply(&middle.model, tangent.contacts(), &mut old);
+            tangent.multiply(&mut old);
         }
-        tangent.of(lead.trial(&old, lead.step, pass), pass)?;
-        first = middle.pass(lead, pass, &pass.displacement, tangent, first)?;
-        let each = neighbours.iter_mut().zip(ways);
-        ways = each.map(|(neighbour, way)| neighbour.pass(lead, pass, &first.u, tangent, way?)).collect();
+        if let Err(failure) = tangent.of(lead.trial(&old, lead.step, pass), pass, linearize) {
+            return groups.iter().map(|_| Err(failure.clone())).collect();
+        }
+        for (group, ways) in groups.iter_mut().zip(&mut all) {
+            if let Ok(found) = ways {
+                if k > 0 {
+                    let each = group.iter().zip(&mut *found);
+                    each.for_each(|(of, way)| multiply(&of.model, of.work.contacts(), &mut way.old));
+                }
+                if let Err(failure) = solve(lead, pass, tangent, group, found) {
+                    *ways = Err(failure);
+                }
+            }
+        }
     }
-    middle.accept(lead, first)?;
-    Ok(neighbours.iter_mut().zip(ways).map(|(neighbour, way)| neighbour.accept(lead, way?)).collect())
+    let arrive = |(group, ways): (&mut Group, Result<Vec<OnItsWay>, _>)| {
+        group.iter_mut().zip(ways?).try_for_each(|(neighbour, way)| neighbour.accept(lead, way))
+    };
+    groups.iter_mut().zip(all).map(arrive).collect()
+}
+
+/// Solves a pass of a group.
+fn solve(
+    lead: &Lead,
+    pass: &Pass,
+    tangent: &mut Tangent,
+    group: &mut Group,
+    ways: &mut [OnItsWay],
+) -> Result<(), IncrementFailure> {
+    let seekers = group.iter_mut().zip(&*ways).filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, way));
+    let found = beside(seekers.collect(), tangent)?;
+    for (way, u) in ways.iter_mut().zip(found) {
+        (way.u, way.beside) = (u, pass.displacement.clone());
+    }
+    Ok(())
 }

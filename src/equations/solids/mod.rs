@@ -31,6 +31,40 @@ pub(super) fn skew(model: &Model) -> Vec<usize> {
     (0..model.solids.len()).filter(is_skew).flat_map(|e| model.mesh.elements[e].nodes.iter().copied()).collect()
 }
 
+/// Forces of the bodies about a displacement, to first order, and their energy, to second; those of bodies with internal variables or an
+/// unsymmetric tangent are not among them.
+///
+/// ```text
+/// f(u) = f₀ + K (u − u₀),   W(u) = W₀ + f₀·(u − u₀) + ½ (u − u₀)·K (u − u₀)
+/// ```
+pub struct LinearizedSolids {
+    /// u₀ [L]
+    about: Vec<f64>,
+    /// f₀ [F]
+    force: Vec<f64>,
+    /// Σ of the magnitudes of the forces of elements [F]
+    magnitudes: Vec<f64>,
+    /// W₀ [F·L]
+    energy: f64,
+    /// K [F/L]
+    stiffness: SparseMatrix,
+}
+
+impl LinearizedSolids {
+    /// Computes the forces in `sums`; returns the stored energy.
+    pub(super) fn add(&self, u: &[f64], sums: &mut Sums) -> f64 {
+        let Self { about, force, magnitudes, energy, stiffness } = self;
+        let way: Vec<f64> = u.iter().zip(about).map(|(u, about)| u - about).collect();
+        let change = stiffness.multiply(&way);
+        let both = force.iter().zip(&change);
+        sums.force.iter_mut().zip(both.clone()).for_each(|(sum, (force, change))| *sum = force + change);
+        if let Some(sums) = &mut sums.magnitudes {
+            sums.iter_mut().zip(magnitudes).for_each(|(sum, magnitude)| *sum += magnitude);
+        }
+        energy + way.iter().zip(both).map(|(way, (force, change))| way * (force + 0.5 * change)).sum::<f64>()
+    }
+}
+
 /// Elements of a model and their nodal forces.
 pub(super) struct Solids {
     model: Arc<Model>,
@@ -87,6 +121,15 @@ impl Solids {
         let energy = others.stored(model)? + constant.stored(model, u)?;
         self.write(sums.force, sums.magnitudes.as_deref_mut());
         Ok(energy)
+    }
+
+    /// Linearizes the forces about `u`.
+    pub fn linearized(&mut self, u: &[f64], layout: &Layout) -> Result<LinearizedSolids, TrialFailure> {
+        let [mut force, mut magnitudes] = [vec![0.0; u.len()], vec![0.0; u.len()]];
+        let mut stiffness = self.constant_stiffness(layout).cloned().unwrap_or_else(|| layout.matrix());
+        let (scales, tangent) = (Some(&mut magnitudes[..]), Some(&mut stiffness));
+        let energy = self.add(u, None, &mut Sums { force: &mut force, magnitudes: scales, tangent, layout })?;
+        Ok(LinearizedSolids { about: u.to_vec(), force, magnitudes, energy, stiffness })
     }
 
     /// Computes the viscous forces of the bodies at displacements `u` and velocities `v` in `force`; they resist motion.
