@@ -32,10 +32,10 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 }
 
 impl Evolving {
-    /// Finds the evolving elements of the bodies, except those that are `constant`.
-    pub fn new(model: &Model, constant: &[bool]) -> Self {
-        let is_own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
-        let mut own: Vec<bool> = model.body_of_element.iter().zip(constant).map(is_own).collect();
+    /// Finds the evolving elements that are there, except those that are `constant`.
+    pub fn new(model: &Model, constant: &[bool], are_there: impl Fn(usize) -> bool) -> Self {
+        let is_own = |e: usize| evolves(model, model.body_of_element[e]) && !constant[e] && are_there(e);
+        let mut own: Vec<bool> = (0..constant.len()).map(is_own).collect();
         let elements = model.mesh.elements.iter().zip(&own);
         let dofs = elements.filter(|(_, own)| **own).map(|(element, _)| 2 * element.nodes.len()).max();
         if dofs.is_none() {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::step::Step;
 use crate::contact::force::ContactState;
 
 /// The accepted state at the end of an increment.
@@ -53,9 +54,10 @@ pub struct State {
 #[doc(hidden)]
 impl State {
     /// Begins a step, which refers to the present state.
-    pub fn begin_step(&mut self) {
+    pub fn begin_step(&mut self, step: &Step) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
-        self.step_start = Arc::new(StepStart { displacement, reaction });
+        let (fading, absent) = (Vec::new(), step.absent.clone());
+        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent });
         (self.dt, self.last_increment) = (0.0, None);
     }
 
@@ -97,6 +99,11 @@ impl State {
         }
     }
 
+    /// Whether a body is there.
+    pub fn has(&self, body: usize) -> bool {
+        !self.step_start.absent.get(body).copied().unwrap_or(false)
+    }
+
     /// Whether it was reached by an explicit increment, with accelerations of lumped masses.
     pub fn is_of_explicit(&self) -> bool {
         self.last_increment.is_none() && self.dt > 0.0
@@ -130,6 +137,11 @@ pub struct StepStart {
     pub displacement: Vec<f64>,
     /// reactions at the start of the step [F]
     pub reaction: Vec<f64>,
+    /// What balances the change of the forces by bodies that the step adds or removes; it fades over the step. Empty without
+    /// such [F]
+    pub fading: Vec<f64>,
+    /// whether each body is absent; empty if all are there
+    pub absent: Vec<bool>,
 }
 
 /// Energies [F·L]; the dissipations and the external work are totals since the start.

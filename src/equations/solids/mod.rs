@@ -41,9 +41,10 @@ pub(super) struct Solids {
 }
 
 impl Solids {
-    pub fn new(model: &Arc<Model>) -> Self {
-        let constant = Constant::new(model);
-        let others = Runs::new(model, |e| !constant.is[e]);
+    /// The elements that are there.
+    pub fn new(model: &Arc<Model>, are_there: impl Fn(usize) -> bool + Clone) -> Self {
+        let constant = Constant::new(model, &are_there);
+        let others = Runs::new(model, |e| !constant.is[e] && are_there(e));
         let retardation = model.bodies.iter().map(|body| body.damping.retardation).collect();
         Self { model: model.clone(), constant, others, retardation }
     }
