@@ -26,7 +26,8 @@ use crate::equations::trial::Trial;
 use crate::equations::{contacts, damping, links, loads, supports};
 use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
-use crate::model::{Model, Step};
+use crate::model::Model;
+use crate::model::state::Births;
 
 /// Assembles a model; owns the pattern and reused buffers.
 pub struct Assembler {
@@ -34,6 +35,8 @@ pub struct Assembler {
     layout: Layout,
     /// Whether each body is absent; empty if all are there
     absent: Vec<bool>,
+    /// Elements that came into a deformed model
+    births: Arc<Births>,
     solids: Solids,
     evolving: Evolving,
     mass: Option<SparseMatrix>,
@@ -76,12 +79,14 @@ impl Assembler {
 
     /// Creates the assembler of a model.
     pub fn new(model: &Arc<Model>) -> Self {
-        let solids = Solids::new(model, |_| true);
+        let (births, born) = (Arc::default(), Arc::default());
+        let solids = Solids::new(model, |_| true, &born);
         Self {
             model: model.clone(),
             layout: Layout::new(model, term::skew(model)),
             absent: Vec::new(),
-            evolving: Evolving::new(model, solids.constant(), |_| true),
+            births,
+            evolving: Evolving::new(model, solids.constant(), |_| true, &born),
             solids,
             mass: None,
             damping_mass: None,
@@ -100,19 +105,21 @@ impl Assembler {
         &self.model
     }
 
-    /// Turns to the bodies that are there in a step.
-    fn attend(&mut self, step: &Step) {
-        if self.absent == step.absent {
+    /// Turns to the bodies that are there in a step, as they came.
+    fn attend(&mut self, Trial { step, old, .. }: Trial) {
+        let births = &old.step_start.births;
+        if self.absent == step.absent && (Arc::ptr_eq(&self.births, births) || self.births == *births) {
             return;
         }
         let model = &self.model;
+        let born = model.born_of(births);
         let are_there = |e: usize| step.has(model.body_of_element[e]);
-        self.solids = Solids::new(model, are_there);
-        self.evolving = Evolving::new(model, self.solids.constant(), are_there);
+        self.solids = Solids::new(model, are_there, &born);
+        self.evolving = Evolving::new(model, self.solids.constant(), are_there, &born);
         self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body));
         (self.mass, self.damping_mass) = (None, None);
         self.evaluation.memory.clear();
-        self.absent.clone_from(&step.absent);
+        (self.absent, self.births) = (step.absent.clone(), births.clone());
     }
 
     /// The current coupling of nodes.
@@ -161,7 +168,7 @@ impl Assembler {
         system: &mut System,
     ) -> Result<(), TrialFailure> {
         let clock = Instant::now();
-        self.attend(trial.step);
+        self.attend(trial);
         let model = &*self.model.clone();
         let tangent = request == Request::Tangent;
         if tangent {
@@ -197,7 +204,7 @@ impl Assembler {
     pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             let clock = Instant::now();
-            assembler.attend(trial.step);
+            assembler.attend(trial);
             assembler.solids.retard(trial.step);
             assembler.add(&OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
             if let Some(v) = v {
@@ -426,7 +433,7 @@ impl Assembler {
         u: &[f64],
         responses: &[PairResponse],
     ) -> Result<SparseMatrix, TrialFailure> {
-        self.attend(trial.step);
+        self.attend(trial);
         self.cover(trial, responses);
         let mut tangent = self.layout.matrix();
         if term == Term::Inertia {

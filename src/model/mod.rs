@@ -59,6 +59,8 @@ use method::Chosen;
 pub use method::Method;
 pub use requests::{OutputRequests, Probe, WatchedSet};
 pub use scheme::Scheme;
+#[doc(hidden)]
+pub use stages::Born;
 use state::StepStart;
 pub use state::{Energy, State};
 pub use step::{ForceComponent, Increments, Rupture, Step};
@@ -268,6 +270,7 @@ impl Model {
                 reaction: zero,
                 fading: Vec::new(),
                 absent: self.steps.first().map(|step| step.absent.clone()).unwrap_or_default(),
+                births: Arc::default(),
             }),
             energy: Energy::default(),
         }

@@ -1,6 +1,7 @@
 //! State: all data of increment n needed by increment n + 1. A new state replaces the old one when it is accepted; roll-back is
 //! to drop it.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -56,8 +57,8 @@ impl State {
     /// Begins a step, which refers to the present state.
     pub fn begin_step(&mut self, step: &Step) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
-        let (fading, absent) = (Vec::new(), step.absent.clone());
-        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent });
+        let (fading, absent, births) = (Vec::new(), step.absent.clone(), self.step_start.births.clone());
+        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent, births });
         (self.dt, self.last_increment) = (0.0, None);
     }
 
@@ -129,7 +130,10 @@ pub struct LastIncrement {
     pub ends_in_touch: bool,
 }
 
-/// State of supported dofs at the start of the step.
+/// Displacements of the nodes of elements when they came, by element [L].
+pub type Births = BTreeMap<usize, Vec<[f64; 2]>>;
+
+/// State of supported dofs and of bodies at the start of the step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[doc(hidden)]
 pub struct StepStart {
@@ -142,6 +146,8 @@ pub struct StepStart {
     pub fading: Vec<f64>,
     /// whether each body is absent; empty if all are there
     pub absent: Vec<bool>,
+    /// displacements of the nodes of each element that came into a deformed model [L]
+    pub births: Arc<Births>,
 }
 
 /// Energies [F·L]; the dissipations and the external work are totals since the start.

@@ -12,9 +12,9 @@ use std::sync::Arc;
 use super::accept::{heat, take_stock};
 use super::increment::kinetic;
 use crate::equations::Trial;
-use crate::equations::contacts;
-use crate::equations::links;
+use crate::equations::sums::TrialFailure;
 use crate::equations::supports::{hold, tie, turn};
+use crate::equations::{contacts, links};
 use crate::linear;
 use crate::model::scheme::{Scheme, start_acceleration, start_velocity};
 use crate::model::state::State;
@@ -65,6 +65,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// Lets bodies come or go without a jump: what the forces change by fades over the step. Nodes that only absent bodies have come to
 /// rest. The energy that bodies bring or take counts as external work.
 fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
+    model.bear(step, state).map_err(|(e, share)| IncrementFailure::Start(TrialFailure::narrow(model, e, share)))?;
     model.forget(step, state);
     let mut now = state.clone();
     evaluate_forces(step, &mut now, work)?;

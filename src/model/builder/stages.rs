@@ -115,9 +115,9 @@ impl<'m> Stages<'m> {
                 ));
             }
             let comes = !self.absent[body];
-            if comes && (pair.tied || pair.initial.is_some() || overlaps(pair)) {
+            if comes && (pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair)) {
                 return refused(&format!(
-                    "of `{name}`, which comes, is tied, starts closed or overlaps at mesh positions, which are not those of then: let them \
+                    "of `{name}`, which comes, is tied, starts closed, overlaps or has pores at mesh positions, which are not those of then: let them \
                      share nodes, or touch"
                 ));
             }
