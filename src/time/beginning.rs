@@ -79,6 +79,12 @@ fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Works
     state.external = now.external.iter().zip(&fading).map(|(load, fading)| load + fading).collect();
     state.external.iter_mut().zip(&state.reaction).for_each(|(external, reaction)| *external += reaction);
     state.damping = now.damping;
+    let evaluated = &work.assembler.evaluation.contacts;
+    for ((pair, states), found) in model.contacts.iter().zip(&mut state.contacts).zip(evaluated) {
+        if step.joins(pair) && pair.bodies.iter().flatten().any(|body| step.changed.contains(body)) {
+            states.clone_from(found);
+        }
+    }
     let [strain, contact] = [work.assembler.evaluation.strain_energy, contacts::stored(model, &state.contacts)];
     state.energy.external_work += strain - state.energy.strain + contact - state.energy.contact_elastic;
     (state.energy.strain, state.energy.contact_elastic) = (strain, contact);

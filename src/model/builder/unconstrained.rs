@@ -169,7 +169,8 @@ impl<'m> Groups<'m> {
         }
         let is_checked = |group: &Vec<usize>| {
             let has_bodies = group.iter().any(|&part| !parts.parts[part].bodies.is_empty());
-            has_bodies && group.len() <= FEW_PARTS && !group.iter().any(|&part| parts.parts[part].on_rigid)
+            let is_there = group.iter().any(|&part| !parts.parts[part].nodes.is_empty());
+            is_there && has_bodies && group.len() <= FEW_PARTS && !group.iter().any(|&part| parts.parts[part].on_rigid)
         };
         let members: Vec<Vec<usize>> = joined.groups().into_iter().filter(is_checked).collect();
         let mut place = vec![None; parts.parts.len()];
