@@ -116,7 +116,7 @@ impl Model {
         }
         let x = self.configuration(&state.displacement);
         for (pair, states) in self.contacts.iter().zip(&mut state.contacts) {
-            if pair.bodies.iter().flatten().any(|body| step.changed.contains(body)) {
+            if step.changes(pair) {
                 *states = if step.joins(pair) { pair.initial_states(&x) } else { pair.apart() };
             }
         }

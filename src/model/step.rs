@@ -136,6 +136,11 @@ impl Step {
         self.absent.is_empty() || pair.bodies.iter().flatten().all(|&body| self.has(body))
     }
 
+    /// Whether it adds or removes a side of a contact.
+    pub fn changes(&self, pair: &ContactPair) -> bool {
+        pair.bodies.iter().flatten().any(|body| self.changed.contains(body))
+    }
+
     /// Whether some of its increments are explicit, or may be.
     pub fn may_be_explicit(&self) -> bool {
         self.rupture.is_some() || self.scheme.is_explicit()

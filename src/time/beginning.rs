@@ -81,7 +81,7 @@ fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Works
     state.damping = now.damping;
     let evaluated = &work.assembler.evaluation.contacts;
     for ((pair, states), found) in model.contacts.iter().zip(&mut state.contacts).zip(evaluated) {
-        if step.joins(pair) && pair.bodies.iter().flatten().any(|body| step.changed.contains(body)) {
+        if step.joins(pair) && step.changes(pair) {
             states.clone_from(found);
         }
     }

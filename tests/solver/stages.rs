@@ -422,3 +422,26 @@ fn a_narrow_place_is_told() {
     let said = result.expect_err("no place").to_string();
     assert!(said.contains("of body `bar` at (1.5, 0.5) would come with 40 % of its size"), "{said}");
 }
+
+/// The excavation of the gallery. Nothing moves before; then the wall leans into the pit, whose bottom heaves, and the ground behind the
+/// wall yields and settles. Numbers are those of the gallery, to what a finer mesh changes.
+#[test]
+fn an_excavation_beside_a_wall() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/excavation.json");
+    let case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
+    let run = finish(&case);
+    assert!(run.at(1.0).displacement.iter().all(|u| u.abs() < 1e-12));
+    let head = run.nodes("head")[0];
+    for (time, lean) in [(201.0, 0.9e-3), (301.0, 3.6e-3), (401.0, 11.2e-3)] {
+        close("head", run.at(time).displacement[2 * head], -lean, 0.05 * lean);
+    }
+    close("heave", at(&run.model, run.last(), [-6.0, -4.0])[1], 14.5e-3, 0.1e-3);
+    let settled = (0..run.model.mesh.nodes.len()).filter(|&node| {
+        let [x, y]: [f64; 2] = run.model.mesh.nodes[node].into();
+        y == 0.0 && (1.5..2.5).contains(&x)
+    });
+    let mean: Vec<f64> = settled.map(|node| run.last().displacement[2 * node + 1]).collect();
+    assert!(!mean.is_empty() && mean.iter().all(|uy| (-6e-3..-2e-3).contains(uy)), "{mean:?}");
+    let energy = run.last().energy;
+    assert!(energy.plastic_dissipation > 0.1 && energy.error().abs() < 1e-3 * energy.external_work.abs());
+}

@@ -106,17 +106,15 @@ impl LoadsInForce {
 
     /// Refuses loads on bodies that are not there, except for gravity, which comes and goes with them.
     fn check_bodies(&self, place: &str, model: &Model) -> Checked<()> {
-        let lasting = self.all.iter().filter(|((_, kind), load)| *kind != Kind::Gravity && load.entry.value.is_some());
-        for (_, InForce { entry: Entry { on, kind, .. }, .. }, body) in
-            lasting.filter_map(|(key, load)| Some((key, load, load.missing(&self.absent)?)))
-        {
-            let name = &model.bodies[body].name;
-            let message = format!(
-                "the {kind} on {on} acts on `{name}`, which is not there in this step: end it with null, or give it later"
-            );
-            return Err(ModelError::new(format!("{place}.loads"), message));
-        }
-        Ok(())
+        let mut lasting =
+            self.all.iter().filter(|((_, kind), load)| *kind != Kind::Gravity && load.entry.value.is_some());
+        let hanging = lasting.find_map(|(_, load)| Some((&load.entry, load.missing(&self.absent)?)));
+        let Some((Entry { on, kind, .. }, body)) = hanging else { return Ok(()) };
+        let name = &model.bodies[body].name;
+        let message = format!(
+            "the {kind} on {on} acts on `{name}`, which is not there in this step: end it with null, or give it later"
+        );
+        Err(ModelError::new(format!("{place}.loads"), message))
     }
 
     /// Changes or ends a load from the start of a span within a step on.
