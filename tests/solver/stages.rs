@@ -402,6 +402,15 @@ fn what_makes_no_sense_is_refused() {
     refused("`ground` can move freely", &|case| {
         case["steps"][0]["supports"] = json!([{"on": "block_top", "ux": 0, "uy": 0}]);
     });
+    refused("the contact `base` has a side on bodies of which only some are there", &|case| {
+        let edges = &case["mesh"]["edges"];
+        let both =
+            [&edges["block_bottom"], &edges["guest_bottom"]].map(|edges| edges.as_array().expect("edges").clone());
+        case["mesh"]["edges"]["block_bottom"] = json!(both.concat());
+    });
+    refused("that are `balanced`", &|case| {
+        case["contacts"]["base"]["initial"] = json!({"pressure": 1, "balanced": true});
+    });
     refused("loading platen", &|case| case["plates"] = json!(["block_top"]));
 }
 

@@ -43,6 +43,7 @@ impl<'m> Stages<'m> {
                                bodies in the next";
                 refuse_if(!self.has_begun, &place, message)?;
                 self.check_platens(body, &place)?;
+                self.check_balanced(body, &place)?;
                 self.absent[body] = !comes;
                 changed.push(body);
             }
@@ -58,7 +59,7 @@ impl<'m> Stages<'m> {
             );
             return Err(ModelError::new(place, message));
         }
-        changed.iter().try_for_each(|&body| self.check_contacts(body, place))?;
+        self.check_contacts(&changed, place)?;
         changed.sort_unstable();
         Ok(changed)
     }
@@ -103,26 +104,36 @@ impl<'m> Stages<'m> {
         refuse_if(platens.any(|node| body.nodes.binary_search(node).is_ok()), place, message)
     }
 
-    /// Checks that the contacts of a body that comes or goes can come or go as a whole.
-    fn check_contacts(&self, body: usize, place: &str) -> Checked<()> {
-        let name = &self.model.bodies[body].name;
-        for pair in self.model.contacts.iter().filter(|pair| pair.bodies.iter().flatten().any(|own| *own == body)) {
-            let parted = |side: &Vec<usize>| side.iter().any(|own| self.absent[*own] != self.absent[side[0]]);
-            let refused = |what: &str| Err(ModelError::new(place, format!("the contact `{}` {what}", pair.name)));
-            if pair.bodies.iter().any(parted) {
-                return refused(&format!(
-                    "has one side on `{name}` and on bodies that are there when it is not: divide the side, body by body"
-                ));
-            }
-            let comes = !self.absent[body];
-            if comes && (pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair)) {
-                return refused(&format!(
-                    "of `{name}`, which comes, is tied, starts closed, overlaps or has pores at mesh positions, which are not those of then: let them \
-                     share nodes, or touch"
-                ));
-            }
+    /// Checks that contacts come and go as a whole, and that those that come do not depend on mesh positions.
+    fn check_contacts(&self, changed: &[usize], place: &str) -> Checked<()> {
+        let is_new = |pair: &ContactPair| {
+            let mut bodies = pair.bodies.iter().flatten();
+            bodies.clone().any(|body| changed.contains(body)) && bodies.all(|&body| !self.absent[body])
+        };
+        for pair in &self.model.contacts {
+            let name = &pair.name;
+            let parted = |side: &Vec<usize>| side.iter().any(|body| self.absent[*body] != self.absent[side[0]]);
+            let message = "has a side on bodies of which only some are there: divide the side, body by body";
+            refuse_if(pair.bodies.iter().any(parted), place, format!("the contact `{name}` {message}"))?;
+            let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair);
+            let message = "comes in this step, and is tied, starts closed, overlaps or has pores at mesh positions, which are not those of \
+                           then: let the bodies share nodes, or touch";
+            refuse_if(is_new(pair) && at_places, place, format!("the contact `{name}` {message}"))?;
         }
         Ok(())
+    }
+
+    /// Refuses a body that comes or goes with forces that stand for its initial stress.
+    fn check_balanced(&self, body: usize, place: &str) -> Checked<()> {
+        let forces = &self.model.prestress;
+        let body = &self.model.bodies[body];
+        let has_force = |dof: usize| forces.get(dof).is_some_and(|force| *force != 0.0);
+        let message = format!(
+            "`{}` is in contact with initial tractions that are `balanced`, by no stress that could go with it: give it an initial_stress, and \
+             the contact `of_bodies`",
+            body.name
+        );
+        refuse_if(groups::dofs_of(&body.nodes).any(has_force), place, message)
     }
 }
 
