@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::solids::solid;
 use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
 use crate::model::element::Memory;
@@ -80,7 +79,7 @@ impl Evolving {
             let (local, memory) = (model.mesh.vectors(e, u), Memory { dt: trial.dt, old, new: &mut *new });
             let dofs = 2 * local.len();
             let tangent = wanted.then_some(&mut tangent[..dofs * dofs]);
-            let found = solid(model, born, e).evolve(&*body.material, memory, &local, &mut force[..dofs], tangent);
+            let found = model.as_born(born, e).evolve(&*body.material, memory, &local, &mut force[..dofs], tangent);
             let energies = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
             let yields = body.material.description().flow.is_some();
             Ok((e, energies, model.heating(e, [old, new]), yields))

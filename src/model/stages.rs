@@ -73,6 +73,11 @@ impl Model {
         self.solids[element].born(self.mesh.section, &self.mesh.places(element), birth)
     }
 
+    /// An element, as it came.
+    pub fn as_born<'m>(&'m self, born: &'m Born, element: usize) -> &'m SolidElement {
+        born.get(&element).unwrap_or(&self.solids[element])
+    }
+
     /// The elements that came into a deformed model, by number.
     pub fn born_of(&self, births: &Births) -> Arc<Born> {
         Arc::new(births.iter().filter_map(|(&e, birth)| Some((e, self.born(e, birth).ok()?))).collect())

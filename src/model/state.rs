@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::step::Step;
 use crate::contact::force::ContactState;
 
 /// The accepted state at the end of an increment.
@@ -54,10 +53,10 @@ pub struct State {
 
 #[doc(hidden)]
 impl State {
-    /// Begins a step, which refers to the present state.
-    pub fn begin_step(&mut self, step: &Step) {
+    /// Begins a step, which refers to the present state, with the bodies that are absent in it.
+    pub fn begin_step(&mut self, absent: &[bool]) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
-        let (fading, absent, births) = (Vec::new(), step.absent.clone(), self.step_start.births.clone());
+        let (fading, absent, births) = (Vec::new(), absent.to_vec(), self.step_start.births.clone());
         self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent, births });
         (self.dt, self.last_increment) = (0.0, None);
     }

@@ -30,7 +30,7 @@ use crate::solve::failure::IncrementFailure;
 /// Returns [`IncrementFailure`] if the initial state cannot be evaluated or a body has no mass.
 pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, IncrementFailure> {
     let mut state = old.clone();
-    state.begin_step(step);
+    state.begin_step(&step.absent);
     // Explicit increments leave the forces on tied copies of nodes.
     model.ties.gather(2, &mut state.force);
     // The reaction of a released support has become a load.

@@ -17,7 +17,6 @@ use crate::model::{Born, Model, Step};
 pub(super) use constant::damps_by_stiffness;
 pub use constant::is_constant;
 use constant::{Constant, Pass};
-pub(super) use runs::solid;
 use runs::{Runs, gather, gather_magnitudes};
 
 /// The matrix is constant if all elements are.

@@ -16,7 +16,6 @@ use crate::equations::sums::{TrialFailure, add_blocks};
 use crate::laws::bulk::MaterialFailure;
 use crate::linear::SparseMatrix;
 use crate::mesh::configuration::vector;
-use crate::model::element::SolidElement;
 use crate::model::{Born, Model};
 
 /// Number of elements below which evaluation takes less time than starting another thread.
@@ -104,7 +103,7 @@ impl Runs {
             let forces = self.forces[run.places()].par_chunks_exact_mut(run.nodes);
             let elements = run.elements.clone().into_par_iter().zip(forces);
             let one = |((e, forces), energy): ((usize, &mut [Vector2<f64>]), &mut _)| {
-                *energy = solid(model, born, e).nodal_forces(material, &nodal(model, e, u)[..run.nodes], forces);
+                *energy = model.as_born(born, e).nodal_forces(material, &nodal(model, e, u)[..run.nodes], forces);
             };
             elements.zip(&mut self.energies[run.elements.clone()]).with_min_len(FEW).for_each(one);
         }
@@ -128,7 +127,7 @@ impl Runs {
                 let one = |(((e, forces), tangent), energy): (Slot, &mut _)| {
                     let mut force = [0.0; 18];
                     let (u, own) = (&nodal(model, e, u)[..n], &mut force[..2 * n]);
-                    *energy = solid(model, born, e).force_and_tangent(material, u, own, tangent);
+                    *energy = model.as_born(born, e).force_and_tangent(material, u, own, tangent);
                     forces
                         .iter_mut()
                         .zip(force.chunks_exact(2))
@@ -160,7 +159,7 @@ impl Runs {
             let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
             let one = |(e, forces): (usize, &mut [Vector2<f64>])| {
                 let [u, v] = [u, v].map(|all| nodal(model, e, all));
-                solid(model, born, e).viscous_forces(material, tau, [&u[..run.nodes], &v[..run.nodes]], forces);
+                model.as_born(born, e).viscous_forces(material, tau, [&u[..run.nodes], &v[..run.nodes]], forces);
             };
             let places = &mut self.forces[run.places()];
             match retardation[run.body] > 0.0 {
@@ -198,7 +197,7 @@ impl Runs {
                     let [u, v, rates] = [u, v, dvelocity].map(|all| nodal(model, e, all));
                     let mut own = [0.0; 18];
                     own.chunks_exact_mut(2).zip(&rates).for_each(|(own, rate)| own.copy_from_slice(rate.as_slice()));
-                    solid(model, born, e).viscous_tangent(material, tau, [&u[..n], &v[..n]], &own[..2 * n], tangent);
+                    model.as_born(born, e).viscous_tangent(material, tau, [&u[..n], &v[..n]], &own[..2 * n], tangent);
                 };
                 let all = elements.clone().into_par_iter().zip(self.tangents.par_chunks_exact_mut(size));
                 all.with_min_len(FEW).for_each(one);
@@ -208,11 +207,6 @@ impl Runs {
             }
         }
     }
-}
-
-/// An element, as it came.
-pub(in crate::equations) fn solid<'m>(model: &'m Model, born: &'m Born, e: usize) -> &'m SolidElement {
-    born.get(&e).unwrap_or(&model.solids[e])
 }
 
 /// Values at an element's nodes, from those of all dofs.
