@@ -130,7 +130,7 @@ fn count(case: &Value, least: usize, pools: &[(usize, ThreadPool)]) {
             pool.install(|| {
                 let mut assembler = Assembler::new(&model);
                 let (mut state, step) = (model.initial_state(), Arc::new(model.steps[0].clone()));
-                state.begin_step();
+                state.begin_step(&[]);
                 let mut explicit = Explicit::begin(&model, &step, &mut state, &mut assembler).expect("a start");
                 let mut last = 0.0;
                 while state.increment < 10 {

@@ -104,6 +104,24 @@ impl ContactPair {
         self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()
     }
 
+    /// The states of all points while one of the sides is not there.
+    pub fn apart(&self) -> Vec<ContactState> {
+        let state = |slave: &SlavePoint| ContactState {
+            elastic_slip: 0.0,
+            friction: self.law(slave).law.initial_state(0.0, 0.0),
+            foot: None,
+            length: 0.0,
+            gap: 0.0,
+            slip: 0.0,
+            radiation: 0.0,
+            radiated: 0.0,
+            multiplier: 0.0,
+            fluid: 0.0,
+            pores: 0.0,
+        };
+        self.points.iter().map(state).collect()
+    }
+
     /// Nodal forces of the initial tractions, and of an initial fluid pressure, in the configuration `x` [F].
     pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let points = self.points.iter().zip(self.initial.iter().flatten());

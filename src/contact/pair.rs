@@ -90,6 +90,8 @@ pub struct ContactPair {
     pub modulus: f64,
     /// Body of the slave's edges at its first point; for a point group, the only body there, if there is one
     pub body: Option<usize>,
+    /// Bodies of the slave and of the master
+    pub bodies: [Vec<usize>; 2],
     /// Constant operators of the points in small sliding
     pub small: Option<SmallSliding>,
 }

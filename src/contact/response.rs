@@ -72,6 +72,13 @@ struct Chunk {
 }
 
 impl PairResponse {
+    /// Takes the states over without a contribution, as the pair does not act.
+    pub fn rest(&mut self, old: &[ContactState]) {
+        self.states.clear();
+        self.states.extend_from_slice(old);
+        self.parts.clear();
+    }
+
     /// Contribution of a point to the equations, if it is closed.
     pub fn closed(&self, point: usize) -> Option<Closed<'_>> {
         self.acting(point).filter(|closed| !closed.is_open)

@@ -27,11 +27,16 @@ use crate::equations::{contacts, damping, links, loads, supports};
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
 use crate::model::Model;
+use crate::model::state::Births;
 
 /// Assembles a model; owns the pattern and reused buffers.
 pub struct Assembler {
     model: Arc<Model>,
     layout: Layout,
+    /// Whether each body is absent; empty if all are there
+    absent: Vec<bool>,
+    /// Elements that came into a deformed model
+    births: Arc<Births>,
     solids: Solids,
     /// What stands for them in a residual beside a known solution
     linearized: Option<Arc<LinearizedSolids>>,
@@ -76,18 +81,21 @@ impl Assembler {
 
     /// Creates the assembler of a model.
     pub fn new(model: &Arc<Model>) -> Self {
-        let solids = Solids::new(model);
+        let (births, born) = (Arc::default(), Arc::default());
+        let solids = Solids::new(model, |_| true, &born);
         Self {
             model: model.clone(),
             layout: Layout::new(model, term::skew(model)),
-            evolving: Evolving::new(model, solids.constant()),
+            absent: Vec::new(),
+            births,
+            evolving: Evolving::new(model, solids.constant(), |_| true, &born),
             solids,
             linearized: None,
             mass: None,
             damping_mass: None,
             weight: supports::weight(model),
             magnitudes: vec![0.0; model.dofs()],
-            equilibrium: ConvergenceCriterion::new(model),
+            equilibrium: ConvergenceCriterion::new(model, |_| true),
             responses: Vec::new(),
             answered: Vec::new(),
             evaluation: Evaluation::default(),
@@ -98,6 +106,23 @@ impl Assembler {
     /// The model.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// Turns to the bodies that are there in a step, as they came.
+    fn attend(&mut self, Trial { step, old, .. }: Trial) {
+        let births = &old.step_start.births;
+        if self.absent == step.absent && (Arc::ptr_eq(&self.births, births) || self.births == *births) {
+            return;
+        }
+        let model = &self.model;
+        let born = model.born_of(births);
+        let are_there = |e: usize| step.has(model.body_of_element[e]);
+        self.solids = Solids::new(model, are_there, &born);
+        self.evolving = Evolving::new(model, self.solids.constant(), are_there, &born);
+        self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body));
+        (self.mass, self.damping_mass) = (None, None);
+        self.evaluation.memory.clear();
+        (self.absent, self.births) = (step.absent.clone(), births.clone());
     }
 
     /// The current coupling of nodes.
@@ -175,6 +200,7 @@ impl Assembler {
         system: &mut System,
     ) -> Result<(), TrialFailure> {
         let clock = Instant::now();
+        self.attend(trial);
         let model = &*self.model.clone();
         let tangent = request == Request::Tangent;
         if tangent {
@@ -216,6 +242,7 @@ impl Assembler {
     pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             let clock = Instant::now();
+            assembler.attend(trial);
             assembler.solids.retard(trial.step);
             assembler.add(&OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
             if let Some(v) = v {
@@ -307,12 +334,13 @@ impl Assembler {
 
     /// Combines forces, inertia, velocities, accelerations and reactions to the residual of the scheme.
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
-        let Self { model, layout, mass, evaluation, magnitudes, .. } = self;
+        let Self { model, layout, mass, absent, evaluation, magnitudes, .. } = self;
         let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
         let held = links::relieved(model, u, force);
         reactions.clear();
         reactions.extend(trial.step.supports.iter().map(|support| support.at.of(&held)));
-        let mass = trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, layout)));
+        let found = || inertia::mass(model, layout, absent);
+        let mass = trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(found));
         let Some((mass, mut inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
             [velocity, acceleration].into_iter().for_each(|rates| *rates = vec![0.0; u.len()]);
             system.residual.clone_from(force);
@@ -425,8 +453,8 @@ impl Assembler {
 
     /// Returns the mass matrix on the current pattern.
     pub fn mass(&mut self) -> &SparseMatrix {
-        let Self { model, layout, mass, .. } = self;
-        mass.get_or_insert_with(|| inertia::mass(model, layout))
+        let Self { model, layout, mass, absent, .. } = self;
+        mass.get_or_insert_with(|| inertia::mass(model, layout, absent))
     }
 
     /// Returns the tangent of one term alone, without supports; see [`Term::dependence`].
@@ -446,6 +474,7 @@ impl Assembler {
         u: &[f64],
         responses: &[PairResponse],
     ) -> Result<SparseMatrix, TrialFailure> {
+        self.attend(trial);
         self.cover(trial, responses);
         let mut tangent = self.layout.matrix();
         if term == Term::Inertia {

@@ -35,6 +35,10 @@ pub(super) fn respond(
     answered.resize_with(model.contacts.len(), LastAnswers::default);
     let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses.iter_mut().zip(answered)).enumerate();
     for (number, ((pair, old), (response, answered))) in pairs {
+        if !trial.step.joins(pair) {
+            response.rest(old);
+            continue;
+        }
         if let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&x, time) {
             let contact = pair.name.clone();
             return Err(TrialFailure::FluidPressure { contact, at: [at.x, at.y], pressure, time });

@@ -64,11 +64,16 @@ pub(super) struct ConvergenceCriterion {
 }
 
 impl ConvergenceCriterion {
-    pub(super) fn new(model: &Model) -> Self {
+    /// That of the bodies that are there.
+    pub(super) fn new(model: &Model, is_there: impl Fn(usize) -> bool) -> Self {
         let count = model.mesh.nodes.len();
         let mut stiffness = vec![[0.0; 3]; count];
         let mut lone = vec![true; count];
         for (e, element) in model.mesh.elements.iter().enumerate() {
+            if !is_there(model.body_of_element[e]) {
+                element.nodes.iter().for_each(|&node| lone[node] = false);
+                continue;
+            }
             let body = &model.bodies[model.body_of_element[e]];
             let [solid, depth] = [model.solids[e].volume(), model.solids[e].mean_weight()];
             let modulus = body.material.description().p_wave_modulus * depth;
@@ -83,7 +88,8 @@ impl ConvergenceCriterion {
         }
         let of_body =
             |body: &Body| BalancedSet { nodes: model.ties.originals(body.nodes.iter().copied()), contact: None };
-        let bodies = model.bodies.iter().map(of_body);
+        let there = model.bodies.iter().enumerate().filter(|(body, _)| is_there(*body));
+        let bodies = there.map(|(_, body)| of_body(body));
         let of_contact = |(k, pair): (usize, &ContactPair)| BalancedSet {
             nodes: model.ties.originals(pair.nodes()),
             contact: Some(k),

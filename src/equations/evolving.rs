@@ -1,11 +1,13 @@
 //! Bodies with internal variables or an unsymmetric tangent; internal variables are part of committed and trial state.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
-use crate::model::Model;
 use crate::model::element::Memory;
+use crate::model::{Born, Model};
 
 /// Number of elements whose contributions are held at once before they are added.
 const BATCH: usize = 1024;
@@ -20,6 +22,8 @@ pub(super) struct Evolving {
     /// Forces and tangents of a batch, column by column, in chunks for as many dofs each
     forces: Vec<f64>,
     tangents: Vec<f64>,
+    /// Elements that came into a deformed model
+    born: Arc<Born>,
 }
 
 /// Memory for the force and the tangent of an element.
@@ -32,16 +36,17 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 }
 
 impl Evolving {
-    /// Finds the evolving elements of the bodies, except those that are `constant`.
-    pub fn new(model: &Model, constant: &[bool]) -> Self {
-        let is_own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
-        let mut own: Vec<bool> = model.body_of_element.iter().zip(constant).map(is_own).collect();
+    /// Finds the evolving elements that are there, except those that are `constant`; `born` came into a deformed model.
+    pub fn new(model: &Model, constant: &[bool], are_there: impl Fn(usize) -> bool, born: &Arc<Born>) -> Self {
+        let is_own = |e: usize| evolves(model, model.body_of_element[e]) && !constant[e] && are_there(e);
+        let mut own: Vec<bool> = (0..constant.len()).map(is_own).collect();
         let elements = model.mesh.elements.iter().zip(&own);
         let dofs = elements.filter(|(_, own)| **own).map(|(element, _)| 2 * element.nodes.len()).max();
         if dofs.is_none() {
             own.clear();
         }
-        Self { own, dofs: dofs.unwrap_or_default(), forces: Vec::new(), tangents: Vec::new() }
+        let born = born.clone();
+        Self { own, dofs: dofs.unwrap_or_default(), forces: Vec::new(), tangents: Vec::new(), born }
     }
 
     /// Adds the forces of these elements, and stores their internal variables at the end of the trial in `memory`.
@@ -61,7 +66,7 @@ impl Evolving {
         if self.own.is_empty() {
             return Ok(Evolved::default());
         }
-        let Self { own, dofs, forces, tangents } = self;
+        let Self { own, dofs, forces, tangents, born } = self;
         let (dofs, size) = (*dofs, *dofs * *dofs);
         let count = BATCH.min(own.len());
         forces.resize(count * dofs, 0.0);
@@ -74,7 +79,7 @@ impl Evolving {
             let (local, memory) = (model.mesh.vectors(e, u), Memory { dt: trial.dt, old, new: &mut *new });
             let dofs = 2 * local.len();
             let tangent = wanted.then_some(&mut tangent[..dofs * dofs]);
-            let found = model.solids[e].evolve(&*body.material, memory, &local, &mut force[..dofs], tangent);
+            let found = model.as_born(born, e).evolve(&*body.material, memory, &local, &mut force[..dofs], tangent);
             let energies = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
             let yields = body.material.description().flow.is_some();
             Ok((e, energies, model.heating(e, [old, new]), yields))

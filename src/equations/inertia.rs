@@ -20,9 +20,11 @@ pub(super) fn dependence(step: &Step) -> Dependence {
     if step.scheme.coefficients().is_some() { Dependence::StepSize } else { Dependence::Nothing }
 }
 
-/// Returns the mass matrix on the current pattern: consistent in the elements, point masses on the diagonal.
-pub(super) fn mass(model: &Model, layout: &Layout) -> SparseMatrix {
-    let mut mass = elements(model, layout, |_| 1.0);
+/// Returns the mass matrix on the current pattern: consistent in the elements, except those of absent bodies, and point
+/// masses on the diagonal.
+pub(super) fn mass(model: &Model, layout: &Layout, absent: &[bool]) -> SparseMatrix {
+    let share = |body: usize| if absent.get(body) == Some(&true) { 0.0 } else { 1.0 };
+    let mut mass = elements(model, layout, share);
     for point in &model.point_masses {
         let nodes = point.nodes.iter().map(|&node| layout.original(node));
         let dofs = nodes.flat_map(|node| [2 * node, 2 * node + 1]);

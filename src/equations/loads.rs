@@ -1,4 +1,5 @@
-//! Loads: dead loads, follower pressures, springs, initial stress, and the reactions of released supports. Their work is part
+//! Loads: dead loads, follower pressures, springs, initial stress, the reactions of released supports, and what fades after bodies
+//! have come or gone. Their work is part
 //! of that of all external forces, see [`super::evaluation`].
 
 use super::links;
@@ -31,7 +32,8 @@ fn any(model: &Model, step: &Step) -> bool {
         && loads.pressures.is_empty()
         && loads.springs.is_empty()
         && loads.moments.is_empty()
-        && step.released.is_empty())
+        && step.released.is_empty()
+        && step.changed.is_empty())
 }
 
 /// Sums all loads in `loads`, and subtracts them from the forces.
@@ -98,7 +100,7 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
         loads[spring.dof] += spring.stiffness * (driver - u[spring.dof]);
         sums.stiffen(spring.dof, spring.dof, spring.stiffness);
     }
-    for at in &step.released {
-        at.add(at.of(&old.step_start.reaction) * (1.0 - step.span.share(time)), loads);
-    }
+    let left = 1.0 - step.span.share(time);
+    step.released.iter().for_each(|at| at.add(at.of(&old.step_start.reaction) * left, loads));
+    loads.iter_mut().zip(&old.step_start.fading).for_each(|(load, fading)| *load += fading * left);
 }

@@ -121,6 +121,21 @@ pub enum TrialFailure {
         /// remaining fraction of its size
         share: f64,
     },
+    /// The place where an element comes is too narrow for it.
+    #[error(
+        "element {element} of body `{body}` at ({}, {}) would come with {:.0} % of its size in the mesh: what it shares nodes with has moved \
+         against its other nodes, which wait where they were; let it come earlier", number(at[0]), number(at[1]), 100.0 * share
+    )]
+    Narrow {
+        /// its tag in the mesh file
+        element: u64,
+        /// its body
+        body: String,
+        /// its centre in the mesh
+        at: [f64; 2],
+        /// least share of its size
+        share: f64,
+    },
     /// A material law failed.
     #[error("element {element} of body `{body}` at ({}, {}): {cause}", number(at[0]), number(at[1]))]
     Material {
@@ -176,6 +191,12 @@ impl TrialFailure {
             MaterialFailure::Inverted { jacobian } => Self::Inverted { element, body, at, jacobian },
             _ => Self::Material { element, body, at, cause },
         }
+    }
+
+    /// Returns the failure of an element that comes into a narrow place.
+    pub(crate) fn narrow(model: &Model, e: usize, share: f64) -> Self {
+        let (element, body, at) = named(model, e);
+        Self::Narrow { element, body, at, share }
     }
 
     /// Returns the failure of an element compressed to a small fraction of its size.

@@ -43,8 +43,12 @@ struct Imbalance {
 
 /// Warnings about bodies whose initial stress is not in equilibrium.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
-    let stressed = || model.bodies.iter().filter(|body| body.is_stressed());
-    let Some(step) = model.steps.first().filter(|_| stressed().next().is_some()) else { return Vec::new() };
+    let Some(step) = model.steps.first() else { return Vec::new() };
+    let bodies = || model.bodies.iter().enumerate().filter(|(number, _)| step.has(*number)).map(|(_, body)| body);
+    let stressed = || bodies().filter(|body| body.is_stressed());
+    if stressed().next().is_none() {
+        return Vec::new();
+    }
     let [start, end] = [step.span.start, step.span.end].map(|time| forces(model, step, time));
     let concern = |body: &Body| {
         let found = imbalance(model, step, &start, body);
@@ -80,7 +84,7 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
     let initial = model.initial_memory();
     for e in 0..model.solids.len() {
         let body = model.body_of(e);
-        if !body.is_stressed() {
+        if !body.is_stressed() || !step.has(model.body_of_element[e]) {
             continue;
         }
         let (old, nodes) = (model.memories.of(e, &initial), &model.mesh.elements[e].nodes);
@@ -93,7 +97,8 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
     }
     add_loads(model, &step.loads, time, &mut forces);
     let undeformed = model.mesh.undeformed();
-    for (node, force) in model.contacts.iter().flat_map(|pair| pair.initial_forces(&undeformed)) {
+    let contacts = model.contacts.iter().filter(|pair| step.joins(pair));
+    for (node, force) in contacts.flat_map(|pair| pair.initial_forces(&undeformed)) {
         forces.add(node, -force);
     }
     for (node, force) in model.prestress.chunks_exact(2).enumerate() {

@@ -113,6 +113,11 @@ impl Memories {
         &memory[self.starts[element]..self.starts[element + 1]]
     }
 
+    /// Iterates over the parts of all elements in order.
+    pub fn each<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = &'a [f64]> {
+        self.starts.windows(2).map(|ends| &memory[ends[0]..ends[1]])
+    }
+
     /// Iterates over the mutable parts of all elements in order; the caller skips those not needed, so that no part can be
     /// assigned to another element.
     pub fn each_mut<'a>(&'a self, memory: &'a mut [f64]) -> impl Iterator<Item = &'a mut [f64]> {

@@ -7,6 +7,7 @@ pub mod builder;
 mod expression;
 mod random;
 mod requests;
+mod stages;
 mod unfit;
 pub(crate) mod written;
 
@@ -58,6 +59,8 @@ use method::Chosen;
 pub use method::Method;
 pub use requests::{OutputRequests, Probe, WatchedSet};
 pub use scheme::Scheme;
+#[doc(hidden)]
+pub use stages::Born;
 use state::StepStart;
 pub use state::{Energy, State};
 pub use step::{ForceComponent, Increments, Rupture, Step};
@@ -169,8 +172,11 @@ impl Model {
         &self.bodies[self.body_of_element[element]]
     }
 
-    /// Damping of a body in a step.
+    /// Damping of a body in a step: none while it is absent.
     pub fn damping(&self, step: &Step, body: usize) -> Damping {
+        if !step.has(body) {
+            return Damping::default();
+        }
         step.damping.get(body).copied().unwrap_or(self.bodies[body].damping)
     }
 
@@ -256,10 +262,16 @@ impl Model {
             external: zero.clone(),
             damping: zero.clone(),
             reaction: zero.clone(),
-            contacts: self.contacts.iter().map(|pair| pair.initial_states(&self.mesh.undeformed())).collect(),
+            contacts: self.contacts.iter().map(|pair| self.first_states(pair)).collect(),
             memory: self.initial_memory(),
             last_increment: None,
-            step_start: Arc::new(StepStart { displacement: zero.clone(), reaction: zero }),
+            step_start: Arc::new(StepStart {
+                displacement: zero.clone(),
+                reaction: zero,
+                fading: Vec::new(),
+                absent: self.steps.first().map(|step| step.absent.clone()).unwrap_or_default(),
+                births: Arc::default(),
+            }),
             energy: Energy::default(),
         }
     }

@@ -1,6 +1,7 @@
 //! State: all data of increment n needed by increment n + 1. A new state replaces the old one when it is accepted; roll-back is
 //! to drop it.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -52,10 +53,11 @@ pub struct State {
 
 #[doc(hidden)]
 impl State {
-    /// Begins a step, which refers to the present state.
-    pub fn begin_step(&mut self) {
+    /// Begins a step, which refers to the present state, with the bodies that are absent in it.
+    pub fn begin_step(&mut self, absent: &[bool]) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
-        self.step_start = Arc::new(StepStart { displacement, reaction });
+        let (fading, absent, births) = (Vec::new(), absent.to_vec(), self.step_start.births.clone());
+        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent, births });
         (self.dt, self.last_increment) = (0.0, None);
     }
 
@@ -97,6 +99,11 @@ impl State {
         }
     }
 
+    /// Whether a body is there.
+    pub fn has(&self, body: usize) -> bool {
+        !self.step_start.absent.get(body).copied().unwrap_or(false)
+    }
+
     /// Whether it was reached by an explicit increment, with accelerations of lumped masses.
     pub fn is_of_explicit(&self) -> bool {
         self.last_increment.is_none() && self.dt > 0.0
@@ -122,7 +129,10 @@ pub struct LastIncrement {
     pub ends_in_touch: bool,
 }
 
-/// State of supported dofs at the start of the step.
+/// Displacements of the nodes of elements when they came, by element [L].
+pub type Births = BTreeMap<usize, Vec<[f64; 2]>>;
+
+/// State of supported dofs and of bodies at the start of the step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[doc(hidden)]
 pub struct StepStart {
@@ -130,6 +140,13 @@ pub struct StepStart {
     pub displacement: Vec<f64>,
     /// reactions at the start of the step [F]
     pub reaction: Vec<f64>,
+    /// What balances the change of the forces by bodies that the step adds or removes; it fades over the step. Empty without
+    /// such [F]
+    pub fading: Vec<f64>,
+    /// whether each body is absent; empty if all are there
+    pub absent: Vec<bool>,
+    /// displacements of the nodes of each element that came into a deformed model [L]
+    pub births: Arc<Births>,
 }
 
 /// Energies [F·L]; the dissipations and the external work are totals since the start.

@@ -20,6 +20,7 @@ use super::imposed::Temperature;
 use super::scheme::Scheme;
 use super::state::State;
 use super::support::{Direction, Motion, Prescribed};
+use crate::contact::pair::ContactPair;
 
 /// Size and error control of increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,6 +81,12 @@ pub struct Step {
     /// damping of every body
     #[doc(hidden)]
     pub damping: Vec<Damping>,
+    /// whether each body is absent; empty if all are there
+    #[doc(hidden)]
+    pub absent: Vec<bool>,
+    /// bodies that this step adds or removes
+    #[doc(hidden)]
+    pub changed: Vec<usize>,
     /// reaction that ends the step early
     #[doc(hidden)]
     pub until: Option<Until>,
@@ -119,6 +126,21 @@ impl Entry {
 
 #[doc(hidden)]
 impl Step {
+    /// Whether a body is there.
+    pub fn has(&self, body: usize) -> bool {
+        !self.absent.get(body).copied().unwrap_or(false)
+    }
+
+    /// Whether a contact acts: the bodies of both sides are there.
+    pub fn joins(&self, pair: &ContactPair) -> bool {
+        self.absent.is_empty() || pair.bodies.iter().flatten().all(|&body| self.has(body))
+    }
+
+    /// Whether it adds or removes a side of a contact.
+    pub fn changes(&self, pair: &ContactPair) -> bool {
+        pair.bodies.iter().flatten().any(|body| self.changed.contains(body))
+    }
+
     /// Whether some of its increments are explicit, or may be.
     pub fn may_be_explicit(&self) -> bool {
         self.rupture.is_some() || self.scheme.is_explicit()

@@ -51,6 +51,14 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, deriv
     }
     grid.at_cells("body", body());
     grid.at_cells("material", body());
+    hide_absent(model, state, &model.body_of_element, grid);
+}
+
+/// Hides the cells of absent bodies, given the body of each cell.
+fn hide_absent(model: &Model, state: &State, bodies: &[usize], grid: &mut Grid) {
+    if model.changes_bodies() {
+        grid.hide(bodies.iter().map(|&body| !state.has(body)));
+    }
 }
 
 /// Nodal contact forces [F].
@@ -83,19 +91,19 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
         let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
         // Accepted states contain no element whose material law fails.
-        let count = model.solids[e].quadrature_points();
-        let stresses = model.solids[e].stresses(material, memory, &u);
+        let solid = model.solid(state, e);
+        let count = solid.quadrature_points();
+        let stresses = solid.stresses(material, memory, &u);
         let stresses = stresses.unwrap_or_else(|_| (0..count).map(|_| CauchyStress::default()).collect());
-        let strains = model.solids[e].log_strains(material, memory, &u);
+        let strains = solid.log_strains(material, memory, &u);
         let strains = strains.unwrap_or_else(|_| (0..count).map(|_| [0.0; 4]).collect());
-        let seen = model.solids[e].shown(material, memory, &u).unwrap_or_default();
-        for (k, (point, both)) in model.solids[e].quadrature().iter().zip(stresses.into_iter().zip(strains)).enumerate()
-        {
+        let seen = solid.shown(material, memory, &u).unwrap_or_default();
+        for (k, (point, both)) in solid.quadrature().iter().zip(stresses.into_iter().zip(strains)).enumerate() {
             let values = element.kind.values(point.at);
             places.push(element.nodes.iter().zip(&values).map(|(&node, n)| model.mesh.nodes[node] * *n).sum());
             let at: Vector2<f64> = u.iter().zip(&values).map(|(u, n)| u * *n).sum();
             moved.extend([at.x, at.y]);
-            body.push(number as i32);
+            body.push(number);
             fields.push(both);
             let own = material.description().variables;
             for (name, list) in names.iter().zip(&mut variables) {
@@ -120,7 +128,8 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
         .chain(&shown)
         .zip(variables.into_iter().chain(further))
         .for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
-    grid.at_cells("body", body.into_iter());
+    grid.at_cells("body", body.iter().map(|&body| body as i32));
+    hide_absent(model, state, &body, grid);
 }
 
 /// Stress and logarithmic strain, and on request what follows from them.

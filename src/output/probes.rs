@@ -80,8 +80,8 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Evaluates a probe in a state. Stress and strain are NaN where the material law fails, which does not occur in an
-    /// accepted state.
+    /// Evaluates a probe in a state. Stress and strain are NaN in a body that is absent, and where the material law fails, which
+    /// does not occur in an accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
         let stencils = stencils(model, std::slice::from_ref(probe));
         Self::by(&stencils[0], &values(model, state, &stencils), probe, model, state)
@@ -125,8 +125,11 @@ fn values(model: &Model, state: &State, stencils: &[Stencil]) -> Values {
 }
 
 fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
-    let (solid, u) = (&model.solids[e], model.mesh.vectors(e, &state.displacement));
+    let (solid, u) = (&*model.solid(state, e), model.mesh.vectors(e, &state.displacement));
     let material = &*model.body_of(e).material;
+    if !state.has(model.body_of_element[e]) {
+        return vec![f64::NAN; 8 * solid.quadrature_points()];
+    }
     let strain = |f: &Matrix2<f64>| {
         let gradient = f - Matrix2::identity();
         let square = if material.description().is_linear { Matrix2::zeros() } else { gradient.transpose() * gradient };

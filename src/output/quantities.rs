@@ -336,7 +336,7 @@ pub const VERDICT: [Quantity; 3] = [
 ];
 
 /// Arrays of the frames of bodies.
-const SOLID: [Quantity; 14] = [
+const SOLID: [Quantity; 15] = [
     q("displacement", LENGTH, "u of the nodes"),
     q("velocity", VELOCITY, "v"),
     q("acceleration", ACCELERATION, "a"),
@@ -355,6 +355,11 @@ const SOLID: [Quantity; 14] = [
     ),
     q("principal_strain", NONE, "principal logarithmic strains, the largest first; as above"),
     q("stretch_zz", NONE, "stretch across the plane, exp(ln V_zz): thickness of a plate, hoops of rings; as above"),
+    q(
+        "vtkGhostType",
+        NONE,
+        "32 for elements of bodies that are absent, which are not drawn; in runs whose bodies come and go",
+    ),
 ];
 
 /// Quantities of bodies that yield, or whose pores hold a fluid, in frames.
@@ -377,7 +382,7 @@ pub const OF_YIELDING: [Quantity; 7] = [
 ];
 
 /// Arrays of the frames of integration points; internal variables of materials follow, by their names.
-const INTEGRATION_POINTS: [Quantity; 9] = [
+const INTEGRATION_POINTS: [Quantity; 10] = [
     SOLID[0],
     q("stress", STRESS, "Cauchy stress xx, yy, zz, xy"),
     SOLID[6],
@@ -387,6 +392,7 @@ const INTEGRATION_POINTS: [Quantity; 9] = [
     SOLID[11],
     SOLID[12],
     SOLID[13],
+    SOLID[14],
 ];
 
 /// Quantities and their owner, the part of the name before the dot.

@@ -189,7 +189,7 @@ pub fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
     nodal_fields(model, state).tensors.into_iter().map(|(stress, _)| stress).collect()
 }
 
-/// Fields at the nodes. An element that the material law cannot answer counts as 0: it never occurs in an accepted state.
+/// Fields at the nodes, of the bodies that are there; zero at nodes that only absent ones have. An element that the material law cannot answer counts as 0: it never occurs in an accepted state.
 pub fn nodal_fields(model: &Model, state: &State) -> NodalFields {
     let elements = 0..model.mesh.elements.len();
     let tensors: Vec<Vec<f64>> = elements.clone().map(|e| stress_and_strain(model, state, e)).collect();
@@ -201,7 +201,8 @@ pub fn nodal_fields(model: &Model, state: &State) -> NodalFields {
         shown: names.iter().map(|name| (*name, Vec::with_capacity(nodes))).collect(),
     };
     for node in 0..nodes {
-        let stencils = recovery.at_node(model, node);
+        let mut stencils = recovery.at_node(model, node);
+        stencils.retain(|(body, _)| state.has(*body));
         let mut sums = [0.0; 8];
         stencils.iter().for_each(|(_, stencil)| stencil.sum(&mut sums, |e| &tensors[e]));
         let [xx, yy, zz, xy, strain @ ..] = sums.map(|sum| sum / stencils.len().max(1) as f64);
@@ -240,7 +241,7 @@ pub fn shown_names(model: &Model) -> Vec<&'static str> {
 
 /// Stress and logarithmic strain at the quadrature points of an element, as [`Stencil::sum`] takes them.
 fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
-    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
+    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &*model.solid(state, e));
     let (material, memory) = (&*model.body_of(e).material, model.memories.of(e, &state.memory));
     let both = solid.stresses(material, memory, &u).and_then(|stresses| {
         let strains = solid.log_strains(material, memory, &u)?;
@@ -255,7 +256,7 @@ fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
 
 /// Returns what the law of an element shows at its quadrature points, as [`Stencil::sum`] takes it.
 fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
-    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &model.solids[e]);
+    let (u, solid) = (model.mesh.vectors(e, &state.displacement), &*model.solid(state, e));
     let material = &*model.body_of(e).material;
     let found = solid.shown(material, model.memories.of(e, &state.memory), &u);
     found.unwrap_or_else(|_| vec![0.0; material.description().shown.len() * solid.quadrature_points()])

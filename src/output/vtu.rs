@@ -82,6 +82,10 @@ struct Mesh {
     text: String,
 }
 
+/// Name of VTK's array of cells that are not drawn, and its value for these (vtkDataSetAttributes::HIDDENCELL).
+pub const GHOSTS: &str = "vtkGhostType";
+const HIDDEN_CELL: u8 = 32;
+
 const SECTIONS: [&str; 2] = ["PointData", "CellData"];
 
 impl Grid {
@@ -119,6 +123,12 @@ impl Grid {
     /// Adds integers at the cells.
     pub fn at_cells(&mut self, name: &str, values: impl Iterator<Item = i32>) {
         array(&mut self.values[1], Head { kind: "Int32", name, components: 1 }, values.map(i32::to_le_bytes));
+    }
+
+    /// Hides cells, in the array by which VTK leaves them out of pictures and filters.
+    pub fn hide(&mut self, cells: impl Iterator<Item = bool>) {
+        let head = Head { kind: "UInt8", name: GHOSTS, components: 1 };
+        array(&mut self.values[1], head, cells.map(|is_hidden| [if is_hidden { HIDDEN_CELL } else { 0 }]));
     }
 
     /// Writes the file.

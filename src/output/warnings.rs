@@ -88,7 +88,8 @@ impl Observer for Warnings {
         self.linear_bodies(model, state, attempt.ends_step(state));
         self.audit.record(model, attempt.step, attempt.old, state);
         let x = model.configuration(&state.displacement);
-        for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
+        let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
+        for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
             for (point, (old, contact)) in points.filter(|(_, (_, new))| new.is_closed()) {
                 for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {
@@ -233,7 +234,7 @@ impl Warnings {
         let mut now: BTreeMap<usize, f64> =
             (0..model.bodies.len()).filter(|&body| pending(body)).map(|b| (b, 0.0)).collect();
         for (element, body) in model.body_of_element.iter().enumerate() {
-            if let Some(largest) = now.get_mut(body) {
+            if let Some(largest) = now.get_mut(body).filter(|_| state.has(*body)) {
                 *largest = largest.max(strained(model, element, &state.displacement));
             }
         }
@@ -252,7 +253,7 @@ impl Warnings {
 
     fn far_from_linear(&mut self, number: usize, model: &Model, state: &State) {
         let largest = |element: usize| {
-            let (solid, u) = (&model.solids[element], model.mesh.vectors(element, &state.displacement));
+            let (solid, u) = (&*model.solid(state, element), model.mesh.vectors(element, &state.displacement));
             let hoops = solid.hoops(&u).unwrap_or_default().into_iter().map(|hoop| (hoop - 1.0).abs());
             let planes =
                 solid.deformations(&u).into_iter().map(|deformation| (deformation - Matrix2::identity()).norm());

@@ -253,7 +253,7 @@ impl Simulation {
         let goes_on = state.is_of_explicit();
         let dt = if goes_on { state.dt } else { 0.0 };
         if step_begins {
-            state.begin_step();
+            state.begin_step(&step.absent);
             Explicit::launch(&self.model, &step, &mut state);
         }
         (state.dt, state.last_increment) = (dt, None);

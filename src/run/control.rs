@@ -82,6 +82,8 @@ pub fn is_of(state: &State, model: &Model) -> bool {
         states.len() == pair.points.len() && states.iter().all(stands)
     };
     all.into_iter().chain([&start.displacement, &start.reaction]).chain(last).all(|values| values.len() == model.dofs())
+        && [0, model.dofs()].contains(&start.fading.len())
+        && [0, model.bodies.len()].contains(&start.absent.len())
         && state.memory.len() == model.memories.total()
         && state.contacts.len() == model.contacts.len()
         && state.contacts.iter().zip(&model.contacts).all(contact)

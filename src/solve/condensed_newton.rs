@@ -90,7 +90,11 @@ impl CondensedNewton {
     /// Creates the condensation of a model if it pays.
     pub fn new(model: &Arc<Model>) -> Option<Self> {
         let condenses = |step: &Step| !matches!(step.scheme, Scheme::Explicit { .. }) && is_linear(model, step);
-        if model.contacts.is_empty() || !model.aids.condense || !model.steps.iter().any(condenses) {
+        if model.contacts.is_empty()
+            || !model.aids.condense
+            || model.changes_bodies()
+            || !model.steps.iter().any(condenses)
+        {
             return None;
         }
         let nodes = ContactNodes::new(model);

@@ -137,6 +137,7 @@ fn kind_of_trial(failure: &TrialFailure) -> &'static str {
     match failure {
         TrialFailure::Inverted { .. } => "element inverted",
         TrialFailure::Crushed { .. } => "element collapsed",
+        TrialFailure::Narrow { .. } => "narrow place",
         TrialFailure::Material { .. } => "material law",
         TrialFailure::Friction { .. } => "friction law",
         TrialFailure::FluidPressure { .. } => "fluid pressure",

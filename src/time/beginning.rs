@@ -7,11 +7,14 @@
 //! their order without it. Where loads, dampers or temperatures jump at the start of a step, (1) is solved for the affected
 //! nodes and those coupled with them by the mass; all other nodes keep their acceleration.
 
+use std::sync::Arc;
+
 use super::accept::{heat, take_stock};
 use super::increment::kinetic;
 use crate::equations::Trial;
-use crate::equations::links;
+use crate::equations::sums::TrialFailure;
 use crate::equations::supports::{hold, tie, turn};
+use crate::equations::{contacts, links};
 use crate::linear;
 use crate::model::scheme::{Scheme, start_acceleration, start_velocity};
 use crate::model::state::State;
@@ -27,17 +30,22 @@ use crate::solve::failure::IncrementFailure;
 /// Returns [`IncrementFailure`] if the initial state cannot be evaluated or a body has no mass.
 pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, IncrementFailure> {
     let mut state = old.clone();
-    state.begin_step();
+    state.begin_step(&step.absent);
     // Explicit increments leave the forces on tied copies of nodes.
     model.ties.gather(2, &mut state.force);
     // The reaction of a released support has become a load.
     step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
+    if !step.changed.is_empty() {
+        change_bodies(model, step, &mut state, work)?;
+    }
     launch(model, step, &mut state);
     if step.scheme.is_dynamic() {
         let dt = step.increments.initial;
         keep_to_supports(model, step, dt, &mut state);
         let is_new = rests(old) || old.is_of_explicit() || !step.launch.is_empty();
-        let anew = if is_new { vec![true; model.mesh.nodes.len()] } else { jumps(step, old, &state, work)? };
+        let mut anew = if is_new { vec![true; model.mesh.nodes.len()] } else { jumps(step, old, &state, work)? };
+        let nodes = step.changed.iter().flat_map(|&body| &model.bodies[body].nodes);
+        nodes.for_each(|&node| anew[model.ties.original(node)] = true);
         start_dynamics(model, step, anew, &mut state, work)?;
     } else {
         state.stop();
@@ -48,10 +56,40 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     if state.increment == 0 {
         let kinetic = kinetic(step, &state, work);
         take_stock(model, kinetic, &mut state);
-    } else if !step.launch.is_empty() || old.is_of_explicit() {
+    } else if !step.launch.is_empty() || !step.changed.is_empty() || old.is_of_explicit() {
         moves_anew(step, &mut state, work);
     }
     Ok(state)
+}
+
+/// Lets bodies come or go without a jump: what the forces change by fades over the step. Nodes that only absent bodies have come to
+/// rest. The energy that bodies bring or take counts as external work.
+fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
+    model.bear(step, state).map_err(|(e, share)| IncrementFailure::Start(TrialFailure::narrow(model, e, share)))?;
+    model.forget(step, state);
+    let mut now = state.clone();
+    evaluate_forces(step, &mut now, work)?;
+    let mut fading: Vec<f64> = now.force.iter().zip(&state.force).map(|(new, old)| new - old).collect();
+    for node in model.idle_nodes(&step.absent) {
+        let dofs = 2 * node..2 * node + 2;
+        [&mut fading, &mut state.force, &mut state.reaction, &mut state.velocity, &mut state.acceleration]
+            .into_iter()
+            .for_each(|values| values[dofs.clone()].fill(0.0));
+    }
+    state.external = now.external.iter().zip(&fading).map(|(load, fading)| load + fading).collect();
+    state.external.iter_mut().zip(&state.reaction).for_each(|(external, reaction)| *external += reaction);
+    state.damping = now.damping;
+    let evaluated = &work.assembler.evaluation.contacts;
+    for ((pair, states), found) in model.contacts.iter().zip(&mut state.contacts).zip(evaluated) {
+        if step.joins(pair) && step.changes(pair) {
+            states.clone_from(found);
+        }
+    }
+    let [strain, contact] = [work.assembler.evaluation.strain_energy, contacts::stored(model, &state.contacts)];
+    state.energy.external_work += strain - state.energy.strain + contact - state.energy.contact_elastic;
+    (state.energy.strain, state.energy.contact_elastic) = (strain, contact);
+    Arc::make_mut(&mut state.step_start).fading = fading;
+    Ok(())
 }
 
 /// Books changes of the kinetic energy by prescribed velocities, or by the end of mass lumping, as external work.

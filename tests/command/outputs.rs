@@ -840,3 +840,40 @@ fn gauges_come_from_code_as_well() {
     let names: Vec<&str> = model.requests.probes.iter().map(|probe| probe.name.as_str()).collect();
     assert_eq!(names, ["line.1", "line.2", "line.3"]);
 }
+
+/// Elements of a body that has gone, and their integration points, are hidden as VTK hides cells, from the first frame of that step on; its
+/// gauge reads no stress.
+#[test]
+fn absent_bodies_are_hidden() {
+    let blocks = json!({"joined": [["ground", "cut"]], "blocks": [
+        {"body": "ground", "corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "elements": [1, 2], "sides": ["bottom", null, null, null]},
+        {"body": "cut", "corners": [[0, 1], [1, 1], [1, 2], [0, 2]], "elements": [1, 1]},
+    ]});
+    let body = json!({"material": {"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 1}});
+    let case = json!({
+        "mesh": blocks, "bodies": {"ground": body, "cut": body}, "probes": {"gauge": {"at": [0.5, 1.5]}},
+        "output": {"points": true, "report": false},
+        "steps": [
+            {"name": "rest", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "bottom", "ux": 0, "uy": 0}],
+             "loads": [{"on": "ground", "gravity": {"y": -1}}, {"on": "cut", "gravity": {"y": -1}}]},
+            {"name": "dig", "duration": 1, "dt": {"initial": 0.5}, "remove": ["cut"]},
+        ],
+    });
+    let folder = TempDir::new().expect("a folder");
+    run(folder.path(), &case);
+    let out = folder.path().join("out");
+    let model = common::model(&case);
+    let cut = model.bodies.iter().position(|body| body.name == "cut").expect("a body") as f64;
+    assert_eq!(times(&out, "solid.pvd"), [0.0, 1.0, 1.5, 2.0]);
+    for (number, gone) in [false, false, true, true].into_iter().enumerate() {
+        for series in ["solid", "points"] {
+            let shown = frame(&out.join(format!("{series}/{number:05}.vtu"))).data;
+            let [bodies, ghosts] = ["body", "vtkGhostType"].map(|name| values(&shown.cell, name));
+            for (body, ghost) in bodies.iter().zip(&ghosts) {
+                assert_eq!(*ghost, if gone && *body == cut { 32.0 } else { 0.0 }, "{series} {number}");
+            }
+        }
+    }
+    let stress = &table(&out.join("probes.csv"))["gauge.stress_yy"];
+    assert!(stress[0].is_finite() && stress[1..].iter().all(|stress| stress.is_nan()), "{stress:?}");
+}

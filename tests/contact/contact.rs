@@ -58,6 +58,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
     ContactPair {
+        bodies: Default::default(),
         name: "test".into(),
         tied: false,
         points,

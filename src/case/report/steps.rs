@@ -17,6 +17,12 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
         let mut own = step_lines(step);
+        own.extend(
+            input.remove.iter().map(|name| format!("body {name} goes: its forces on the rest fade over the step")),
+        );
+        own.extend(
+            input.add.iter().map(|name| format!("body {name} comes, without strain; its weight grows over the step")),
+        );
         let launched = input.velocity.iter();
         own.extend(launched.map(|(name, velocity)| format!("{name}: initial velocity {}", vector(*velocity))));
         own.extend(input.damping.iter().map(|(name, Damping { mass, retardation })| {

@@ -92,13 +92,13 @@ pub(super) struct Constant {
 }
 
 impl Constant {
-    pub fn new(model: &Model) -> Self {
+    pub fn new(model: &Model, are_there: impl Fn(usize) -> bool) -> Self {
         let never = |body: usize| model.steps.iter().all(|step| model.damping(step, body).retardation == 0.0);
         let undamped = |body: usize| model.bodies[body].damping.retardation == 0.0 && never(body);
         let fit = |(k, body): (usize, &Body)| undamped(k) || damps_by_stiffness(&*body.material);
         let fit: Vec<bool> = model.bodies.iter().enumerate().map(fit).collect();
-        let is: Vec<bool> =
-            (0..model.solids.len()).map(|e| is_constant(model, e) && fit[model.body_of_element[e]]).collect();
+        let is = |e: usize| are_there(e) && is_constant(model, e) && fit[model.body_of_element[e]];
+        let is: Vec<bool> = (0..model.solids.len()).map(is).collect();
         let (mut stiffness, matrices) = distinct(model, &is);
         // A law with stress in the undeformed body is not proportional to the displacements.
         let is: Vec<bool> = matrices.iter().map(Option::is_some).collect();

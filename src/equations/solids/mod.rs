@@ -13,7 +13,7 @@ use super::coupling::Layout;
 use super::sums::{Dependence, Sums};
 use crate::equations::sums::TrialFailure;
 use crate::linear::SparseMatrix;
-use crate::model::{Model, Step};
+use crate::model::{Born, Model, Step};
 pub(super) use constant::damps_by_stiffness;
 pub use constant::is_constant;
 use constant::{Constant, Pass};
@@ -75,9 +75,10 @@ pub(super) struct Solids {
 }
 
 impl Solids {
-    pub fn new(model: &Arc<Model>) -> Self {
-        let constant = Constant::new(model);
-        let others = Runs::new(model, |e| !constant.is[e]);
+    /// The elements that are there; `born` came into a deformed model.
+    pub fn new(model: &Arc<Model>, are_there: impl Fn(usize) -> bool + Clone, born: &Arc<Born>) -> Self {
+        let constant = Constant::new(model, |e| are_there(e) && !born.contains_key(&e));
+        let others = Runs::new(model, |e| !constant.is[e] && are_there(e), born);
         let retardation = model.bodies.iter().map(|body| body.damping.retardation).collect();
         Self { model: model.clone(), constant, others, retardation }
     }

@@ -57,6 +57,15 @@ pub struct LoadStep {
     /// the reference position x, y and the run time t
     #[serde(default)]
     pub temperature: BTreeMap<String, BodyTemperature>,
+    /// Bodies taken away at the start of this step, as in an excavation. The forces that they exerted on the rest remain
+    /// as loads that fade linearly to zero over the step
+    #[serde(default)]
+    pub remove: Vec<String>,
+    /// Bodies that come at the start of this step and are absent before, such as a wall. They come without strain in the
+    /// place that their nodes have then, at rest under their `initial_stress`, if any; that and their weight grow in
+    /// linearly over the step
+    #[serde(default)]
+    pub add: Vec<String>,
     /// Supports; inherited, and replaced where the same group and direction is named again. A support released by null
     /// ends at once in dynamic and explicit steps; in a static step, also while `rupture` makes it explicit, its
     /// reaction remains as a force that fades linearly over the step
@@ -308,6 +317,12 @@ setters! { step: LoadStep;
     temperature(body: impl Into<String>, temperature: impl Into<BodyTemperature>) {
         step.temperature.insert(body.into(), temperature.into());
     }
+
+    /// Takes a body away at the start of this step.
+    remove(body: impl Into<String>) { step.remove.push(body.into()); }
+
+    /// Lets a body come at the start of this step, which is absent before.
+    add_body(body: impl Into<String>) { step.add.push(body.into()); }
 
     /// Adds a support.
     support(support: Support) { step.supports.push(support); }

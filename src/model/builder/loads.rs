@@ -52,13 +52,27 @@ const MOST_REMEMBERED: usize = 1000;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Default)]
-pub struct LoadsInForce(BTreeMap<(String, Kind), InForce>);
+pub struct LoadsInForce {
+    all: BTreeMap<(String, Kind), InForce>,
+    /// Whether each body is absent in the present step; empty if all are there
+    absent: Vec<bool>,
+}
 
 /// A load in force, or one that was ended.
 #[derive(Clone)]
 struct InForce {
     loads: Loads,
     entry: Entry,
+    /// Bodies of each edge or node that it acts on
+    on: Vec<Vec<usize>>,
+}
+
+impl InForce {
+    /// A body that it acts on and that is not there.
+    fn missing(&self, absent: &[bool]) -> Option<usize> {
+        let mut on = self.on.iter().filter(|bodies| !absent.is_empty() && bodies.iter().all(|&body| absent[body]));
+        on.find_map(|bodies| bodies.first().copied())
+    }
 }
 
 impl LoadsInForce {
@@ -69,16 +83,38 @@ impl LoadsInForce {
     pub fn of_step(number: usize, given: &[LoadStep], model: &Model) -> Checked<Self> {
         let mut in_force = Self::default();
         for (k, (given, step)) in given.iter().zip(&model.steps).enumerate().take(number + 1) {
-            in_force.step(&given.loads, &format!("steps[{k}]"), step.span, model)?;
+            in_force.step(&given.loads, &format!("steps[{k}]"), step.span, &step.absent, model)?;
         }
         Ok(in_force)
     }
 
     /// Goes on to the next step, with its loads.
-    pub(super) fn step(&mut self, given: &[Load], place: &str, span: Span, model: &Model) -> Checked<()> {
-        self.0.values_mut().for_each(|load| load.entry.kept = true);
+    pub(super) fn step(
+        &mut self,
+        given: &[Load],
+        place: &str,
+        span: Span,
+        absent: &[bool],
+        model: &Model,
+    ) -> Checked<()> {
+        self.all.values_mut().for_each(|load| load.entry.kept = true);
+        self.absent = absent.to_vec();
         let mut given = given.iter().enumerate();
-        given.try_for_each(|(k, load)| self.change(load, &format!("{place}.loads[{k}]"), span, model))
+        given.try_for_each(|(k, load)| self.change(load, &format!("{place}.loads[{k}]"), span, model))?;
+        self.check_bodies(place, model)
+    }
+
+    /// Refuses loads on bodies that are not there, except for gravity, which comes and goes with them.
+    fn check_bodies(&self, place: &str, model: &Model) -> Checked<()> {
+        let mut lasting =
+            self.all.iter().filter(|((_, kind), load)| *kind != Kind::Gravity && load.entry.value.is_some());
+        let hanging = lasting.find_map(|(_, load)| Some((&load.entry, load.missing(&self.absent)?)));
+        let Some((Entry { on, kind, .. }, body)) = hanging else { return Ok(()) };
+        let name = &model.bodies[body].name;
+        let message = format!(
+            "the {kind} on {on} acts on `{name}`, which is not there in this step: end it with null, or give it later"
+        );
+        Err(ModelError::new(format!("{place}.loads"), message))
     }
 
     /// Changes or ends a load from the start of a span within a step on.
@@ -87,7 +123,7 @@ impl LoadsInForce {
     /// Returns the same errors as for a step.
     pub fn change_within(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let on = load.on.in_words(&model.mesh);
-        let before = self.0.get_mut(&(on, action(load, place)?.0));
+        let before = self.all.get_mut(&(on, action(load, place)?.0));
         for amplitude in before.into_iter().flat_map(|before| before.loads.amplitudes()) {
             *amplitude = amplitude.settled(span.start);
             if amplitude.chain().count() > MOST_REMEMBERED {
@@ -98,10 +134,10 @@ impl LoadsInForce {
         self.change(load, place, span, model)
     }
 
-    /// Returns all loads.
+    /// Returns all loads on bodies that are there.
     pub fn all(&self) -> Loads {
         let mut all = Loads::default();
-        for InForce { loads, .. } in self.0.values() {
+        for InForce { loads, .. } in self.all.values().filter(|load| load.missing(&self.absent).is_none()) {
             all.dead.extend(loads.dead.iter().cloned());
             all.pressures.extend(loads.pressures.iter().cloned());
             all.springs.extend(loads.springs.iter().cloned());
@@ -114,7 +150,7 @@ impl LoadsInForce {
 
     /// The loads of the present step as the input gave them.
     pub(super) fn entries(&self) -> impl Iterator<Item = &Entry> {
-        self.0.values().map(|load| &load.entry)
+        self.all.values().map(|load| &load.entry)
     }
 
     /// Changes or ends a load.
@@ -123,7 +159,7 @@ impl LoadsInForce {
         let on = load.on.settled(&model.mesh, &format!("{place}.on"))?;
         let key = (on.to_string(), kind);
         // A load that decreases to zero stays until something replaces it.
-        let before = self.0.get(&key).filter(|load| kind.fades() || load.entry.value.is_some());
+        let before = self.all.get(&key).filter(|load| kind.fades() || load.entry.value.is_some());
         if value.is_none() && before.is_none() {
             return Err(nothing_to_end(place, &load.on));
         }
@@ -132,9 +168,30 @@ impl LoadsInForce {
         let name = if kind == Kind::Absorbing { "absorbing side".into() } else { kind.key().replace('_', " ") };
         let value = value.map(|value| value.to_string());
         let entry = Entry { is_load: true, on: key.0.clone(), kind: name, value, kept: false, fades: kind.fades() };
-        self.0.insert(key, InForce { loads, entry });
+        let on = bodies_at(&load.on, place, model)?;
+        self.all.insert(key, InForce { loads, entry, on });
         Ok(())
     }
+}
+
+/// Bodies of each edge or node of a place; of a body itself, and of point masses with its name, that one.
+fn bodies_at(on: &Place, place: &str, model: &Model) -> Checked<Vec<Vec<usize>>> {
+    if let Place::Group(name) = on
+        && let Some(body) = model.bodies.iter().position(|body| body.name == *name)
+    {
+        return Ok(vec![vec![body]]);
+    }
+    if let Place::Group(name) = on
+        && let Ok(edges) = edges(&model.mesh, name, place)
+    {
+        return Ok(edges.iter().map(|edge| vec![model.body_of_element[edge.element]]).collect());
+    }
+    let own = |node: usize| {
+        let bodies = model.bodies.iter().enumerate();
+        bodies.filter(|(_, body)| body.nodes.binary_search(&node).is_ok()).map(|(number, _)| number).collect()
+    };
+    let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
+    Ok(nodes.into_iter().map(own).filter(|bodies: &Vec<usize>| !bodies.is_empty()).collect())
 }
 
 /// Returns kind and value of a load, which gives exactly one.

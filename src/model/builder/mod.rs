@@ -59,6 +59,7 @@ mod pores;
 mod requests;
 mod rigid;
 pub(crate) mod schedule;
+mod stages;
 mod supports;
 mod unconstrained;
 

@@ -89,6 +89,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         name: contact.name.clone(),
         tied: contact.tied,
         body: body(contact, points.first(), model),
+        bodies: bodies(contact, model),
         touch: TOUCH * size(&points, model),
         points,
         mortar,
@@ -139,6 +140,22 @@ fn size(points: &[SlavePoint], model: &Model) -> f64 {
         })
     };
     points.iter().map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// Bodies of the sides of a contact.
+fn bodies(contact: &Contact, model: &Model) -> [Vec<usize>; 2] {
+    let of = |name: &str| -> BTreeSet<usize> {
+        match model.mesh.group(name) {
+            Ok(Group::Edges(edges)) => edges.iter().map(|edge| model.body_of_element[edge.element]).collect(),
+            Ok(Group::Nodes(nodes)) => {
+                let has = |body: usize| nodes.iter().any(|node| model.bodies[body].nodes.binary_search(node).is_ok());
+                (0..model.bodies.len()).filter(|body| has(*body)).collect()
+            }
+            _ => BTreeSet::new(),
+        }
+    };
+    let master = contact.master_group().map(of).unwrap_or_default();
+    [of(&contact.slave), master].map(|side| side.into_iter().collect())
 }
 
 /// Body of the slave's edge at its first point; a node may belong to two bodies, an edge does not.

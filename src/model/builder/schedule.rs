@@ -13,6 +13,7 @@ use super::groups::nodes_at;
 use super::initial::launch;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UNTIL_TOLERANCE, UntilSettings};
 use super::loads::{LoadsInForce, check_defined};
+use super::stages::Stages;
 use super::supports::{SupportsInForce, freed};
 use crate::contact::pair::ContactPair;
 use crate::mesh::rigid::RigidBody;
@@ -61,6 +62,7 @@ pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
         supports: Vec::new(),
         loads: LoadsInForce::default(),
         temperatures: BTreeMap::new(),
+        stages: Stages::new(given, model),
     };
     given.iter().enumerate().map(|(k, step)| schedule.next(&format!("steps[{k}]"), step)).collect()
 }
@@ -79,6 +81,8 @@ struct Schedule<'m> {
     supports: Vec<Prescribed>,
     loads: LoadsInForce,
     temperatures: BTreeMap<usize, Amplitude>,
+    /// bodies that come and go
+    stages: Stages<'m>,
 }
 
 impl Schedule<'_> {
@@ -94,12 +98,15 @@ impl Schedule<'_> {
         if std::mem::replace(&mut self.may_end_early, given.until.is_some()) {
             self.supports_in_force.keep_positions();
         }
+        let changed = self.stages.step(given, scheme, place)?;
         // In dynamics a released reaction vanishes at once.
         let fades = !scheme.is_dynamic();
         self.supports_in_force.step(&given.supports, place, span, fades, self.model)?;
-        let before = std::mem::replace(&mut self.supports, self.supports_in_force.all(place, self.model)?);
+        self.stages.check_supports(&given.supports, place)?;
+        let supports = self.stages.held(self.supports_in_force.all(place, self.model)?, span);
+        let before = std::mem::replace(&mut self.supports, supports);
         let released = if fades { freed(&before, &self.supports) } else { Vec::new() };
-        self.loads.step(&given.loads, place, span, self.model)?;
+        self.loads.step(&given.loads, place, span, &self.stages.absent(), self.model)?;
         self.damp(&given.damping, place)?;
         temperatures(&mut self.temperatures, given, place, span, self.model)?;
         check_defined(place, given, scheme, span, self.model)?;
@@ -117,6 +124,8 @@ impl Schedule<'_> {
             loads: self.loads.all(),
             entries: Entry::of_step(self.supports_in_force.entries().chain(self.loads.entries())),
             damping: self.damping.clone(),
+            absent: self.stages.absent(),
+            changed,
             until: None,
             temperatures: prescribed_temperatures(&self.temperatures),
             stabilization,

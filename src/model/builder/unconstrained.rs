@@ -117,12 +117,17 @@ const NAMED: f64 = 0.1;
 /// through their coupling with others: contact, shared nodes, periodic sides and platens. Contact counts as constraint in every
 /// direction, and a single shared node as a hinge. A group that touches a rigid body is left to the solver.
 fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
-    if model.steps.iter().all(|step| step.scheme.is_dynamic()) {
-        return Ok(());
-    }
-    let parts = Parts::of(model);
+    let still: Vec<(usize, &Step)> =
+        model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()).collect();
+    still.chunk_by(|(_, a), (_, b)| a.absent == b.absent).try_for_each(|alike| check_floating_in(alike, given, model))
+}
+
+/// The same for steps with the same bodies.
+fn check_floating_in(steps: &[(usize, &Step)], given: &[LoadStep], model: &Model) -> Checked<()> {
+    let Some((_, first)) = steps.first() else { return Ok(()) };
+    let parts = Parts::of(model, first);
     let groups = Groups::of(&parts);
-    for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()) {
+    for &(k, step) in steps {
         let Some(free) = groups.free_motion(step) else { continue };
         let constrained = if given[k].supports.is_empty() && step.supports.is_empty() {
             "there is no support at all"
@@ -164,7 +169,8 @@ impl<'m> Groups<'m> {
         }
         let is_checked = |group: &Vec<usize>| {
             let has_bodies = group.iter().any(|&part| !parts.parts[part].bodies.is_empty());
-            has_bodies && group.len() <= FEW_PARTS && !group.iter().any(|&part| parts.parts[part].on_rigid)
+            let is_there = group.iter().any(|&part| !parts.parts[part].nodes.is_empty());
+            is_there && has_bodies && group.len() <= FEW_PARTS && !group.iter().any(|&part| parts.parts[part].on_rigid)
         };
         let members: Vec<Vec<usize>> = joined.groups().into_iter().filter(is_checked).collect();
         let mut place = vec![None; parts.parts.len()];
@@ -234,10 +240,10 @@ struct Parts<'m> {
 }
 
 impl<'m> Parts<'m> {
-    /// Finds the parts of a model.
-    fn of(model: &'m Model) -> Self {
-        let owners = owners(model);
-        let groups = joined(model, &owners);
+    /// Finds the parts of a model in a step.
+    fn of(model: &'m Model, step: &Step) -> Self {
+        let owners = owners(model, step);
+        let groups = joined(model, step, &owners);
         let mut part_of = vec![0; groups.iter().map(Vec::len).sum()];
         groups.iter().enumerate().for_each(|(part, group)| group.iter().for_each(|&owner| part_of[owner] = part));
         let mut of_node = owners;
@@ -250,7 +256,7 @@ impl<'m> Parts<'m> {
         of_node.iter().enumerate().for_each(|(node, parts)| parts.iter().for_each(|&part| nodes[part].push(node)));
         let mut parts: Vec<Part> =
             groups.iter().zip(nodes).map(|(group, nodes)| Part::of(group, nodes, model)).collect();
-        for pair in model.contacts.iter().filter(|pair| matches!(pair.master, Master::Rigid(_))) {
+        for pair in model.contacts.iter().filter(|pair| step.joins(pair) && matches!(pair.master, Master::Rigid(_))) {
             pair.slave_nodes().flat_map(|node| &of_node[node]).for_each(|&part| parts[part].on_rigid = true);
         }
         Self { parts, model, of_node }
@@ -332,10 +338,10 @@ impl Part {
     }
 }
 
-/// Bodies of each node; a node outside all bodies has a number of its own after theirs.
-fn owners(model: &Model) -> Vec<Vec<usize>> {
+/// Bodies of each node that are there in a step; a node outside them has a number of its own after theirs.
+fn owners(model: &Model, step: &Step) -> Vec<Vec<usize>> {
     let mut owners = vec![Vec::new(); model.mesh.nodes.len()];
-    for (body, of) in model.bodies.iter().enumerate() {
+    for (body, of) in model.bodies.iter().enumerate().filter(|(body, _)| step.has(*body)) {
         of.nodes.iter().for_each(|&node| owners[node].push(body));
     }
     let lone = owners.iter_mut().filter(|bodies| bodies.is_empty());
@@ -344,10 +350,10 @@ fn owners(model: &Model) -> Vec<Vec<usize>> {
 }
 
 /// Groups of bodies and nodes that move as one.
-fn joined(model: &Model, owners: &[Vec<usize>]) -> Vec<Vec<usize>> {
+fn joined(model: &Model, step: &Step, owners: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut joined = Joined::new(1 + owners.iter().flatten().max().copied().unwrap_or(0));
     bonded(model, owners).into_iter().for_each(|(a, b)| joined.join(a, b));
-    for pair in &model.contacts {
+    for pair in model.contacts.iter().filter(|pair| step.joins(pair)) {
         let Master::Mesh(Surface { segments, .. }) = &pair.master else { continue };
         // An edge group may belong to several bodies.
         let nodes = pair.slave_nodes().chain(segments.iter().flat_map(|segment| segment.ends));

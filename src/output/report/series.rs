@@ -2,6 +2,7 @@
 //!
 //! Maps of interface quantities over place and time.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use rayon::prelude::*;
@@ -13,6 +14,7 @@ use crate::output::quantities::OF_YIELDING;
 use crate::output::results::{Array, Frame, Grid, Unreadable, frames};
 use crate::output::store::STORE;
 use crate::output::store::read::StoredContact;
+use crate::output::vtu::GHOSTS;
 
 /// Undeformed positions are stored relative to the center, so that single precision suffices far from the origin.
 fn middle(points: &[[f64; 2]]) -> [f64; 2] {
@@ -31,6 +33,8 @@ pub struct Series {
 /// A frame, packed for the page.
 struct PackedFrame {
     time: f64,
+    /// numbers of the bodies that are absent
+    hidden: BTreeSet<u32>,
     /// largest displacement [L]
     largest: f64,
     displacement: Option<Packed>,
@@ -142,7 +146,7 @@ impl Series {
             Field { name: array.name.clone(), components, longest: longest(array), principal: principal(array) }
         });
         let largest = displacement(grid).map_or(0.0, |moved| longest(moved)[0]);
-        PackedFrame { time: frame.time, largest, displacement: moved, fields: fields.collect() }
+        PackedFrame { time: frame.time, hidden: hidden(grid), largest, displacement: moved, fields: fields.collect() }
     }
 
     /// Page data of the frames at these times.
@@ -190,6 +194,14 @@ fn displacement(grid: &Grid) -> Option<&Array> {
     grid.at_points.iter().find(|array| array.name == DISPLACEMENT && array.components >= 2)
 }
 
+/// Numbers of the bodies whose cells a frame hides.
+fn hidden(grid: &Grid) -> BTreeSet<u32> {
+    let of = |name: &str| grid.at_cells.iter().find(|array| array.name == name);
+    let (Some(body), Some(ghosts)) = (of("body"), of(GHOSTS)) else { return BTreeSet::new() };
+    let cells = body.values.iter().zip(&ghosts.values);
+    cells.filter(|(_, ghost)| **ghost != 0.0).map(|(body, _)| *body as u32).collect()
+}
+
 /// Length of the longest vector in the plane, and of the longest typical one.
 fn longest(array: &Array) -> [f64; 2] {
     if array.components < 2 {
@@ -219,7 +231,7 @@ fn shown(frame: &PackedFrame, pack: &mut Pack) -> Value {
         fields.insert(name.clone(), json!({ "components": components, "longest": longest, "principal": principal }));
     }
     let displacement = frame.displacement.as_ref().map(|packed| pack.add(packed));
-    json!({ "time": frame.time, "displacement": displacement, "largest": frame.largest, "fields": fields })
+    json!({ "time": frame.time, "hidden": frame.hidden, "displacement": displacement, "largest": frame.largest, "fields": fields })
 }
 
 /// Evenly spaced numbers below `count`, including the first and last; the last alone if `most` is one.

@@ -2,8 +2,9 @@
 //!
 //! This file contains the viscous stress of a damped body as well, and elements with internal variables or an unsymmetric tangent;
 //! `f_bar.rs` contains F-bar, `ring.rs` axisymmetry, `stress.rs` the stress and the reference geometry of elements, `volume.rs` their mean volume
-//! change.
+//! change, `birth.rs` elements that come later.
 
+mod birth;
 mod f_bar;
 mod ring;
 mod stress;
@@ -48,6 +49,8 @@ pub struct SolidElement {
     hoop: Option<Vec<f64>>,
     /// Trace of the initial stress at the quadrature points of an F-bar element; empty without one [F/L²]
     initial: Vec<f64>,
+    /// Displacements of the nodes when it came; empty for an element that has been there from the start [L]
+    birth: Vec<Vector2<f64>>,
 }
 
 impl SolidElement {
@@ -103,6 +106,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         forces: &mut [Vector2<f64>],
     ) -> Result<f64, MaterialFailure> {
+        let u = &*self.since_birth(u);
         let points = self.volumes.len();
         debug_assert!(points <= M);
         let mut deformations = [Matrix2::zeros(); M];
@@ -163,6 +167,7 @@ impl SolidElement {
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, MaterialFailure> {
+        let u = &*self.since_birth(u);
         if let Some(mean) = self.mean(u)? {
             let answer = |_, seen: &Vector5<f64>| material.at_once(&plane(seen)).map(Stretched::from);
             return mean.respond(answer, force, Some(tangent)).map(|[energy, _]| energy);
@@ -247,6 +252,7 @@ impl SolidElement {
         if self.hoop.is_some() {
             return self.ring_viscous_forces(material, tau, [u, v], forces);
         }
+        let u = &*self.since_birth(u);
         forces.fill(Vector2::zeros());
         for (gradients, volume) in self.points() {
             let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
@@ -268,6 +274,7 @@ impl SolidElement {
         if self.hoop.is_some() {
             return self.ring_viscous_tangent(material, tau, [u, v], dvelocity, tangent);
         }
+        let u = &*self.since_birth(u);
         tangent.fill(0.0);
         let n = 2 * u.len();
         for (gradients, volume) in self.points() {
@@ -338,6 +345,7 @@ impl SolidElement {
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], MaterialFailure> {
+        let u = &*self.since_birth(u);
         let (Memory { dt, old, new }, wanted) = (memory, tangent.is_some());
         let count = material.description().variables.len();
         if let Some(mean) = self.mean(u)? {

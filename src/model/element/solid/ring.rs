@@ -28,6 +28,7 @@ impl SolidElement {
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], MaterialFailure> {
+        let u = &*self.since_birth(u);
         let (law, count) = (spatial(material), material.description().variables.len());
         let wanted = tangent.is_some();
         if let Some(mean) = self.mean(u)? {
@@ -75,6 +76,7 @@ impl SolidElement {
 
     /// F₃₃ at each quadrature point.
     pub(super) fn hoop_stretches(&self, u: &[Vector2<f64>]) -> Vec<f64> {
+        let u = &*self.since_birth(u);
         self.everywhere().map(|(at, _)| at.deformation(u)[4]).collect()
     }
 
@@ -86,6 +88,7 @@ impl SolidElement {
         [u, v]: [&[Vector2<f64>]; 2],
         forces: &mut [Vector2<f64>],
     ) {
+        let u = &*self.since_birth(u);
         let law = spatial(material);
         let mut all = [0.0; 18];
         for (at, volume) in self.everywhere() {
@@ -104,6 +107,7 @@ impl SolidElement {
         dvelocity: &[f64],
         tangent: &mut [f64],
     ) {
+        let u = &*self.since_birth(u);
         let law = spatial(material);
         tangent.fill(0.0);
         for (at, volume) in self.everywhere() {

@@ -39,6 +39,7 @@ impl SolidElement {
 
     /// F at each quadrature point as the law sees it: F̄ of F-bar.
     fn seen(&self, u: &[Vector2<f64>]) -> Result<Few<Vector5<f64>, 9>, MaterialFailure> {
+        let u = &*self.since_birth(u);
         Ok(match self.mean(u)? {
             Some(mean) => mean.seen().into(),
             None => self.everywhere().map(|(at, _)| at.deformation(u)).collect(),
@@ -72,6 +73,7 @@ impl SolidElement {
 
     /// F at each quadrature point.
     pub fn deformations(&self, u: &[Vector2<f64>]) -> Vec<Matrix2<f64>> {
+        let u = &*self.since_birth(u);
         self.points().map(|(gradients, _)| deformation_gradient(gradients, u)).collect()
     }
 
@@ -158,6 +160,7 @@ impl SolidElement {
             mean_weight: 1.0,
             hoop: section.is_axisymmetric().then(Vec::new),
             initial: Vec::new(),
+            birth: Vec::new(),
         };
         let over_radius = |at: [f64; 2]| {
             let values = kind.values(at);

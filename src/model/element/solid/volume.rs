@@ -18,6 +18,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         mut by: Option<&mut [f64]>,
     ) -> Result<f64, MaterialFailure> {
+        let u = &*self.since_birth(u);
         let whole: f64 = self.everywhere().map(|(_, volume)| volume).sum();
         if let Some(by) = by.as_deref_mut() {
             by.fill(0.0);

@@ -31,14 +31,15 @@ class Bodies extends BodiesPicture {
     this.run = run;
     this.solid = run.solid;
     const { solid } = this;
-    const [places, connectivity, ends, kinds] = await Promise.all([
-      unpack(solid.places), unpack(solid.connectivity, "u32"), unpack(solid.ends, "u32"), unpack(solid.kinds, "u8")]);
-    Object.assign(this, { places, mesh: { connectivity, ends, kinds } });
+    const [places, connectivity, ends, kinds, bodies] = await Promise.all([
+      unpack(solid.places), unpack(solid.connectivity, "u32"), unpack(solid.ends, "u32"), unpack(solid.kinds, "u8"),
+      solid.body ? unpack(solid.body, "u32") : []]);
+    Object.assign(this, { places, mesh: { connectivity, ends, kinds, bodies } });
     this.contact = run.contact && run.contact.frames.length ? await this.surfaces(run.contact) : null;
     if (this.scene) this.stage.querySelector("canvas:first-child").remove();
     this.scene = scene(this.stage, solid.cells);
     this.canvas = this.stage.querySelector("canvas");
-    this.scene.mesh(places, shapes(connectivity, ends, kinds, solid.points));
+    this.uncover([]);
     this.scene.colours(this.options.map);
     if (this.options.edges == null) this.options.edges = solid.cells <= 6000;
     this.fields = fieldsOf(solid);
@@ -57,6 +58,12 @@ class Bodies extends BodiesPicture {
     const frames = solid.frames.map((frame) => frame.time);
     await this.show(now.time == null ? frames.length - 1 : nearest(frames, now.time), true);
     this.ahead();
+  }
+
+  /** Draws the mesh without the bodies that are absent. */
+  uncover(hidden) {
+    this.hidden = `${hidden}`;
+    this.scene.mesh(this.places, shapes(this.mesh, this.solid.points, hidden));
   }
 
   /** Points and lines of the contacts. */
@@ -140,6 +147,7 @@ class Bodies extends BodiesPicture {
     }
     if (this.wanted !== wanted) return;
     this.frame = wanted;
+    if (this.hidden !== `${frame.hidden}`) this.uncover(frame.hidden);
     this.slider.value = wanted;
     this.moved = (frame.displacement && peek(frame.displacement)) || new Float32Array(2 * this.solid.points);
     this.values = this.field.values(frame, this);

@@ -10,15 +10,15 @@ const PARTS = {
   28: [0, 4, 8, 0, 8, 7, 4, 1, 5, 4, 5, 8, 8, 5, 2, 8, 2, 6, 7, 8, 6, 7, 6, 3],
 };
 
-/** Triangles, edges between elements and outlines of a mesh. */
-function shapes(connectivity, ends, kinds, points) {
+/** Triangles, edges between elements and outlines of a mesh without some bodies. */
+function shapes({ connectivity, ends, kinds, bodies }, points, hidden) {
   const [triangles, rings] = [[], []];
-  let start = 0;
-  ends.forEach((end, e) => {
+  ends.forEach((_, e) => {
+    if (hidden.includes(bodies[e])) return;
+    const start = e ? ends[e - 1] : 0;
     for (const k of PARTS[kinds[e]] || []) triangles.push(connectivity[start + k]);
     const ring = RINGS[kinds[e]] || [];
     ring.forEach((k, i) => rings.push(connectivity[start + k], connectivity[start + ring[(i + 1) % ring.length]]));
-    start = end;
   });
   const seen = new Map();
   for (let k = 0; k < rings.length; k += 2) {

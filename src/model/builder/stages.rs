@@ -1,0 +1,142 @@
+//! Bodies that come or go with the steps.
+
+use super::error::{Checked, ModelError, refuse_if};
+use super::groups;
+use super::load_step::{LoadStep, Support};
+use crate::contact::pair::ContactPair;
+use crate::model::Model;
+use crate::model::boundary::{Drive, Span};
+use crate::model::scheme::Scheme;
+use crate::model::support::Prescribed;
+
+/// Which bodies are there, step by step.
+pub struct Stages<'m> {
+    model: &'m Model,
+    /// Whether each body is absent
+    absent: Vec<bool>,
+    /// Whether a step has begun
+    has_begun: bool,
+}
+
+impl<'m> Stages<'m> {
+    /// Before the first step, bodies are absent which a step adds before any removes them.
+    pub fn new(given: &[LoadStep], model: &'m Model) -> Self {
+        let comes = |name: &String| {
+            let first = given.iter().find(|step| step.add.contains(name) || step.remove.contains(name));
+            first.is_some_and(|step| step.add.contains(name))
+        };
+        Self { model, absent: model.bodies.iter().map(|body| comes(&body.name)).collect(), has_begun: false }
+    }
+
+    /// Goes on to the next step; returns the bodies that it adds or removes.
+    pub fn step(&mut self, given: &LoadStep, scheme: Scheme, place: &str) -> Checked<Vec<usize>> {
+        let mut changed = Vec::new();
+        for (key, names, comes) in [("remove", &given.remove, false), ("add", &given.add, true)] {
+            for (k, name) in names.iter().enumerate() {
+                let place = format!("{place}.{key}[{k}]");
+                let body = groups::body(self.model, name, &place)?;
+                let message = "comes or goes twice in this step: name it once";
+                refuse_if(changed.contains(&body), &place, format!("`{name}` {message}"))?;
+                let message = if comes { "is there already" } else { "is not there in this step" };
+                refuse_if(self.absent[body] != comes, &place, format!("`{name}` {message}: check the steps before"))?;
+                let message = "the first step begins with the bodies as they are: let it rest under initial stress and loads, and change \
+                               bodies in the next";
+                refuse_if(!self.has_begun, &place, message)?;
+                self.check_platens(body, &place)?;
+                self.check_balanced(body, &place)?;
+                self.absent[body] = !comes;
+                changed.push(body);
+            }
+        }
+        self.has_begun = true;
+        let by_masses = scheme.is_integrated_explicitly() || scheme.is_quasi_dynamic() || given.rupture.is_some();
+        if let Some(body) =
+            self.absent.iter().position(|absent| *absent).or(changed.first().copied()).filter(|_| by_masses)
+        {
+            let name = &self.model.bodies[body].name;
+            let message = format!(
+                "`{name}` comes or goes, which explicit and quasi-dynamic steps, and `rupture`, cannot follow: make it static or implicit"
+            );
+            return Err(ModelError::new(place, message));
+        }
+        self.check_contacts(&changed, place)?;
+        changed.sort_unstable();
+        Ok(changed)
+    }
+
+    /// Whether each body is absent; empty if all are there.
+    pub fn absent(&self) -> Vec<bool> {
+        if self.absent.contains(&true) { self.absent.clone() } else { Vec::new() }
+    }
+
+    /// The supports of a step, with the nodes held that only absent bodies have.
+    pub fn held(&self, supports: Vec<Prescribed>, span: Span) -> Vec<Prescribed> {
+        let idle = self.model.idle_nodes(&self.absent);
+        let mut all: Vec<Prescribed> =
+            supports.into_iter().filter(|support| idle.binary_search(&support.at.node()).is_err()).collect();
+        let dofs = groups::dofs_of(&idle);
+        all.extend(dofs.map(|dof| Prescribed::displacement(dof, Drive::Rate(0.0), span)));
+        all.sort_by_key(|support| support.at.dof);
+        all
+    }
+
+    /// Refuses a support that a step gives to absent bodies alone.
+    pub fn check_supports(&self, given: &[Support], place: &str) -> Checked<()> {
+        let idle = self.model.idle_nodes(&self.absent);
+        for (k, support) in given.iter().enumerate() {
+            let place = format!("{place}.supports[{k}].on");
+            let nodes = groups::nodes_at(&self.model.mesh, &support.on, &place)?;
+            let are_idle = nodes.iter().all(|&node| idle.binary_search(&self.model.ties.original(node)).is_ok());
+            let message =
+                format!("{} belongs to bodies that are not there in this step: leave the support out", support.on);
+            refuse_if(are_idle, place, message)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a platen on a body that comes or goes.
+    fn check_platens(&self, body: usize, place: &str) -> Checked<()> {
+        let model = self.model;
+        let mut platens = model.plates.iter().chain(model.linkage.plates.iter().map(|(nodes, _)| nodes)).flatten();
+        let body = &model.bodies[body];
+        let message =
+            format!("`{}` has nodes of a loading platen, which would be left alone: take the platen off it", body.name);
+        refuse_if(platens.any(|node| body.nodes.binary_search(node).is_ok()), place, message)
+    }
+
+    /// Checks that contacts come and go as a whole, and that those that come do not depend on mesh positions.
+    fn check_contacts(&self, changed: &[usize], place: &str) -> Checked<()> {
+        let is_new = |pair: &ContactPair| {
+            let mut bodies = pair.bodies.iter().flatten();
+            bodies.clone().any(|body| changed.contains(body)) && bodies.all(|&body| !self.absent[body])
+        };
+        for pair in &self.model.contacts {
+            let name = &pair.name;
+            let parted = |side: &Vec<usize>| side.iter().any(|body| self.absent[*body] != self.absent[side[0]]);
+            let message = "has a side on bodies of which only some are there: divide the side, body by body";
+            refuse_if(pair.bodies.iter().any(parted), place, format!("the contact `{name}` {message}"))?;
+            let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair);
+            let message = "comes in this step, and is tied, starts closed, overlaps or has pores at mesh positions, which are not those of \
+                           then: let the bodies share nodes, or touch";
+            refuse_if(is_new(pair) && at_places, place, format!("the contact `{name}` {message}"))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a body that comes or goes with forces that stand for its initial stress.
+    fn check_balanced(&self, body: usize, place: &str) -> Checked<()> {
+        let forces = &self.model.prestress;
+        let body = &self.model.bodies[body];
+        let has_force = |dof: usize| forces.get(dof).is_some_and(|force| *force != 0.0);
+        let message = format!(
+            "`{}` is in contact with initial tractions that are `balanced`, by no stress that could go with it: give it an initial_stress, and \
+             the contact `of_bodies`",
+            body.name
+        );
+        refuse_if(groups::dofs_of(&body.nodes).any(has_force), place, message)
+    }
+}
+
+fn overlaps(pair: &ContactPair) -> bool {
+    pair.points.iter().any(|point| point.overlap > 0.0)
+}

@@ -1,0 +1,129 @@
+//! Bodies that come and go with the steps.
+//!
+//! ```text
+//! R = F(u₀; bodies of the step) − F(u₀; bodies before)           at the start of the step
+//! F(u; bodies of the step) − (1 − s) R = 0                       s: elapsed fraction of the step
+//! ```
+//!
+//! A step that adds or removes bodies begins in the equilibrium of the one before, whatever the bodies exerted on the rest: internal
+//! forces, contact, weight and other loads. The difference fades linearly to zero.
+//!
+//! Nodes that only absent bodies have are held where they are.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use super::Model;
+use super::element::{ElementError, SolidElement};
+use super::state::{Births, State};
+use super::step::Step;
+use crate::contact::pair::ContactPair;
+use crate::contact::point::ContactState;
+
+/// Share of its size in the mesh at a point of an element below which it does not come: other nodes have moved away from its own.
+const LEAST_SHARE: f64 = 0.5;
+
+/// Elements that came into a deformed model, by number.
+#[doc(hidden)]
+pub type Born = BTreeMap<usize, SolidElement>;
+
+#[doc(hidden)]
+impl Model {
+    /// Whether bodies come or go.
+    pub fn changes_bodies(&self) -> bool {
+        self.steps.iter().any(|step| !step.absent.is_empty())
+    }
+
+    /// Nodes that only absent bodies have, ascending; of tied ones the original.
+    pub fn idle_nodes(&self, absent: &[bool]) -> Vec<usize> {
+        let mut is_idle = vec![false; self.mesh.nodes.len()];
+        for is_absent in [true, false] {
+            let bodies = self.bodies.iter().zip(absent).filter(|(_, absent)| **absent == is_absent);
+            let nodes = bodies.flat_map(|(body, _)| self.ties.originals(body.nodes.iter().copied()));
+            nodes.for_each(|node| is_idle[node] = is_absent);
+        }
+        (0..is_idle.len()).filter(|node| is_idle[*node]).collect()
+    }
+
+    /// The states of a contact at the start of the run.
+    pub fn first_states(&self, pair: &ContactPair) -> Vec<ContactState> {
+        match self.steps.first().is_none_or(|step| step.joins(pair)) {
+            true => pair.initial_states(&self.mesh.undeformed()),
+            false => pair.apart(),
+        }
+    }
+
+    /// An element as it is in a state: without strain at the place where it came.
+    pub fn solid(&self, state: &State, element: usize) -> Cow<'_, SolidElement> {
+        let given = &self.solids[element];
+        let births = state.step_start.births.get(&element);
+        // Elements are checked when they come.
+        births.and_then(|birth| self.born(element, birth).ok()).map_or(Cow::Borrowed(given), Cow::Owned)
+    }
+
+    /// An element that comes at displacements of its nodes.
+    ///
+    /// # Errors
+    /// [`ElementError::Degenerate`] when it is inverted there.
+    pub fn born(&self, element: usize, birth: &[[f64; 2]]) -> Result<SolidElement, ElementError> {
+        let birth = birth.iter().map(|u| Vector2::from(*u)).collect();
+        self.solids[element].born(self.mesh.section, &self.mesh.places(element), birth)
+    }
+
+    /// An element, as it came.
+    pub fn as_born<'m>(&'m self, born: &'m Born, element: usize) -> &'m SolidElement {
+        born.get(&element).unwrap_or(&self.solids[element])
+    }
+
+    /// The elements that came into a deformed model, by number.
+    pub fn born_of(&self, births: &Births) -> Arc<Born> {
+        Arc::new(births.iter().filter_map(|(&e, birth)| Some((e, self.born(e, birth).ok()?))).collect())
+    }
+
+    /// Lets the elements of the bodies that a step adds come where their nodes are.
+    ///
+    /// # Errors
+    /// Returns an element whose shape there is far from that in the mesh, with the least share of a point in its size.
+    pub fn bear(&self, step: &Step, state: &mut State) -> Result<(), (usize, f64)> {
+        let mut births = Births::clone(&state.step_start.births);
+        for &element in step.changed.iter().flat_map(|&body| &self.bodies[body].elements) {
+            births.remove(&element);
+            let birth: Vec<[f64; 2]> =
+                self.mesh.vectors(element, &state.displacement).into_iter().map(Into::into).collect();
+            if !step.has(self.body_of_element[element]) || birth.iter().flatten().all(|u| *u == 0.0) {
+                continue;
+            }
+            let volumes = self.solids[element].point_volumes();
+            let least = self.born(element, &birth).map_or(0.0, |born| {
+                let shares = born.point_volumes().iter().zip(volumes).map(|(now, mesh)| now / mesh);
+                shares.fold(f64::INFINITY, f64::min)
+            });
+            if least < LEAST_SHARE {
+                return Err((element, least));
+            }
+            births.insert(element, birth);
+        }
+        Arc::make_mut(&mut state.step_start).births = Arc::new(births);
+        Ok(())
+    }
+
+    /// Takes the history from the bodies that a step adds or removes, and from their contacts.
+    pub fn forget(&self, step: &Step, state: &mut State) {
+        let initial = self.initial_memory();
+        let memory = self.memories.each_mut(&mut state.memory).zip(self.memories.each(&initial));
+        for ((own, initial), body) in memory.zip(&self.body_of_element) {
+            if step.changed.contains(body) {
+                own.copy_from_slice(initial);
+            }
+        }
+        let x = self.configuration(&state.displacement);
+        for (pair, states) in self.contacts.iter().zip(&mut state.contacts) {
+            if step.changes(pair) {
+                *states = if step.joins(pair) { pair.initial_states(&x) } else { pair.apart() };
+            }
+        }
+    }
+}
