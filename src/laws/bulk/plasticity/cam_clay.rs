@@ -457,7 +457,7 @@ impl ReturnMap for CamClay {
         match p > 0.0 {
             true => Ok(()),
             false => Err(InadmissibleStress(format!(
-                "has a mean pressure of {p:.6}, and cam_clay has its stiffness and strength from pressure: give an initial stress \
+                "has a mean pressure of {p:.6}, and Cam-clay has its stiffness and strength from pressure: give an initial stress \
                  that compresses it, at a free surface by a surcharge"
             ))),
         }

@@ -180,17 +180,8 @@ const STRUCTURE: usize = 5;
 const ROTATION: usize = 6;
 
 /// Names of the quantities that the law shows.
-const SHOWN_TOO: [&str; 9] = [
-    SHOWN[0],
-    SHOWN[1],
-    SHOWN[2],
-    "effective_pressure",
-    "deviator_stress",
-    "p_c",
-    "subloading_ratio",
-    "superloading_ratio",
-    "rotation",
-];
+const SHOWN_TOO: [&str; 9] =
+    [SHOWN[0], SHOWN[1], SHOWN[2], "effective_pressure", "deviator_stress", "p_c", "R", "R_star", "zeta"];
 
 /// Numbers of parts of an increment that are tried.
 const PARTS: [u32; 5] = [1, 4, 16, 64, 256];
