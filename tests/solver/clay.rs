@@ -77,7 +77,7 @@ fn saturated_ground_rests() {
         [s + 0.06 * bump * (9.0 * t).sin(), t - 1.0 + 0.06 * bump * (7.0 * s).cos()]
     });
     let mut skeleton = clay(
-        json!({"nu": 0.3, "OCR": 1.5, "density": 2, "structure": 4, "m": 3, "a": 0.4, "b_r": 0.1, "m_b": 0.9, "zeta": 0.5}),
+        json!({"nu": 0.3, "OCR": 1.5, "density": 2, "structure": 4, "m": 3, "b_r": 0.1, "m_b": 0.9, "zeta": 0.5}),
     );
     skeleton["model"] = json!("sys_cam_clay");
     for material in [
