@@ -1,5 +1,7 @@
 //! Constitutive laws: friction of interfaces, stress of bodies.
 
+mod approach;
 pub mod bulk;
+mod dual;
 pub mod friction;
 pub mod parameter;

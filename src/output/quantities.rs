@@ -363,7 +363,7 @@ const SOLID: [Quantity; 15] = [
 ];
 
 /// Quantities of bodies that yield, or whose pores hold a fluid, in frames.
-pub const OF_YIELDING: [Quantity; 7] = [
+pub const OF_YIELDING: [Quantity; 10] = [
     q(
         "equivalent_plastic_strain",
         NONE,
@@ -374,10 +374,17 @@ pub const OF_YIELDING: [Quantity; 7] = [
     q(
         "effective_pressure",
         STRESS,
-        "p = −tr τ/3 of the Kirchhoff stress of cam_clay, without a pore fluid; NaN elsewhere",
+        "p = −tr τ/3 of the Kirchhoff stress of cam_clay and sys_cam_clay, without a pore fluid; NaN elsewhere",
     ),
-    q("deviator_stress", STRESS, "q = √(3/2) ‖dev τ‖ of cam_clay"),
-    q("p_c", STRESS, "pressure of isotropic compression at which cam_clay yields"),
+    q("deviator_stress", STRESS, "q = √(3/2) ‖dev τ‖ of these"),
+    q("p_c", STRESS, "pressure of isotropic compression at which they yield, sys_cam_clay once remoulded"),
+    q(
+        "R",
+        NONE,
+        "R of sys_cam_clay: size of the subloading surface over that of the superloading surface, 1/R is the overconsolidation",
+    ),
+    q("R_star", NONE, "R* of sys_cam_clay: p_c over that of the superloading surface, 1/R* is the structure"),
+    q("zeta", NONE, "ζ = √(3/2) ‖β‖ of sys_cam_clay: rotation of its yield surface"),
     q("pore_pressure", STRESS, "p_w of bodies with a pore_fluid"),
 ];
 

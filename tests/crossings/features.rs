@@ -20,6 +20,7 @@ const LAWS: &[(&str, u64)] = &[
     ("drucker_prager", 1),
     ("mohr_coulomb", 1),
     ("cam_clay", 1),
+    ("sys_cam_clay", 1),
 ];
 const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("reduced", 1), ("q9", 1)];
 const OPTION: &[(&str, u64)] = &[("no", 5), ("yes", 1)];
@@ -127,12 +128,14 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "block_law:mohr_coulomb",
             "ground_law:cam_clay",
             "block_law:cam_clay",
+            "ground_law:sys_cam_clay",
+            "block_law:sys_cam_clay",
             "pores",
         ],
         "soil is no plate",
     ),
     (
-        &["ground_law:cam_clay", "block_law:cam_clay"],
+        &["ground_law:cam_clay", "block_law:cam_clay", "ground_law:sys_cam_clay", "block_law:sys_cam_clay"],
         &["stress:no", "stress:geostatic", "scheme:quasi_dynamic"],
         "it lives of pressure, near the surface too",
     ),

@@ -474,8 +474,8 @@ impl Writer<'_> {
 
     fn material(&self, law: &str, young: f64, poisson: f64) -> Value {
         let young = self.write(Kind::Stress, self.noisy(young, law));
-        if law == "cam_clay" {
-            return self.clay(young);
+        if law.ends_with("cam_clay") {
+            return self.clay(law, young);
         }
         let mut material = json!({"model": law, "E": young, "nu": poisson, "density": self.density()});
         if law == "viscoelastic" {
@@ -487,11 +487,11 @@ impl Writer<'_> {
     }
 
     /// Clay whose stiffness under the least pressure is that of other laws.
-    fn clay(&self, young: f64) -> Value {
+    fn clay(&self, law: &str, young: f64) -> Value {
         let stress = |value: f64| json!(self.write(Kind::Stress, value));
         let [kappa, lambda] = [0.005, 0.1];
         let mut material = json!({
-            "model": "cam_clay", "lambda": lambda, "kappa": kappa, "p_min": stress(3.0), "density": self.density(),
+            "model": law, "lambda": lambda, "kappa": kappa, "p_min": stress(3.0), "density": self.density(),
         });
         match self.draft.count("slopes", 0, 1) {
             0 => material["M"] = json!(1.2),
@@ -508,7 +508,23 @@ impl Writer<'_> {
         if self.draft.count("slow yielding", 0, 1) == 1 {
             material["viscosity"] = json!(self.write(Kind::Time, 0.02 * self.duration()));
         }
+        if law == "sys_cam_clay" {
+            self.skeleton(&mut material);
+        }
         material
+    }
+
+    /// What soil with a skeleton has besides: p_c is that of the remoulded soil.
+    fn skeleton(&self, material: &mut Value) {
+        if self.draft.count("overconsolidation", 0, 1) == 1 {
+            material["m"] = json!(3.0);
+        }
+        if self.draft.count("structure of soil", 0, 1) == 1 {
+            (material["structure"], material["a"], material["c_s"]) = (json!(1.5), json!(0.3), json!(0.6));
+        }
+        if self.draft.count("anisotropy", 0, 1) == 1 {
+            (material["b_r"], material["m_b"], material["zeta"]) = (json!(0.3), json!(0.8), json!(0.1));
+        }
     }
 
     /// Strengths above the initial stress, which the contact surpasses here and there.

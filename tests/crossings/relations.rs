@@ -721,7 +721,10 @@ fn resultants(base: &Base) -> Outcome {
         let whole = normal.hypot(tangential);
         // A block that is not held may turn, where one hits the ground again and again that is bent by half a right angle, and a block
         // sinks into clay askew.
-        let straight = draft.is("press", "displacement") && !moves(draft) && !draft.is("ground_law", "cam_clay");
+        let straight = draft.is("press", "displacement")
+            && !moves(draft)
+            && !draft.is("ground_law", "cam_clay")
+            && !draft.is("ground_law", "sys_cam_clay");
         let compared = match straight {
             true => vec![("along", [tangential, x]), ("across", [normal, y])],
             false => vec![("as a whole", [whole, x.hypot(y)])],

@@ -28,5 +28,6 @@ mod materials;
 mod offset;
 mod plasticity;
 mod random;
+mod sys_cam_clay;
 mod undrained;
 mod yielding;

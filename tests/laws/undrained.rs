@@ -20,12 +20,15 @@ fn build(given: Value) -> Box<dyn Material> {
 fn laws() -> Vec<(&'static str, Undrained)> {
     let clay =
         json!({"model": "cam_clay", "lambda": 0.1, "kappa": 0.03, "M": 1.1, "G": 20.0, "p_c": 0.4, "p_min": 0.01});
+    let skeleton = json!({"model": "sys_cam_clay", "lambda": 0.1, "kappa": 0.03, "M": 1.1, "G": 20.0, "OCR": 1.4, "p_min": 0.01,
+                          "structure": 3.0, "m": 2.0, "a": 0.5, "b_r": 0.2, "m_b": 0.8});
     [
         ("hencky", json!({"model": "hencky", "E": 100.0, "nu": 0.3}), None),
         ("neo-Hookean", json!({"model": "neo_hookean", "E": 100.0, "nu": 0.3}), Some(CAVITATION)),
         ("linear", json!({"model": "linear", "E": 100.0, "nu": 0.3}), None),
         ("hexagon", json!({"model": "mohr_coulomb", "E": 100.0, "nu": 0.3, "c": 0.1, "phi": 30, "psi": 10}), None),
         ("clay", clay, Some(CAVITATION)),
+        ("skeleton", skeleton, None),
     ]
     .into_iter()
     .map(|(name, given, least)| (name, Undrained::new(build(given), MODULUS, least).expect("every section")))

@@ -40,6 +40,34 @@ fn an_undrained_triaxial_test() {
     assert!(energy.plastic_dissipation > 0.0);
 }
 
+/// The same of clay with structure, 1/R* = 8, m = 5, a = 0.6: q of the rate equations that `tests/laws/sys_cam_clay.rs` integrates. It softens,
+/// of which the mesh is warned.
+#[test]
+fn clay_with_structure_softens_undrained() {
+    let mesh = Blocks::default().rectangle("sample", [1, 1], [0.0, 0.0], [1.0, 1.0]).json();
+    let mut material = clay(json!({"G": 3000, "OCR": 1, "structure": 8, "m": 5, "a": 0.6}));
+    material["model"] = json!("sys_cam_clay");
+    let case = json!({
+        "section": "axisymmetric", "mesh": mesh,
+        "bodies": {"sample": {"material": material, "element": "f_bar", "initial_stress": isotropic(100.0),
+                              "pore_fluid": {"bulk_modulus": 2.2e6, "porosity": 0.5}}},
+        "steps": [{"name": "press", "duration": 0.1, "dt": {"initial": 2e-4, "max": 2e-4},
+            "loads": [{"on": "sample_right", "pressure": "100"}],
+            "supports": [{"on": "sample_left", "ux": 0}, {"on": "sample_bottom", "uy": 0}, {"on": "sample_top", "uy": "exp(-t) - 1"}]}]
+    });
+    let run = finish(&case);
+    for (strain, q) in [(0.01, 53.5583), (0.03, 57.0712), (0.1, 38.4021)] {
+        let state = run.states.iter().min_by(|a, b| (a.time - strain).abs().total_cmp(&(b.time - strain).abs()));
+        let state = state.expect("an increment");
+        let force = run.reaction("sample_top", state)[1];
+        close("q", -force / (std::f64::consts::PI * state.time.exp()) - 100.0, q, 5e-3 * q);
+    }
+    let energy = run.last().energy;
+    close("energy error", energy.error(), 0.0, 5e-3 * energy.external_work.abs());
+    let concern = model(&case).bodies[0].material.description().concern.map(String::from);
+    assert!(concern.is_some_and(|concern| concern.contains("loses its structure")));
+}
+
 /// Saturated ground at rest: the effective stress of its submerged weight and the pressure of its water carry the weight of the mixture, on
 /// skewed elements as well.
 #[test]
@@ -48,8 +76,13 @@ fn saturated_ground_rests() {
         let bump = 16.0 * s * (1.0 - s) * t * (1.0 - t);
         [s + 0.06 * bump * (9.0 * t).sin(), t - 1.0 + 0.06 * bump * (7.0 * s).cos()]
     });
+    let mut skeleton = clay(
+        json!({"nu": 0.3, "OCR": 1.5, "density": 2, "structure": 4, "m": 3, "b_r": 0.1, "m_b": 0.9, "zeta": 0.5}),
+    );
+    skeleton["model"] = json!("sys_cam_clay");
     for material in [
         clay(json!({"nu": 0.3, "OCR": 1.5, "density": 2})),
+        skeleton,
         json!({"model": "hencky", "E": 1e4, "nu": 0.3, "density": 2}),
         json!({"model": "linear", "E": 1e4, "nu": 0.3, "density": 2}),
     ] {

@@ -152,10 +152,14 @@ fn bodies(case: &Case) -> Vec<String> {
     lines
 }
 
-/// Slopes of cam_clay as its law takes them.
+/// Slopes of cam_clay and sys_cam_clay as the law takes them.
 fn slopes(material: &BulkLaw) -> String {
-    let BulkLaw::Parameters(MaterialParameters::CamClay(given)) = material else { return String::new() };
-    let [lambda, kappa] = given.slopes().map(number);
+    let slopes = match material {
+        BulkLaw::Parameters(MaterialParameters::CamClay(given)) => given.slopes(),
+        BulkLaw::Parameters(MaterialParameters::SysCamClay(given)) => given.clay().slopes(),
+        _ => return String::new(),
+    };
+    let [lambda, kappa] = slopes.map(number);
     format!(", slopes of ln J over ln p of the Kirchhoff stress {lambda}, {kappa}")
 }
 

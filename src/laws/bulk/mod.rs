@@ -51,8 +51,8 @@ pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
 pub use plasticity::{
     BackStress, CamClay, CamClayParameters, DruckerPrager, DruckerPragerParameters, Elasticity, Elastoplastic,
-    LogarithmicBulk, Matching, MohrCoulomb, MohrCoulombParameters, ReturnMap, Returned, Softening, VonMises,
-    VonMisesParameters,
+    LogarithmicBulk, Matching, MohrCoulomb, MohrCoulombParameters, ReturnMap, Returned, Softening, SysCamClay,
+    SysCamClayParameters, VonMises, VonMisesParameters,
 };
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use spatial::{PlaneStress, Spatial, Stretched};

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     CamClay, CamClayParameters, DruckerPrager, DruckerPragerParameters, Hencky, Linear, Material, MaterialDescription,
-    MohrCoulomb, MohrCoulombParameters, NeoHookean, SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants,
-    VonMises, VonMisesParameters,
+    MohrCoulomb, MohrCoulombParameters, NeoHookean, SaintVenantKirchhoff, SysCamClay, SysCamClayParameters,
+    Viscoelastic, ViscoelasticConstants, VonMises, VonMisesParameters,
 };
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
@@ -34,6 +34,9 @@ pub enum MaterialParameters {
     /// Modified Cam-clay: clay, whose stiffness and strength grow with its pressure, and which hardens and softens with its volume; needs an
     /// initial_stress, large strains
     CamClay(CamClayParameters),
+    /// SYS Cam-clay, experimental: modified Cam-clay of soil with structure, overconsolidation and anisotropy, which it loses as it yields; needs an
+    /// initial_stress, large strains
+    SysCamClay(SysCamClayParameters),
 }
 
 /// Constants of an isotropic elastic material.
@@ -78,6 +81,7 @@ impl MaterialParameters {
             Self::DruckerPrager(parameters) => Box::new(DruckerPrager::new(parameters)?),
             Self::MohrCoulomb(parameters) => Box::new(MohrCoulomb::new(parameters)?),
             Self::CamClay(parameters) => Box::new(CamClay::new(parameters)?),
+            Self::SysCamClay(parameters) => Box::new(SysCamClay::new(parameters)?),
         })
     }
 }

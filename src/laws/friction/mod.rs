@@ -17,7 +17,6 @@ mod adhesion;
 mod confinement;
 mod contact_law;
 mod coulomb;
-mod dual;
 mod frictionless;
 pub mod observables;
 mod parameters;

@@ -2,9 +2,9 @@
 
 use std::fmt::Debug;
 
-use super::dual::Dual;
 use super::state::Variables;
 use super::{FrictionState, LawFailure, Sliding};
+use crate::laws::dual::Dual;
 
 /// Derivatives of a state with respect to a quantity.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,12 +1,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::dual::{Dual, Number};
 use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding,
     traction_at_yield,
 };
+use crate::laws::dual::{Dual, Number};
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as in the case file.

@@ -119,9 +119,12 @@ impl CamClayParameters {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamClay {
     /// λ̂ − κ̂
-    plastic: f64,
+    pub(super) plastic: f64,
+    /// κ̂
     kappa: f64,
-    critical: f64,
+    /// M
+    pub(super) critical: f64,
+    /// p_min
     floor: f64,
     shear: Shear,
     start: Start,
@@ -148,8 +151,8 @@ enum Start {
 const OWN: [&str; 2] = ["p_c", "shear_modulus"];
 
 /// Places of p_c and G in the history.
-const P_C: usize = 2;
-const SHEAR: usize = 3;
+pub(super) const P_C: usize = 2;
+pub(super) const SHEAR: usize = 3;
 
 /// Names of the quantities that the law shows.
 const SHOWN_TOO: [&str; 6] = [SHOWN[0], SHOWN[1], SHOWN[2], "effective_pressure", "deviator_stress", "p_c"];
@@ -192,6 +195,11 @@ impl CamClay {
     /// # Errors
     /// [`InvalidParameter`] when a constant is out of its range.
     pub fn new(given: &CamClayParameters) -> Result<Elastoplastic<Self>, InvalidParameter> {
+        Elastoplastic::new(Self::checked(given)?, given.density, given.viscosity)
+    }
+
+    /// The law of constants that are allowed.
+    pub(super) fn checked(given: &CamClayParameters) -> Result<Self, InvalidParameter> {
         let CamClayParameters { lambda, kappa, e, critical, phi, shear, poisson, p_c, ratio, p_min, .. } = *given;
         require_positive("kappa", kappa)?;
         require("lambda", lambda, lambda > kappa, "it must be greater than kappa")?;
@@ -225,26 +233,34 @@ impl CamClay {
         }
         let start = either(["p_c", "OCR"], [p_c, ratio], [Start::Pressure, Start::Ratio])?;
         let (plastic, floor, typical) = (lambda - kappa, p_min, p_min);
-        let law = Self { plastic, kappa, critical, floor, shear, start, typical };
-        Elastoplastic::new(law, given.density, given.viscosity)
+        Ok(Self { plastic, kappa, critical, floor, shear, start, typical })
     }
 
     /// Elasticity with a shear modulus.
-    fn logarithmic(&self, shear: f64) -> LogarithmicBulk {
+    pub(super) fn logarithmic(&self, shear: f64) -> LogarithmicBulk {
         LogarithmicBulk { kappa: self.kappa, floor: self.floor, shear }
     }
 
     /// G at a pressure at the start.
-    fn initial_shear(&self, pressure: f64) -> f64 {
+    pub(super) fn initial_shear(&self, pressure: f64) -> f64 {
         match self.shear {
             Shear::Modulus(shear) => shear,
             Shear::Ratio(ratio) => ratio * self.logarithmic(0.0).bulk(pressure),
         }
     }
+
+    /// p_c of a stress whose yield surface has a size P, the yield surface of the soil being 1/R* that of p_c.
+    pub(super) fn initial_p_c(&self, size: f64, structure: f64) -> f64 {
+        match self.start {
+            Start::Pressure(p_c) => p_c,
+            Start::Ratio(ratio) if size > 0.0 => (ratio * structure * size).max(self.floor),
+            Start::Ratio(_) => self.floor,
+        }
+    }
 }
 
 /// p and q of a stress.
-fn invariants(stress: &Vector4<f64>) -> [f64; 2] {
+pub(super) fn invariants(stress: &Vector4<f64>) -> [f64; 2] {
     let (s, trace) = deviator(stress);
     [-trace / 3.0, (1.5 * double_dot(&s, &s)).sqrt()]
 }
@@ -432,13 +448,8 @@ impl ReturnMap for CamClay {
     fn begin(&self, stress: &Vector4<f64>, history: &mut [f64]) {
         let [p, q] = invariants(stress);
         history[SHEAR] = self.initial_shear(p);
-        history[P_C] = match self.start {
-            Start::Pressure(p_c) => p_c,
-            Start::Ratio(ratio) if p > 0.0 => {
-                (ratio * (p + q * q / (self.critical * self.critical * p))).max(self.floor)
-            }
-            Start::Ratio(_) => self.floor,
-        };
+        let size = if p > 0.0 { p + q * q / (self.critical * self.critical * p) } else { 0.0 };
+        history[P_C] = self.initial_p_c(size, 1.0);
     }
 
     fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
@@ -446,13 +457,18 @@ impl ReturnMap for CamClay {
         match p > 0.0 {
             true => Ok(()),
             false => Err(InadmissibleStress(format!(
-                "has a mean pressure of {p:.6}, and cam_clay has its stiffness and strength from pressure: give an initial stress \
+                "has a mean pressure of {p:.6}, and Cam-clay has its stiffness and strength from pressure: give an initial stress \
                  that compresses it, at a free surface by a surcharge"
             ))),
         }
     }
 
-    fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure> {
+    fn returned(
+        &self,
+        trial: &Vector3<f64>,
+        _: &Vector4<f64>,
+        history: &mut [f64],
+    ) -> Result<Returned, MaterialFailure> {
         let elasticity = self.elasticity(history);
         let (elastic, strain) = (self.logarithmic(history[SHEAR]), in_axes(trial));
         let stress = elasticity.kirchhoff(&strain);

@@ -139,7 +139,12 @@ impl ReturnMap for DruckerPrager {
         self.elastic
     }
 
-    fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure> {
+    fn returned(
+        &self,
+        trial: &Vector3<f64>,
+        _: &Vector4<f64>,
+        history: &mut [f64],
+    ) -> Result<Returned, MaterialFailure> {
         let Self { elastic, friction, dilation, cohesion, tension } = *self;
         let (shear, bulk) = (elastic.shear, elastic.bulk());
         let mut answer = Returned::elastic(elastic, trial);

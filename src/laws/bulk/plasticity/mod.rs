@@ -6,6 +6,7 @@
 //! | [`DruckerPrager`] | √J₂ + η p = ξ c: a smooth cone |
 //! | [`MohrCoulomb`] | τ = c − σ_n tan φ on some plane: soil, rock |
 //! | [`CamClay`] | q²/M² + p (p − p_c) = 0: clay, whose stiffness and strength grow with pressure |
+//! | [`SysCamClay`] | that, of soil with structure, overconsolidation and anisotropy, which it loses as it yields |
 //!
 //! A law is a [`ReturnMap`] of small strains; [`Elastoplastic`] makes it one of large deformations, in every section.
 
@@ -14,6 +15,8 @@ mod cam_clay;
 mod drucker_prager;
 mod elasticity;
 mod mohr_coulomb;
+mod skeleton;
+mod sys_cam_clay;
 mod von_mises;
 
 use std::borrow::Cow;
@@ -33,6 +36,7 @@ pub use cam_clay::{CamClay, CamClayParameters};
 pub use drucker_prager::{DruckerPrager, DruckerPragerParameters, Matching};
 pub use elasticity::{Elasticity, LogarithmicBulk};
 pub use mohr_coulomb::{MohrCoulomb, MohrCoulombParameters, Softening};
+pub use sys_cam_clay::{SysCamClay, SysCamClayParameters};
 pub use von_mises::{BackStress, VonMises, VonMisesParameters};
 
 /// Response of a law in the principal axes of its trial strains. Components are 11, 22, 33, 12: 1 and 2 in plane, 3 across it.
@@ -69,6 +73,11 @@ pub(super) fn double_dot(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
 fn deviator(tensor: &Vector4<f64>) -> (Vector4<f64>, f64) {
     let trace = tensor[0] + tensor[1] + tensor[2];
     (tensor - trace / 3.0 * ONE, trace)
+}
+
+/// The share of a way from f₀ to f₁ up to where f = 0.
+fn share_up_to([from, to]: [f64; 2]) -> f64 {
+    if to > from { (-from / (to - from)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The unit tensor.
@@ -128,15 +137,25 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
         0
     }
 
-    /// The answer to trial strains. The committed history stands in `history`, and what it is at the end of the increment is written
-    /// over it.
+    /// The answer to trial strains, after the committed stress `before` in their axes. The committed history stands in `history`, and what
+    /// it is at the end of the increment is written over it. A law that asks for the stress before has [`tensors`](Self::tensors).
     ///
     /// # Errors
     /// [`MaterialFailure::NotConverged`] when there is no return to the yield surface.
-    fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure>;
+    fn returned(
+        &self,
+        trial: &Vector3<f64>,
+        before: &Vector4<f64>,
+        history: &mut [f64],
+    ) -> Result<Returned, MaterialFailure>;
 
     /// f of a stress: 0 where it yields, less where it does not [F/L²]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64;
+
+    /// The share of the way from the committed stress to the trial stress after which it yields.
+    fn onset(&self, [before, trial]: [&Vector4<f64>; 2], history: &[f64]) -> f64 {
+        share_up_to([before, trial].map(|stress| self.yield_indicator(stress, history)))
+    }
 
     /// Energy that a history stores per volume besides the elastic strains, as back stresses do [F/L²]
     fn stored(&self, _history: &[f64]) -> f64 {
@@ -172,7 +191,7 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
 /// W = W_e(ε_e) + what the history stores, less that at the start                                                     (4)
 /// dissipation = ½ (τ_y + τ₁):Δε_p − Δ(what the history stores)                                                      (5)
 /// ```
-/// τ_y is where the way from the committed stress to the trial stress meets the yield surface, so (5) is of second order in the increment,
+/// τ_y is where yielding begins on the way from the committed stress to the trial stress, so (5) is of second order in the increment,
 /// as the audit of energies is, with F_p of C_p⁻¹ = F_p⁻¹ F_p⁻ᵀ, so that F at the end of the increment alone is needed. Plastic volume is exact: tr Δε_p = 0 keeps
 /// det C_p. The tangent is that of (1) to (3), l = dF F⁻¹ in the axes m:
 ///
@@ -267,7 +286,8 @@ impl<L: ReturnMap> Elastoplastic<L> {
         new.copy_from_slice(old);
         let history = &mut new[HISTORY..];
         self.tensors(history).for_each(|tensor| axes.enter(tensor));
-        let mut found = self.law.returned(&axes.strains, history)?;
+        let before = Self::stress_before(&axes, old);
+        let mut found = self.law.returned(&axes.strains, &before, history)?;
         let largest = found.plastic.amax();
         if largest.is_nan() || largest > LARGEST {
             return Err(MaterialFailure::OutOfRange { law: self.law.name(), strain: largest });
@@ -285,6 +305,13 @@ impl<L: ReturnMap> Elastoplastic<L> {
         axes.leave(unrotated);
         axes.flow(&found.plastic, stretch, new);
         Ok((axes, found, dissipated))
+    }
+
+    /// The committed stress in the axes.
+    fn stress_before(axes: &Axes, old: &[f64]) -> Vector4<f64> {
+        let mut before = [0, 1, 2, 3].map(|k| old[STRESS + k]);
+        axes.enter(&mut before);
+        before.into()
     }
 
     /// The tensors of a history.
@@ -307,13 +334,9 @@ impl<L: ReturnMap> Elastoplastic<L> {
         if found.plastic == Vector4::zeros() {
             return 0.0;
         }
-        let mut before = [0, 1, 2, 3].map(|k| old[STRESS + k]);
-        axes.enter(&mut before);
-        let (before, committed) = (Vector4::from(before), self.history_in(axes, old));
+        let (before, committed) = (Self::stress_before(axes, old), self.history_in(axes, old));
         let trial = self.law.elasticity(&committed).kirchhoff(&in_axes(&axes.strains));
-        let [from, to] = [&before, &trial].map(|stress| self.law.yield_indicator(stress, &committed));
-        let share = if to > from { (-from / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        let met = before + share * (trial - before);
+        let met = before + self.law.onset([&before, &trial], &committed) * (trial - before);
         let stored = self.law.stored(history) - self.law.stored(&old[HISTORY..]);
         0.5 * double_dot(&(met + found.stress), &found.plastic) - stored
     }

@@ -473,7 +473,12 @@ impl ReturnMap for MohrCoulomb {
         if self.residual.is_some() { &["plastic_shear_strain"] } else { &[] }
     }
 
-    fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure> {
+    fn returned(
+        &self,
+        trial: &Vector3<f64>,
+        _: &Vector4<f64>,
+        history: &mut [f64],
+    ) -> Result<Returned, MaterialFailure> {
         let mut answer = Returned::elastic(self.elastic, trial);
         let mut order = [0, 1, 2];
         order.sort_by(|&i, &j| trial[j].total_cmp(&trial[i]));

@@ -244,7 +244,12 @@ impl ReturnMap for VonMises {
     }
 
     #[inline(always)]
-    fn returned(&self, trial: &Vector3<f64>, history: &mut [f64]) -> Result<Returned, MaterialFailure> {
+    fn returned(
+        &self,
+        trial: &Vector3<f64>,
+        _: &Vector4<f64>,
+        history: &mut [f64],
+    ) -> Result<Returned, MaterialFailure> {
         let Lame { shear, .. } = self.elastic;
         let mut answer = Returned::elastic(self.elastic, trial);
         if self.yield_indicator(&answer.stress, history) <= ROUND_OFF * shear {

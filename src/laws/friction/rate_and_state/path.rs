@@ -2,7 +2,7 @@
 
 use super::RateAndState;
 use super::relaxation::{Coefficients, Relaxation};
-use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::sensitivity::Inputs;
 use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, PointLoad, RateLaw, Regime, Sliding};
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::root::{Argument, Piece, bracketed_root, first_root_bracket};
 use crate::laws::friction::sensitivity::Inputs;
 use crate::laws::friction::{LEAST_SLOPE, LawFailure};

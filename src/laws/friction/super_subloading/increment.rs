@@ -5,9 +5,9 @@
 //! The sub-step is governed by a scalar equation of plastic slip, of which the smallest root is required.
 
 use super::SuperSubloading;
-use super::approach::{CurvePoint, SlidingCurve};
 use super::peak::{Peak, PeakEvolution};
-use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::approach::{CurvePoint, SlidingCurve};
+use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::root::{Argument, Piece, bracketed_root, first_root_bracket};
 use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
 

@@ -1,5 +1,4 @@
 //! Super/subloading friction: the law, and its parameters in a case.
-mod approach;
 mod increment;
 mod path;
 mod peak;
@@ -7,14 +6,14 @@ mod peak;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::dual::Dual;
 use super::sensitivity::{Direction, Inputs, SensitiveLaw};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Regime, Sliding,
 };
+pub use crate::laws::approach::Approach;
+use crate::laws::approach::SlidingCurve;
+use crate::laws::dual::Dual;
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
-pub use approach::Approach;
-use approach::SlidingCurve;
 use increment::{ROUND_OFF, SlipEquation, mean_traction};
 use peak::PeakEvolution;
 pub use peak::{Integration, Onset, Rise};

@@ -14,7 +14,7 @@
 
 use super::increment::{LoadPath, PathState, Varied};
 use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls};
-use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 

@@ -10,8 +10,8 @@ use std::f64::consts::LN_2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::approach::{CurvePoint, SlidingCurve};
-use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::approach::{CurvePoint, SlidingCurve};
+use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::root::{Argument, bracketed_root};
 use crate::laws::friction::sensitivity::Inputs;
 

@@ -1,5 +1,5 @@
-//! Numbers with derivatives along two directions: those of the tangent, Δu_t and p, or two parameters of a law. The equations of
-//! a law are written once, for both kinds of numbers.
+//! Numbers with derivatives along a few directions: those of a tangent, Δu_t and p or the components of a strain, or parameters of a
+//! law. The equations of a law are written once, for both kinds of numbers.
 //!
 //! The numbers of `contact/dual.rs` have derivatives by as many unknowns as the nodes of an average, which are counted at run time.
 
@@ -37,6 +37,13 @@ pub(super) trait Number:
         self.map(self.value().ln(), 1.0 / self.value())
     }
 
+    /// √self; the derivative at 0 counts as 0.
+    #[inline]
+    fn sqrt(self) -> Self {
+        let value = self.value().sqrt();
+        self.map(value, if value > 0.0 { 0.5 / value } else { 0.0 })
+    }
+
     /// self^exponent for self > 0.
     #[inline]
     fn powf(self, exponent: Self) -> Self {
@@ -70,21 +77,21 @@ impl Number for f64 {
     }
 }
 
-/// A number with its derivatives along two directions.
+/// A number with its derivatives along some directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Dual {
+pub(super) struct Dual<const N: usize = 2> {
     pub value: f64,
-    pub by: [f64; 2],
+    pub by: [f64; N],
 }
 
-impl From<f64> for Dual {
+impl<const N: usize> From<f64> for Dual<N> {
     #[inline]
     fn from(value: f64) -> Self {
-        Self { value, by: [0.0; 2] }
+        Self { value, by: [0.0; N] }
     }
 }
 
-impl Number for Dual {
+impl<const N: usize> Number for Dual<N> {
     #[inline]
     fn value(self) -> f64 {
         self.value
@@ -96,18 +103,18 @@ impl Number for Dual {
     }
 }
 
-impl Dual {
+impl<const N: usize> Dual<N> {
     /// A function of two numbers, given its value and partial derivatives.
     #[inline]
     fn join(value: f64, (a, by_a): (Self, f64), (b, by_b): (Self, f64)) -> Self {
-        Self { value, by: [0, 1].map(|k| by_a * a.by[k] + by_b * b.by[k]) }
+        Self { value, by: std::array::from_fn(|k| by_a * a.by[k] + by_b * b.by[k]) }
     }
 }
 
 /// Operators by their value and partial derivatives.
 macro_rules! operators {
     ($($operator:ident $name:ident: $a:ident, $b:ident => $value:expr, [$by_a:expr, $by_b:expr];)*) => {$(
-        impl $operator for Dual {
+        impl<const N: usize> $operator for Dual<N> {
             type Output = Self;
 
             #[inline]
@@ -117,7 +124,7 @@ macro_rules! operators {
             }
         }
 
-        impl $operator<f64> for Dual {
+        impl<const N: usize> $operator<f64> for Dual<N> {
             type Output = Self;
 
             #[inline]

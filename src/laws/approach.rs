@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::laws::friction::dual::{Dual, Number};
+use crate::laws::dual::{Dual, Number};
 
 /// Sliding curve: R as a function of plastic slip.
 ///
@@ -220,6 +220,23 @@ impl Approach {
         }
     }
 
+    /// The point at a distance beyond y, 0 < y < 1. T is convex in ζ: Newton's method comes down to the root from a ζ that is too large.
+    pub(super) fn after(self, y: f64, distance: f64) -> Progress {
+        let (zeta, start) = self.locate(y);
+        let target = start.distance + distance;
+        let mut zeta = (zeta + distance / start.stretch).min(self.beyond(target));
+        let mut here = self.at(zeta);
+        for _ in 0..MOST {
+            let next = zeta - (here.distance - target) / here.stretch;
+            if next.is_nan() || next >= zeta {
+                break;
+            }
+            zeta = next;
+            here = self.at(zeta);
+        }
+        here
+    }
+
     /// ∫ y dT from y = 0, at a point of the curve.
     ///
     /// ```text
@@ -248,6 +265,9 @@ impl Approach {
         }
     }
 }
+
+/// Most iterations for the point at a distance.
+const MOST: usize = 200;
 
 /// ζ(2k)/(k (2k + 1) 4^k), k = 1, 2 …: −∫₀^z ln(sin(π x/2)/(π x/2)) dx in powers z³, z⁵ …
 const SINE_SERIES: [f64; 22] = [
@@ -337,6 +357,21 @@ const TAIL: [(f64, f64); 12] = [
 #[cfg(test)]
 mod approach_tests {
     use super::Approach;
+
+    /// What is found at a distance is at that distance, from anywhere on the curve.
+    #[test]
+    fn a_point_after_a_distance_is_at_that_distance() {
+        for approach in [Approach::Logarithmic, Approach::Cotangent] {
+            for y in [1e-60, 1e-3, 0.2, 0.7, 0.999] {
+                for distance in [1e-12, 1e-4, 0.03, 1.0, 20.0] {
+                    let here = approach.after(y, distance);
+                    let target = approach.locate(y).1.distance + distance;
+                    let error = (here.distance - target).abs();
+                    assert!(error < 1e-14 * target.max(1.0) && here.y >= y, "{approach:?} {y} {distance}: {error}");
+                }
+            }
+        }
+    }
 
     /// Simpson's rule between points of the curve, in ζ, where the integrand is smooth.
     #[test]
