@@ -13,7 +13,7 @@ use super::{checkpoint, files, gradients, report, store};
 use crate::run::error::Error;
 
 /// Files written by the commands; a name that ends in `/` is a folder of numbered frames.
-const KNOWN: [&str; 18] = [
+const KNOWN: [&str; 19] = [
     "history.csv",
     "newton.csv",
     "slip_map.csv",
@@ -27,6 +27,7 @@ const KNOWN: [&str; 18] = [
     "probes.csv",
     gradients::FILE,
     INTERFACE,
+    GRADIENTS,
     "contact.pvd",
     "contact/",
     checkpoint::NEWEST,
@@ -53,6 +54,14 @@ const OUR_FIGURE: &str = "data-drawn-by=\"fecontact\"";
 
 /// Store of the interfaces, a folder of a separate kind.
 pub const INTERFACE: &str = "interface.zarr/";
+
+/// Store of derivatives along them.
+pub const GRADIENTS: &str = "gradients.zarr/";
+
+/// Whether a folder of results is a store.
+fn is_store(name: &str) -> bool {
+    [INTERFACE, GRADIENTS].contains(&name)
+}
 
 /// Results folder locked by this process.
 #[derive(Debug)]
@@ -113,7 +122,7 @@ fn is_written(input: &Path, folder: &Path, outputs: &[&str]) -> bool {
     let (Ok(input), Ok(folder)) = (input.canonicalize(), folder.canonicalize()) else { return false };
     let Ok(below) = input.strip_prefix(folder) else { return false };
     outputs.iter().chain([&SUMMARY]).any(|name| match name.strip_suffix('/') {
-        Some(_) if *name == INTERFACE => below.starts_with(store::STORE) && store::is_own(&input),
+        Some(store) if is_store(name) => below.starts_with(store) && store::is_own(&input),
         Some(frames) => below.parent() == Some(Path::new(frames)) && is_frame(&input),
         None => below == Path::new(name),
     })
@@ -182,7 +191,7 @@ fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Err
 /// Files of the program in a folder of a given kind.
 fn parts(folder: &Path, name: &str) -> Vec<PathBuf> {
     // An unreadable folder contains nothing to remove.
-    if name == INTERFACE { store::files_of(folder).unwrap_or_default() } else { frames(folder) }
+    if is_store(name) { store::files_of(folder).unwrap_or_default() } else { frames(folder) }
 }
 
 /// Frames in a folder; none where it is a link.

@@ -18,6 +18,7 @@ use super::csv::{self, Rows, Standing, Table};
 use super::history::HistoryRows;
 use super::probes::ProbeRows;
 use super::quantities::INCREMENT;
+use super::store::derivatives::{self, DerivativeStore};
 use super::warnings::Warn;
 use crate::laws::friction::Regime;
 use crate::model::Model;
@@ -70,14 +71,26 @@ struct Derivative {
 /// Saved memory of a derivative: its place, its account, and state, step and rows of its neighbours.
 type Memory = (String, Account, Vec<(State, Option<usize>, Vec<u8>)>);
 
-/// Saved memory of all: extent of the table, and the derivatives.
-type Whole = (Standing, Vec<Memory>);
+/// Saved memory of all: extent of the table, of the store, and the derivatives.
+type Whole = (Standing, derivatives::Memory, Vec<Memory>);
 
-/// Observer that writes `gradients.csv`.
+/// What is asked of the derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// known labels of units
+    pub units: &'a BTreeMap<String, String>,
+    /// whether those of the displacements of nodes are stored
+    pub of_displacements: bool,
+    /// whether files of an earlier run are continued
+    pub goes_on: bool,
+}
+
+/// Observer that writes `gradients.csv` and `gradients.zarr`.
 pub struct Gradients {
     table: Table,
     tangent: Tangent,
     derivatives: Vec<Derivative>,
+    store: DerivativeStore,
     /// Number of quantities
     quantities: usize,
     warn: Warn,
@@ -96,7 +109,7 @@ impl Gradients {
         folder: &Path,
         model: &Arc<Model>,
         parameters: &[Parameter],
-        goes_on: bool,
+        Asked { units, of_displacements, goes_on }: Asked,
         warn: Warn,
     ) -> Result<Self, Error> {
         let [history, probes] = [HistoryRows::new(model).1, ProbeRows::new(model).1];
@@ -119,8 +132,14 @@ impl Gradients {
             let sides = parameter.neighbours.iter().map(side).collect();
             Derivative { place: parameter.place.clone(), sides, account: Account::default() }
         };
+        let by: Vec<&str> = parameters.iter().map(|parameter| &*parameter.place).collect();
+        let mut store = DerivativeStore::new(folder, model, &by, of_displacements, units);
+        if !goes_on {
+            store.create()?;
+        }
         Ok(Self {
             table,
+            store,
             tangent: Tangent::new(model),
             derivatives: parameters.iter().map(derivative).collect(),
             quantities: quantities.len(),
@@ -142,20 +161,23 @@ impl Derivative {
         self.account.lost_at.is_none()
     }
 
-    /// The derivatives of the row at the accepted state; contact points at a kink there are counted.
-    fn row(&mut self) -> Vec<f64> {
+    /// The derivatives at the accepted state, of the row and of what is stored; contact points at a kink there are counted.
+    fn at_end(&mut self, store: &DerivativeStore) -> [Vec<f64>; 2] {
         let one = |Side { weight, neighbour: Neighbour { model, old, state, .. }, history, probes }: &mut Side| {
             let mut row = history.values(model, old, state);
             row.extend(probes.values(model, state));
-            (*weight, row, statuses(model, state))
+            (*weight, [row, store.values(model, state)], statuses(model, state))
         };
         let all: Vec<_> = self.sides.iter_mut().map(one).collect();
-        let Some(((_, first, statuses), others)) = all.split_first() else { return Vec::new() };
+        let Some(((_, first, statuses), others)) = all.split_first() else { return Default::default() };
         let at_kink = |point: &usize| others.iter().any(|(_, _, other)| other[*point] != statuses[*point]);
         self.account.one_sided += (0..statuses.len()).filter(at_kink).count();
         // The weights add up to 0.
-        let derivative = |k: usize| others.iter().map(|(weight, row, _)| weight * (row[k] - first[k])).sum();
-        (0..first.len()).map(derivative).collect()
+        [0, 1].map(|kind| {
+            let values =
+                |k: usize| others.iter().map(|(weight, other, _)| weight * (other[kind][k] - first[kind][k])).sum();
+            (0..first[kind].len()).map(values).collect()
+        })
     }
 }
 
@@ -171,7 +193,7 @@ impl Observer for Gradients {
     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(new) = attempt.accepted else { return Ok(()) };
         let clock = Instant::now();
-        let Self { table, tangent, derivatives, quantities, warn, warnings, .. } = self;
+        let Self { table, store, tangent, derivatives, quantities, warn, warnings, .. } = self;
         let Attempt { step, step_number, ended, old, passes, .. } = *attempt;
         let lead = Lead { step, number: step_number, ended, old, new, passes };
         let alive = derivatives.iter_mut().filter(|derivative| derivative.lives());
@@ -179,6 +201,7 @@ impl Observer for Gradients {
         let mut followed = follow(&lead, tangent, groups.collect()).into_iter();
         table.number(new.time);
         table.text(&step.name);
+        let mut by_each = Vec::new();
         for derivative in derivatives.iter_mut() {
             if derivative.lives() {
                 if let Some(Err(failure)) = followed.next() {
@@ -192,12 +215,15 @@ impl Observer for Gradients {
                     warnings.push(warning);
                 }
             }
-            match derivative.lives() {
-                true => table.numbers(derivative.row()),
-                false => table.numbers(vec![f64::NAN; *quantities]),
-            }
+            let [row, stored] = match derivative.lives() {
+                true => derivative.at_end(store),
+                false => [*quantities, store.width()].map(|count| vec![f64::NAN; count]),
+            };
+            table.numbers(row);
+            by_each.push(stored);
         }
         let written = table.end_row_as(attempt.row).and_then(|()| table.share());
+        let written = written.and_then(|()| store.add(new.time, &by_each, attempt.row));
         self.seconds += clock.elapsed().as_secs_f64();
         written
     }
@@ -214,11 +240,11 @@ impl Observer for Gradients {
             };
             memories.push((place.clone(), account.clone(), sides.iter().map(side).collect::<Result<_, _>>()?));
         }
-        csv::remembered(&(self.table.standing()?, memories))
+        csv::remembered(&(self.table.standing()?, self.store.save()?, memories))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, memories) = csv::recalled::<Whole>(memory)?;
+        let (stood, stored, memories) = csv::recalled::<Whole>(memory)?;
         let of_these = |(derivative, (place, _, sides)): (&Derivative, &Memory)| {
             let fits = |(side, (state, ..)): (&Side, &(State, _, _))| is_of(state, &side.neighbour.model);
             let Derivative { place: own, sides: neighbours, .. } = derivative;
@@ -227,11 +253,12 @@ impl Observer for Gradients {
         if memories.len() != self.derivatives.len() || !self.derivatives.iter().zip(&memories).all(of_these) {
             return Err(csv::failed(Path::new(FILE), &"the checkpoint holds derivatives by other parameters"));
         }
+        self.store.check(&stored)?;
         self.table.check(&stood)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, memories) = csv::recalled::<Whole>(memory)?;
+        let (stood, stored, memories) = csv::recalled::<Whole>(memory)?;
         for (derivative, (_, account, sides)) in self.derivatives.iter_mut().zip(memories) {
             derivative.account = account;
             for (side, (state, begun, row)) in derivative.sides.iter_mut().zip(sides) {
@@ -239,10 +266,12 @@ impl Observer for Gradients {
                 side.history.restore(&row)?;
             }
         }
+        self.store.restore(stored)?;
         self.table.cut(stood)
     }
 
     fn finish(&mut self) -> Result<(), Error> {
+        self.store.finish()?;
         self.table.flush()
     }
 }

@@ -406,7 +406,7 @@ const INTEGRATION_POINTS: [Quantity; 10] = [
 pub type Group = (&'static str, &'static [Quantity]);
 
 /// All quantities by their files, in the order of their columns.
-pub const ALL: [(&str, &[Group]); 11] = [
+pub const ALL: [(&str, &[Group]); 12] = [
     (
         "history.csv",
         &[
@@ -438,6 +438,22 @@ pub const ALL: [(&str, &[Group]); 11] = [
     ),
     ("points.pvd", &[("", &INTEGRATION_POINTS), ("", &OF_YIELDING)]),
     ("probes.csv", &[("", &[INCREMENT[0]]), ("PROBE", &PROBE), ("PROBE", &[HOOP])]),
+    (
+        "gradients.zarr",
+        &[
+            ("", &[INCREMENT[0]]),
+            ("CONTACT", &PLACE),
+            ("CONTACT", &[q("slip, pressure, traction", NONE, "their derivatives, by place of the case and point")]),
+            (
+                "",
+                &[q(
+                    "displacement",
+                    NONE,
+                    "derivatives of displacements, by place of the case, node and component; on request",
+                )],
+            ),
+        ],
+    ),
     (
         "gradients.csv",
         &[

@@ -10,10 +10,10 @@ use crate::case::again::Opened;
 use crate::case::file::Case;
 use crate::model::Model;
 use crate::output::fields::{Fields, Frames};
-use crate::output::folder::INTERFACE;
+use crate::output::folder::{GRADIENTS, INTERFACE};
 use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
-use crate::output::gradients::{self, Gradients};
+use crate::output::gradients::{self, Asked, Gradients};
 use crate::output::history::History;
 use crate::output::newton_log::NewtonLog;
 use crate::output::probes::Probes;
@@ -43,7 +43,7 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
         files.push("probes.csv");
     }
     if !case.gradients.is_empty() {
-        files.push(gradients::FILE);
+        files.extend([gradients::FILE, GRADIENTS]);
     }
     if case.output.fronts.is_some() {
         files.extend(["fronts.csv", "events.csv"]);
@@ -85,6 +85,11 @@ impl Outputs {
         let (has_contacts, has_fields) = (!model.contacts.is_empty(), case.output.fields);
         let store = || InterfaceStore::reopen(folder, model, &start, &case.units);
         let series = || Fields::reopen(folder, model.clone(), frames);
+        let derivatives = Asked {
+            units: &case.units,
+            of_displacements: case.output.displacement_gradients,
+            goes_on: goes_on("gradients"),
+        };
         let mut outputs = Self {
             history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
             newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
@@ -95,7 +100,7 @@ impl Outputs {
             fronts: case.output.fronts.map(|criterion| Fronts::new(folder, model, &start, criterion)),
             gradients: neighbours
                 .as_ref()
-                .map(|neighbours| Gradients::new(folder, model, neighbours, goes_on("gradients"), warn))
+                .map(|neighbours| Gradients::new(folder, model, neighbours, derivatives, warn))
                 .transpose()?,
         };
         // A run is resumed only if all its files are unchanged.

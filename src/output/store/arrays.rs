@@ -31,6 +31,17 @@ pub fn prefixes(model: &Model) -> Vec<String> {
     prefixes
 }
 
+/// Describes a store.
+pub fn attributes(model: &Model) -> Map<String, Value> {
+    let mut attributes = Map::new();
+    attributes.insert("Conventions".into(), json!("CF-1.11"));
+    attributes.insert("title".into(), json!(model.title));
+    attributes.insert("source".into(), json!(concat!("fecontact ", env!("CARGO_PKG_VERSION"))));
+    attributes.insert("contacts".into(), json!(model.contacts.iter().map(|pair| &pair.name).collect::<Vec<_>>()));
+    attributes.insert("prefixes".into(), json!(prefixes(model)));
+    attributes
+}
+
 /// Describes the times of the records.
 pub fn time(units: &BTreeMap<String, String>) -> Description {
     let mut attributes = Map::new();
@@ -79,6 +90,42 @@ pub fn quantity(pair: &ContactPair, prefix: &str, name: &str, units: &BTreeMap<S
     attributes.extend(unit.map(|unit| ("units".into(), json!(unit))));
     let dimensions = vec!["time".into(), format!("{prefix}.point")];
     Description { name: format!("{prefix}.{name}"), number: Number::Single, dimensions, attributes }
+}
+
+/// Describes the derivatives of a quantity of a contact.
+pub fn derivatives(pair: &ContactPair, prefix: &str, name: &str) -> Description {
+    let known = in_store(name).map_or(name, |known| known.meaning);
+    let mut attributes: Map<String, Value> = Map::new();
+    attributes.insert("long_name".into(), json!(format!("{}: derivative of {known}", pair.name)));
+    attributes.insert("coordinates".into(), json!(["position", "x", "y"].map(|at| format!("{prefix}.{at}")).join(" ")));
+    attributes.insert("relative_error".into(), json!(RELATIVE_ERROR));
+    let dimensions = vec!["time".into(), "by".into(), format!("{prefix}.point")];
+    Description { name: format!("{prefix}.{name}"), number: Number::Single, dimensions, attributes }
+}
+
+/// Describes the undeformed nodes, and the derivatives of their displacements.
+pub fn of_nodes(model: &Model) -> (Vec<(Description, Vec<f64>)>, Description) {
+    let describe = |name: &str, meaning: &str, number: Number, dimensions: &[&str]| {
+        let attributes = Map::from_iter([("long_name".into(), json!(meaning))]);
+        Description {
+            name: name.into(),
+            number,
+            dimensions: dimensions.iter().map(|name| (*name).into()).collect(),
+            attributes,
+        }
+    };
+    let nodes = &model.mesh.nodes[..model.mesh.own_nodes()];
+    let place = |name: &str, i: usize| {
+        let is = describe(name, &format!("{name} of the undeformed node"), Number::Double, &["node"]);
+        (is, nodes.iter().map(|node| node[i]).collect())
+    };
+    let moved = describe(
+        "displacement",
+        "derivative of the displacement",
+        Number::Single,
+        &["time", "by", "node", "component"],
+    );
+    (vec![place("x", 0), place("y", 1)], moved)
 }
 
 /// Unit label according to the CF conventions; full names of time units would be decoded as durations.

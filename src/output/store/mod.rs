@@ -11,15 +11,14 @@
 
 mod arrays;
 pub mod codec;
+pub mod derivatives;
 pub mod read;
 mod zarr;
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde_json::{Map, json};
-
-use self::arrays::{along, prefixes, quantity, time};
+use self::arrays::{along, attributes, prefixes, quantity, time};
 use self::zarr::{Saved, Store};
 use super::csv;
 use super::quantities::IN_STORE;
@@ -86,21 +85,15 @@ impl InterfaceStore {
         let names: Vec<Vec<&str>> = model.contacts.iter().map(names).collect();
         let prefixes = prefixes(model);
         let mut fixed = Vec::new();
-        let mut growing = vec![(time(units), None)];
+        let mut growing = vec![(time(units), Vec::new())];
         for ((pair, prefix), names) in model.contacts.iter().zip(&prefixes).zip(&names) {
             fixed.extend(along(model, pair, prefix, units));
-            let quantity = |name: &&str| (quantity(pair, prefix, name, units), Some(pair.points.len()));
+            let quantity = |name: &&str| (quantity(pair, prefix, name, units), vec![pair.points.len()]);
             growing.extend(names.iter().map(quantity));
         }
-        let mut attributes = Map::new();
-        attributes.insert("Conventions".into(), json!("CF-1.11"));
-        attributes.insert("title".into(), json!(model.title));
-        attributes.insert("source".into(), json!(concat!("fecontact ", env!("CARGO_PKG_VERSION"))));
-        attributes.insert("contacts".into(), json!(model.contacts.iter().map(|pair| &pair.name).collect::<Vec<_>>()));
-        attributes.insert("prefixes".into(), json!(prefixes));
         let slips = |states: &Vec<ContactState>| states.iter().map(|state| state.friction.plastic_slip).collect();
         Self {
-            store: Store::new(folder.join(STORE), attributes, fixed, growing),
+            store: Store::new(folder.join(STORE), attributes(model), fixed, growing),
             names,
             held: None,
             last: (start.time, start.contacts.iter().map(slips).collect()),
@@ -131,19 +124,24 @@ impl InterfaceStore {
     }
 }
 
+/// Records to be written now, after a new one that may be held back.
+fn due(held: &mut Option<Record>, new: Record, row: Row) -> Vec<Record> {
+    let before = held.take();
+    match row {
+        Row::Held => {
+            *held = Some(new);
+            Vec::new()
+        }
+        Row::Written => vec![new],
+        Row::AfterTheHeld => before.into_iter().chain([new]).collect(),
+    }
+}
+
 impl Observer for InterfaceStore {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let record = self.record_of(model, state);
-        let held = self.held.take();
-        match attempt.row {
-            Row::Held => self.held = Some(record),
-            Row::Written => self.write(record)?,
-            Row::AfterTheHeld => {
-                held.map_or(Ok(()), |held| self.write(held))?;
-                self.write(record)?;
-            }
-        }
+        due(&mut self.held, record, attempt.row).into_iter().try_for_each(|record| self.write(record))?;
         self.store.share()
     }
 

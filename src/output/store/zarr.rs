@@ -3,7 +3,7 @@
 //! ```text
 //! .zgroup .zattrs          description of the store
 //! NAME/.zarray .zattrs     shape, chunks and codecs of an array; its dimensions, units and meaning
-//! NAME/k  NAME/k.0         chunk k: records k R … (k + 1) R − 1 of all places, NaN where there is none yet
+//! NAME/k  NAME/k.0 …       chunk k: records k R … (k + 1) R − 1 of all places, NaN where there is none yet
 //! .zmetadata               all of the above but the chunks, once more in one file
 //! ```
 //!
@@ -66,15 +66,15 @@ pub struct Store {
 
 impl Store {
     /// Creates the description of a store in `folder`, to be created or restored: fixed arrays with their values, and growing
-    /// arrays with the number of values per record (`None`: one, without a dimension of its own).
+    /// arrays with the number of values per record in each further dimension.
     pub fn new(
         folder: PathBuf,
         attributes: Map<String, Value>,
         fixed: Vec<(Description, Vec<f64>)>,
-        growing: Vec<(Description, Option<usize>)>,
+        growing: Vec<(Description, Vec<usize>)>,
     ) -> Self {
-        let widest = growing.iter().filter_map(|(_, width)| *width).max().unwrap_or(1);
-        let series = growing.into_iter().map(|(is, width)| Series::new(is, width)).collect();
+        let widest = growing.iter().map(|(_, shape)| shape.iter().product()).max().unwrap_or(1);
+        let series = growing.into_iter().map(|(is, shape)| Series::new(is, shape)).collect();
         Self {
             folder,
             attributes: Value::Object(attributes),
@@ -123,7 +123,7 @@ impl Store {
     /// Returns [`Error::Output`] if a complete chunk cannot be written.
     pub fn push(&mut self, record: &[Vec<f64>]) -> Result<(), Error> {
         for (series, values) in self.series.iter_mut().zip(record) {
-            debug_assert_eq!(values.len(), series.width.unwrap_or(1), "{}", series.is.name);
+            debug_assert_eq!(values.len(), series.shape.iter().product::<usize>(), "{}", series.is.name);
             values.iter().for_each(|value| series.is.number.write(*value, &mut series.chunk));
         }
         self.records += 1;
@@ -272,8 +272,8 @@ impl Store {
     fn shapes(&self) -> impl Iterator<Item = (String, Value)> {
         let fixed =
             self.fixed.iter().map(|(is, values)| (is.name.clone(), shape(is, &[values.len()], &[values.len()])));
-        let growing = self.series.iter().map(|Series { is, width, .. }| {
-            let with = |records: usize| std::iter::once(records).chain(*width).collect::<Vec<_>>();
+        let growing = self.series.iter().map(|Series { is, shape: further, .. }| {
+            let with = |records: usize| std::iter::once(records).chain(further.iter().copied()).collect::<Vec<_>>();
             (is.name.clone(), shape(is, &with(self.records), &with(self.chunk)))
         });
         fixed.chain(growing)
@@ -325,7 +325,7 @@ pub struct Series {
     /// description
     pub is: Description,
     /// number of values per record in each dimension after that of the records
-    pub width: Option<usize>,
+    pub shape: Vec<usize>,
     /// checksum of the files of its complete chunks, one after the other
     pub complete: crc32fast::Hasher,
     /// bytes of the records since the last complete chunk
@@ -334,8 +334,8 @@ pub struct Series {
 
 impl Series {
     /// Creates an array without records.
-    pub fn new(is: Description, width: Option<usize>) -> Self {
-        Self { is, width, complete: crc32fast::Hasher::new(), chunk: Vec::new() }
+    pub fn new(is: Description, shape: Vec<usize>) -> Self {
+        Self { is, shape, complete: crc32fast::Hasher::new(), chunk: Vec::new() }
     }
 
     /// Checks that the first chunks are unchanged.
@@ -357,12 +357,12 @@ impl Series {
 
     /// Size of a record in bytes.
     pub fn record(&self) -> usize {
-        self.width.unwrap_or(1) * self.is.number.size()
+        self.shape.iter().product::<usize>() * self.is.number.size()
     }
 
     /// File of a chunk, relative to the store.
     pub fn file(&self, number: usize) -> PathBuf {
-        let name = if self.width.is_some() { format!("{number}.0") } else { number.to_string() };
+        let name = format!("{number}{}", ".0".repeat(self.shape.len()));
         Path::new(&self.is.name).join(name)
     }
 }
