@@ -123,6 +123,22 @@ class Result:
         table.attrs.clear()
         return table
 
+    @cached_property
+    def interface_gradients(self) -> Mapping[str, xr.Dataset]:
+        """Derivatives of slip, pressure and traction of every contact by values of the case:
+        ``result.interface_gradients["base"].slip.sel(by="contacts.base.friction.mu_k")`` has the dimensions (time, point)."""
+        return _Interfaces(self.folder / "gradients.zarr", self._holder is not None, "the case has no contacts, or asks for no derivatives by gradients")
+
+    @cached_property
+    def displacement_gradients(self) -> xr.DataArray:
+        """Derivatives of the displacements of all nodes by values of the case, with the dimensions (time, by, node, component) and the
+        undeformed coordinates x and y of nodes [L]; requires ``output.displacement_gradients``."""
+        whole = _store(self.folder / "gradients.zarr", self._holder is not None, "the case asks for no derivatives by gradients")
+        if "displacement" not in whole:
+            raise FileNotFoundError(f"{self.folder}: has no derivatives of displacements: the case asks for them by output.displacement_gradients")
+        of_nodes: xr.DataArray = whole["displacement"].assign_coords(x=whole["x"], y=whole["y"], component=["ux", "uy"])
+        return of_nodes
+
     def spread(self, deviations: Mapping[str, float]) -> pd.DataFrame:
         """Standard deviation of the history by deviations of values of the case that are independent of each other, to first order:
         √Σ (∂Q/∂θ s_θ)² of every quantity Q, with the rows and units of the history.
@@ -311,15 +327,10 @@ def _with_derived(grid: Any) -> Any:
 class _Interfaces(Mapping[str, "xr.Dataset"]):
     """Datasets of the contacts of one store."""
 
-    def __init__(self, store: Path, load: bool) -> None:
-        if not store.is_dir():
-            raise FileNotFoundError(f"{store}: this run did not write it: it has no contacts")
-        import xarray as xr
-
-        # Arrays are read when they are used; those of a temporary folder at once, because it may go before they do.
-        whole = xr.open_zarr(store, consolidated=True, chunks=None)
+    def __init__(self, store: Path, load: bool, without: str = "it has no contacts") -> None:
+        whole = _store(store, load, without)
         self._sets = {
-            contact: _of_contact(whole.load() if load else whole, prefix)
+            contact: _of_contact(whole, prefix)
             for contact, prefix in zip(whole.attrs["contacts"], whole.attrs["prefixes"])
         }
 
@@ -333,6 +344,18 @@ class _Interfaces(Mapping[str, "xr.Dataset"]):
 
     def __len__(self) -> int:
         return len(self._sets)
+
+
+def _store(store: Path, load: bool, without: str) -> xr.Dataset:
+    """A store; arrays are read when they are used, those of a temporary folder at once, because it may go before they do."""
+    if not store.is_dir():
+        raise FileNotFoundError(f"{store}: this run did not write it: {without}")
+    import xarray as xr
+
+    whole = xr.open_zarr(store, consolidated=True, chunks=None)
+    if "by" in whole.attrs:
+        whole = whole.assign_coords(by=whole.attrs["by"])
+    return whole.load() if load else whole
 
 
 def _of_contact(whole: xr.Dataset, prefix: str) -> xr.Dataset:

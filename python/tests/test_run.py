@@ -379,6 +379,22 @@ def test_derivatives(document: dict[str, Any]) -> None:
     np.testing.assert_allclose(result.gradients[column], differences, rtol=0, atol=1e-5 * abs(differences).max())
     named = fc.Case({**document, "gradients": [place]}).run(progress=False)
     assert named.gradients.equals(result.gradients)
+    whole = fc.Case({**document, "gradients": [place], "output": {"displacement_gradients": True}}).run(progress=False)
+    along, moved = (whole.interface_gradients["base"].sel(by=place), whole.displacement_gradients.sel(by=place))
+    ends = [fc.Case(document).replace({place: 10 * share, "newton": {"tolerance": 1e-12}}).run(progress=False) for share in (0.999, 1.001)]
+    for name in ("slip", "pressure", "traction"):
+        below, above = (end.interface["base"][name].to_numpy() for end in ends)
+        expected = (above - below) / (0.002 * 10)
+        assert along[name].dims == ("time", "point")
+        # The stores are rounded to 2⁻¹⁶ of their values.
+        rounding = 2.0**-16 * abs(above).max() / (0.002 * 10)
+        np.testing.assert_allclose(along[name], expected, rtol=0, atol=1e-4 * abs(expected).max() + 2 * rounding)
+    below, above = (end.fields[-1]["displacement"] for end in ends)
+    expected = (np.asarray(above) - np.asarray(below))[:, :2] / (0.002 * 10)
+    np.testing.assert_allclose(moved[-1], expected, rtol=0, atol=1e-3 * abs(expected).max())
+    assert moved.dims == ("time", "node", "component") and (moved.x.size, moved.sizes["time"]) == (len(expected), len(result.history))
+    with pytest.raises(FileNotFoundError, match="displacement_gradients"):
+        _ = named.displacement_gradients
     with pytest.raises(FileNotFoundError, match="gradients"):
         _ = case.run(progress=False).gradients
     with pytest.raises(fc.CaseError, match="kapa"):

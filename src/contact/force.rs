@@ -52,7 +52,7 @@ pub use super::point::{ContactState, PointIncrement, Presume, Tractions};
 use super::point::{MasterPoint, Presumption, SlavePoint};
 use super::pores::effective;
 use super::projection::Projection;
-use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, LawFailure, Sliding};
+use crate::laws::friction::{Answer, Bracket, ContactLaw, FrictionResponse, LawFailure, MOST_ANSWERS, Opened, Sliding};
 use crate::mesh::configuration::Configuration;
 
 /// Evaluation of a point's law: first its arguments, then the results of its response.
@@ -256,31 +256,22 @@ impl<'a> PointEvaluation<'a> {
     /// one response if a presumption prescribes the pressure of the law.
     fn agree(&mut self, response: &mut FrictionResponse) -> Result<f64, LawFailure> {
         let presumed = self.increment.presumption.carried.is_some() || self.parts();
-        // p − p̄ + α_n (g − d) changes its sign between them: zero pressure is too low where the surfaces stay closed.
-        let [mut low, mut high] = [0.0, f64::INFINITY];
+        // p − p̄ + α_n (g − d) changes its sign in it.
+        let mut bracket = Bracket::new();
         for _ in 0..MOST_ANSWERS {
             let asked = self.asked;
             let dslip = self.counted(asked).dslip_dpressure;
             let opened = response.state.opening - self.old.friction.opening;
             let rate = response.dopening_dpressure + response.dopening_dslip * dslip;
             let lifted = self.alpha_n * (opened + rate * (self.free - asked)) / (1.0 - self.alpha_n * rate);
-            let pressure = self.free + lifted;
+            let (found, next) = (self.free + self.alpha_n * opened, self.free + lifted);
             // Round-off of the opening affects a small pressure.
-            let mut size = asked.abs() + self.alpha_n * (opened.abs() + response.state.opening.abs());
-            let side = if asked < self.free + self.alpha_n * opened { &mut low } else { &mut high };
-            *side = asked;
-            let middle = 0.5 * (low + high.min(4.0 * asked));
-            // Where they are neighbouring numbers: the law takes the plastic slip as a difference from the whole slip, so its
-            // opening is only as exact as that.
-            if middle <= low || high <= middle {
-                size += self.alpha_n * self.sliding.slip.abs();
+            let size = asked.abs() + self.alpha_n * (opened.abs() + response.state.opening.abs());
+            let slipped = self.alpha_n * self.sliding.slip.abs();
+            match bracket.after(asked, Opened { found, next, size, slipped }) {
+                Some(pressure) if !presumed => self.load(pressure),
+                _ => return Ok(next),
             }
-            if presumed || (pressure - asked).abs() <= AGREE * size {
-                return Ok(pressure);
-            }
-            // At the onset of slip the opening has a kink, across which tangent steps alternate.
-            let between = low < pressure && pressure < high;
-            self.load(if between { pressure } else { middle });
             *response = self.met(self.law.respond(&self.old.friction, self.sliding)?);
         }
         Err(LawFailure::Opening { opening: response.state.opening, pressure: self.asked })
@@ -310,12 +301,6 @@ fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<Counted>, clo
         });
     }
 }
-
-/// Maximum number of evaluations of the law until its opening and the pressure agree.
-const MOST_ANSWERS: usize = 60;
-
-/// Relative tolerance of the pressure in that iteration.
-const AGREE: f64 = 1e-14;
 
 /// Pressure of the friction response: for a point that is only presumed closed the presumed one, beyond which its
 /// response is extrapolated linearly.

@@ -57,10 +57,50 @@ impl Confinement {
 }
 
 /// Largest number of evaluations of the law until its opening and the pressure agree.
-const MOST_ANSWERS: usize = 100;
+pub(crate) const MOST_ANSWERS: usize = 100;
 
 /// Relative tolerance of the pressure.
 const AGREE: f64 = 1e-14;
+
+/// Pressures between which the one lies that agrees with the opening of the law: zero is too low where the surfaces stay closed.
+pub(crate) struct Bracket {
+    low: f64,
+    high: f64,
+}
+
+/// What a response says about the pressure under which it was asked for.
+pub(crate) struct Opened {
+    /// pressure that its opening makes [F/L²]
+    pub found: f64,
+    /// pressure by a step along its tangent [F/L²]
+    pub next: f64,
+    /// size of the pressures in it, for round-off [F/L²]
+    pub size: f64,
+    /// pressure by a slip as large as the whole [F/L²]
+    pub slipped: f64,
+}
+
+impl Bracket {
+    /// All pressures.
+    pub const fn new() -> Self {
+        Self { low: 0.0, high: f64::INFINITY }
+    }
+
+    /// The pressure to ask for after `asked`; `None` if that agrees.
+    pub fn after(&mut self, asked: f64, Opened { found, next, size, slipped }: Opened) -> Option<f64> {
+        *(if asked < found { &mut self.low } else { &mut self.high }) = asked;
+        let Self { low, high } = *self;
+        let middle = 0.5 * (low + high.min(4.0 * asked));
+        // Where they are neighbouring numbers: the law takes the plastic slip as a difference from the whole slip, so its
+        // opening is only as exact as that.
+        let size = if middle <= low || high <= middle { size + slipped } else { size };
+        if (next - asked).abs() <= AGREE * size {
+            return None;
+        }
+        // Slip sets in with a kink, across which tangent steps alternate.
+        Some(if low < next && next < high { next } else { middle })
+    }
+}
 
 impl ContactLaw {
     /// Response to an increment of slip under the pressure that agrees with the opening, p = p_f + K d(p); that of `sliding` is not
@@ -87,7 +127,7 @@ impl ContactLaw {
         if highest <= 0.0 {
             return respond(highest);
         }
-        let [mut low, mut high] = [0.0, f64::INFINITY];
+        let mut bracket = Bracket::new();
         let mut asked = if old.pressure > 0.0 { old.pressure.min(highest) } else { highest };
         let mut opening = 0.0;
         for _ in 0..MOST_ANSWERS {
@@ -95,19 +135,11 @@ impl ContactLaw {
             opening = response.state.opening;
             let found = free + stiffness * opening;
             let next = asked + (found - asked) / (1.0 - stiffness * response.dopening_dpressure);
-            *(if asked < found { &mut low } else { &mut high }) = asked;
-            let middle = 0.5 * (low + high.min(4.0 * asked));
-            let mut size = asked + free.abs() + stiffness * opening.abs();
-            // Where they are neighbouring numbers: the law takes the plastic slip as a difference from the whole slip, so its
-            // opening is only as exact as that.
-            if middle <= low || high <= middle {
-                size += stiffness * sliding.slip.abs();
+            let size = asked + free.abs() + stiffness * opening.abs();
+            match bracket.after(asked, Opened { found, next, size, slipped: stiffness * sliding.slip.abs() }) {
+                None => return Ok(response),
+                Some(next) => asked = next,
             }
-            if (next - asked).abs() <= AGREE * size {
-                return Ok(response);
-            }
-            // Slip sets in with a kink, across which tangent steps alternate.
-            asked = if low < next && next < high { next } else { middle };
         }
         Err(LawFailure::Opening { opening, pressure: asked })
     }

@@ -34,6 +34,7 @@ use std::fmt::Debug;
 use thiserror::Error;
 
 pub use adhesion::{Adhesion, AdhesionParameters};
+pub(crate) use confinement::{Bracket, MOST_ANSWERS, Opened};
 pub use confinement::{Confined, Confinement};
 pub use contact_law::{Beyond, ContactLaw, Dilatancy, Offsets};
 pub use coulomb::{Coulomb, CoulombParameters};
