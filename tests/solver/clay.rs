@@ -76,9 +76,8 @@ fn saturated_ground_rests() {
         let bump = 16.0 * s * (1.0 - s) * t * (1.0 - t);
         [s + 0.06 * bump * (9.0 * t).sin(), t - 1.0 + 0.06 * bump * (7.0 * s).cos()]
     });
-    let mut skeleton = clay(
-        json!({"nu": 0.3, "OCR": 1.5, "density": 2, "structure": 4, "m": 3, "b_r": 0.1, "m_b": 0.9, "zeta": 0.5}),
-    );
+    let mut skeleton =
+        clay(json!({"nu": 0.3, "OCR": 1.5, "density": 2, "structure": 4, "m": 3, "b_r": 0.1, "m_b": 0.9, "zeta": 0.5}));
     skeleton["model"] = json!("sys_cam_clay");
     for material in [
         clay(json!({"nu": 0.3, "OCR": 1.5, "density": 2})),
