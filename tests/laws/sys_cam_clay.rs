@@ -431,7 +431,7 @@ fn a_reversal_in_one_increment_finds_where_it_yields() {
         }
         let exact = exact.after(&soil, [0.0, 0.004], 4000).after(&soil, [0.0, -0.008], 8000);
         let answer = point.go(&triaxial(0.0, -0.004));
-        close("q", point.invariants()[1], -exact.q, 0.02 * exact.q.abs());
+        close("q", point.invariants()[1], -exact.q, 0.03 * exact.q.abs());
         close("R", point.variable("R"), exact.ratio, 0.01);
         assert!(answer.dissipation > 0.0, "{}", answer.dissipation);
     }
