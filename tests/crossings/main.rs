@@ -7,6 +7,7 @@
 
 mod features;
 mod frame;
+mod gradients;
 mod hunt;
 mod law;
 mod mesh;
