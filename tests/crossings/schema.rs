@@ -38,7 +38,11 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     (&["outline", "group"], "a polyline by another name: tests/contact/rigid_bodies.rs"),
     (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),
     (&["beta", "gamma", "rho_infinity"], "parameters of schemes: tests/time/time_integration.rs"),
-    (&["gradients"], "derivatives of what is computed: tests/command/gradients.rs"),
+    (
+        &["gradients", "displacement_gradients"],
+        "derivatives of what is computed: gradients.rs, tests/command/gradients.rs",
+    ),
+    (&["add", "remove"], "bodies that come and go: tests/solver/stages.rs"),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 
