@@ -335,6 +335,65 @@ class CamClay(dict[str, Any]):
         super().__init__({"model": "cam_clay", **_given({"lambda_": lambda_, "kappa": kappa, "p_min": p_min, "G": G, "M": M, "OCR": OCR, "density": density, "e": e, "nu": nu, "p_c": p_c, "phi": phi, "viscosity": viscosity})})
 
 
+class SysCamClay(dict[str, Any]):
+    """SYS Cam-clay, experimental: modified Cam-clay of soil with structure, overconsolidation and anisotropy, which it
+    loses as it yields; needs an initial_stress, large strains.
+
+    Args:
+        lambda_: λ: slope of the line of normal compression of the remoulded soil, ln v over ln p, or e over ln
+            p where a void ratio e is given, λ > κ [-]
+        kappa: κ: slope of the lines of swelling, as λ, κ > 0 [-]
+        p_min: p_min: pressure below which the stiffness does not fall any more, p_min > 0: far below the
+            pressures of interest [F/L²]
+        G: G: shear modulus, constant; G or nu, G > 0 [F/L²]
+        M: M: q/p at critical state; M or phi, M > 0 [-]
+        OCR: Overconsolidation ratio 1/R at the start: size of the yield surface over that of a similar one
+            through the initial stress; p_c or OCR, OCR ≥ 1 [-]
+        a: a: loss of structure as it yields, a ≥ 0 [-]
+        b_r: b_r: rotation of the yield surface as it is sheared, b_r ≥ 0 [-]
+        c_s: c_s: share of shear in the loss of structure, the rest being that of compaction, 0 ≤ c_s ≤ 1 [-]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+        e: e: void ratio in the middle of the path, which makes slopes of ln v of slopes of e: λ/(1 + e), the
+            specific volume v being 1 + e; default: λ and κ are slopes of ln v [-]
+        m: m: loss of overconsolidation as it yields, m > 0; default: it is elastic within the yield surface [-]
+        m_b: m_b: limit of the rotation ‖β‖, m_b > 0 where b_r is not 0 [-]
+        nu: ν: Poisson's ratio under the initial stress, which gives every point its constant G there; G or nu,
+            −1 < ν < 0.5 [-]
+        p_c: p_c at the start, that of the remoulded soil: with structure it yields in isotropic compression at
+            p_c/R*; p_c or OCR, p_c ≥ p_min [F/L²]
+        phi: φ: angle of friction at critical state in triaxial compression, M = 6 sin φ/(3 − sin φ), in
+            degrees; M or phi
+        structure: 1/R* at the start: degree of structure, 1 for remoulded soil, ≥ 1 [-]
+        viscosity: τ_v: relaxation time of the viscosity by Duvaut and Lions, τ_v ≥ 0; 0 for none [T]
+        zeta: ζ at the start: rotation √(3/2) ‖β‖ of the yield surface towards the initial stress, 0 ≤ ζ < M [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        lambda_: float,
+        kappa: float,
+        p_min: float,
+        G: float | None | Given = NOT_GIVEN,
+        M: float | None | Given = NOT_GIVEN,
+        OCR: float | None | Given = NOT_GIVEN,
+        a: float | Given = NOT_GIVEN,
+        b_r: float | Given = NOT_GIVEN,
+        c_s: float | Given = NOT_GIVEN,
+        density: float | Given = NOT_GIVEN,
+        e: float | None | Given = NOT_GIVEN,
+        m: float | None | Given = NOT_GIVEN,
+        m_b: float | Given = NOT_GIVEN,
+        nu: float | None | Given = NOT_GIVEN,
+        p_c: float | None | Given = NOT_GIVEN,
+        phi: float | None | Given = NOT_GIVEN,
+        structure: float | Given = NOT_GIVEN,
+        viscosity: float | Given = NOT_GIVEN,
+        zeta: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "sys_cam_clay", **_given({"lambda_": lambda_, "kappa": kappa, "p_min": p_min, "G": G, "M": M, "OCR": OCR, "a": a, "b_r": b_r, "c_s": c_s, "density": density, "e": e, "m": m, "m_b": m_b, "nu": nu, "p_c": p_c, "phi": phi, "structure": structure, "viscosity": viscosity, "zeta": zeta})})
+
+
 class Damping(dict[str, Any]):
     """Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
 
@@ -1019,6 +1078,8 @@ class Output(dict[str, Any]):
         derived: Whether the fields also have what follows from stress and logarithmic strain:
             `principal_stress`, `principal_strain` and `stretch_zz`, for ParaView. The page and Python compute
             these themselves
+        displacement_gradients: Whether `gradients.zarr` also has the derivatives of the displacements of all
+            nodes by the places of `gradients`, at every row of the history
         every: Fields are written with every n-th row of the history, and at the end of each step; default:
             about 30 times in the run, equally often in each step at equal parts of its duration, or only at
             `times` and ends of steps where `times` are given
@@ -1042,6 +1103,7 @@ class Output(dict[str, Any]):
         *,
         checkpoint: float | None | Given = NOT_GIVEN,
         derived: bool | Given = NOT_GIVEN,
+        displacement_gradients: bool | Given = NOT_GIVEN,
         every: int | None | Given = NOT_GIVEN,
         exact: bool | Given = NOT_GIVEN,
         fields: bool | Given = NOT_GIVEN,
@@ -1051,7 +1113,7 @@ class Output(dict[str, Any]):
         report: bool | Given = NOT_GIVEN,
         times: Vector | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"checkpoint": checkpoint, "derived": derived, "every": every, "exact": exact, "fields": fields, "fronts": fronts, "interval": interval, "points": points, "report": report, "times": times}))
+        super().__init__(_given({"checkpoint": checkpoint, "derived": derived, "displacement_gradients": displacement_gradients, "every": every, "exact": exact, "fields": fields, "fronts": fronts, "interval": interval, "points": points, "report": report, "times": times}))
 
 
 class Fronts(dict[str, Any]):
@@ -1186,12 +1248,17 @@ class Step(dict[str, Any]):
     Args:
         name: Name in messages and results
         duration: Length of the step [T]
+        add: Bodies that come at the start of this step and are absent before, such as a wall. They come without
+            strain in the place that their nodes have then, at rest under their `initial_stress`, if any; that
+            and their weight grow in linearly over the step
         damping: Damping of bodies from this step on, replacing that of the body or of an earlier step;
             inherited. No effect in static steps
         dt: Increments; by default inherited from the previous step, a tenth of the first step
         loads: Loads; inherited, and replaced where the same group and kind is named again. In any scheme null
             reduces a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
             and ends springs, dashpots and absorbing sides at once. For a sudden end, use a table or expression
+        remove: Bodies taken away at the start of this step, as in an excavation. The forces that they exerted
+            on the rest remain as loads that fade linearly to zero over the step
         rupture: Static and implicit steps: automatic switch to explicit integration while a contact slips fast.
             Not inherited
         scheme: Time scheme; by default inherited from the previous step, static in the first step
@@ -1217,9 +1284,11 @@ class Step(dict[str, Any]):
         *,
         name: str,
         duration: float,
+        add: Sequence[str] | Given = NOT_GIVEN,
         damping: Mapping[str, Damping] | Given = NOT_GIVEN,
         dt: Increments | None | Given = NOT_GIVEN,
         loads: Sequence[Load] | Given = NOT_GIVEN,
+        remove: Sequence[str] | Given = NOT_GIVEN,
         rupture: Rupture | None | Given = NOT_GIVEN,
         scheme: Scheme | None | Given = NOT_GIVEN,
         stabilize: float | None | Given = NOT_GIVEN,
@@ -1228,7 +1297,7 @@ class Step(dict[str, Any]):
         until: Until | None | Given = NOT_GIVEN,
         velocity: Mapping[str, Vector] | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"name": name, "duration": duration, "damping": damping, "dt": dt, "loads": loads, "rupture": rupture, "scheme": scheme, "stabilize": stabilize, "supports": supports, "temperature": temperature, "until": until, "velocity": velocity}))
+        super().__init__(_given({"name": name, "duration": duration, "add": add, "damping": damping, "dt": dt, "loads": loads, "remove": remove, "rupture": rupture, "scheme": scheme, "stabilize": stabilize, "supports": supports, "temperature": temperature, "until": until, "velocity": velocity}))
 
 
 class Increments(dict[str, Any]):
@@ -1564,7 +1633,7 @@ class Until(dict[str, Any]):
 
 
 # A bulk material: its law and its constants.
-Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic, VonMises, DruckerPrager, MohrCoulomb, CamClay]
+Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic, VonMises, DruckerPrager, MohrCoulomb, CamClay, SysCamClay]
 
 # How the cone is fitted to Mohr and Coulomb's hexagon.
 Matching = Union[Literal["plane_strain"], Literal["compression"]]

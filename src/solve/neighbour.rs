@@ -45,7 +45,7 @@ const SLOW: f64 = 0.1;
 
 /// Fraction left by a correction above which another one follows, though the residual is small already: it may be as small as round-off
 /// could be, and larger than round-off is.
-const SURE: f64 = 1e-3;
+const SURE: f64 = 2e-5;
 
 /// The same of what two neighbours have in common beyond the residual of the run: of second order where nothing has a kink [-]
 const COMMON: f64 = 1e-9;
