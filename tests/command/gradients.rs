@@ -194,6 +194,22 @@ fn in_partial_slip_are_those_of_complete_runs_by_every_method() {
     }
 }
 
+/// A stiff block that is pressed into soft ground and dragged over several of its elements.
+#[test]
+fn of_ironing_are_those_of_complete_runs() {
+    let mut case = dragged(
+        json!({"law": "coulomb", "mu": 0.3, "alpha_t": 4e3}),
+        json!({"method": "gauss_to_segment", "smooth": true}),
+    );
+    case["contacts"]["base"]["normal"]["alpha_n"] = json!(4e3);
+    case["bodies"]["ground"]["material"]["E"] = json!(10);
+    case["steps"][0]["supports"][1]["uy"] = json!(-0.2);
+    case["steps"][1]["supports"][0]["ux"]["rate"] = json!(0.35);
+    let places = ["contacts.base.friction.mu", "bodies.ground.material.E", "steps[0].supports[1].uy"];
+    let worst = compared(&case, &places);
+    assert!(is_close(&worst), "{worst:?}");
+}
+
 /// A block with mass, driven fast enough for its inertia to count, up to its first slip and through it.
 #[test]
 fn of_motion_are_those_of_complete_runs_in_every_scheme() {
