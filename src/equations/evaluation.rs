@@ -70,10 +70,7 @@ impl ContactCounts {
     #[doc(hidden)]
     pub fn of(pairs: &[ContactPair], contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
-        let regimes = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
-            pair.points.iter().zip(states).map(|(point, state)| pair.regime(point, state)).collect::<Vec<_>>()
-        };
-        for regime in pairs.iter().zip(contacts).flat_map(regimes) {
+        for regime in regimes(pairs, contacts) {
             match regime {
                 Regime::Open => counts.open += 1,
                 Regime::Stick | Regime::Tied => counts.stick += 1,
@@ -82,6 +79,14 @@ impl ContactCounts {
         }
         counts
     }
+}
+
+/// Status of every contact point.
+pub fn regimes(pairs: &[ContactPair], contacts: &[Vec<ContactState>]) -> Vec<Regime> {
+    let of_pair = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
+        pair.points.iter().zip(states).map(|(point, state)| pair.regime(point, state)).collect::<Vec<_>>()
+    };
+    pairs.iter().zip(contacts).flat_map(of_pair).collect()
 }
 
 /// Seconds spent by phase.

@@ -44,6 +44,6 @@ pub mod trial;
 
 pub use assembler::Assembler;
 pub use coupling::Coupling;
-pub use evaluation::{ContactCounts, Evaluation, Seconds};
+pub use evaluation::{ContactCounts, Evaluation, Seconds, regimes};
 pub use solids::LinearizedSolids;
 pub use trial::Trial;

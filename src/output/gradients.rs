@@ -20,7 +20,7 @@ use super::probes::ProbeRows;
 use super::quantities::INCREMENT;
 use super::store::derivatives::{self, DerivativeStore};
 use super::warnings::Warn;
-use crate::laws::friction::Regime;
+use crate::equations::regimes;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::control::is_of;
@@ -166,7 +166,7 @@ impl Derivative {
         let one = |Side { weight, neighbour: Neighbour { model, old, state, .. }, history, probes }: &mut Side| {
             let mut row = history.values(model, old, state);
             row.extend(probes.values(model, state));
-            (*weight, [row, store.values(model, state)], statuses(model, state))
+            (*weight, [row, store.values(model, state)], regimes(&model.contacts, &state.contacts))
         };
         let all: Vec<_> = self.sides.iter_mut().map(one).collect();
         let Some(((_, first, statuses), others)) = all.split_first() else { return Default::default() };
@@ -179,14 +179,6 @@ impl Derivative {
             (0..first[kind].len()).map(values).collect()
         })
     }
-}
-
-/// Status of every contact point.
-fn statuses(model: &Model, state: &State) -> Vec<Regime> {
-    let pairs = model.contacts.iter().zip(&state.contacts);
-    pairs
-        .flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(point, state)| pair.regime(point, state)))
-        .collect()
 }
 
 impl Observer for Gradients {

@@ -14,7 +14,8 @@
 //! u± ← u± ∓ K⁻¹ (r+ − r−)/2 − K⁻¹ ((r+ + r−)/2 − r)                                                            (2)
 //! ```
 //! The first part is the derivative. Their tangents differ from K by as much in opposite directions, so a correction leaves a fraction O(ε²)
-//! of it. The second part is O(ε²) and drops out of the difference: it is corrected only where it is larger than that, at kinks.
+//! of it. The second part is O(ε²) and drops out of the difference: it is corrected only where it is larger than that, or where a contact
+//! point has another status in one than in the other.
 //!
 //! Bodies that θ does not act on, and that have no internal variables, are linear so close to the run: K_b (u′ − u) stands for the change of
 //! their forces, with the same tangent for all neighbours.
@@ -31,7 +32,7 @@ use super::failure::IncrementFailure;
 use super::newton::NewtonFailure;
 use super::{Pass, Workspace};
 use crate::equations::sums::TrialFailure;
-use crate::equations::{Assembler, LinearizedSolids, Trial};
+use crate::equations::{Assembler, LinearizedSolids, Trial, regimes};
 use crate::linear::system::{Request, System};
 use crate::linear::{LinearSolver, Multifrontal};
 use crate::model::Model;
@@ -47,7 +48,8 @@ const SLOW: f64 = 0.1;
 /// could be, and larger than round-off is.
 const SURE: f64 = 2e-5;
 
-/// The same of what two neighbours have in common beyond the residual of the run: of second order where nothing has a kink [-]
+/// The same of what two neighbours have in common beyond the residual of the run, of second order, where contact points have the same
+/// status in both [-]
 const COMMON: f64 = 1e-9;
 
 /// The tangent of a run at a solution, and its factors.
@@ -185,6 +187,9 @@ impl Seeker<'_> {
 pub fn beside(mut neighbours: Vec<Seeker>, tangent: &mut Tangent) -> Result<Vec<Vec<f64>>, IncrementFailure> {
     let mut parts = Part::of(neighbours.len());
     while tangent.serves && neighbours.iter_mut().all(|neighbour| neighbour.evaluate(tangent).is_ok()) {
+        if let [_, common] = &mut parts[..] {
+            common.tolerance = if have_same_status(&neighbours) { COMMON } else { TOLERANCE };
+        }
         let mut ways = Vec::new();
         for part in &mut parts {
             let residual = part.residual(&neighbours, &tangent.system.residual);
@@ -208,6 +213,13 @@ pub fn beside(mut neighbours: Vec<Seeker>, tangent: &mut Tangent) -> Result<Vec<
         }
     }
     neighbours.into_iter().map(by_itself).collect()
+}
+
+/// Whether every contact point has the same status in all of them.
+fn have_same_status(neighbours: &[Seeker]) -> bool {
+    let mut all = neighbours.iter().map(|neighbour| regimes(&neighbour.model.contacts, neighbour.work.contacts()));
+    let first = all.next();
+    all.all(|other| Some(other) == first)
 }
 
 /// Equilibrium of a neighbour by Newton's method.
