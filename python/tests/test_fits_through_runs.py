@@ -319,5 +319,5 @@ def test_fields_that_are_none_are_refused() -> None:
             field(**changed)
     with pytest.raises(ValueError, match="some of what was measured"):
         Run(pushed(), {FORCE: ([2.0], [1.0])}, fields=[field()], sigma=0.1)
-    with pytest.raises(fc.CaseError, match="outside"):
+    with pytest.raises(fc.CaseError, match="lies in no body"):
         fc.fit(Run(pushed(), fields=[field(x=X + 50.0)]), free=[*TRUTH])
