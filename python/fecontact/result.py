@@ -352,7 +352,7 @@ def _store(store: Path, load: bool, without: str) -> xr.Dataset:
         raise FileNotFoundError(f"{store}: this run did not write it: {without}")
     import xarray as xr
 
-    whole = xr.open_zarr(store, consolidated=True, chunks=None)
+    whole: xr.Dataset = xr.open_zarr(store, consolidated=True, chunks=None)
     if "by" in whole.attrs:
         whole = whole.assign_coords(by=whole.attrs["by"])
     return whole.load() if load else whole
