@@ -195,17 +195,17 @@ impl Observer for Gradients {
         table.text(&step.name);
         let mut by_each = Vec::new();
         for derivative in derivatives.iter_mut() {
-            if derivative.lives() {
-                if let Some(Err(failure)) = followed.next() {
-                    derivative.account.lost_at = Some(new.time);
-                    let warning = format!(
-                        "gradients.csv: no derivative by {} from t = {} on: a run with a slightly different value cannot make the \
-                         same increment ({failure}); the run itself goes on",
-                        derivative.place, new.time
-                    );
-                    warn(&warning);
-                    warnings.push(warning);
-                }
+            if derivative.lives()
+                && let Some(Err(failure)) = followed.next()
+            {
+                derivative.account.lost_at = Some(new.time);
+                let warning = format!(
+                    "gradients.csv: no derivative by {} from t = {} on: a run with a slightly different value cannot make the \
+                     same increment ({failure}); the run itself goes on",
+                    derivative.place, new.time
+                );
+                warn(&warning);
+                warnings.push(warning);
             }
             let [row, stored] = match derivative.lives() {
                 true => derivative.at_end(store),
