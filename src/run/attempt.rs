@@ -26,6 +26,10 @@ use crate::time::touching::Touching;
 /// Factor on Δt after an increment that could not be solved.
 const CUT: f64 = 0.5;
 
+/// Factor after a second attempt at it and each that follows: where friction weakens faster than the bodies unload, the increment that has
+/// an equilibrium may be a hundred times shorter, and every attempt on the way there costs as much as ten increments.
+const CUT_AGAIN: f64 = 0.25;
+
 impl Simulation {
     /// Tries an implicit or static increment.
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
@@ -83,7 +87,8 @@ impl Simulation {
         }
         if CUT * dt >= increments.min {
             touching.cut();
-            return Outcome::Cut(cause, Phase::Implicit { dt: CUT * dt, attempt: number + 1, touching });
+            let cut = if number > 1 && CUT_AGAIN * dt >= increments.min { CUT_AGAIN } else { CUT };
+            return Outcome::Cut(cause, Phase::Implicit { dt: cut * dt, attempt: number + 1, touching });
         }
         if rupture.is_some() {
             return Outcome::Cut(cause, self.rupture());

@@ -48,7 +48,6 @@ use crate::model::text::{count, number};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::solve::failure::IncrementFailure;
-use crate::solve::newton::NewtonFailure;
 use crate::solve::{IterationRecord, Pass};
 
 /// An attempt at one increment, accepted or not.
@@ -241,10 +240,7 @@ impl Attempt<'_> {
 
     /// Reason why no equilibrium was found, with the contact status at the end of the iterations.
     fn unsolved(&self, cause: &IncrementFailure) -> String {
-        let ended = matches!(
-            cause,
-            IncrementFailure::Newton(NewtonFailure::Diverged { .. } | NewtonFailure::TooManyIterations { .. })
-        );
+        let ended = matches!(cause, IncrementFailure::Newton(failure) if failure.is_without_end());
         let Some(last) = self.iterations.last().filter(|_| ended) else { return cause.to_string() };
         let closed = last.contacts.stick + last.contacts.slip;
         match last.flips {

@@ -352,9 +352,7 @@ fn from_start_values(
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
     let (mut iterations, result) = equilibrium(model, trial, None, work);
     let unsolved = match &result {
-        Err(IncrementFailure::Newton(failure)) => {
-            matches!(failure, NewtonFailure::TooManyIterations { .. } | NewtonFailure::Diverged { .. })
-        }
+        Err(IncrementFailure::Newton(failure)) => failure.is_without_end(),
         _ => false,
     };
     if !(model.aids.softening && unsolved && trial.step.scheme == Scheme::Static && has_one_answer(model)) {

@@ -112,6 +112,7 @@ impl IncrementFailure {
             Self::Newton(NewtonFailure::Linear(_)) | Self::Mass(_) | Self::Interface(_) => "singular equations",
             Self::Newton(NewtonFailure::Overflow) => "forces beyond double precision",
             Self::Newton(NewtonFailure::Diverged { .. }) => "divergence",
+            Self::Newton(NewtonFailure::Circles { .. }) => "iterations in a circle",
             Self::Newton(NewtonFailure::TooManyIterations { .. }) => "too many iterations",
             Self::Penetration { .. } => "penetration",
             Self::ElasticSlip { .. } => "elastic slip",
@@ -155,9 +156,7 @@ const LOCKS: f64 = 0.49;
 pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &IncrementFailure) -> String {
     let unbalanced = match cause {
         IncrementFailure::Newton(NewtonFailure::Evaluation(_)) | IncrementFailure::ContactLost(_) => None,
-        IncrementFailure::Newton(NewtonFailure::Diverged { .. } | NewtonFailure::TooManyIterations { .. }) => {
-            worst_node(model, step, &work.system.residual)
-        }
+        IncrementFailure::Newton(failure) if failure.is_without_end() => worst_node(model, step, &work.system.residual),
         _ => return String::new(),
     };
     let contact = unbalanced.and_then(|node| model.contacts.iter().find(|pair| pair.nodes().any(|own| own == node)));

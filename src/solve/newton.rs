@@ -20,6 +20,10 @@
 //! is 1 where a line search was made.
 //! Source: Matthies & Strang (1979), The solution of nonlinear finite element equations, doi:10.1002/nme.1620141104.
 //!
+//! Where even these corrections come back to the same iterates, no number of them ends, and the increment is given up at once: the last
+//! two residuals and corrections are those of p iterates before, to four digits. Often there is no equilibrium near by, as where friction
+//! weakens faster than the bodies unload, and a shorter increment has one.
+//!
 //! Near the solution the tangent of the previous iterate is nearly as good as a new one, and its factors are available. A
 //! correction with them is made if the last reductions predict the solution within three of them; it counts as a linear solve
 //! (`factorized` is 0 in `newton.csv`) and saves a tangent and its factors. Switch `old_tangents`. Source: the modified Newton
@@ -91,6 +95,16 @@ pub enum NewtonFailure<E> {
         /// linear solves so far
         iterations: usize,
     },
+    /// The iterates repeat themselves.
+    #[error("Newton's method goes round in a circle of {period} iterates (relative residual {residual:.1e} after {})", count(*iterations, "iteration"))]
+    Circles {
+        /// number of iterates after which they are the same again
+        period: usize,
+        /// last relative residual
+        residual: f64,
+        /// linear solves so far
+        iterations: usize,
+    },
     /// The maximum number of iterations was reached.
     #[error("no equilibrium within {} (relative residual {residual:.1e})", count(*iterations, "iteration"))]
     TooManyIterations {
@@ -99,6 +113,13 @@ pub enum NewtonFailure<E> {
         /// linear solves so far
         iterations: usize,
     },
+}
+
+impl<E> NewtonFailure<E> {
+    /// Whether all equations were evaluated and solved, but no iterate was an equilibrium.
+    pub fn is_without_end(&self) -> bool {
+        matches!(self, Self::Diverged { .. } | Self::Circles { .. } | Self::TooManyIterations { .. })
+    }
 }
 
 /// Iterations made, and the solution or the reason why there is none.
@@ -117,6 +138,13 @@ const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
 /// Number of consecutive corrections without a new minimum of the residual before line searches start. A single one often
 /// occurs while the contact status adjusts.
 const STALLED: usize = 2;
+
+/// Longest circle of iterates that is looked for.
+const LONGEST_CIRCLE: usize = 12;
+
+/// Largest relative difference of residuals and corrections that count as the same: round-off changes them by less, and what converges
+/// by so little in an iteration does not converge.
+const SAME: f64 = 1e-4;
 
 /// Solves r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement, `work` returns the work of a
 /// residual at `u` along a correction.
@@ -201,7 +229,8 @@ struct Convergence {
     /// Smallest ‖r‖ so far, and number of consecutive corrections above it
     least: f64,
     stalled: usize,
-    searches: bool,
+    /// Number of corrections after which it had stalled: from there on line searches are made
+    stalled_at: Option<usize>,
 }
 
 impl Convergence {
@@ -213,7 +242,7 @@ impl Convergence {
             old_tangent_serves: true,
             least: f64::INFINITY,
             stalled: 0,
-            searches: false,
+            stalled_at: None,
         }
     }
 
@@ -238,25 +267,42 @@ impl Convergence {
         if !size.is_finite() || size > DIVERGENCE * self.largest_start {
             return Err(NewtonFailure::Diverged { residual, iterations: done });
         }
+        if let Some(period) = self.stalled_at.and_then(|stalled| circle(&iterations[stalled.min(done)..])) {
+            return Err(NewtonFailure::Circles { period, residual, iterations: done });
+        }
         if done == self.settings.max_iterations {
             return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
         }
-        Ok(Some(self.plan(iterations.last(), size, residual)))
+        Ok(Some(self.plan(iterations, size, residual)))
     }
 
     /// Plans the next correction, from the reduction by the corrections so far.
-    fn plan(&mut self, last: Option<&Iteration>, size: f64, residual: f64) -> Plan {
+    fn plan(&mut self, iterations: &[Iteration], size: f64, residual: f64) -> Plan {
         let Settings { tolerance, old_tangents, downhill, .. } = self.settings;
+        let last = iterations.last();
         self.stalled = if size < self.least { 0 } else { self.stalled + 1 };
         self.least = self.least.min(size);
-        self.searches |= downhill && self.stalled >= STALLED;
+        if self.stalled >= STALLED {
+            self.stalled_at.get_or_insert(iterations.len());
+        }
         let slower = if last.is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
         let corrections = corrections_left(residual, slower * gain(size, residual, self.before), tolerance);
         let old_tangent = old_tangents && self.old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS;
         let factorized = last.is_none() || !old_tangent;
         self.before = [size, residual];
-        Plan { factorized, searched: self.searches && factorized }
+        Plan { factorized, searched: downhill && self.stalled_at.is_some() && factorized }
     }
+}
+
+/// Number of iterates of the circle in which the last ones go, if they do.
+fn circle(iterations: &[Iteration]) -> Option<usize> {
+    let same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+    let alike = |(a, b): (&Iteration, &Iteration)| same(a.residual, b.residual) && same(a.correction, b.correction);
+    let returns = |period: usize| {
+        let (last, before) = (iterations.iter().rev(), iterations.iter().rev().skip(period));
+        iterations.len() >= period + 2 && last.zip(before).take(2).all(alike)
+    };
+    (2..=LONGEST_CIRCLE).find(|&period| returns(period))
 }
 
 /// −K⁻¹ r with the tangent of the system, or with the factors of an earlier one.

@@ -56,6 +56,31 @@ fn a_cycle_is_left_by_going_downhill() {
     }
 }
 
+/// |u| + 1 has no root, and from u = 1 the corrections lead to −1 and back for ever, as do those of a step-wise equation over three values.
+/// Both are given up once a circle was gone round twice, long before the 30 iterations.
+#[test]
+fn a_circle_without_a_root_is_given_up() {
+    let two = |u: f64| Ok([u.abs() + 1.0, u.signum()]);
+    let three = |u: f64| Ok([[1.0, -1.0], [1.0, -1.0], [2.0, 1.0]][u.round() as usize]);
+    for (around, (iterations, result)) in [(2, root(1.0, two)), (3, root(0.0, three))] {
+        let Err(NewtonFailure::Circles { period, .. }) = result else { panic!("{around}: {result:?}") };
+        assert_eq!(period, around);
+        assert!(iterations.len() <= 3 + 2 * around, "{around}: {} solves", iterations.len());
+    }
+}
+
+/// The corrections of u⁵ = 0 leave four fifths of u, those of sgn(u) |u|^(0.502) = 0 lead to −0.992 u: slow, but no circle.
+#[test]
+fn slow_convergence_is_no_circle() {
+    let one_sided = |u: f64| Ok([u.powi(5), 5.0 * u.powi(4)]);
+    let to_and_fro = |u: f64| Ok([u.signum() * u.abs().powf(0.502), 0.502 * u.abs().powf(-0.498)]);
+    assert!(
+        root(1.0, one_sided).1.is_ok()
+            || matches!(root(1.0, one_sided).1, Err(NewtonFailure::TooManyIterations { .. }))
+    );
+    assert!(root(1.0, to_and_fro).1.is_ok());
+}
+
 /// From u = 1.1 the corrections of u/√(1 + u²) = 0 lead to −1.3, 2.4 and −13, farther than the equation can be evaluated
 /// here: the search ends within.
 #[test]
