@@ -27,6 +27,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::equilibrium::{equilibrium, multiply};
 use super::failure::IncrementFailure;
 use super::newton::NewtonFailure;
@@ -56,7 +58,7 @@ const COMMON: f64 = 1e-9;
 pub struct Tangent {
     assembler: Assembler,
     system: System,
-    solver: Box<dyn LinearSolver>,
+    solver: Multifrontal,
     /// Forces of the bodies there, if neighbours with the same bodies want them
     solids: Option<Arc<LinearizedSolids>>,
     /// Whether the matrix could be factorized
@@ -68,7 +70,7 @@ impl Tangent {
     pub fn new(model: &Arc<Model>) -> Self {
         let assembler = Assembler::new(model);
         let system = assembler.system();
-        Self { assembler, system, solver: Box::<Multifrontal>::default(), solids: None, serves: false }
+        Self { assembler, system, solver: Multifrontal::default(), solids: None, serves: false }
     }
 
     /// Evaluates and factorizes it at the solution of a pass of the run, in the order of elimination of the run: a resumed one has the same
@@ -94,13 +96,6 @@ impl Tangent {
     pub fn multiply(&self, old: &mut State) {
         multiply(self.assembler.model(), &self.assembler.evaluation.contacts, old);
     }
-
-    /// −K⁻¹ r
-    fn correction(&mut self, residual: &[f64]) -> Vec<f64> {
-        let mut way: Vec<f64> = residual.iter().map(|r| -r).collect();
-        self.solver.solve(&mut way);
-        way
-    }
 }
 
 /// A neighbour on its way to equilibrium.
@@ -121,25 +116,25 @@ pub struct Seeker<'a> {
 struct Part {
     /// Factor of every neighbour
     factors: Vec<f64>,
-    /// ‖r‖/‖f‖ up to which it counts as nothing [-]
-    tolerance: f64,
+    /// Whether it is what two neighbours have in common
+    is_common: bool,
     /// ‖r‖/‖f‖ at the last evaluation, and before it
     left: f64,
     before: f64,
 }
 
 impl Part {
-    fn new(factors: Vec<f64>, tolerance: f64) -> Self {
-        Self { factors, tolerance, left: f64::INFINITY, before: f64::INFINITY }
+    fn new(factors: Vec<f64>, is_common: bool) -> Self {
+        Self { factors, is_common, left: f64::INFINITY, before: f64::INFINITY }
     }
 
     /// The parts of (2) of two neighbours, or each by itself, (1).
     fn of(count: usize) -> Vec<Self> {
         match count {
-            2 => vec![Self::new(vec![1.0, -1.0], TOLERANCE), Self::new(vec![1.0, 1.0], COMMON)],
+            2 => vec![Self::new(vec![1.0, -1.0], false), Self::new(vec![1.0, 1.0], true)],
             _ => {
                 let alone = |k: usize| (0..count).map(|other| f64::from(u8::from(other == k))).collect();
-                (0..count).map(|k| Self::new(alone(k), TOLERANCE)).collect()
+                (0..count).map(|k| Self::new(alone(k), false)).collect()
             }
         }
     }
@@ -157,20 +152,20 @@ impl Part {
 
     /// Whether nothing is left of it. What has not been corrected yet may be less than its error so far, and grow from increment to
     /// increment; what neighbours have in common drops out of their difference.
-    fn is_solved(&self) -> bool {
+    fn is_solved(&self, tolerance: f64) -> bool {
         let is_sure = self.before.is_finite() && (self.left <= SURE * self.before || self.before <= TOLERANCE);
-        self.left == 0.0 || self.left <= self.tolerance && (is_sure || self.tolerance == COMMON)
+        self.left == 0.0 || self.left <= tolerance && (is_sure || tolerance == COMMON)
     }
 
-    fn falls(&self) -> bool {
-        self.left <= self.tolerance || self.left <= SLOW * self.before
+    fn falls(&self, tolerance: f64) -> bool {
+        self.left <= tolerance || self.left <= SLOW * self.before
     }
 }
 
 impl Seeker<'_> {
-    fn evaluate(&mut self, tangent: &Tangent) -> Result<(), TrialFailure> {
+    fn evaluate(&mut self, solids: Option<&Arc<LinearizedSolids>>) -> Result<(), TrialFailure> {
         let Workspace { assembler, system, .. } = &mut *self.work;
-        let solids = tangent.solids.clone().filter(|_| self.has_same_bodies);
+        let solids = solids.filter(|_| self.has_same_bodies).cloned();
         assembler.residual_beside(self.trial, &self.u, solids, system)
     }
 
@@ -180,39 +175,102 @@ impl Seeker<'_> {
     }
 }
 
-/// Equilibrium of neighbours whose difference is a derivative, beside the run whose tangent is given.
-///
-/// # Errors
-/// Returns [`IncrementFailure`] if there is none near the run.
-pub fn beside(mut neighbours: Vec<Seeker>, tangent: &mut Tangent) -> Result<Vec<Vec<f64>>, IncrementFailure> {
-    let mut parts = Part::of(neighbours.len());
-    while tangent.serves && neighbours.iter_mut().all(|neighbour| neighbour.evaluate(tangent).is_ok()) {
-        if let [_, common] = &mut parts[..] {
-            common.tolerance = if have_same_status(&neighbours) { COMMON } else { TOLERANCE };
+/// Neighbours whose difference is a derivative, on their way.
+struct Group<'a> {
+    neighbours: Vec<Seeker<'a>>,
+    parts: Vec<Part>,
+    course: Course,
+}
+
+/// How far a group has come.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Course {
+    OnItsWay,
+    Solved,
+    /// The tangent of the run does not serve it
+    Apart,
+}
+
+/// A correction of the neighbours of a group.
+struct Correction {
+    /// Factor of every neighbour
+    factors: Vec<f64>,
+    /// The combination of their residuals, negative, and then K⁻¹ times that
+    way: Vec<f64>,
+}
+
+impl<'a> Group<'a> {
+    fn new(neighbours: Vec<Seeker<'a>>) -> Self {
+        Self { parts: Part::of(neighbours.len()), neighbours, course: Course::OnItsWay }
+    }
+
+    /// Evaluates the neighbours, and returns what is to be corrected, beside the residual of the run.
+    fn corrections(&mut self, own: &[f64], solids: Option<&Arc<LinearizedSolids>>) -> Vec<Correction> {
+        if self.course != Course::OnItsWay {
+            return Vec::new();
         }
-        let mut ways = Vec::new();
-        for part in &mut parts {
-            let residual = part.residual(&neighbours, &tangent.system.residual);
-            let own = part.factors.iter().position(|factor| *factor != 0.0).unwrap_or_default();
-            (part.before, part.left) = (part.left, neighbours[own].share_of(&residual));
-            if !part.is_solved() {
-                ways.push((part.factors.clone(), residual));
+        let Self { neighbours, parts, course } = self;
+        if !neighbours.iter_mut().all(|neighbour| neighbour.evaluate(solids).is_ok()) {
+            *course = Course::Apart;
+            return Vec::new();
+        }
+        let are_alike = have_same_status(neighbours);
+        let (mut corrections, mut fall) = (Vec::new(), true);
+        for part in parts {
+            let mut residual = part.residual(neighbours, own);
+            let first = part.factors.iter().position(|factor| *factor != 0.0).unwrap_or_default();
+            (part.before, part.left) = (part.left, neighbours[first].share_of(&residual));
+            let tolerance = if part.is_common && are_alike { COMMON } else { TOLERANCE };
+            fall &= part.falls(tolerance);
+            if !part.is_solved(tolerance) {
+                residual.iter_mut().for_each(|r| *r = -*r);
+                corrections.push(Correction { factors: part.factors.clone(), way: residual });
             }
         }
-        if ways.is_empty() {
-            return Ok(neighbours.into_iter().map(|neighbour| neighbour.u).collect());
+        if corrections.is_empty() {
+            *course = Course::Solved;
+        } else if !fall {
+            *course = Course::Apart;
+            corrections.clear();
         }
-        if !parts.iter().all(Part::falls) {
-            break;
-        }
-        for (factors, residual) in ways {
-            let way = tangent.correction(&residual);
-            for (neighbour, factor) in neighbours.iter_mut().zip(factors) {
+        corrections
+    }
+
+    fn correct(&mut self, corrections: Vec<Correction>) {
+        for Correction { factors, way } in corrections {
+            for (neighbour, factor) in self.neighbours.iter_mut().zip(factors).filter(|(_, factor)| *factor != 0.0) {
                 neighbour.u.iter_mut().zip(&way).for_each(|(u, way)| *u += factor * way);
             }
         }
     }
-    neighbours.into_iter().map(by_itself).collect()
+
+    /// The solution of every neighbour; those that have none yet are solved by themselves.
+    fn end(self) -> Result<Vec<Vec<f64>>, IncrementFailure> {
+        let Self { neighbours, course, .. } = self;
+        match course {
+            Course::Solved => Ok(neighbours.into_iter().map(|neighbour| neighbour.u).collect()),
+            _ => neighbours.into_iter().map(by_itself).collect(),
+        }
+    }
+}
+
+/// Equilibrium of groups of neighbours, each group for one derivative, beside the run whose tangent is given; or why a group has none near
+/// the run. Groups are evaluated in parallel, and corrected together: the factors are read once for all of them.
+pub fn beside(groups: Vec<Vec<Seeker>>, tangent: &mut Tangent) -> Vec<Result<Vec<Vec<f64>>, IncrementFailure>> {
+    let Tangent { system, solver, solids, serves, .. } = tangent;
+    let (own, solids) = (&system.residual, solids.as_ref());
+    let mut groups: Vec<Group> = groups.into_iter().map(Group::new).collect();
+    while *serves {
+        let mut corrections: Vec<Vec<Correction>> =
+            groups.par_iter_mut().with_max_len(1).map(|group| group.corrections(own, solids)).collect();
+        let mut columns: Vec<&mut [f64]> = corrections.iter_mut().flatten().map(|one| &mut one.way[..]).collect();
+        if columns.is_empty() {
+            break;
+        }
+        solver.solve_all(&mut columns);
+        groups.par_iter_mut().zip(corrections).for_each(|(group, own)| group.correct(own));
+    }
+    groups.into_par_iter().with_max_len(1).map(Group::end).collect()
 }
 
 /// Whether every contact point has the same status in all of them.

@@ -11,6 +11,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::beginning::begin;
 use super::increment::arrive;
 use crate::equations::Trial;
@@ -142,46 +144,52 @@ pub type Group<'a> = Vec<&'a mut Neighbour>;
 /// Lets neighbours of a run make the increment that it has accepted, all with the same tangents. A group fails as a whole.
 pub fn follow(lead: &Lead, tangent: &mut Tangent, mut groups: Vec<Group>) -> Vec<Result<(), IncrementFailure>> {
     let set_out = |group: &mut Group| group.iter_mut().map(|neighbour| neighbour.set_out(lead)).collect();
-    let mut all: Vec<Result<Vec<OnItsWay>, _>> = groups.iter_mut().map(set_out).collect();
+    let mut all: Vec<Result<Vec<OnItsWay>, _>> = groups.par_iter_mut().with_max_len(1).map(set_out).collect();
     let mut old = lead.old.clone();
     let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies);
     for (k, pass) in lead.passes.iter().enumerate() {
         if k > 0 {
             tangent.multiply(&mut old);
+            let each =
+                groups.iter().zip(&mut all).flat_map(|(group, ways)| group.iter().zip(ways.iter_mut().flatten()));
+            each.for_each(|(of, way)| multiply(&of.model, of.work.contacts(), &mut way.old));
         }
         if let Err(failure) = tangent.of(lead.trial(&old, lead.step, pass), pass, linearize) {
             return groups.iter().map(|_| Err(failure.clone())).collect();
         }
-        for (group, ways) in groups.iter_mut().zip(&mut all) {
-            if let Ok(found) = ways {
-                if k > 0 {
-                    let each = group.iter().zip(&mut *found);
-                    each.for_each(|(of, way)| multiply(&of.model, of.work.contacts(), &mut way.old));
-                }
-                if let Err(failure) = solve(lead, pass, tangent, group, found) {
-                    *ways = Err(failure);
-                }
-            }
-        }
+        solve(lead, pass, tangent, &mut groups, &mut all);
     }
     let arrive = |(group, ways): (&mut Group, Result<Vec<OnItsWay>, _>)| {
         group.iter_mut().zip(ways?).try_for_each(|(neighbour, way)| neighbour.accept(lead, way))
     };
-    groups.iter_mut().zip(all).map(arrive).collect()
+    groups.par_iter_mut().zip(all).with_max_len(1).map(arrive).collect()
 }
 
-/// Solves a pass of a group.
+/// Solves a pass of all groups that have come so far.
 fn solve(
     lead: &Lead,
     pass: &Pass,
     tangent: &mut Tangent,
-    group: &mut Group,
-    ways: &mut [OnItsWay],
-) -> Result<(), IncrementFailure> {
-    let seekers = group.iter_mut().zip(&*ways).filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, way));
-    let found = beside(seekers.collect(), tangent)?;
-    for (way, u) in ways.iter_mut().zip(found) {
-        (way.u, way.beside) = (u, pass.displacement.clone());
+    groups: &mut [Group],
+    all: &mut [Result<Vec<OnItsWay>, IncrementFailure>],
+) {
+    let mut seekers = Vec::new();
+    for (group, ways) in groups.iter_mut().zip(&*all) {
+        if let Ok(ways) = ways {
+            let each = group.iter_mut().zip(ways);
+            seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, way)).collect());
+        }
     }
-    Ok(())
+    let found = beside(seekers, tangent);
+    for (ways, found) in all.iter_mut().filter(|ways| ways.is_ok()).zip(found) {
+        match (ways.as_mut(), found) {
+            (Ok(ways), Ok(found)) => {
+                for (way, u) in ways.iter_mut().zip(found) {
+                    (way.u, way.beside) = (u, pass.displacement.clone());
+                }
+            }
+            (_, Err(failure)) => *ways = Err(failure),
+            (Err(_), Ok(_)) => {}
+        }
+    }
 }

@@ -288,6 +288,26 @@ fn same_bits_on_any_number_of_threads() {
     }
 }
 
+/// Right-hand sides that are solved together have the bits of each by itself: in a forest and in heavy fronts, symmetric ones and others,
+/// with dofs of their own, on any number of threads.
+#[test]
+fn several_right_hand_sides_are_solved_as_each() {
+    for matrix in [Grids::new(60, 45, 1e3).matrix(1.0), Grids::new(7, 5, 1e3).matrix(1.0)] {
+        let mut solver = Multifrontal::default();
+        solver.factorize(&matrix).expect("the matrix is regular");
+        let sides: Vec<Vec<f64>> = (1..=5).map(|k| noise(matrix.size()).iter().map(|b| b.powi(k)).collect()).collect();
+        let mut alone = sides.clone();
+        alone.iter_mut().for_each(|b| solver.solve(b));
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let mut together = sides.clone();
+            pool.install(|| solver.solve_all(&mut together.iter_mut().map(|b| &mut b[..]).collect::<Vec<_>>()));
+            assert_eq!(together, alone);
+        }
+        solver.solve_all(&mut []);
+    }
+}
+
 #[test]
 fn memory_is_known_before_it_is_taken() {
     let mut solver = Multifrontal::default();

@@ -94,7 +94,7 @@ impl Condensed {
     pub fn forward(&self, b: &[f64]) -> Forwarded {
         let dofs = self.symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         let mut ordered: Vec<f64> = dofs.zip(&self.rows).map(|(dof, row)| row * b[dof]).collect();
-        solve::forward(&self.symbolic, &self.factors, &mut ordered);
+        solve::forward(&self.symbolic, &self.factors, 1, &mut ordered);
         let first = ordered.len() - self.stiffness.len().isqrt();
         let right = ordered[first..].iter().zip(&self.rows[first..]).map(|(g, row)| g / row).collect();
         Forwarded { ordered, right }
@@ -106,7 +106,7 @@ impl Condensed {
         let first = ordered.len() - kept.len();
         let own = ordered[first..].iter_mut().zip(kept.iter().zip(&self.columns[first..]));
         own.for_each(|(x, (kept, column))| *x = kept / column);
-        solve::backward(&self.symbolic, &self.factors, &mut ordered);
+        solve::backward(&self.symbolic, &self.factors, 1, &mut ordered);
         let mut x = vec![0.0; ordered.len()];
         let dofs = self.symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         dofs.zip(ordered.iter().zip(&self.columns)).for_each(|(dof, (ordered, column))| x[dof] = column * ordered);

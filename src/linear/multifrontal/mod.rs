@@ -41,7 +41,7 @@ pub struct Multifrontal {
     factors: Factors,
     /// Dofs with an equation of their own
     held: Vec<Held>,
-    /// Right-hand side in the order of elimination
+    /// Right-hand sides in the order of elimination
     ordered: Vec<f64>,
 }
 
@@ -112,6 +112,36 @@ impl Multifrontal {
         })
     }
 
+    /// Overwrites every b with A⁻¹ b, to the bits of one by itself. L and U are read once for all of them.
+    pub fn solve_all(&mut self, columns: &mut [&mut [f64]]) {
+        let Some(symbolic) = &self.symbolic else { return columns.iter_mut().for_each(|b| b.fill(f64::NAN)) };
+        let Scaling { rows, columns: scales } = &self.scaling;
+        let own = |b: &mut &mut [f64]| self.held.iter().map(|held| held.solve(&symbolic.pattern, b)).collect();
+        let held: Vec<Vec<f64>> = columns.iter_mut().map(own).collect();
+        let count = columns.len();
+        let dof = |row: usize| 2 * symbolic.nodes[row / 2] + row % 2;
+        self.ordered.clear();
+        for front in &symbolic.fronts {
+            for b in columns.iter() {
+                let pivots = (front.first..front.first + front.pivots).map(dof);
+                self.ordered.extend(pivots.map(|dof| rows[dof] * b[dof]));
+            }
+        }
+        solve::forward(symbolic, &self.factors, count, &mut self.ordered);
+        solve::backward(symbolic, &self.factors, count, &mut self.ordered);
+        let mut rest = &self.ordered[..];
+        for front in &symbolic.fronts {
+            for b in columns.iter_mut() {
+                let values = rest.split_off(..front.pivots).unwrap_or_default();
+                let pivots = (front.first..front.first + front.pivots).map(dof);
+                pivots.zip(values).for_each(|(dof, x)| b[dof] = scales[dof] * x);
+            }
+        }
+        for (b, held) in columns.iter_mut().zip(held) {
+            self.held.iter().zip(held).for_each(|(held, x)| b[held.dof] = x);
+        }
+    }
+
     /// Fronts that the last factorization eliminated, and all there are: those whose values had not changed stayed.
     pub fn eliminated(&self) -> (usize, usize) {
         (self.factors.eliminated, self.symbolic.as_ref().map_or(0, |symbolic| symbolic.fronts.len()))
@@ -136,18 +166,7 @@ impl LinearSolver for Multifrontal {
     }
 
     fn solve(&mut self, b: &mut [f64]) {
-        let Some(symbolic) = &self.symbolic else { return b.fill(f64::NAN) };
-        let Scaling { rows, columns } = &self.scaling;
-        let held: Vec<f64> = self.held.iter().map(|held| held.solve(&symbolic.pattern, b)).collect();
-        self.ordered.clear();
-        let dofs = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        self.ordered.extend(dofs().map(|dof| rows[dof] * b[dof]));
-        solve::forward(symbolic, &self.factors, &mut self.ordered);
-        solve::backward(symbolic, &self.factors, &mut self.ordered);
-        for (dof, x) in dofs().zip(&self.ordered) {
-            b[dof] = columns[dof] * x;
-        }
-        self.held.iter().zip(held).for_each(|(held, x)| b[held.dof] = x);
+        self.solve_all(&mut [b]);
     }
 
     fn perturbed_pivots(&self) -> usize {

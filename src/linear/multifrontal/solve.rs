@@ -1,4 +1,4 @@
-//! Forward and backward substitution, front by front.
+//! Forward and backward substitution, front by front, of one or more columns at a time.
 
 use pulp::{Arch, NullaryFnOnce};
 
@@ -8,57 +8,61 @@ use super::front::{Forest, Front};
 use super::symbolic::Symbolic;
 use super::symmetric;
 
-/// x ← L⁻¹ x in the order of elimination.
-pub fn forward(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {
-    let run = Substitution { symbolic, factors, waiting: Waiting::default() };
-    parts(symbolic, x).upwards(&|forest, x| run.forest_forward(forest, x), &|front, x| run.heavy_forward(front, x));
+/// x ← L⁻¹ x for `count` columns x in the order of elimination. The columns of a front follow each other, so that its factors serve
+/// all of them while they are at hand.
+pub fn forward(symbolic: &Symbolic, factors: &Factors, count: usize, x: &mut [f64]) {
+    let run = Substitution { symbolic, factors, count, waiting: Waiting::default() };
+    run.parts(x).upwards(&|forest, x| run.forest_forward(forest, x), &|front, x| run.heavy_forward(front, x));
 }
 
-/// x ← U⁻¹ x in the order of elimination.
-pub fn backward(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {
-    let run = Substitution { symbolic, factors, waiting: Waiting::default() };
-    parts(symbolic, x).downwards(&|forest, x| run.forest_backward(forest, x), &|front, x| run.heavy_backward(front, x));
-}
-
-/// Each front owns the part of x that it eliminates.
-fn parts<'a>(symbolic: &'a Symbolic, x: &'a mut [f64]) -> Job<'a, &'a mut [f64]> {
-    let mut rest = x;
-    Job::new(symbolic, |fronts| {
-        let pivots = fronts.iter().map(|front| front.pivots).sum();
-        rest.split_off_mut(..pivots).unwrap_or_default()
-    })
+/// x ← U⁻¹ x for `count` columns x, as above.
+pub fn backward(symbolic: &Symbolic, factors: &Factors, count: usize, x: &mut [f64]) {
+    let run = Substitution { symbolic, factors, count, waiting: Waiting::default() };
+    run.parts(x).downwards(&|forest, x| run.forest_backward(forest, x), &|front, x| run.heavy_backward(front, x));
 }
 
 /// A substitution at work. Fronts pass on what L₂₁ takes from the rows above, and then the values of x there.
 struct Substitution<'a> {
     symbolic: &'a Symbolic,
     factors: &'a Factors,
+    /// Number of columns
+    count: usize,
     waiting: Waiting,
 }
 
 impl Substitution<'_> {
+    /// Each front owns the part of x that it eliminates.
+    fn parts<'a>(&'a self, x: &'a mut [f64]) -> Job<'a, &'a mut [f64]> {
+        let mut rest = x;
+        Job::new(self.symbolic, |fronts| {
+            let pivots: usize = fronts.iter().map(|front| front.pivots).sum();
+            rest.split_off_mut(..self.count * pivots).unwrap_or_default()
+        })
+    }
+
     fn forest_forward(&self, forest: &Forest, mut rest: &mut [f64]) {
         let fronts = &self.symbolic.fronts;
         let (mut stack, mut y) = (Vec::new(), Vec::new());
         for front in &fronts[forest.fronts.clone()] {
-            let x = rest.split_off_mut(..front.pivots).unwrap_or_default();
-            y.clear();
-            y.extend_from_slice(x);
-            y.resize(front.size(), 0.0);
+            let x = rest.split_off_mut(..self.count * front.pivots).unwrap_or_default();
+            self.gather(front, x, None, &mut y);
             let children = front.children.iter().map(|&child| &fronts[child as usize]);
-            let own = stack.len() - children.clone().map(Front::below).sum::<usize>();
+            let own = stack.len() - self.count * children.clone().map(Front::below).sum::<usize>();
             let mut passed_on = &stack[own..];
             for child in children {
-                add(&mut y, passed_on.split_off(..child.below()).unwrap_or_default(), child);
+                let values = passed_on.split_off(..self.count * child.below()).unwrap_or_default();
+                self.add(front, &mut y, values, child);
             }
             stack.truncate(own);
-            self.forward(front, &mut y);
-            x.copy_from_slice(&y[..front.pivots]);
-            stack.extend_from_slice(&y[front.pivots..]);
+            for (x, y) in self.columns(front, x, &mut y) {
+                self.forward(front, y);
+                x.copy_from_slice(&y[..front.pivots]);
+                stack.extend_from_slice(&y[front.pivots..]);
+            }
         }
         let mut passed_on = &stack[..];
         for &root in &forest.roots {
-            let own = passed_on.split_off(..fronts[root as usize].below()).unwrap_or_default();
+            let own = passed_on.split_off(..self.count * fronts[root as usize].below()).unwrap_or_default();
             self.waiting.put(root, own.to_vec());
         }
     }
@@ -66,14 +70,17 @@ impl Substitution<'_> {
     fn heavy_forward(&self, number: u32, x: &mut [f64]) {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[number as usize];
-        let mut y = x.to_vec();
-        y.resize(front.size(), 0.0);
+        let (mut y, mut passed_on) = (Vec::new(), Vec::new());
+        self.gather(front, x, None, &mut y);
         for &child in &front.children {
-            add(&mut y, &self.waiting.take(child), &fronts[child as usize]);
+            self.add(front, &mut y, &self.waiting.take(child), &fronts[child as usize]);
         }
-        self.forward(front, &mut y);
-        x.copy_from_slice(&y[..front.pivots]);
-        self.waiting.put(number, y.split_off(front.pivots));
+        for (x, y) in self.columns(front, x, &mut y) {
+            self.forward(front, y);
+            x.copy_from_slice(&y[..front.pivots]);
+            passed_on.extend_from_slice(&y[front.pivots..]);
+        }
+        self.waiting.put(number, passed_on);
     }
 
     fn forest_backward(&self, forest: &Forest, mut rest: &mut [f64]) {
@@ -81,15 +88,17 @@ impl Substitution<'_> {
         let mut stack: Vec<f64> = forest.roots.iter().flat_map(|&root| self.waiting.take(root)).collect();
         let mut y = Vec::new();
         for front in fronts[forest.fronts.clone()].iter().rev() {
-            let first = rest.len() - front.pivots;
+            let first = rest.len() - self.count * front.pivots;
             let x = rest.split_off_mut(first..).unwrap_or_default();
-            y.clear();
-            y.extend_from_slice(x);
-            y.extend(stack.drain(stack.len() - front.below()..));
-            self.backward(front, &mut y);
-            x.copy_from_slice(&y[..front.pivots]);
+            let own = stack.len() - self.count * front.below();
+            self.gather(front, x, Some(&stack[own..]), &mut y);
+            stack.truncate(own);
+            for (x, y) in self.columns(front, x, &mut y) {
+                self.backward(front, y);
+                x.copy_from_slice(&y[..front.pivots]);
+            }
             for &child in &front.children {
-                stack.extend(seen(&y, &fronts[child as usize]));
+                y.chunks_exact(front.size()).for_each(|y| stack.extend(seen(y, &fronts[child as usize])));
             }
         }
     }
@@ -97,12 +106,48 @@ impl Substitution<'_> {
     fn heavy_backward(&self, number: u32, x: &mut [f64]) {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[number as usize];
-        let mut y = x.to_vec();
-        y.append(&mut self.waiting.take(number));
-        self.backward(front, &mut y);
-        x.copy_from_slice(&y[..front.pivots]);
+        let (above, mut y) = (self.waiting.take(number), Vec::new());
+        self.gather(front, x, Some(&above), &mut y);
+        for (x, y) in self.columns(front, x, &mut y) {
+            self.backward(front, y);
+            x.copy_from_slice(&y[..front.pivots]);
+        }
         for &child in &front.children {
-            self.waiting.put(child, seen(&y, &fronts[child as usize]).collect());
+            let seen = y.chunks_exact(front.size()).flat_map(|y| seen(y, &fronts[child as usize]));
+            self.waiting.put(child, seen.collect());
+        }
+    }
+
+    /// All rows of a front in y, column after column: x at its pivots, and the values `below` them, or zeros.
+    fn gather(&self, front: &Front, x: &[f64], below: Option<&[f64]>, y: &mut Vec<f64>) {
+        y.clear();
+        let rows = front.below();
+        for (k, pivots) in x.chunks_exact(front.pivots).enumerate() {
+            y.extend_from_slice(pivots);
+            match below {
+                Some(below) => y.extend_from_slice(&below[k * rows..][..rows]),
+                None => y.resize(y.len() + rows, 0.0),
+            }
+        }
+    }
+
+    /// The pivots and all rows of a front, by columns.
+    fn columns<'a>(
+        &self,
+        front: &Front,
+        x: &'a mut [f64],
+        y: &'a mut [f64],
+    ) -> impl Iterator<Item = (&'a mut [f64], &'a mut [f64])> {
+        x.chunks_exact_mut(front.pivots).zip(y.chunks_exact_mut(front.size()))
+    }
+
+    /// Add what a child passes on to the rows of its parent.
+    fn add(&self, front: &Front, y: &mut [f64], passed_on: &[f64], child: &Front) {
+        for (y, passed_on) in y.chunks_exact_mut(front.size()).zip(passed_on.chunks_exact(child.below().max(1))) {
+            for (pair, &place) in passed_on.chunks_exact(2).zip(&child.to_parent) {
+                y[place as usize] += pair[0];
+                y[place as usize + 1] += pair[1];
+            }
         }
     }
 
@@ -133,14 +178,6 @@ impl Substitution<'_> {
         let (lower, upper) = self.factors.values[front.values.clone()].split_at(front.size() * front.pivots);
         let (own, below) = y.split_at_mut(front.pivots);
         Arch::new().dispatch(Backward { lower, upper, own, below });
-    }
-}
-
-/// Add what a child passes on to the rows of its parent.
-fn add(y: &mut [f64], passed_on: &[f64], child: &Front) {
-    for (pair, &place) in passed_on.chunks_exact(2).zip(&child.to_parent) {
-        y[place as usize] += pair[0];
-        y[place as usize + 1] += pair[1];
     }
 }
 

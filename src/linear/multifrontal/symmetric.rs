@@ -96,6 +96,7 @@ impl SymmetricPanel<'_> {
         let (size, width, count) = (self.size(), to.len(), from.len());
         let (left, right) = self.lower[from.start * size..to.end * size].split_at_mut((to.start - from.start) * size);
         self.room.clear();
+        self.room.reserve_exact(width * count);
         for (k, column) in left.chunks_exact(size).take(count).enumerate() {
             let pivot = column[from.start + k];
             self.room.extend(column[to.clone()].iter().map(|l| l * pivot));
@@ -113,6 +114,7 @@ impl SymmetricPanel<'_> {
     pub fn contribution(&mut self, contribution: &mut [f64]) {
         let (size, below, pivots) = (self.size(), self.below, self.pivots);
         self.room.clear();
+        self.room.reserve_exact(below * pivots);
         let mut k = 0;
         while k < pivots {
             let column = &self.lower[k * size..][..size];
