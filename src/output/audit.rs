@@ -46,6 +46,18 @@ pub struct Audit {
     noise: f64,
     /// Energy in the contact penalties
     pub give: Give,
+    /// Size and stiffness of the model, once asked for: they take a look at every element
+    #[serde(skip)]
+    scales: Option<Scales>,
+}
+
+/// What the round-off of the forces on a model goes by.
+#[derive(Clone, Copy, Debug)]
+struct Scales {
+    /// Diagonal of the mesh [L]
+    diagonal: f64,
+    /// Largest stiffness of an element [F/L]
+    stiffness: f64,
 }
 
 /// Energy error of a step.
@@ -116,7 +128,9 @@ impl Audit {
         }
         self.give.record(model, new);
         let [reach, way] = largest([&old.displacement, &new.displacement]);
-        self.noise += round_off(model, new, reach) * way;
+        let scales = || Scales { diagonal: model.mesh.diagonal(), stiffness: model.stiffness() };
+        let scales = *self.scales.get_or_insert_with(scales);
+        self.noise += round_off(model, scales, new, reach) * way;
     }
 
     /// Warnings at the end of a run: that the energies do not balance, or contacts give way.
@@ -250,14 +264,14 @@ fn largest([old, new]: [&[f64]; 2]) -> [f64; 2] {
 }
 
 /// Round-off of the forces on a model whose displacements reach so far [F].
-fn round_off(model: &Model, state: &State, reach: f64) -> f64 {
-    let reach = model.mesh.diagonal().max(reach);
+fn round_off(model: &Model, Scales { diagonal, stiffness }: Scales, state: &State, reach: f64) -> f64 {
+    let reach = diagonal.max(reach);
     let contacts = model
         .contacts
         .iter()
         .zip(&state.contacts)
         .flat_map(|(pair, states)| states.iter().map(move |contact| pair.alpha_n * contact.length));
-    f64::EPSILON * contacts.fold(model.stiffness(), f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
+    f64::EPSILON * contacts.fold(stiffness, f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
 }
 
 /// Remedy for an energy error in a step.

@@ -96,11 +96,12 @@ impl BodyMeans {
     /// Motion of the body in a state.
     pub fn motion(&self, model: &Model, state: &State) -> Motion {
         let is_lumped = state.is_of_explicit();
-        let (mut shift, mut momentum) = (Vector2::zeros(), Vector2::zeros());
+        let (mut shift, mut momentum, mut lumped_centre) = (Vector2::zeros(), Vector2::zeros(), Vector2::zeros());
         let (mut turned, mut stayed) = (0.0, self.inertia);
-        for &Share { node, volume, share, moment, lumped, .. } in &self.shares {
+        for &Share { node, volume, share, moment, lumped, lumped_share } in &self.shares {
             let u = vector(&state.displacement, node);
             shift += u * share;
+            lumped_centre += ((model.mesh.nodes[node] - self.centre) + u) * lumped_share;
             momentum += vector(&state.velocity, node) * (self.density * if is_lumped { lumped } else { volume });
             turned += moment.perp(&u);
             stayed += moment.dot(&u);
@@ -109,11 +110,8 @@ impl BodyMeans {
         if self.density > 0.0 && state.velocity.iter().any(|v| *v != 0.0) {
             let place =
                 |node: usize| (model.mesh.nodes[node] - self.centre) + (vector(&state.displacement, node) - shift);
-            // The center of lumped masses follows from their positions.
-            let centre = match is_lumped {
-                true => self.shares.iter().map(|share| place(share.node) * share.lumped_share).sum(),
-                false => Vector2::zeros(),
-            };
+            // The centre of lumped masses follows from their positions.
+            let centre = if is_lumped { lumped_centre - shift } else { Vector2::zeros() };
             let spin = |a: usize, b: usize| (place(a) - centre).perp(&vector(&state.velocity, b));
             let volumes: f64 = if is_lumped {
                 self.shares.iter().map(|share| share.lumped * spin(share.node, share.node)).sum()

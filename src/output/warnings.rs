@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::audit::Audit;
@@ -228,16 +229,15 @@ impl Warnings {
     /// Linear bodies that have turned or stretched too far for one: told at the end of the step, with what was the farthest, to 2 %
     /// of it.
     fn linear_bodies(&mut self, model: &Model, state: &State, ends_step: bool) {
-        let pending = |body: usize| {
-            model.bodies[body].material.description().is_linear && !self.given.contains(&(body, Kind::FarFromLinear))
+        let pending = |body: &usize| {
+            model.bodies[*body].material.description().is_linear && !self.given.contains(&(*body, Kind::FarFromLinear))
         };
-        let mut now: BTreeMap<usize, f64> =
-            (0..model.bodies.len()).filter(|&body| pending(body)).map(|b| (b, 0.0)).collect();
-        for (element, body) in model.body_of_element.iter().enumerate() {
-            if let Some(largest) = now.get_mut(body).filter(|_| state.has(*body)) {
-                *largest = largest.max(strained(model, element, &state.displacement));
-            }
-        }
+        let largest = |body: usize| {
+            let elements = model.bodies[body].elements.par_iter().with_min_len(MANY_ELEMENTS);
+            let strained = elements.map(|&element| strained(model, element, &state.displacement));
+            (body, if state.has(body) { strained.reduce(|| 0.0, f64::max) } else { 0.0 })
+        };
+        let now: Vec<(usize, f64)> = (0..model.bodies.len()).filter(pending).map(largest).collect();
         for (body, now) in now {
             let so_far = self.strained.get(&body).copied().unwrap_or(0.0);
             if ends_step || now > (FURTHER * so_far).max(LEAST_STRAINED) {
@@ -365,6 +365,9 @@ fn strained(model: &Model, element: usize, displacement: &[f64]) -> f64 {
     let hoop = if model.mesh.section.is_axisymmetric() { displacement[2 * first] / place(0).x } else { 0.0 };
     ((farthest * longest).sqrt() / area).max(if hoop.is_finite() { hoop.abs() } else { 0.0 })
 }
+
+/// Number of elements that one thread looks at in a go.
+const MANY_ELEMENTS: usize = 4096;
 
 /// Estimate below which no linear body is strained as far as a tenth.
 const LEAST_STRAINED: f64 = 0.01;
