@@ -157,7 +157,7 @@ def column_case(length, shortening, increments, aside=0.0):
     metal = {"model": "von_mises", "E": YOUNG, "nu": NU, "sigma_y": 1, "H": HARDENING}
     step = {"name": "press", "duration": 1, "dt": {"initial": 1 / increments, "max": 1 / increments, "min": 1e-6},
             "supports": [{"on": "foot", "ux": 0}, {"on": {"near": [0, 0.5]}, "uy": 0}, {"on": "head", "ux": -shortening}],
-            "loads": [{"on": "head", "force": {"y": str(aside)}}] if aside else []}
+            "loads": [{"on": "head", "total_force": {"y": aside}}] if aside else []}
     return {"title": "a column", "mesh": {"blocks": mesh}, "bodies": {"column": {"material": metal, "element": "reduced"}},
             "steps": [step], "watch": ["head"], "output": {"fields": False}}
 

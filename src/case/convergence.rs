@@ -60,7 +60,8 @@ impl FromStr for Measure {
         // Names may have colons and signs of their own.
         let measure = text.rmatch_indices(':').find_map(|(colon, _)| {
             let (value, taken) = (&text[..colon], &text[colon + 1..]);
-            let (word, step) = taken.split_once('@').map_or((taken, None), |(word, step)| (word, Some(step.to_owned())));
+            let (word, step) =
+                taken.split_once('@').map_or((taken, None), |(word, step)| (word, Some(step.to_owned())));
             Some(Self { value: value.into(), of: kind(word)?, step })
         });
         measure.ok_or_else(|| match text.rsplit_once(':') {
@@ -85,9 +86,9 @@ impl Measure {
     /// Returns a message if not, or if a column is not of numbers.
     pub fn check(&self, model: &Model) -> Result<(), String> {
         let header = history::columns(model);
-        let (column, over) = self.columns(|name| header.iter().any(|other| other == name)).ok_or_else(|| {
-            format!("the history has no column `{}`; there are {}", self.value, header.join(", "))
-        })?;
+        let (column, over) = self
+            .columns(|name| header.iter().any(|other| other == name))
+            .ok_or_else(|| format!("the history has no column `{}`; there are {}", self.value, header.join(", ")))?;
         if column == "step" || over == Some("step") {
             return Err("the column `step` is not of numbers".into());
         }

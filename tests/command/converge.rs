@@ -322,7 +322,11 @@ fn bad_studies_are_refused() {
         (["good.json", "--measure", "step:end", "--levels", "3"], 2, "is not of numbers"),
         (["good.json", "--measure", "bore.ux/bore.fz:end", "--levels", "3"], 2, "has no column `bore.ux/bore.fz`"),
         (["good.json", "--measure", "bore.ux/step:end", "--levels", "3"], 2, "is not of numbers"),
-        (["good.json", "--measure", "bore.ux:end@lead", "--levels", "3"], 2, "the case has no step `lead`; there are load"),
+        (
+            ["good.json", "--measure", "bore.ux:end@lead", "--levels", "3"],
+            2,
+            "the case has no step `lead`; there are load",
+        ),
         (["good.json", "--measure", "bore.ux:end", "--levels", "2"], 2, "--levels: is 2: an order takes 3"),
     ] {
         let output = fecontact(&[&["converge"], &arguments[..]].concat(), folder.path());
