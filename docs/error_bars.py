@@ -150,7 +150,7 @@ def bars_of_mechanisms(program):
 def bars_block(program):
     """The block on ground."""
     ratio = "base.tangential_force/base.normal_force"
-    return [HEAD, *rows(program, "block on ground", committed("cases/block_on_ground.json"), [("largest F_t/F_n", ratio + ":max", 1), ("F_t/F_n at the end", ratio + ":end", 1)])]
+    return [HEAD, *rows(program, "block on ground", committed("cases/block_on_ground.json"), [("largest F_t/F_n", ratio + ":max", 1), ("F_t/F_n at the end", ratio + ":end", 1)], 5)]
 
 
 def bars_tutorial(program):
