@@ -36,16 +36,23 @@ def ground(material, element, p0):
     return {"material": material, "element": element, **stress}, [{"on": "outside", "pressure": f"{p0}"}] if p0 else []
 
 
-def cylinder(program, material, element, kind, columns, far, p0=0.0, dt=0.02):
-    """The pressure in a long cylindrical cavity of radius 1 when it has a width: rings of one row of elements."""
-    height = 0.1
-    mesh = [block("ground", [[1, 0], [far, 0], [far, height], [1, height]], [columns, 1], ["bottom", "outside", "top", "bore"],
+HEIGHT = 0.1
+
+
+def cylinder_case(material, element, kind, columns, far, p0=0.0, dt=0.02):
+    """A long cylindrical cavity of radius 1 that becomes wider: rings of one row of elements."""
+    mesh = [block("ground", [[1, 0], [far, 0], [far, HEIGHT], [1, HEIGHT]], [columns, 1], ["bottom", "outside", "top", "bore"],
                   kind=kind, grading=[outwards(far, columns), 1])]
     body, loads = ground(material, element, p0)
     held = [{"on": "bottom", "uy": 0}, {"on": "top", "uy": 0}, {"on": "bore", "ux": "exp(t) - 1"}]
-    run = Run(program, {"section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"ground": body}, "watch": ["bore"],
-                        "steps": [{**step, "supports": held, "loads": loads} for step in widening(dt)], "output": {"fields": False}})
-    return lambda width: run.at("bore.fx", log(width)) / (2 * pi * width * height)
+    return {"section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"ground": body}, "watch": ["bore"],
+            "steps": [{**step, "supports": held, "loads": loads} for step in widening(dt)], "output": {"fields": False}}
+
+
+def cylinder(program, *told):
+    """The pressure in the cavity when it has a width."""
+    run = Run(program, cylinder_case(*told))
+    return lambda width: run.at("bore.fx", log(width)) / (2 * pi * width * HEIGHT)
 
 
 def sphere(program, material, element, kind, columns, sectors, far, p0, dt=0.02):
@@ -131,8 +138,8 @@ def pipe_factor(alpha):
     return pi + 2 * delta + 4 * cos(pi / 4 - delta / 2) * (sqrt(2) + sin(pi / 4 - delta / 2))
 
 
-def pipe(program, alpha, kind, element, around, rings, bonded):
-    """N = P/(s_u D) of a pipe, D = 1, that moves sideways through clay, s_u = 1: the soil held by it, or in contact with a rigid circle."""
+def pipe_case(alpha, kind, element, around, rings, bonded):
+    """A pipe, D = 1, that moves sideways through clay, s_u = 1: the soil held by it, or in contact with a rigid circle."""
     body = {"material": {**von_mises(sqrt(3)), "E": 1e4, "nu": 0.49}, "element": element}
     case = {"mesh": {"blocks": half_ring(kind, 0.5, 8, around, rings, 200)}, "bodies": {"soil": body}, "output": {"fields": False}}
     held = [{"on": "far", "ux": 0, "uy": 0}, {"on": "level", "uy": 0}]
@@ -148,8 +155,13 @@ def pipe(program, alpha, kind, element, around, rings, bonded):
                                      "friction": friction, "initial": {"of_bodies": True}}}
         held.append({"on": "tool", "ux": 0.002, "uy": 0, "angle": 0})
     case["steps"] = [{"name": "push", "duration": 1, "dt": {"initial": 0.01, "max": 0.05, "min": 1e-5}, "supports": held}]
-    run = Run(program, case)
-    return 2 * run.last("pipe.fx" if bonded else "tool.fx")
+    return case
+
+
+def pipe(program, *told):
+    """N = P/(s_u D) of the pipe."""
+    run = Run(program, pipe_case(*told))
+    return 2 * run.last("pipe.fx" if "pipe.fx" in run.history else "tool.fx")
 
 
 def pipe_in_clay(program):
@@ -164,8 +176,8 @@ def pipe_in_clay(program):
 
 # A wall --------------------------------------------------------------------------------------------------------------------------
 
-def wall(program, phi, delta, weight, kind="Q8", element="reduced", columns=(20, 30), rows=(18, 10), below=(8, 26), way=None):
-    """K_p, resultant over q H or γH²/2, of a rigid wall, H = 1, that is pushed into soil under a surcharge or its own weight.
+def wall_case(phi, delta, weight, kind="Q8", element="reduced", columns=(20, 30), rows=(18, 10), below=(8, 26), way=None):
+    """A rigid wall, H = 1, that is pushed into soil under a surcharge or its own weight.
 
     The wall is a moving rigid plane; below its toe the soil leans on the same plane at rest, without friction. Elements and the ratio
     of the last size to the first: along x from the wall, along y from the toe up, and from the toe down."""
@@ -183,7 +195,12 @@ def wall(program, phi, delta, weight, kind="Q8", element="reduced", columns=(20,
                          "below": {"slave": "below", **plane, "friction": smooth}},
             "steps": [{"name": "push", "duration": 1, "dt": {"initial": 0.002, "max": 0.05, "min": 1e-5}, "loads": [load],
                        "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "far", "ux": 0}, {"on": "wall", "ux": way or (0.004 if phi < 33 else 0.008), "uy": 0, "angle": 0}]}]}
-    run = Run(program, case)
+    return case
+
+
+def wall(program, phi, delta, weight, *elements):
+    """K_p of the wall, its resultant over q H or γH²/2."""
+    run = Run(program, wall_case(phi, delta, weight, *elements))
     return np.hypot(run.last("wall.fx"), run.last("wall.fy")) * (2 if weight else 1)
 
 

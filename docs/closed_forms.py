@@ -101,18 +101,26 @@ def sphere(program):
     return rows
 
 
-def press_fit(program):
-    """A rod in a rigid sleeve: its pressure, the pull while it sticks (shear lag), and the pull while it slides."""
-    a, length, delta, beta, mu, alpha_n = 1.0, 10.0, 1e-3, 0.1, 0.5, 1e4
+def press_fit_case(a, length, delta, beta, mu, alpha_n):
+    """A rod in a rigid sleeve that is fitted, pulled while it sticks, and on while it slides."""
     mesh = [block("rod", [[0, 0], [a, 0], [a, length], [0, length]], [4, 60], [None, "side", "top", None])]
     contact = {"slave": "side", "master": {"plane": {"point": [a - delta, 0], "normal": [-1, 0]}}, "method": "mortar",
                "shrink_fit": True, "normal": {"alpha_n": alpha_n},
                "friction": {"law": "coulomb", "mu": mu, "alpha_t": 0.5 * beta**2 * E * a}}
     steps = [{"name": name, "duration": 1, "dt": {"initial": dt}, "supports": [{"on": "top", "uy": way}]}
              for name, dt, way in (("fit", 0.5, 0), ("pull", 0.5, 0.05), ("slide", 0.1, 1))]
-    run = Run(program, {"section": "axisymmetric", "mesh": {"blocks": mesh}, "contacts": {"fit": contact}, "watch": ["top"],
-                        "bodies": {"rod": {"material": {"model": "linear", "E": E, "nu": 0}}}, "newton": {"tolerance": 1e-10}, "steps": steps})
-    p = 0.0
+    return {"section": "axisymmetric", "mesh": {"blocks": mesh}, "contacts": {"fit": contact}, "watch": ["top"],
+            "bodies": {"rod": {"material": {"model": "linear", "E": E, "nu": 0}}}, "newton": {"tolerance": 1e-10}, "steps": steps}
+
+
+# Radius and length of the rod, overlap, β, μ and α_n of its fit.
+FIT = (1.0, 10.0, 1e-3, 0.1, 0.5, 1e4)
+
+
+def press_fit(program):
+    """A rod in a rigid sleeve: its pressure, the pull while it sticks (shear lag), and the pull while it slides."""
+    a, length, delta, beta, mu, alpha_n = FIT
+    run, p = Run(program, press_fit_case(*FIT)), 0.0
     for _ in range(60):
         p = E * (delta - p / alpha_n) / (a - delta + p / alpha_n)
     stuck = pi * a**2 * E * beta * 0.05 * tanh(beta * length)

@@ -38,7 +38,7 @@ def along_the_ray(v, h):
     return 1 / low - 1
 
 
-def inclined_footing(program, vertical, mu, element="f_bar", kind="Q4", under=(40, 6), beside=(18, 40), rows=(22, 0.04), way=0.004):
+def inclined_footing_case(vertical, mu, element="f_bar", kind="Q4", under=(40, 6), beside=(18, 40), rows=(22, 0.04), way=0.004):
     blocks = []
     for x, (columns, grading), names in (((-2.5, -0.5), (beside[0], 1 / beside[1]), ["bottom", None, None, "side"]),
                                          ((-0.5, 0.5), (under[0], {"middle": under[1]}), ["bottom", None, "base", None]),
@@ -51,9 +51,8 @@ def inclined_footing(program, vertical, mu, element="f_bar", kind="Q4", under=(4
               "until": {"on": "footing", "fy": -vertical}},
              {"name": "drive", "duration": 1, "dt": {"initial": 0.02, "max": 0.05, "min": 1e-5},
               "supports": [{"on": "footing", "uy": None, "ux": way}], "loads": [{"on": "footing", "force": {"y": -vertical}}]}]
-    return Run(program, {"title": f"V = {vertical}, mu = {mu}", "mesh": {"blocks": blocks}, "bodies": {"ground": {"material": CLAY, "element": element}},
-                         "rigid_bodies": {"footing": {"reference": [0, 0]}}, "contacts": {"base": contact}, "steps": steps,
-                         "output": {"fields": False}})
+    return {"title": f"V = {vertical}, mu = {mu}", "mesh": {"blocks": blocks}, "bodies": {"ground": {"material": CLAY, "element": element}},
+            "rigid_bodies": {"footing": {"reference": [0, 0]}}, "contacts": {"base": contact}, "steps": steps, "output": {"fields": False}}
 
 
 # Elements under the footing and beside it, of which the smallest are at the corners, and rows.
@@ -67,25 +66,26 @@ def footing_v_h(program):
     runs = [("Q8 reduced, B/95", v, mu) for v, mu in ((2, 1), (3, 1), (4, 1), (4.5, 1), (3, 0.2), (4.5, 0.1))]
     runs += [(name, 4.5, 1) for name in ("Q4 F-bar, B/100", "Q4 F-bar, B/150")]
     for name, vertical, mu in runs:
-        run = inclined_footing(program, vertical, mu, **MESHES[name])
+        run = Run(program, inclined_footing_case(vertical, mu, **MESHES[name]))
         exact, found = min(green_h(vertical), mu * vertical), abs(run.last("footing.fx"))
         ray = f"{100 * along_the_ray(vertical, found):+.2f} %" if mu == 1 else ""
         rows.append([name, f"{vertical:g}", f"{mu:g}", *row("H/(B s_u)", exact, found, 4), ray])
     return rows
 
 
-def bar(program, imperfection, kind, element, elements, strain=0.16):
-    half, width = 53.334 / 2, 12.826 / 2
+HALF_LENGTH, HALF_WIDTH = 53.334 / 2, 12.826 / 2
+
+
+def bar_case(imperfection, kind, element, elements, strain=0.16):
+    half, width = HALF_LENGTH, HALF_WIDTH
     k, g = 164.206, 80.1938
     metal = {"model": "von_mises", "E": 9 * k * g / (3 * k + g), "nu": (3 * k - 2 * g) / (6 * k + 2 * g),
              "sigma_y": 0.45, "H": 0.12924, "Q": 0.265, "b": 16.93}
     mesh = [block("bar", [[0, 0], [width * (1 - imperfection), 0], [width, half], [0, half]], elements, ["middle", None, "end", "axis"], kind=kind)]
     step = {"name": "pull", "duration": 1, "dt": {"initial": 0.01, "max": 0.01},
             "supports": [{"on": "middle", "uy": 0}, {"on": "axis", "ux": 0}, {"on": "end", "uy": half * (np.exp(strain) - 1)}]}
-    run = Run(program, {"title": f"bar {imperfection} {kind}", "mesh": {"blocks": mesh}, "bodies": {"bar": {"material": metal, "element": element}}, "steps": [step], "watch": ["end"],
-                        "output": {"fields": False}})
-    force, strains = run.history["end.fy"] / width, np.log(1 + run.history["end.uy"] / half)
-    return run, strains, force
+    return {"title": f"bar {imperfection} {kind}", "mesh": {"blocks": mesh}, "bodies": {"bar": {"material": metal, "element": element}}, "steps": [step],
+            "watch": ["end"], "output": {"fields": False}}
 
 
 def considere(elastic):
@@ -132,9 +132,10 @@ def necking(program):
             ("1.8 % narrower in the middle, Q4 F-bar 10 × 30", 0.018, "Q4", "f_bar", [10, 30], False),
             ("the same, Q8 reduced 5 × 15", 0.018, "Q8", "reduced", [5, 15], False)):
         exact, at = considere(False)
-        run, strains, force = bar(program, imperfection, kind, element, elements)
+        run = Run(program, bar_case(imperfection, kind, element, elements))
+        strains = np.log(1 + run.history["end.uy"] / HALF_LENGTH)
         # Over the narrowest section.
-        force = force / (1 - imperfection)
+        force = run.history["end.fy"] / HALF_WIDTH / (1 - imperfection)
         top = force.argmax()
         rows.append([name, *row("greatest F/A₀", exact, force[top], 4)])
         if elastic:

@@ -18,37 +18,46 @@ def von_mises(strength):
     return {"model": "von_mises", "E": E, "nu": NU, "sigma_y": strength}
 
 
+def hills_tube_case(kind, element, columns):
+    """A tube, b = 2 a, held along its axis and widened from inside."""
+    mesh = [block("tube", [[1, 0], [2, 0], [2, 0.1], [1, 0.1]], [columns, 1], ["bottom", None, "top", "bore"], kind=kind)]
+    step = {"name": "widen", "duration": 4, "dt": {"initial": 0.05, "max": 0.05},
+            "supports": [{"on": "bottom", "uy": 0}, {"on": "top", "uy": 0}, {"on": "bore", "ux": 4 / E}]}
+    return {"section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"tube": {"material": von_mises(1), "element": element}},
+            "steps": [step], "watch": ["bore"], "output": {"fields": False}}
+
+
 def hills_tube(program):
-    """A tube, b = 2 a, held along its axis and widened from inside: the pressure over the displacement of the bore (Hill 1950)."""
+    """The pressure in the tube over the displacement of its bore (Hill 1950)."""
     rows = [["elements", *HEAD]]
     for name, kind, element, columns in (("Q4 F-bar, 24", "Q4", "f_bar", 24), ("Q8 reduced, 10", "Q8", "reduced", 10)):
-        mesh = [block("tube", [[1, 0], [2, 0], [2, 0.1], [1, 0.1]], [columns, 1], ["bottom", None, "top", "bore"], kind=kind)]
-        step = {"name": "widen", "duration": 4, "dt": {"initial": 0.05, "max": 0.05},
-                "supports": [{"on": "bottom", "uy": 0}, {"on": "top", "uy": 0}, {"on": "bore", "ux": 4 / E}]}
-        run = Run(program, {"section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"tube": {"material": von_mises(1), "element": element}},
-                            "steps": [step], "watch": ["bore"], "output": {"fields": False}})
+        run = Run(program, hills_tube_case(kind, element, columns))
         pressure = lambda time: run.at("bore.fx", time) / (2 * pi * 0.1)
         for time, exact in ((1, 0.5109), (1.5, 0.6474), (2, 0.7216), (3, 0.7871), (4, 0.7980)):
             rows.append([name if time == 1 else "", *row(f"p/σ_y at E u/(σ_y a) = {time:g}", exact, pressure(time), 4)])
     return rows
 
 
+def thick_sphere_case(front):
+    """A sphere, b = 2 a, under the pressure inside that makes it yield up to the radius of a front (Hill 1950)."""
+    pressure = 2 * log(front) + 2 / 3 * (1 - front**3 / 8)
+    step = {"name": "press", "duration": 1, "dt": {"initial": 0.05, "max": 0.05},
+            "supports": [{"on": "bottom", "uy": 0}], "loads": [{"on": "inside", "pressure": pressure}]}
+    return {"section": "axisymmetric", "mesh": {"blocks": quarter(1, 2, [10, 16])}, "bodies": {"body": {"material": von_mises(1), "element": "reduced"}},
+            "steps": [step], "watch": ["outside", {"near": [2, 0]}], "output": {"fields": False}}
+
+
 def thick_sphere(program):
-    """A sphere, b = 2 a, under a pressure inside: how far its outside moves while the front of yielding is at c (Hill 1950)."""
+    """How far the outside of the sphere moves while the front of yielding is at c."""
     rows = [["front", *HEAD]]
-    mesh = quarter(1, 2, [10, 16])
     for front in (1.25, 1.5, 1.75):
-        pressure = 2 * log(front) + 2 / 3 * (1 - front**3 / 8)
-        step = {"name": "press", "duration": 1, "dt": {"initial": 0.05, "max": 0.05},
-                "supports": [{"on": "bottom", "uy": 0}], "loads": [{"on": "inside", "pressure": pressure}]}
-        run = Run(program, {"section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"body": {"material": von_mises(1), "element": "reduced"}},
-                            "steps": [step], "watch": ["outside", {"near": [2, 0]}], "output": {"fields": False}})
+        run = Run(program, thick_sphere_case(front))
         rows.append([f"c = {front:g} a", *row("E u(b)/(σ_y a)", front**3 * (1 - NU) / 4, run.last("near_2_0.ux") * E, 4)])
     return rows
 
 
-def footing(program, body, kind, columns, rows, width, settlement, surcharge=0, **step):
-    """Half of a rigid rough footing of width 1 that is bonded to the ground: the mean pressure under it over its settlement."""
+def footing_case(body, kind, columns, rows, width, settlement, surcharge=0, **step):
+    """Half of a rigid rough footing of width 1 that is bonded to the ground and settles."""
     half, beside, depth = 0.5, width, 2
     near, far = columns
     mesh = [block("ground", [[0, -depth], [half, -depth], [half, 0], [0, 0]], [near[0], rows[0]], ["bottom", None, "footing", "middle"],
@@ -58,7 +67,7 @@ def footing(program, body, kind, columns, rows, width, settlement, surcharge=0, 
     step = {"name": "settle", "duration": 1, "dt": {"initial": 0.02, "max": 0.05, "min": 1e-5}, **step, "loads": [{"on": "surface", "pressure": str(surcharge)}],
             "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}, {"on": "middle", "ux": 0},
                          {"on": "footing", "ux": 0, "uy": -settlement}]}
-    return Run(program, {"mesh": {"blocks": mesh}, "bodies": {"ground": body}, "steps": [step], "watch": ["footing"], "output": {"fields": False}})
+    return {"mesh": {"blocks": mesh}, "bodies": {"ground": body}, "steps": [step], "watch": ["footing"], "output": {"fields": False}}
 
 
 # Elements beside the middle and beside the corner, and the ratio of the last size to the first.
@@ -71,7 +80,7 @@ def strip_footing(program):
     clay = {**von_mises(3**0.5), "E": 1e4}
     for name, kind, element in (("Q4 F-bar, B/100", "Q4", "f_bar"), ("Q8 reduced, B/100", "Q8", "reduced"), ("T6, B/80", "T6", "displacement"),
                                 ("Q4 in full, B/100", "Q4", "displacement")):
-        run = footing(program, {"material": clay, "element": element}, kind, *FINE[kind], 2.5, 0.004)
+        run = Run(program, footing_case({"material": clay, "element": element}, kind, *FINE[kind], 2.5, 0.004))
         rows.append([name, *row("N_c", 2 + pi, -run.last("footing.fy") / 0.5, 4)])
     return rows
 
@@ -96,7 +105,7 @@ def footing_on_cam_clay(program):
 
     def add(name, elements, body, strength, settlement, surcharge):
         kind, element, columns, across = kinds[elements]
-        run = footing(program, {**body, "element": element}, kind, columns, across, 2.5, settlement, surcharge, dt=fine)
+        run = Run(program, footing_case({**body, "element": element}, kind, columns, across, 2.5, settlement, surcharge, dt=fine))
         bearing = (-run.last("footing.fy") / 0.5 - surcharge) / strength
         rows.append([name, elements, f"{settlement:g} B", *row("N_c", 2 + pi, bearing, 4)])
 
@@ -119,7 +128,7 @@ def footing_on_soil(program):
     rows = [["flow", *HEAD]]
     for psi, viscosity, kind, element in ((20, 0, "Q8", "reduced"), (20, 0, "Q4", "f_bar"), (5, 1e-4, "Q8", "reduced"), (5, 1e-4, "Q4", "f_bar")):
         soil = {"model": "mohr_coulomb", "E": 1e4, "nu": NU, "c": 1, "phi": 20, "psi": psi, "viscosity": viscosity}
-        run = footing(program, {"material": soil, "element": element}, kind, *FINE[kind], 4, 0.01)
+        run = Run(program, footing_case({"material": soil, "element": element}, kind, *FINE[kind], 4, 0.01))
         name = f"ψ = {psi}°, {kind} {element.replace('f_bar', 'F-bar')}" + (f", viscosity {viscosity:g} of the duration" if viscosity else "")
         rows.append([name, *row("N_c", exact, -run.last("footing.fy") / 0.5, 4)])
     return rows

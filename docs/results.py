@@ -45,6 +45,12 @@ def table(path):
     return columns
 
 
+def text_of(rows):
+    """A table of Markdown; the first row is its head."""
+    rows = [rows[0], ["---"] * len(rows[0]), *rows[1:]]
+    return "\n".join("|" + "|".join(f" {cell} " if cell != "---" else cell for cell in row) + "|" for row in rows)
+
+
 class Run:
     """A case run to its end, or to where it stops if it `may_stop`."""
 

@@ -26,8 +26,8 @@ def yielding(hardening):
     return {"model": "von_mises", "E": 2 * G * (1 + NU), "nu": NU, "sigma_y": sqrt(3), "H": hardening}
 
 
-def rigid_shaft(program, ground, friction, way):
-    """The traction on a rigid shaft of radius 1 that is pulled out of ground held at r = FAR, over its way.
+def rigid_shaft_case(ground, friction, way):
+    """A rigid shaft of radius 1 that is pulled out of ground held at r = FAR.
 
     One row of rings of height 1 that stay level, as in a long layer, at first under a pressure of 10 all round."""
     mesh = [block("ground", [[1, 0], [FAR, 0], [FAR, 1], [1, 1]], [24, 1], ["bottom", "far", "top", "wall"], kind="Q8", grading=[20, 1])]
@@ -37,8 +37,13 @@ def rigid_shaft(program, ground, friction, way):
     held = [{"on": "bottom", "ux": 0}, {"on": "top", "ux": 0}, {"on": "far", "ux": 0, "uy": 0}, {"on": "shaft", "uy": way}]
     step = {"name": "pull", "duration": 1, "dt": {"initial": 0.01, "max": 0.01}, "supports": held,
             "loads": [{"on": "top", "pressure": "10"}, {"on": "bottom", "pressure": "10"}]}
-    run = Run(program, {"title": "a rigid shaft", "section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"ground": body},
-                        "rigid_bodies": {"shaft": {"reference": [1, 0]}}, "contacts": {"shaft": contact}, "steps": [step], "output": {"fields": False}})
+    return {"title": "a rigid shaft", "section": "axisymmetric", "mesh": {"blocks": mesh}, "bodies": {"ground": body},
+            "rigid_bodies": {"shaft": {"reference": [1, 0]}}, "contacts": {"shaft": contact}, "steps": [step], "output": {"fields": False}}
+
+
+def rigid_shaft(program, *told):
+    """The traction on the shaft over its way."""
+    run = Run(program, rigid_shaft_case(*told))
     return run.history["shaft.uy"], abs(run.history["shaft.fy"]) / (2 * pi)
 
 
@@ -73,8 +78,8 @@ def shaft(program):
 RIM, RATE = 2.0, 1.5
 
 
-def compressible_shaft(program, friction, way, increments=100):
-    """The pull at the head of an elastic shaft of radius 1 and length LENGTH over its way; its ground is held at r = RIM. A pressure of 10 acts between them.
+def compressible_shaft_case(friction, way, increments=100):
+    """An elastic shaft of radius 1 and length LENGTH that is pulled at its head; its ground is held at r = RIM. A pressure of 10 acts between them.
 
     Its stiffness is such that RATE = μ L, μ² = 2G/(ln(RIM) E)."""
     young = 2 * G / log(RIM) * (LENGTH / RATE) ** 2
@@ -84,9 +89,14 @@ def compressible_shaft(program, friction, way, increments=100):
                "initial": {"pressure": 10, "balanced": True}}
     held = [{"on": "bottom", "ux": 0}, {"on": "top", "ux": 0}, {"on": "far", "ux": 0, "uy": 0}, {"on": "head", "uy": way}]
     step = {"name": "pull", "duration": 1, "dt": {"initial": 1 / increments, "max": 1 / increments, "min": 1e-6}, "supports": held}
-    run = Run(program, {"title": "a compressible shaft", "section": "axisymmetric", "mesh": {"blocks": mesh},
-                        "bodies": {"pile": {"material": {"model": "linear", "E": young, "nu": 0}}, "ground": {"material": elastic(G)}},
-                        "contacts": {"shaft": contact}, "steps": [step], "watch": ["head"], "output": {"fields": False}})
+    return {"title": "a compressible shaft", "section": "axisymmetric", "mesh": {"blocks": mesh},
+            "bodies": {"pile": {"material": {"model": "linear", "E": young, "nu": 0}}, "ground": {"material": elastic(G)}},
+            "contacts": {"shaft": contact}, "steps": [step], "watch": ["head"], "output": {"fields": False}}
+
+
+def compressible_shaft(program, *told):
+    """The pull at the head of the shaft over its way."""
+    run = Run(program, compressible_shaft_case(*told))
     return run.history["head.uy"], run.history["head.fy"]
 
 
@@ -141,15 +151,20 @@ def tangent_modulus():
     return 1 / ((1 - NU**2) / YOUNG + 3 / (4 * HARDENING))
 
 
-def column(program, length, shortening, increments, aside=0.0):
+def column_case(length, shortening, increments, aside=0.0):
     """A column of width 1 whose ends do not turn, one of them free to move aside, is shortened; or pushed aside by a force besides."""
     mesh = [block("column", [[0, 0], [length, 0], [length, 1], [0, 1]], [20, 2], [None, "head", None, "foot"], kind="Q8")]
     metal = {"model": "von_mises", "E": YOUNG, "nu": NU, "sigma_y": 1, "H": HARDENING}
     step = {"name": "press", "duration": 1, "dt": {"initial": 1 / increments, "max": 1 / increments, "min": 1e-6},
             "supports": [{"on": "foot", "ux": 0}, {"on": {"near": [0, 0.5]}, "uy": 0}, {"on": "head", "ux": -shortening}],
-            "loads": [{"on": "head", "force": {"y": str(aside)}}] if aside else []}
-    run = Run(program, {"title": "a column", "mesh": {"blocks": mesh}, "bodies": {"column": {"material": metal, "element": "reduced"}},
-                        "steps": [step], "watch": ["head"], "output": {"fields": False}})
+            "loads": [{"on": "head", "total_force": {"y": aside}}] if aside else []}
+    return {"title": "a column", "mesh": {"blocks": mesh}, "bodies": {"column": {"material": metal, "element": "reduced"}},
+            "steps": [step], "watch": ["head"], "output": {"fields": False}}
+
+
+def column(program, *told):
+    """The run of a column, and the force that shortens it."""
+    run = Run(program, column_case(*told))
     return run, -run.history["head.fx"]
 
 

@@ -1,9 +1,9 @@
 """Writes the tables of the documentation in place: python3 docs/tables.py [--check] [PROGRAM] [NAME …].
 
 A table stands in a page between `<!-- table: NAME -->` and `<!-- end -->`. Those of the quick tier (docs/problems.py, docs/closed_forms.py, docs/choosing.py,
-docs/limit_loads.py) come from runs of
+docs/limit_loads.py, docs/error_bars.py and others) come from runs of
 seconds; with --check nothing is written, and the exit code is 1 where a number is not the committed one: texts must be equal (but for the cost of iterations),
-numbers may differ by one in the last digit. Those of the slow tier are printed by tests of minutes:
+numbers may differ by one in the last digit. Those of the slow tier are printed by commands of minutes:
 
     python3 docs/tables.py --slow NAME …           runs the command of each table and writes what it prints
     python3 docs/tables.py --slow NAME --from FILE what was printed before
@@ -22,9 +22,11 @@ import sys
 from cavities_and_walls import WALLS
 from choosing import CHOOSING
 from closed_forms import CLOSED
+from error_bars import BARS, SLOW_BARS
 from forming import FORMING
 from limit_loads import LIMIT
 from problems import COST, QUICK
+from results import text_of
 from shafts_and_columns import SHAFTS
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -37,7 +39,7 @@ FRONTS = "cargo test --release --test published -- --nocapture fronts_run"
 LABORATORY = """cargo run --release -- run cases/laboratory/fault_4m.json &&
     python3 docs/figures/laboratory.py out/fault_4m docs/figures/laboratory.svg"""
 # Of the quick tier: the function that makes it.
-TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS}
+TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS, **BARS}
 # Written, but not compared: iterations that do not converge hang on the last digit, which differs between processors.
 LOOSE = {"cut_back", "drawing"}
 # Of the slow tier: the command that prints it, and which of the tables that it prints.
@@ -63,6 +65,7 @@ SLOW = {
     "front_meshes": (PUBLISHED + "how_far", -1),
     "numerical_choices": (PUBLISHED + "answers_do", 0),
     "spring_mass_resolved": (PUBLISHED + "resolved_runs", 0),
+    **{name: (f"python3 docs/error_bars.py target/release/fecontact {name}", 0) for name in SLOW_BARS},
 }
 
 
@@ -71,12 +74,6 @@ def marked():
     for page in sorted([*ROOT.glob("docs/**/*.md"), *ROOT.glob("cases/**/*.md")]):
         for found in MARKED.finditer(page.read_text()):
             yield page, found[2], found[3].strip()
-
-
-def text_of(rows):
-    """A table of Markdown; the first row is its head."""
-    rows = [rows[0], ["---"] * len(rows[0]), *rows[1:]]
-    return "\n".join("|" + "|".join(f" {cell} " if cell != "---" else cell for cell in row) + "|" for row in rows)
 
 
 def printed(text, which):

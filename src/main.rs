@@ -47,8 +47,8 @@ enum Command {
     Converge {
         /// The case file (JSON)
         case: PathBuf,
-        /// Column of the history, and what is taken of it: COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean (over time); may be given
-        /// several times
+        /// Column of the history, or one over another (COLUMN/COLUMN), and what is taken of it: COLUMN:max, COLUMN:min, COLUMN:end or
+        /// COLUMN:mean (over time), in a step alone COLUMN:max@STEP; may be given several times
         #[arg(long, required = true)]
         measure: Vec<String>,
         /// Number of runs, 3 or more; the first is the case as it is

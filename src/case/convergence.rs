@@ -25,11 +25,14 @@ use crate::model::Model;
 use crate::output::history;
 use crate::output::report::table::Columns;
 
-/// A number of a run: a column of its history, and what is taken of it.
+/// A number of a run: a column of its history, or one over another, in all rows or in those of a step, and what is taken of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Measure {
-    column: String,
+    /// COLUMN or COLUMN/COLUMN
+    value: String,
     of: Of,
+    /// name of the step; `None` for all
+    step: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,34 +43,59 @@ enum Of {
     Mean,
 }
 
+const FORM: &str = "give COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean, with a column of history.csv or one over another (COLUMN/COLUMN), \
+                    and @STEP behind it for a step alone";
+
 impl FromStr for Measure {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let form = "give COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean, with a column of history.csv";
-        let (column, of) = text.rsplit_once(':').ok_or_else(|| format!("`{text}` is no measure: {form}"))?;
-        let of = match of {
-            "max" => Of::Max,
-            "min" => Of::Min,
-            "end" => Of::End,
-            "mean" => Of::Mean,
-            other => return Err(format!("`{other}` is nothing that is taken of a column: {form}")),
+        let kind = |word: &str| match word {
+            "max" => Some(Of::Max),
+            "min" => Some(Of::Min),
+            "end" => Some(Of::End),
+            "mean" => Some(Of::Mean),
+            _ => None,
         };
-        Ok(Self { column: column.into(), of })
+        // Names may have colons and signs of their own.
+        let measure = text.rmatch_indices(':').find_map(|(colon, _)| {
+            let (value, taken) = (&text[..colon], &text[colon + 1..]);
+            let (word, step) =
+                taken.split_once('@').map_or((taken, None), |(word, step)| (word, Some(step.to_owned())));
+            Some(Self { value: value.into(), of: kind(word)?, step })
+        });
+        measure.ok_or_else(|| match text.rsplit_once(':') {
+            Some((_, other)) => format!("`{other}` is nothing that is taken of a column: {FORM}"),
+            None => format!("`{text}` is no measure: {FORM}"),
+        })
     }
 }
 
 impl Measure {
-    /// Checks that the history of a model has the column.
+    /// The column, and the one that it is divided by, among those of a history; names may have strokes of their own.
+    fn columns(&self, is_column: impl Fn(&str) -> bool) -> Option<(&str, Option<&str>)> {
+        let divided = |(stroke, _)| (&self.value[..stroke], Some(&self.value[stroke + 1..]));
+        let whole = std::iter::once((self.value.as_str(), None));
+        let mut readings = whole.chain(self.value.match_indices('/').map(divided));
+        readings.find(|(column, over)| is_column(column) && over.is_none_or(&is_column))
+    }
+
+    /// Checks that the history of a model has the columns, and the model the step.
     ///
     /// # Errors
-    /// Returns a message if it has not, or the column is not of numbers.
+    /// Returns a message if not, or if a column is not of numbers.
     pub fn check(&self, model: &Model) -> Result<(), String> {
         let header = history::columns(model);
-        match header.contains(&self.column) {
-            _ if self.column == "step" => Err("the column `step` is not of numbers".into()),
-            true => Ok(()),
-            false => Err(format!("the history has no column `{}`; there are {}", self.column, header.join(", "))),
+        let (column, over) = self
+            .columns(|name| header.iter().any(|other| other == name))
+            .ok_or_else(|| format!("the history has no column `{}`; there are {}", self.value, header.join(", ")))?;
+        if column == "step" || over == Some("step") {
+            return Err("the column `step` is not of numbers".into());
+        }
+        let names: Vec<&str> = model.steps.iter().map(|step| step.name.as_str()).collect();
+        match self.step.as_deref().filter(|step| !names.contains(step)) {
+            Some(step) => Err(format!("the case has no step `{step}`; there are {}", names.join(", "))),
+            None => Ok(()),
         }
     }
 
@@ -82,19 +110,27 @@ impl Measure {
             return Err(fault.to_string());
         }
         let told = |message: String| format!("{}: {message}", path.display());
-        if table.words(&self.column).is_some() {
-            return Err(told(format!("the column `{}` is not of numbers", self.column)));
+        let (column, over) = self.columns(|name| table.get(name).is_ok()).unwrap_or((&self.value, None));
+        if let Some(words) = [Some(column), over].into_iter().flatten().find(|name| table.words(name).is_some()) {
+            return Err(told(format!("the column `{words}` is not of numbers")));
         }
-        let column = |name: &str| table.get(name).map_err(|fault| fault.to_string());
-        let (values, times) = (column(&self.column)?, column("time")?);
+        let numbers = |name: &str| table.get(name).map_err(|fault| fault.to_string());
+        let (values, times, steps) = (numbers(column)?, numbers("time")?, numbers("step")?);
+        let divisors = over.map(numbers).transpose()?;
+        let names = table.words("step").unwrap_or_default();
+        let is_asked = |row: &usize| self.step.as_ref().is_none_or(|step| names[steps[*row] as usize] == *step);
+        let rows: Vec<usize> = (0..table.rows()).filter(is_asked).collect();
+        let values: Vec<f64> =
+            rows.iter().map(|&row| values[row] / divisors.map_or(1.0, |divisors| divisors[row])).collect();
         let value = match self.of {
             Of::Max => values.iter().copied().reduce(f64::max),
             Of::Min => values.iter().copied().reduce(f64::min),
             Of::End => values.last().copied(),
-            Of::Mean => mean(times, values),
+            Of::Mean => mean(&rows.iter().map(|&row| times[row]).collect::<Vec<_>>(), &values),
         };
         let value = value.filter(|value| value.is_finite());
-        value.ok_or_else(|| told(format!("the column `{}` has no such number", self.column)))
+        let place = self.step.as_ref().map_or(String::new(), |step| format!(" in the step `{step}`"));
+        value.ok_or_else(|| told(format!("`{}` is no number{place}", self.value)))
     }
 }
 

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::csv::failed;
 use super::frames::{Shown, contact_frame, points_frame, solid_frame};
+use super::gradients::Motions;
 use super::vtu::Grid;
 use super::{csv, files};
 use crate::linear::memory::room_for;
@@ -28,6 +29,8 @@ pub struct Fields {
     /// Names of the series
     names: Vec<&'static str>,
     frames_of: Frames,
+    /// Derivatives of displacements that frames show
+    motions: Motions,
     /// Number of rows so far
     rows: usize,
     /// Times of the frames so far [T]
@@ -99,8 +102,14 @@ impl Fields {
     ///
     /// # Errors
     /// Returns [`Error::Output`] if a file cannot be written.
-    pub fn create(folder: &Path, model: Arc<Model>, start: &State, frames: Frames) -> Result<Self, Error> {
-        let mut fields = Self::reopen(folder, model.clone(), frames)?;
+    pub fn create(
+        folder: &Path,
+        model: Arc<Model>,
+        start: &State,
+        frames: Frames,
+        motions: Motions,
+    ) -> Result<Self, Error> {
+        let mut fields = Self::reopen(folder, model.clone(), frames, motions)?;
         fields.write(&model, start)?;
         Ok(fields)
     }
@@ -109,14 +118,15 @@ impl Fields {
     ///
     /// # Errors
     /// Returns [`Error::Output`] if the disk space is insufficient.
-    pub fn reopen(folder: &Path, model: Arc<Model>, frames: Frames) -> Result<Self, Error> {
+    pub fn reopen(folder: &Path, model: Arc<Model>, frames: Frames, motions: Motions) -> Result<Self, Error> {
         let (frames_of, rows) = (frames, 0);
         let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
         let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
         let collection = |name: &&'static str| Collection::create(folder, name, frames_of);
         let collections = names.iter().map(collection).collect::<Result<_, _>>()?;
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
-        let (room, writer) = (Room::of(folder, &model), std::thread::Builder::new().name("frames".into()));
+        let room = Room::of(folder, &model, motions.borrow().len());
+        let writer = std::thread::Builder::new().name("frames".into());
         let writer = writer.spawn(move || {
             // The writer computes on one thread of its own: the threads of the run may be waiting for it.
             let alone = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
@@ -126,14 +136,15 @@ impl Fields {
         });
         let writer = writer.map_err(|cause| failed(&folder.join("solid"), &cause))?;
         let (folder, times) = (folder.to_owned(), Vec::new());
-        Ok(Self { folder, room, names, frames_of, rows, times, frames: Some(frames), writer: Some(writer) })
+        Ok(Self { folder, room, names, frames_of, motions, rows, times, frames: Some(frames), writer: Some(writer) })
     }
 
     /// Sends a state to the writer. A writer that has ended has failed and returns its error.
     fn write(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         self.room.check()?;
         self.times.push(state.time);
-        self.ask(Task::Show(Box::new(Shown::new(model, state))))
+        let motions = self.motions.borrow().clone();
+        self.ask(Task::Show(Box::new(Shown::new(model, state, motions))))
     }
 
     /// Whether no frame has been written since the end of the last completed equal part of a step.
@@ -310,6 +321,9 @@ impl Collection {
 /// Bytes per node or contact point in a frame: the state, fourteen numbers, and their text.
 const PER_NODE: usize = 600;
 
+/// Bytes per node of a derivative of displacements in a frame: three numbers, and their text.
+const PER_DERIVATIVE: usize = 80;
+
 /// Memory and disk space needed by a frame.
 #[derive(Debug)]
 struct Room {
@@ -318,10 +332,12 @@ struct Room {
 }
 
 impl Room {
-    /// Disk space needed by a model's frames in a folder.
-    pub fn of(folder: &Path, model: &Model) -> Self {
+    /// Disk space needed by a model's frames in a folder, with so many derivatives of displacements.
+    pub fn of(folder: &Path, model: &Model, derivatives: usize) -> Self {
         let points: usize = model.contacts.iter().map(|pair| pair.points.len()).sum();
-        Self { folder: folder.join("solid"), bytes: PER_NODE * (model.mesh.nodes.len() + points) }
+        let nodes = model.mesh.nodes.len();
+        let bytes = PER_NODE * (nodes + points) + PER_DERIVATIVE * derivatives * nodes;
+        Self { folder: folder.join("solid"), bytes }
     }
 
     /// Checks that a frame fits.

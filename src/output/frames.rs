@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::gradients::MotionBy;
 use super::recovery::{nodal_fields, shown_names};
 use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
@@ -21,17 +22,19 @@ pub struct Shown {
     pub state: State,
     /// contact forces on every node [F]
     contact_forces: Vec<f64>,
+    /// derivatives of the displacements by values of the case
+    motions: Vec<MotionBy>,
 }
 
 impl Shown {
-    /// Content of the frame of a state.
-    pub fn new(model: &Model, state: &State) -> Self {
-        Self { state: state.clone(), contact_forces: contact_forces(model, state) }
+    /// Content of the frame of a state, and the derivatives of its displacements that it shows.
+    pub fn new(model: &Model, state: &State, motions: Vec<MotionBy>) -> Self {
+        Self { state: state.clone(), contact_forces: contact_forces(model, state), motions }
     }
 }
 
 /// Fills the grid of the bodies. Rigid bodies have no cells and no fields.
-pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, derived: bool, grid: &mut Grid) {
+pub fn solid_frame(model: &Model, Shown { state, contact_forces, motions }: &Shown, derived: bool, grid: &mut Grid) {
     let fields = nodal_fields(model, state);
     let nodes = model.mesh.own_nodes();
     // Each body has exactly one material, so the two ids agree.
@@ -48,6 +51,9 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, deriv
     add_fields(grid, &fields.tensors[..nodes], derived);
     for (name, values) in fields.shown {
         grid.at_points(name, 1, values.into_iter().take(nodes));
+    }
+    for (place, motion) in motions {
+        grid.vectors(&format!("d(displacement)/d({place})"), &motion[..2 * nodes]);
     }
     grid.at_cells("body", body());
     grid.at_cells("material", body());

@@ -6,9 +6,13 @@
 //!
 //! with neighbours of the run that follow it increment by increment ([`crate::time::neighbour`]). Where a contact point has another status
 //! in one of them than in the other, the run is at a kink, and the derivative is a mean of those on both sides.
+//!
+//! Frames show those of the displacements of nodes, on request.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -74,12 +78,18 @@ type Memory = (String, Account, Vec<(State, Option<usize>, Vec<u8>)>);
 /// Saved memory of all: extent of the table, of the store, and the derivatives.
 type Whole = (Standing, derivatives::Memory, Vec<Memory>);
 
+/// Place of a value in the case, and the derivatives of the displacements of all nodes by it [L/unit of the value].
+pub type MotionBy = (String, Vec<f64>);
+
+/// Derivatives of displacements at the last accepted state, for its frame; empty where none are asked for.
+pub type Motions = Rc<RefCell<Vec<MotionBy>>>;
+
 /// What is asked of the derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'a> {
     /// known labels of units
     pub units: &'a BTreeMap<String, String>,
-    /// whether those of the displacements of nodes are stored
+    /// whether those of the displacements of nodes are stored, and shown in frames
     pub of_displacements: bool,
     /// whether files of an earlier run are continued
     pub goes_on: bool,
@@ -91,6 +101,8 @@ pub struct Gradients {
     tangent: Tangent,
     derivatives: Vec<Derivative>,
     store: DerivativeStore,
+    /// What frames show
+    motions: Motions,
     /// Number of quantities
     quantities: usize,
     warn: Warn,
@@ -137,16 +149,30 @@ impl Gradients {
         if !goes_on {
             store.create()?;
         }
+        let derivatives: Vec<Derivative> = parameters.iter().map(derivative).collect();
+        let shown = derivatives.iter().filter(|_| of_displacements).map(Derivative::motion);
         Ok(Self {
             table,
             store,
+            motions: Rc::new(RefCell::new(shown.collect())),
             tangent: Tangent::new(model),
-            derivatives: parameters.iter().map(derivative).collect(),
+            derivatives,
             quantities: quantities.len(),
             warn,
             warnings: Vec::new(),
             seconds: 0.0,
         })
+    }
+
+    /// Returns the derivatives that frames show; they follow the run.
+    pub fn motions(&self) -> Motions {
+        self.motions.clone()
+    }
+
+    /// Shows the derivatives at the accepted state.
+    fn show(&self) {
+        let mut motions = self.motions.borrow_mut();
+        motions.iter_mut().zip(&self.derivatives).for_each(|(shown, derivative)| *shown = derivative.motion());
     }
 
     /// Returns the reliability of every derivative, by the place of its parameter.
@@ -159,6 +185,16 @@ impl Derivative {
     /// Whether its neighbours have followed so far.
     fn lives(&self) -> bool {
         self.account.lost_at.is_none()
+    }
+
+    /// The derivatives of the displacements of all nodes at the accepted state.
+    fn motion(&self) -> MotionBy {
+        let states = || self.sides.iter().map(|side| (side.weight, &side.neighbour.state.displacement));
+        let Some((_, first)) = states().next() else { return (self.place.clone(), Vec::new()) };
+        // The weights add up to 0.
+        let value = |k: usize| states().skip(1).map(|(weight, other)| weight * (other[k] - first[k])).sum();
+        let values = (0..first.len()).map(|k| if self.lives() { value(k) } else { f64::NAN });
+        (self.place.clone(), values.collect())
     }
 
     /// The derivatives at the accepted state, of the row and of what is stored; contact points at a kink there are counted.
@@ -216,6 +252,7 @@ impl Observer for Gradients {
         }
         let written = table.end_row_as(attempt.row).and_then(|()| table.share());
         let written = written.and_then(|()| store.add(new.time, &by_each, attempt.row));
+        self.show();
         self.seconds += clock.elapsed().as_secs_f64();
         written
     }
@@ -258,6 +295,7 @@ impl Observer for Gradients {
                 side.history.restore(&row)?;
             }
         }
+        self.show();
         self.store.restore(stored)?;
         self.table.cut(stood)
     }

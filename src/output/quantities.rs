@@ -336,7 +336,7 @@ pub const VERDICT: [Quantity; 3] = [
 ];
 
 /// Arrays of the frames of bodies.
-const SOLID: [Quantity; 15] = [
+const SOLID: [Quantity; 16] = [
     q("displacement", LENGTH, "u of the nodes"),
     q("velocity", VELOCITY, "v"),
     q("acceleration", ACCELERATION, "a"),
@@ -359,6 +359,11 @@ const SOLID: [Quantity; 15] = [
         "vtkGhostType",
         NONE,
         "32 for elements of bodies that are absent, which are not drawn; in runs whose bodies come and go",
+    ),
+    q(
+        "d(displacement)/d(…)",
+        NONE,
+        "derivative of the displacement by a value of the case, in units of both; with `displacement_gradients`",
     ),
 ];
 

@@ -184,12 +184,16 @@ struct Head<'a> {
 /// Appends an array.
 fn array<const N: usize>(text: &mut String, is: Head, values: impl Iterator<Item = [u8; N]>) {
     let Head { kind, name, components } = is;
+    let name = SIGNS.iter().fold(name.to_owned(), |name, (sign, text)| name.replace(sign, text));
     let bytes: Vec<u8> = values.flatten().collect();
     *text +=
         &format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">");
     encode(&bytes, text);
     *text += "</DataArray>\n";
 }
+
+/// Signs that XML reads as its own, and what stands for them in names: `&` first, which begins the others.
+const SIGNS: [(&str, &str); 3] = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;")];
 
 /// Appends packed bytes in base64.
 fn encode(bytes: &[u8], text: &mut String) {
@@ -242,7 +246,8 @@ fn read(text: &str) -> Result<Array, Unreadable> {
     let bytes = decode(packed).ok_or_else(|| Unreadable(format!("has an array `{name}` that is damaged")))?;
     let values =
         numbers(kind, &bytes).ok_or_else(|| Unreadable(format!("has an array `{name}` of an unknown type")))?;
-    Ok(Array { name: name.into(), components, values })
+    let name = SIGNS.iter().rfold(name.to_owned(), |name, (sign, text)| name.replace(text, sign));
+    Ok(Array { name, components, values })
 }
 
 /// The bytes that [`encode`] has packed, if they are undamaged.

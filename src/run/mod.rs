@@ -184,6 +184,14 @@ impl SavedRun {
         self.observers.iter().find(|(name, _)| name == observer).map(|(_, memory)| &**memory)
     }
 
+    /// Resumes a single observer, if it was saved.
+    ///
+    /// # Errors
+    /// Returns [`Error::Output`] if it cannot resume.
+    pub(crate) fn restore(&self, observer: &mut dyn Observer) -> Result<(), Error> {
+        self.memory(observer.name()).map_or(Ok(()), |memory| observer.restore(memory))
+    }
+
     /// Whether memory is saved for an observer of this name.
     pub fn remembers(&self, observer: &str) -> bool {
         self.memory(observer).is_some()
@@ -195,11 +203,7 @@ impl SavedRun {
     /// # Errors
     /// Returns [`Error::Output`] if an observer cannot resume.
     pub fn resume(self, model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> Result<Simulation, Error> {
-        for observer in observers.iter_mut() {
-            if let Some(memory) = self.memory(observer.name()) {
-                observer.restore(memory)?;
-            }
-        }
+        observers.iter_mut().try_for_each(|observer| self.restore(*observer))?;
         Ok(Simulation::resume(model.clone(), self.simulation))
     }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use fecontact::case::convergence::{Convergence, judge};
+use fecontact::case::convergence::{Convergence, Measure, judge};
 use fecontact::case::{self, Halvings, Written};
 use fecontact::mesh::{Group, InlineMesh, Mesh};
 use fecontact::model::Model;
@@ -230,6 +230,42 @@ fn sequences_are_judged() {
     assert!(judge(&[1.0, 2.0]).is_err() && judge(&[1.0, 2.0, f64::NAN]).is_err());
 }
 
+/// What is taken of a history, of one column over another, and in a step alone; names may have the signs that part these.
+#[test]
+fn numbers_are_taken_of_columns_ratios_and_steps() {
+    let folder = TempDir::new().expect("a folder");
+    let history = "time,dt,step,a/b.q,a/b.p,c:max.q\n1,1,in,0,0,5\n2,1,in,3,2,1\n3,1,on@2:1,2,4,0\n5,2,on@2:1,6,4,2\n";
+    fs::write(folder.path().join("history.csv"), history).expect("a file");
+    let of = |measure: &str| measure.parse::<Measure>().expect("a measure").of(folder.path());
+    for (measure, expected) in [
+        ("a/b.q:max", 6.0),
+        ("a/b.q:max@in", 3.0),
+        ("a/b.q:min@on@2:1", 2.0),
+        // Where nothing presses there is no ratio: 0/0.
+        ("a/b.q/a/b.p:max", 1.5),
+        ("a/b.q/a/b.p:max@on@2:1", 1.5),
+        ("a/b.q/a/b.p:min", 0.5),
+        ("a/b.q/a/b.p:end@in", 1.5),
+        ("c:max.q:max", 5.0),
+        ("c:max.q/a/b.p:end", 0.5),
+        // Linear between rows.
+        ("a/b.q:mean@on@2:1", 4.0),
+        ("a/b.q:mean", (1.5 + 2.5 + 8.0) / 4.0),
+    ] {
+        assert_eq!(of(measure), Ok(expected), "{measure}");
+    }
+    for (measure, told) in [
+        ("a/b.q/c:max.q:max", "`a/b.q/c:max.q` is no number"),
+        ("a/b.q/a/b.p:mean", "is no number"),
+        ("a/b.q:max@off", "is no number in the step `off`"),
+        ("a/b.q/step:max", "the column `step` is not of numbers"),
+        ("a/b.r:max", "has no column `a/b.r`"),
+    ] {
+        let complaint = of(measure).expect_err(measure);
+        assert!(complaint.contains(told), "{measure}: {complaint}");
+    }
+}
+
 /// What cannot be refined or measured is refused with a reason.
 #[test]
 fn bad_studies_are_refused() {
@@ -284,6 +320,13 @@ fn bad_studies_are_refused() {
         (["good.json", "--measure", "bore.ux:last", "--levels", "3"], 2, "`last` is nothing that is taken of a column"),
         (["good.json", "--measure", "bor.ux:end", "--levels", "3"], 2, "the history has no column `bor.ux`; there are"),
         (["good.json", "--measure", "step:end", "--levels", "3"], 2, "is not of numbers"),
+        (["good.json", "--measure", "bore.ux/bore.fz:end", "--levels", "3"], 2, "has no column `bore.ux/bore.fz`"),
+        (["good.json", "--measure", "bore.ux/step:end", "--levels", "3"], 2, "is not of numbers"),
+        (
+            ["good.json", "--measure", "bore.ux:end@lead", "--levels", "3"],
+            2,
+            "the case has no step `lead`; there are load",
+        ),
         (["good.json", "--measure", "bore.ux:end", "--levels", "2"], 2, "--levels: is 2: an order takes 3"),
     ] {
         let output = fecontact(&[&["converge"], &arguments[..]].concat(), folder.path());

@@ -6,7 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::{Blocks, close};
+use crate::common::{Blocks, close, store};
+use fecontact::output::results::{Grid, frames};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -336,6 +337,114 @@ fn are_the_same_bits_after_a_resume_and_on_any_number_of_threads() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
+}
+
+/// Frames show the derivatives of the displacements of all nodes: those of the store, but for its rounding, and to the last bit those of
+/// watched nodes in the table. They are 0 at first. So are the frames of a run that is taken up with frames it did not have before: its first
+/// one shows the derivatives with which it goes on.
+#[test]
+fn of_displacements_are_in_frames() {
+    let mut case = dragged(weakening(), json!({"method": "gauss_to_segment"}));
+    case["steps"][1]["duration"] = json!(1.0);
+    let places = ["contacts.base.friction.mu_k", "contacts.base.friction.r", "bodies.block.material.E"];
+    case["gradients"] = json!(places);
+    case["watch"] = json!([{"near": [2, 1]}, {"near": [0, 1]}]);
+    case["output"] = json!({"every": 1, "exact": true, "displacement_gradients": true});
+    let folder = run(&case, &[]);
+    let out = folder.path().join("out");
+    let (shape, stored) = store::array(&out.join("gradients.zarr"), "displacement");
+    let (history, rows) = (table(&folder, "history.csv"), table(&folder, "gradients.csv"));
+    let listed = frames(&out, "solid").expect("frames").expect("a list");
+    assert_eq!((listed.len(), shape[0], shape[1]), (9, 8, 3));
+    let motion = |file: &str, place: &str| {
+        let grid = Grid::read(&out.join(file)).expect("a grid");
+        let name = format!("d(displacement)/d({place})");
+        let array = grid.at_points.iter().find(|array| array.name == name).unwrap_or_else(|| panic!("no {name}"));
+        assert_eq!(array.components, 3);
+        (grid.points.clone(), array.values.clone())
+    };
+    for (k, place) in places.iter().enumerate() {
+        let (points, first) = motion(&listed[0].file, place);
+        assert!(first.iter().all(|value| *value == 0.0));
+        let at = |x: f64, y: f64| points.iter().enumerate().filter(move |(_, p)| **p == [x, y]).map(|(node, _)| node);
+        let mut largest = 0.0_f64;
+        for (row, frame) in listed[1..].iter().enumerate() {
+            assert_eq!(frame.time, history["time"][row]);
+            let (_, shown) = motion(&frame.file, place);
+            let [nodes, width] = [points.len(), 2 * points.len()];
+            let stored = &stored[(3 * row + k) * width..][..width];
+            for (node, component) in (0..nodes).flat_map(|node| [(node, 0), (node, 1)]) {
+                let (value, expected) = (shown[3 * node + component], stored[2 * node + component]);
+                close(place, value, expected, 1.6e-5 * value.abs());
+                largest = largest.max(value.abs());
+            }
+            for (name, node) in [("near_2_1", at(2.0, 1.0).next()), ("near_0_1", at(0.0, 1.0).next())] {
+                let node = node.expect("a node");
+                for (component, column) in ["ux", "uy"].iter().enumerate() {
+                    let exact = rows[&format!("d({name}.{column})/d({place})")][row];
+                    assert_eq!(shown[3 * node + component], exact, "{name}.{column} by {place}");
+                }
+            }
+        }
+        assert!(largest > 0.0, "{place}");
+    }
+
+    // Without frames up to the end of the first step, and with them from there on.
+    let mut first = case.clone();
+    first["steps"].as_array_mut().expect("steps").pop();
+    first["output"]["fields"] = json!(false);
+    let other = run(&first, &[]);
+    let output = start(other.path(), &case, &["--resume"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let late = frames(&other.path().join("out"), "solid").expect("frames").expect("a list");
+    assert_eq!(late.len(), 5);
+    for (frame, same) in late.iter().zip(&listed[4..]) {
+        let bytes = |folder: &TempDir, file: &str| fs::read(folder.path().join("out").join(file)).expect("a frame");
+        assert_eq!(frame.time, same.time);
+        assert!(bytes(&other, &frame.file) == bytes(&folder, &same.file), "t = {}", frame.time);
+    }
+}
+
+/// In frames as in closed form, u_x = u x/L, u_y = −ν u y/L in plane stress, for a body whose name has the signs of XML: another reader finds it.
+#[test]
+fn of_displacements_in_frames_have_closed_forms() {
+    let place = "bodies.a<b>&c.material.nu";
+    let case = json!({
+        "mesh": Blocks::default().rectangle("a<b>&c", [4, 2], [0.0, 0.0], [2.0, 0.5]).json(),
+        "section": {"plane_stress": {"thickness": 0.1}},
+        "bodies": {"a<b>&c": {"material": {"model": "linear", "E": 200, "nu": 0.3}}},
+        "steps": [{"name": "pull", "duration": 1, "dt": {"initial": 1}, "supports": [
+            {"on": "a<b>&c_left", "ux": 0}, {"on": "a<b>&c_bottom", "uy": 0}, {"on": "a<b>&c_right", "ux": 0.01}]}],
+        "gradients": [place, "steps.pull.supports[2].ux"],
+        "output": {"displacement_gradients": true},
+    });
+    let folder = run(&case, &[]);
+    let out = folder.path().join("out");
+    let grid = Grid::read(&out.join("solid/00001.vtu")).expect("a grid");
+    let vtkio::model::DataSet::UnstructuredGrid { pieces, .. } =
+        vtkio::Vtk::import(out.join("solid/00001.vtu")).expect("a frame").data
+    else {
+        panic!("an unstructured grid")
+    };
+    let other = pieces[0].load_piece_data(None).expect("its data").data.point;
+    let (length, u, nu) = (2.0, 0.01, 0.3);
+    for (by, exact) in [
+        (place, Box::new(|[_, y]: [f64; 2]| [0.0, -u * y / length]) as Box<dyn Fn([f64; 2]) -> [f64; 2]>),
+        ("steps.pull.supports[2].ux", Box::new(|[x, y]| [x / length, -nu * y / length])),
+    ] {
+        let name = format!("d(displacement)/d({by})");
+        let array = grid.at_points.iter().find(|array| array.name == name).expect("an array");
+        for (at, found) in grid.points.iter().zip(array.values.chunks_exact(3)) {
+            let expected = exact(*at);
+            close(by, found[0], expected[0], 1e-6 * u);
+            close(by, found[1], expected[1], 1e-6 * u);
+        }
+        let read = other.iter().find_map(|attribute| match attribute {
+            vtkio::model::Attribute::DataArray(of) if of.name == name => of.data.clone().cast_into::<f64>(),
+            _ => None,
+        });
+        assert_eq!(read.as_ref(), Some(&array.values), "{name}");
+    }
 }
 
 /// A value at the end of its range is varied inwards: `structure` lets `mu_s` grow only, and `mu_k` fall only. The law is the same on both

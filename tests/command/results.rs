@@ -9,6 +9,7 @@ use crate::common::{self, Blocks, Record, close};
 use crate::delayed::DelayedPressure;
 use fecontact::laws::friction::{FrictionLaw, Regime, Sliding};
 use fecontact::output::fields::{Fields, Frames, Selection};
+use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::results::Grid;
 use serde_json::{Value, json};
@@ -432,6 +433,7 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
         model.clone(),
         &model.initial_state(),
         Frames { of: Selection::Rows(1), points: false, exact: true, derived: false },
+        Motions::default(),
     )
     .unwrap();
     let mut record = Record::default();

@@ -218,10 +218,11 @@ fn augmented() -> Value {
     case
 }
 
-/// With derivatives, whose neighbours go on as well.
+/// With derivatives, whose neighbours go on as well, and which frames show.
 fn differentiated() -> Value {
     let mut case = dragged(json!("static"), 40);
     case["gradients"] = json!(["contacts.base.friction.mu_k", "steps.drag.supports[0].ux.rate"]);
+    case["output"]["displacement_gradients"] = json!(true);
     case
 }
 

@@ -38,7 +38,7 @@ fn chunked(folder: &Path, is: &Value) -> (Vec<usize>, Vec<f64>) {
     assert_eq!(width, chunks[1..].iter().product::<usize>(), "chunks hold whole records");
     let mut values = Vec::new();
     for first in (0..shape[0]).step_by(chunks[0]) {
-        let behind = if shape.len() == 2 { ".0" } else { "" };
+        let behind = ".0".repeat(shape.len() - 1);
         let packed = fs::read(folder.join(format!("{}{behind}", first / chunks[0]))).expect("a chunk");
         let bytes = miniz_oxide::inflate::decompress_to_vec_zlib(&packed).expect("zlib");
         let count = chunks[0] * width;

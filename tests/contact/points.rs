@@ -10,6 +10,7 @@ use fecontact::laws::friction::{FrictionParameters, FrictionState, Sliding};
 use fecontact::model::Model;
 use fecontact::model::state::State;
 use fecontact::output::fields::{Fields, Frames, Selection};
+use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::warnings::Warnings;
 use fecontact::run::error::Error;
@@ -632,6 +633,7 @@ fn points_are_written_and_warned_of() {
         model.clone(),
         &model.initial_state(),
         Frames { of: Selection::Rows(1), points: false, exact: true, derived: false },
+        Motions::default(),
     )
     .unwrap();
     let mut warnings = Warnings::default();

@@ -10,6 +10,7 @@ use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
 use fecontact::output::fields::{Fields, Frames, Selection};
 use fecontact::output::fronts::{Fronts, FrontsInput};
+use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::warnings::Warnings;
@@ -496,6 +497,7 @@ fn observers_go_back_with_the_run() {
         model.clone(),
         &start,
         Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
+        Motions::default(),
     )
     .expect("frames");
     let mut fronts = Fronts::new(folder.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None });
@@ -538,6 +540,7 @@ fn observers_go_back_with_the_run() {
                 model.clone(),
                 &start,
                 Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
+                Motions::default(),
             )
             .expect("frames"),
         ),

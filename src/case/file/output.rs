@@ -34,8 +34,8 @@ pub struct OutputInput {
     /// Whether the fields also have what follows from stress and logarithmic strain: `principal_stress`, `principal_strain` and
     /// `stretch_zz`, for ParaView. The page and Python compute these themselves
     pub derived: bool,
-    /// Whether `gradients.zarr` also has the derivatives of the displacements of all nodes by the places of `gradients`, at every row of the
-    /// history
+    /// Whether `gradients.zarr`, at every row of the history, and the fields also have the derivatives of the displacements of all nodes by the
+    /// places of `gradients`
     pub displacement_gradients: bool,
     /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` continues with bitwise
     /// identical results, however the run ended; the last one is written at the end. Default 5; null or 0 for none

@@ -13,7 +13,7 @@ use crate::output::fields::{Fields, Frames};
 use crate::output::folder::{GRADIENTS, INTERFACE};
 use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
-use crate::output::gradients::{self, Asked, Gradients};
+use crate::output::gradients::{self, Asked, Gradients, Motions};
 use crate::output::history::History;
 use crate::output::newton_log::NewtonLog;
 use crate::output::probes::Probes;
@@ -84,12 +84,14 @@ impl Outputs {
         let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
         let (has_contacts, has_fields) = (!model.contacts.is_empty(), case.output.fields);
         let store = || InterfaceStore::reopen(folder, model, &start, &case.units);
-        let series = || Fields::reopen(folder, model.clone(), frames);
-        let derivatives = Asked {
+        let asked = Asked {
             units: &case.units,
             of_displacements: case.output.displacement_gradients,
             goes_on: goes_on("gradients"),
         };
+        let gradients = neighbours.as_ref().map(|of| Gradients::new(folder, model, of, asked, warn)).transpose()?;
+        let motions = gradients.as_ref().map_or_else(Motions::default, Gradients::motions);
+        let series = || Fields::reopen(folder, model.clone(), frames, motions.clone());
         let mut outputs = Self {
             history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
             newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
@@ -98,10 +100,7 @@ impl Outputs {
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
             fronts: case.output.fronts.map(|criterion| Fronts::new(folder, model, &start, criterion)),
-            gradients: neighbours
-                .as_ref()
-                .map(|neighbours| Gradients::new(folder, model, neighbours, derivatives, warn))
-                .transpose()?,
+            gradients,
         };
         // A run is resumed only if all its files are unchanged.
         saved.map_or(Ok(()), |saved| saved.check(&outputs.observers()))?;
@@ -118,7 +117,10 @@ impl Outputs {
             outputs.probes = Some(Probes::create(folder, model)?);
         }
         if outputs.fields.is_none() && has_fields {
-            outputs.fields = Some(Fields::create(folder, model.clone(), &start, frames)?);
+            // Their first frame shows the derivatives with which the run goes on.
+            let gradients = outputs.gradients.as_mut();
+            saved.zip(gradients).map_or(Ok(()), |(saved, gradients)| saved.restore(gradients))?;
+            outputs.fields = Some(Fields::create(folder, model.clone(), &start, frames, motions)?);
         }
         Ok(outputs)
     }
@@ -144,9 +146,10 @@ impl Outputs {
             warnings,
             watch(interface),
             watch(probes),
+            // Before the frames that show its derivatives.
+            watch(gradients),
             watch(fields),
             watch(fronts),
-            watch(gradients),
         ];
         all.into_iter().flatten().collect()
     }

@@ -88,4 +88,4 @@ const unitOf = (of) => DATA.labels.units[of] || "";
 
 /** Label of the unit of a quantity, and what it is called. */
 const fieldUnit = (name) => DATA.labels.quantities[name]?.[0] || "";
-const spoken = (name) => DATA.labels.quantities[name]?.[1] || name.replaceAll("_", " ");
+const spoken = (name) => DATA.labels.quantities[name]?.[1] || (name.startsWith("d(") ? name : name.replaceAll("_", " "));
