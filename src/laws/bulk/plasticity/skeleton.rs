@@ -93,6 +93,10 @@ const ALMOST: f64 = 1e-11;
 /// Least share of κ̂ for ε_v to begin with, where the trial stress is a tension.
 const LOWEST: f64 = 0.1;
 
+/// Least ε_v as a share of κ̂, and least Λ, between which and where there is too much of them a bisection begins.
+const LEAST_COMPRESSION: f64 = 1e-30;
+const LEAST_FLOW: f64 = 1e-40;
+
 /// Least share of a step of Newton's method.
 const SHORTEST: f64 = 1e-4;
 
@@ -268,6 +272,22 @@ impl Skeleton {
         Err(here.2)
     }
 
+    /// ε_v and Λ of the end by bisection, which finds them at any pressure. The first of (8) rises with ε_v: from below zero, unless Λ is too
+    /// large. With that ε_v the second falls with Λ, from above zero.
+    fn bisected(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>) -> Option<Vector2<f64>> {
+        let rest = |compression: f64, flow: f64| self.end(elastic, trial, [compression, flow]).rest;
+        let compression = |flow: f64| {
+            let is_low = |compression: f64| rest(compression, flow)[0] < 0.0;
+            let least = LEAST_COMPRESSION * elastic.kappa;
+            is_low(least).then(|| last(least, elastic.kappa, is_low))
+        };
+        let is_low = |flow: f64| compression(flow).is_some_and(|compression| rest(compression, flow)[1] > 0.0);
+        let flow = last(LEAST_FLOW, 10.0 * LEAST_FLOW, is_low);
+        let found = [compression(flow)?, flow];
+        let [a, b] = rest(found[0], found[1]);
+        (a.abs().max(b.abs()) <= ALMOST).then(|| found.into())
+    }
+
     /// The state after trial strains, with its derivatives by them; or what is left of (8).
     fn step(
         &self,
@@ -302,7 +322,7 @@ impl Skeleton {
     /// The state at the end of an increment that yields. Derivatives of ε_v and Λ are those of the root of (8).
     fn yielded(&self, elastic: &LogarithmicBulk, trial: &Trial<Varied>) -> Result<State<Varied>, f64> {
         let plain = trial.of(Varied::value);
-        let root = self.solved(elastic, &plain)?;
+        let root = self.solved(elastic, &plain).or_else(|left| self.bisected(elastic, &plain).ok_or(left))?;
         let inverse = self.rest(elastic, &plain, &root).1.try_inverse().ok_or(f64::INFINITY)?;
         let [a, b] = self.end(elastic, trial, [root[0], root[1]].map(Varied::from)).rest.map(|rest| rest.by);
         let by: [Vector2<f64>; 4] = std::array::from_fn(|k| -inverse * Vector2::new(a[k], b[k]));
@@ -337,6 +357,21 @@ impl Skeleton {
             state = self.step(elastic, &state, &strain)?;
         }
         Ok(state)
+    }
+}
+
+/// The last number that is low, from a positive one that is, by bisection of orders of magnitude and then of the number itself; the first
+/// guess of one that is not is multiplied by ten as long as it is low.
+fn last(mut low: f64, mut high: f64, is_low: impl Fn(f64) -> bool) -> f64 {
+    while high.is_finite() && is_low(high) {
+        (low, high) = (high, 10.0 * high);
+    }
+    loop {
+        let middle = if low < 0.5 * high { (low * high).sqrt() } else { 0.5 * (low + high) };
+        if !(middle > low && middle < high) {
+            return low;
+        }
+        if is_low(middle) { low = middle } else { high = middle }
     }
 }
 
