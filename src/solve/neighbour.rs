@@ -121,25 +121,23 @@ pub struct Seeker<'a> {
 struct Part {
     /// Factor of every neighbour
     factors: Vec<f64>,
-    /// ‖r‖/‖f‖ up to which it counts as nothing [-]
-    tolerance: f64,
     /// ‖r‖/‖f‖ at the last evaluation, and before it
     left: f64,
     before: f64,
 }
 
 impl Part {
-    fn new(factors: Vec<f64>, tolerance: f64) -> Self {
-        Self { factors, tolerance, left: f64::INFINITY, before: f64::INFINITY }
+    fn new(factors: Vec<f64>) -> Self {
+        Self { factors, left: f64::INFINITY, before: f64::INFINITY }
     }
 
     /// The parts of (2) of two neighbours, or each by itself, (1).
     fn of(count: usize) -> Vec<Self> {
         match count {
-            2 => vec![Self::new(vec![1.0, -1.0], TOLERANCE), Self::new(vec![1.0, 1.0], COMMON)],
+            2 => vec![Self::new(vec![1.0, -1.0]), Self::new(vec![1.0, 1.0])],
             _ => {
                 let alone = |k: usize| (0..count).map(|other| f64::from(u8::from(other == k))).collect();
-                (0..count).map(|k| Self::new(alone(k), TOLERANCE)).collect()
+                (0..count).map(|k| Self::new(alone(k))).collect()
             }
         }
     }
@@ -155,15 +153,20 @@ impl Part {
         sum
     }
 
-    /// Whether nothing is left of it. What has not been corrected yet may be less than its error so far, and grow from increment to
-    /// increment; what neighbours have in common drops out of their difference.
-    fn is_solved(&self) -> bool {
-        let is_sure = self.before.is_finite() && (self.left <= SURE * self.before || self.before <= TOLERANCE);
-        self.left == 0.0 || self.left <= self.tolerance && (is_sure || self.tolerance == COMMON)
+    /// Whether it is what two neighbours have in common.
+    fn is_common(&self) -> bool {
+        self.factors == [1.0, 1.0]
     }
 
-    fn falls(&self) -> bool {
-        self.left <= self.tolerance || self.left <= SLOW * self.before
+    /// Whether nothing is left of it, up to a ‖r‖/‖f‖. What has not been corrected yet may be less than its error so far, and grow from
+    /// increment to increment; what neighbours have in common drops out of their difference.
+    fn is_solved(&self, tolerance: f64) -> bool {
+        let is_sure = self.before.is_finite() && (self.left <= SURE * self.before || self.before <= TOLERANCE);
+        self.left == 0.0 || self.left <= tolerance && (is_sure || tolerance == COMMON)
+    }
+
+    fn falls(&self, tolerance: f64) -> bool {
+        self.left <= tolerance || self.left <= SLOW * self.before
     }
 }
 
@@ -187,22 +190,22 @@ impl Seeker<'_> {
 pub fn beside(mut neighbours: Vec<Seeker>, tangent: &mut Tangent) -> Result<Vec<Vec<f64>>, IncrementFailure> {
     let mut parts = Part::of(neighbours.len());
     while tangent.serves && neighbours.iter_mut().all(|neighbour| neighbour.evaluate(tangent).is_ok()) {
-        if let [_, common] = &mut parts[..] {
-            common.tolerance = if have_same_status(&neighbours) { COMMON } else { TOLERANCE };
-        }
-        let mut ways = Vec::new();
+        let of_common = if have_same_status(&neighbours) { COMMON } else { TOLERANCE };
+        let (mut ways, mut all_fall) = (Vec::new(), true);
         for part in &mut parts {
+            let tolerance = if part.is_common() { of_common } else { TOLERANCE };
             let residual = part.residual(&neighbours, &tangent.system.residual);
             let own = part.factors.iter().position(|factor| *factor != 0.0).unwrap_or_default();
             (part.before, part.left) = (part.left, neighbours[own].share_of(&residual));
-            if !part.is_solved() {
+            if !part.is_solved(tolerance) {
                 ways.push((part.factors.clone(), residual));
             }
+            all_fall &= part.falls(tolerance);
         }
         if ways.is_empty() {
             return Ok(neighbours.into_iter().map(|neighbour| neighbour.u).collect());
         }
-        if !parts.iter().all(Part::falls) {
+        if !all_fall {
             break;
         }
         for (factors, residual) in ways {
