@@ -51,7 +51,7 @@ impl LogarithmicBulk {
     }
 
     /// ε_v at a pressure.
-    fn compression(&self, pressure: f64) -> f64 {
+    pub(super) fn compression(&self, pressure: f64) -> f64 {
         let ratio = pressure / self.floor;
         self.kappa * if ratio > 1.0 { 1.0 + ratio.ln() } else { ratio }
     }

@@ -234,13 +234,37 @@ impl Skeleton {
         (Vector2::new(a.value, b.value), Matrix2::new(a.by[0], a.by[1], b.by[0], b.by[1]))
     }
 
-    /// ε_v and Λ of the end, by Newton's method from no flow, damped; or what is left of (8).
+    /// ε_v and Λ of the end by Newton's method, from no flow or from little pressure, and where neither finds them by bisection; or what is
+    /// left of (8).
     fn solved(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>) -> Result<Vector2<f64>, f64> {
+        let from_no_flow = Vector2::new(trial.compression.max(LOWEST * elastic.kappa), 0.0);
+        self.newton(elastic, trial, from_no_flow).or_else(|left| {
+            let from_little = self.little_pressure(elastic, trial).and_then(|x| self.newton(elastic, trial, x).ok());
+            from_little.or_else(|| self.bisected(elastic, trial)).ok_or(left)
+        })
+    }
+
+    /// ε_v and Λ of (8) after a tension V = −ε_v,tr, near half of the Λ at which there is no pressure, without rotation.
+    ///
+    /// ```text
+    /// η* = M √(1 + V/Λ),   p = q_tr/η* − 6GΛ/M²,   0 at Λ (Λ + V) = (M q_tr/6G)²
+    /// ```
+    fn little_pressure(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>) -> Option<Vector2<f64>> {
+        let (opened, q) = (-trial.compression, (1.5 * dot(&trial.deviator, &trial.deviator)).sqrt());
+        let root = self.critical * q / (6.0 * elastic.shear);
+        let flow = 0.5 * root * root / opened.max(root);
+        let pressure = q / (self.critical * (1.0 + opened / flow).sqrt())
+            - 6.0 * elastic.shear * flow / (self.critical * self.critical);
+        (opened > 0.0 && pressure > 0.0).then(|| Vector2::new(elastic.compression(pressure), flow))
+    }
+
+    /// ε_v and Λ by Newton's method, damped; or what is left of (8).
+    fn newton(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>, start: Vector2<f64>) -> Result<Vector2<f64>, f64> {
         let at = |x: &Vector2<f64>| {
             let (rest, slopes) = self.rest(elastic, trial, x);
             (rest, slopes, if rest.amax().is_nan() { f64::INFINITY } else { rest.amax() })
         };
-        let mut x = Vector2::new(trial.compression.max(LOWEST * elastic.kappa), 0.0);
+        let mut x = start;
         let mut here = at(&x);
         for _ in 0..ITERATIONS {
             let (rest, slopes, size) = here;
@@ -322,7 +346,7 @@ impl Skeleton {
     /// The state at the end of an increment that yields. Derivatives of ε_v and Λ are those of the root of (8).
     fn yielded(&self, elastic: &LogarithmicBulk, trial: &Trial<Varied>) -> Result<State<Varied>, f64> {
         let plain = trial.of(Varied::value);
-        let root = self.solved(elastic, &plain).or_else(|left| self.bisected(elastic, &plain).ok_or(left))?;
+        let root = self.solved(elastic, &plain)?;
         let inverse = self.rest(elastic, &plain, &root).1.try_inverse().ok_or(f64::INFINITY)?;
         let [a, b] = self.end(elastic, trial, [root[0], root[1]].map(Varied::from)).rest.map(|rest| rest.by);
         let by: [Vector2<f64>; 4] = std::array::from_fn(|k| -inverse * Vector2::new(a[k], b[k]));
