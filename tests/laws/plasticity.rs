@@ -331,6 +331,9 @@ fn principal(strains: [f64; 3]) -> Vector5<f64> {
     Vector5::new(x, 0.0, 0.0, y, z)
 }
 
+/// A deformation by its size.
+type Way<'a> = &'a dyn Fn(f64) -> Vector5<f64>;
+
 /// From one side of the yield surface through the inside to another, in one increment: what is dissipated is the work of the stress there
 /// on the plastic strain, a ε̄ + b ε_v of what yields at a constant stress. Y ε̄; ξ c Δγ with ε̄ = Δγ/√3 on the associated cone, and
 /// c cos φ Δγ with ε_v = sin φ Δγ on the associated hexagon; at a tip its tension times ε_v, 0 of clay, which was pressed to its cap.
@@ -341,7 +344,7 @@ fn a_reversal_in_one_increment_dissipates_what_its_stress_does() {
     let clay =
         json!({"model": "cam_clay", "lambda": 0.15, "kappa": 0.04, "M": 1.1, "p_min": 0.01, "G": 8.0, "p_c": 0.4});
     let (shear, pressed) = (|e: f64| principal([e, -e, 0.0]), |e: f64| principal([-e; 3]));
-    let given: [(Value, &dyn Fn(f64) -> Vector5<f64>, [f64; 2]); 6] = [
+    let given: [(Value, Way, [f64; 2]); 6] = [
         (json!({"model": "von_mises", "sigma_y": SIGMA_Y}), &shear, [SIGMA_Y, 0.0]),
         (
             json!({"model": "drucker_prager", "c": 0.1, "phi": 30, "psi": 30, "matching": "compression"}),
