@@ -152,7 +152,7 @@ fn most_first(given_up: &BTreeMap<String, usize>) -> String {
     reasons.iter().map(|(reason, count)| format!("{count} × {reason}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Prints the energy balance of a dynamic run; `supplied` is the largest initial energy + external work.
+/// Prints the energy balance of a dynamic run; `supplied` is the largest energy supplied.
 fn audit(energy: &Energy, supplied: f64) {
     let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
     let yielded = match energy.plastic_dissipation > 0.0 {

@@ -176,9 +176,9 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Energy supplied: initial energy and external work.
+    /// Energy supplied: initial energy and external work, or what an initial stress sets free, from which the strain energy counts.
     pub fn supplied(&self) -> f64 {
-        self.initial.abs().max((self.initial + self.external_work).abs())
+        self.initial.abs().max((self.initial + self.external_work).abs()).max(-self.strain)
     }
 
     /// external work + initial − (kinetic + strain + contact) − dissipation − radiated: 0 for an exact integration.

@@ -4,8 +4,8 @@
 //! error = initial + external work − (kinetic + strain + contact) − dissipation                  0 if all is resolved
 //! ```
 //!
-//! The error is measured relative to the energy available for storage or dissipation: initial energy and external work. A motion
-//! that gains more than all of it is an instability of the increments.
+//! The error is measured relative to the energy available for storage or dissipation: initial energy and external work, or what an
+//! initial stress sets free. A motion that gains more than all of it is an instability of the increments.
 //!
 //! # Energy in contact penalties
 //!
@@ -31,7 +31,7 @@ const ROUND_OFF: f64 = 100.0;
 /// Energy balance of the run so far.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Audit {
-    /// Largest initial energy + external work [F·L]
+    /// Largest energy supplied [F·L]
     pub supplied: f64,
     /// Error at the last row [F·L]
     error: f64,
@@ -161,9 +161,12 @@ impl Audit {
         let fate = if worst < 0.0 { "gain" } else { "loss" };
         let share = if self.supplied > 0.0 {
             let percent = 100.0 * worst.abs() / self.supplied;
-            format!("{percent:.3} % of the {:.3e} supplied (initial energy + external work)", self.supplied)
+            format!(
+                "{percent:.3} % of the {:.3e} supplied (initial energy + external work, or freed by initial stress)",
+                self.supplied
+            )
         } else {
-            "with nothing supplied (initial energy + external work)".into()
+            "with nothing supplied (initial energy + external work, or freed by initial stress)".into()
         };
         Some(format!(
             "energy balance violated by t = {}: spurious {fate} of {:.3e}, {share}, mostly in step `{name}`: {remedy}",

@@ -247,7 +247,10 @@ impl ContactIteration {
         request: Request,
     ) -> Result<(), TrialFailure> {
         let (aids, points) = (assembler.model().aids, &self.points);
-        let presumed = |pair: usize, point: usize| points[pair][point].presumption(aids);
+        // Before the first residual nothing is known about any point.
+        let presumed = |pair: usize, point: usize| {
+            points[pair].get(point).map_or_else(Presumption::default, |point| point.presumption(aids))
+        };
         assembler.interfaces(trial, u, presumed, request, &mut self.next)
     }
 

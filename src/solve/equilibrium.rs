@@ -71,7 +71,7 @@ pub fn equilibrium(
     let result = condensed.unwrap_or_else(|| on_all(model, trial, start, &mut watch, work));
     let assembled = work.assembler.seconds.assembly + work.assembler.seconds.contact - spent;
     work.linear_seconds += clock.elapsed().as_secs_f64() - assembled;
-    let result = explained(model, trial.old, watch.floating.take(), result, &work.system.tangent);
+    let result = explained(model, trial, watch.floating.take(), result, &work.system.tangent);
     (watch.records, result)
 }
 
@@ -95,7 +95,7 @@ fn on_all(
         |u, request, system| {
             iteration.evaluate_all(assembler, trial, u, request, system)?;
             if request == Request::Tangent && watch.begins && watch.tangents == 0 && is_unaided(trial) {
-                watch.floating = null_motion(model, u, &system.tangent);
+                watch.floating = null_motion(model, trial.step, u, &system.tangent);
             }
             watch.note(request, assembler, system.forces, in_trial(trial, iteration.acted), foreseen);
             Ok(())
@@ -121,7 +121,7 @@ fn on_contacts(
     let mut u = start.to_vec();
     if watch.begins && is_unaided(trial) {
         assemble_all(trial, &u, work)?;
-        watch.floating = null_motion(model, &u, &work.system.tangent);
+        watch.floating = null_motion(model, trial.step, &u, &work.system.tangent);
     }
     if watch.begins {
         work.iteration.start_increment();
@@ -261,7 +261,7 @@ impl Watch {
 /// Returns the solution, or the reason why there is none: unconstrained bodies explain more than the equations.
 fn explained(
     model: &Model,
-    old: &State,
+    Trial { old, step, .. }: Trial,
     floating: Option<String>,
     result: Result<Vec<f64>, NewtonFailure<TrialFailure>>,
     tangent: &SparseMatrix,
@@ -271,7 +271,7 @@ fn explained(
         (Some(floating), _) => Err(IncrementFailure::ContactLost(floating)),
         // A trial state may have lost the contact that constrained a body; this is reported, and a smaller increment tried.
         (None, Err(failure)) => {
-            let loose = null_motion(model, &old.displacement, tangent);
+            let loose = null_motion(model, step, &old.displacement, tangent);
             Err(loose.map_or(failure.into(), IncrementFailure::ContactLost))
         }
         (None, Ok(u)) => Ok(u),

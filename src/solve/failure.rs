@@ -159,12 +159,14 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
         IncrementFailure::Newton(failure) if failure.is_without_end() => worst_node(model, step, &work.system.residual),
         _ => return String::new(),
     };
-    let contact = unbalanced.and_then(|node| model.contacts.iter().find(|pair| pair.nodes().any(|own| own == node)));
+    let contacts = || model.contacts.iter().filter(|pair| step.joins(pair));
+    let bodies = || model.bodies.iter().enumerate().filter(|(k, _)| step.has(*k)).map(|(_, body)| body);
+    let contact = unbalanced.and_then(|node| contacts().find(|pair| pair.nodes().any(|own| own == node)));
     let place = unbalanced.map(|node| {
         let (tag, at) = (model.mesh.node_tags[node], model.mesh.nodes[node]);
         let owner = contact.map(|pair| format!(" of contact `{}`", pair.name)).or_else(|| {
-            let bodies = model.bodies.iter().filter(|body| body.nodes.binary_search(&node).is_ok());
-            let names: Vec<String> = bodies.map(|body| format!("`{}`", body.name)).collect();
+            let own = bodies().filter(|body| body.nodes.binary_search(&node).is_ok());
+            let names: Vec<String> = own.map(|body| format!("`{}`", body.name)).collect();
             match &names[..] {
                 [] => None,
                 [body] => Some(format!(" of body {body}")),
@@ -174,8 +176,8 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
         let owner = owner.unwrap_or_default();
         format!("largest residual at node {tag}{owner}, ({}, {})", number(at.x), number(at.y))
     });
-    let penalties = model.contacts.iter().filter_map(penalty);
-    let causes = place.into_iter().chain(penalties).chain(model.bodies.iter().filter_map(|body| locking(model, body)));
+    let causes = place.into_iter().chain(contacts().filter_map(penalty));
+    let causes = causes.chain(bodies().filter_map(|body| locking(model, body)));
     causes.map(|cause| format!("; {cause}")).collect()
 }
 

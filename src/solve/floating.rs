@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
 use crate::linear::{LinearSolver, Multifrontal, Pattern, SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::joined::Joined;
-use crate::model::Model;
+use crate::model::{Model, Step};
 
 /// Relative stiffness below which a motion counts as free: far above round-off, far below any contact penalty.
 const FREE: f64 = 1e-12;
@@ -35,14 +35,14 @@ const MOST_NAMED: usize = 6;
 
 const MOTIONS: [&str; 3] = ["along x", "along y", "in rotation"];
 
-/// Describes the first motion that the tangent at `u` does not resist.
-pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
-    null_motion_of_bodies(model, u, tangent).or_else(|| null_motion_of_a_node(model, tangent))
+/// Describes the first motion that the tangent at `u` does not resist, of what is there in a step.
+pub fn null_motion(model: &Model, step: &Step, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
+    null_motion_of_bodies(model, step, u, tangent).or_else(|| null_motion_of_a_node(model, tangent))
 }
 
 /// Null motion of the first group of parts that has one.
-fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
-    let parts = Parts::of(model);
+fn null_motion_of_bodies(model: &Model, step: &Step, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
+    let parts = Parts::of(model, step);
     let resistance = Resistance::new(model, &parts, u, tangent)?;
     resistance.groups().iter().find_map(|group| {
         let motion = resistance.null_motion(group)?;
@@ -58,18 +58,20 @@ fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Op
 struct Parts {
     /// Bodies of each part
     bodies: Vec<Vec<usize>>,
-    /// Part of each node; `None` outside all bodies
+    /// Part of each node; `None` outside the bodies that are there
     of_node: Vec<Option<usize>>,
 }
 
 impl Parts {
-    fn of(model: &Model) -> Self {
+    fn of(model: &Model, step: &Step) -> Self {
         let mut first: Vec<Option<usize>> = vec![None; model.mesh.nodes.len()];
         let mut joined = Joined::new(model.bodies.len());
-        for (body, nodes) in model.bodies.iter().map(|body| &body.nodes).enumerate() {
+        let there = model.bodies.iter().enumerate().filter(|(body, _)| step.has(*body));
+        for (body, nodes) in there.map(|(body, own)| (body, &own.nodes)) {
             nodes.iter().for_each(|&node| joined.join(body, *first[node].get_or_insert(body)));
         }
-        let bodies = joined.groups();
+        let mut bodies = joined.groups();
+        bodies.retain(|bodies| step.has(bodies[0]));
         let mut part = vec![0; model.bodies.len()];
         bodies.iter().enumerate().for_each(|(k, bodies)| bodies.iter().for_each(|&body| part[body] = k));
         Self { of_node: first.into_iter().map(|body| body.map(|body| part[body])).collect(), bodies }

@@ -2,7 +2,7 @@
 
 use crate::common::close;
 use crate::random::Random;
-use fecontact::laws::bulk::{CauchyStress, Material, MaterialParameters, Straining, Stretched};
+use fecontact::laws::bulk::{CauchyStress, LogarithmicBulk, Material, MaterialParameters, Straining, Stretched};
 use nalgebra::{Matrix2, Vector2, Vector5};
 use serde_json::{Value, json};
 
@@ -315,6 +315,15 @@ fn what_cannot_be_is_refused() {
         change.as_object().expect("keys").iter().for_each(|(key, value)| json[key] = value.clone());
         let refused = serde_json::from_value::<MaterialParameters>(json).expect("well formed").build();
         assert_eq!(refused.map(drop).expect_err(&change.to_string()).name, key, "{change}");
+    }
+}
+
+/// p = p_m ε_v/κ̂ below p_m, to all digits.
+#[test]
+fn small_pressures_are_exact() {
+    let law = LogarithmicBulk { kappa: KAPPA, floor: 3.0, shear: G };
+    for share in [1e-18, 1e-9, 0.3, 1.0] {
+        close("p", law.pressure(share * KAPPA)[0], 3.0 * share, 1e-15 * 3.0 * share);
     }
 }
 

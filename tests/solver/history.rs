@@ -1,11 +1,14 @@
 //! A state is all that the next increment needs: dropped attempts, restarts and threads leave no trace in it.
 
 use crate::common::{self, Blocks, Finished, close, finish};
+use fecontact::equations::{Assembler, Trial};
 use fecontact::laws::friction::FrictionState;
 use fecontact::linear::SparseLu;
+use fecontact::linear::system::Request;
 use fecontact::model::Model;
 use fecontact::model::state::State;
 use fecontact::solve::Workspace;
+use fecontact::solve::contact_iteration::ContactIteration;
 use fecontact::time::beginning::begin;
 use fecontact::time::increment::advance;
 use serde_json::{Value, json};
@@ -101,6 +104,22 @@ fn an_increment_is_a_pure_function_of_the_state() {
     assert!(first == once(&mut workspace(&run.model)), "a new workspace");
     // The workspace of the run has seen other contacts, so it eliminates in another order.
     close("in the run", difference(&first, new), 0.0, 1e-12);
+}
+
+/// A tangent that is asked for before any residual presumes nothing: its residual is that of the equations.
+#[test]
+fn a_tangent_may_come_first() {
+    let run = finish(&dragged("gauss_to_segment", 0.05, 25));
+    let (old, new, step) = (&run.states[13], &run.states[14], &run.model.steps[1]);
+    let trial = Trial::new(old, step, new.time, new.dt);
+    let [residual, beside_tangent] = [Request::Residual, Request::Tangent].map(|request| {
+        let mut assembler = Assembler::new(&run.model);
+        let mut system = assembler.system();
+        let mut iteration = ContactIteration::default();
+        iteration.evaluate_all(&mut assembler, trial, &new.displacement, request, &mut system).expect("an answer");
+        system.residual
+    });
+    assert!(residual == beside_tangent);
 }
 
 /// A state written as JSON and read again is the same, and goes on as if nothing had happened. (To round-off, not to the

@@ -414,6 +414,31 @@ fn what_makes_no_sense_is_refused() {
     refused("loading platen", &|case| case["plates"] = json!(["block_top"]));
 }
 
+/// What holds a body may go: on a smooth plane, without what it hung on, it is free, and it alone is named.
+#[test]
+fn what_has_gone_holds_nothing_and_is_not_named() {
+    let body = json!({"material": {"model": "linear", "E": 100, "nu": 0.3}});
+    let block = |body: &str, low: f64, high: f64, rows: usize| {
+        let is_joined = |side: &str| [("block", "top"), ("cut", "bottom")].contains(&(body, side));
+        let sides = ["bottom", "right", "top", "left"].map(|side| (!is_joined(side)).then(|| format!("{body}_{side}")));
+        json!({"body": body, "corners": [[0, low], [1, low], [1, high], [0, high]], "elements": [2, rows], "sides": sides})
+    };
+    let case = json!({
+        "mesh": {"joined": [["block", "cut"]],
+            "blocks": [block("block", 0.0, 1.0, 2), block("cut", 1.0, 2.0, 2)]},
+        "bodies": {"block": body, "cut": body},
+        "contacts": {"base": {"slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "friction": {"law": "frictionless"}}},
+        "steps": [
+            {"name": "press", "duration": 1, "supports": [{"on": "cut_top", "ux": 0, "uy": -0.01}]},
+            {"name": "go", "duration": 1, "remove": ["cut"]},
+        ],
+    });
+    let (_, result) = fecontact::run::run(&Arc::new(model(&case)), &mut []);
+    let said = result.expect_err("it slides").to_string();
+    assert!(said.contains("nothing resists the motion of body `block` along x"), "{said}");
+}
+
 /// A place that has become too narrow for what comes is told, with element and place.
 #[test]
 fn a_narrow_place_is_told() {

@@ -86,7 +86,7 @@ pub struct Job {
 pub struct Outcome {
     /// content of `summary.json`
     pub summary: Summary,
-    /// largest initial energy + external work [F·L]
+    /// largest energy supplied [F·L]
     pub supplied: f64,
     /// how it ended
     pub ended: Result<(), Failed>,
@@ -238,7 +238,7 @@ struct Work {
     gradients: Option<BTreeMap<String, Account>>,
     /// fraction of the elastic energy stored in contact penalties [-]
     energy_in_penalties: Option<f64>,
-    /// largest initial energy + external work [F·L]
+    /// largest energy supplied [F·L]
     supplied: f64,
 }
 

@@ -40,8 +40,8 @@ pub struct LogarithmicBulk {
 impl LogarithmicBulk {
     /// p and K = dp/dε_v of a compression ε_v.
     pub fn pressure(&self, compression: f64) -> [f64; 2] {
-        let beyond = compression / self.kappa - 1.0;
-        let pressure = if beyond > 0.0 { self.floor * beyond.exp() } else { self.floor * (1.0 + beyond) };
+        let share = compression / self.kappa;
+        let pressure = self.floor * if share > 1.0 { (share - 1.0).exp() } else { share };
         [pressure, self.bulk(pressure)]
     }
 
@@ -51,7 +51,7 @@ impl LogarithmicBulk {
     }
 
     /// ε_v at a pressure.
-    fn compression(&self, pressure: f64) -> f64 {
+    pub(super) fn compression(&self, pressure: f64) -> f64 {
         let ratio = pressure / self.floor;
         self.kappa * if ratio > 1.0 { 1.0 + ratio.ln() } else { ratio }
     }

@@ -75,9 +75,45 @@ fn deviator(tensor: &Vector4<f64>) -> (Vector4<f64>, f64) {
     (tensor - trace / 3.0 * ONE, trace)
 }
 
-/// The share of a way from f₀ to f₁ up to where f = 0.
-fn share_up_to([from, to]: [f64; 2]) -> f64 {
-    if to > from { (-from / (to - from)).clamp(0.0, 1.0) } else { 0.0 }
+/// The first share of a way at which a law that leaves its yield surface inwards is elastic.
+const INWARDS: f64 = 1e-3;
+
+/// Most iterations for where a way leaves the elastic domain.
+const ITERATIONS: usize = 60;
+
+/// Share of the f at the end of a way that may be left there.
+const LEFT: f64 = 1e-12;
+
+/// The share of a way up to where it leaves the elastic domain for good, f being convex along it and f > 0 at its end: also one that begins on
+/// one side of the yield surface and leads through the inside to another. By regula falsi (Illinois).
+fn share_within(f: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut below) = (INWARDS, f(INWARDS));
+    if below >= 0.0 {
+        let start = f(0.0);
+        return if start < 0.0 { INWARDS * start / (start - below) } else { 0.0 };
+    }
+    let (mut high, mut above) = (1.0, f(1.0));
+    if above <= 0.0 {
+        return 1.0;
+    }
+    let (least, mut was_inside) = (LEFT * above, None);
+    for _ in 0..ITERATIONS {
+        let share = low + (high - low) * below / (below - above);
+        let value = f(share);
+        if value.abs() <= least {
+            return share;
+        }
+        let is_inside = value < 0.0;
+        let again = was_inside.replace(is_inside) == Some(is_inside);
+        if is_inside {
+            (low, below) = (share, value);
+            above *= if again { 0.5 } else { 1.0 };
+        } else {
+            (high, above) = (share, value);
+            below *= if again { 0.5 } else { 1.0 };
+        }
+    }
+    low
 }
 
 /// The unit tensor.
@@ -152,9 +188,9 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
     /// f of a stress: 0 where it yields, less where it does not [F/L²]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64;
 
-    /// The share of the way from the committed stress to the trial stress after which it yields.
+    /// The share of the way from the committed stress to the trial stress after which it yields: where the way leaves the elastic domain.
     fn onset(&self, [before, trial]: [&Vector4<f64>; 2], history: &[f64]) -> f64 {
-        share_up_to([before, trial].map(|stress| self.yield_indicator(stress, history)))
+        share_within(|share| self.yield_indicator(&(before + share * (trial - before)), history))
     }
 
     /// Energy that a history stores per volume besides the elastic strains, as back stresses do [F/L²]
@@ -191,7 +227,7 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
 /// W = W_e(ε_e) + what the history stores, less that at the start                                                     (4)
 /// dissipation = ½ (τ_y + τ₁):Δε_p − Δ(what the history stores)                                                      (5)
 /// ```
-/// τ_y is where yielding begins on the way from the committed stress to the trial stress, so (5) is of second order in the increment,
+/// τ_y is where the way from the committed stress to the trial stress leaves the elastic domain, so (5) is of second order in the increment,
 /// as the audit of energies is, with F_p of C_p⁻¹ = F_p⁻¹ F_p⁻ᵀ, so that F at the end of the increment alone is needed. Plastic volume is exact: tr Δε_p = 0 keeps
 /// det C_p. The tangent is that of (1) to (3), l = dF F⁻¹ in the axes m:
 ///

@@ -93,6 +93,10 @@ const ALMOST: f64 = 1e-11;
 /// Least share of κ̂ for ε_v to begin with, where the trial stress is a tension.
 const LOWEST: f64 = 0.1;
 
+/// Least ε_v as a share of κ̂, and least Λ, between which and where there is too much of them a bisection begins.
+const LEAST_COMPRESSION: f64 = 1e-30;
+const LEAST_FLOW: f64 = 1e-40;
+
 /// Least share of a step of Newton's method.
 const SHORTEST: f64 = 1e-4;
 
@@ -230,13 +234,37 @@ impl Skeleton {
         (Vector2::new(a.value, b.value), Matrix2::new(a.by[0], a.by[1], b.by[0], b.by[1]))
     }
 
-    /// ε_v and Λ of the end, by Newton's method from no flow, damped; or what is left of (8).
+    /// ε_v and Λ of the end by Newton's method, from no flow or from little pressure, and where neither finds them by bisection; or what is
+    /// left of (8).
     fn solved(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>) -> Result<Vector2<f64>, f64> {
+        let from_no_flow = Vector2::new(trial.compression.max(LOWEST * elastic.kappa), 0.0);
+        self.newton(elastic, trial, from_no_flow).or_else(|left| {
+            let from_little = self.little_pressure(elastic, trial).and_then(|x| self.newton(elastic, trial, x).ok());
+            from_little.or_else(|| self.bisected(elastic, trial)).ok_or(left)
+        })
+    }
+
+    /// ε_v and Λ of (8) after a tension V = −ε_v,tr, near half of the Λ at which there is no pressure, without rotation.
+    ///
+    /// ```text
+    /// η* = M √(1 + V/Λ),   p = q_tr/η* − 6GΛ/M²,   0 at Λ (Λ + V) = (M q_tr/6G)²
+    /// ```
+    fn little_pressure(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>) -> Option<Vector2<f64>> {
+        let (opened, q) = (-trial.compression, (1.5 * dot(&trial.deviator, &trial.deviator)).sqrt());
+        let root = self.critical * q / (6.0 * elastic.shear);
+        let flow = 0.5 * root * root / opened.max(root);
+        let pressure = q / (self.critical * (1.0 + opened / flow).sqrt())
+            - 6.0 * elastic.shear * flow / (self.critical * self.critical);
+        (opened > 0.0 && pressure > 0.0).then(|| Vector2::new(elastic.compression(pressure), flow))
+    }
+
+    /// ε_v and Λ by Newton's method, damped; or what is left of (8).
+    fn newton(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>, start: Vector2<f64>) -> Result<Vector2<f64>, f64> {
         let at = |x: &Vector2<f64>| {
             let (rest, slopes) = self.rest(elastic, trial, x);
             (rest, slopes, if rest.amax().is_nan() { f64::INFINITY } else { rest.amax() })
         };
-        let mut x = Vector2::new(trial.compression.max(LOWEST * elastic.kappa), 0.0);
+        let mut x = start;
         let mut here = at(&x);
         for _ in 0..ITERATIONS {
             let (rest, slopes, size) = here;
@@ -266,6 +294,22 @@ impl Skeleton {
             }
         }
         Err(here.2)
+    }
+
+    /// ε_v and Λ of the end by bisection, which finds them at any pressure. The first of (8) rises with ε_v: from below zero, unless Λ is too
+    /// large. With that ε_v the second falls with Λ, from above zero.
+    fn bisected(&self, elastic: &LogarithmicBulk, trial: &Trial<f64>) -> Option<Vector2<f64>> {
+        let rest = |compression: f64, flow: f64| self.end(elastic, trial, [compression, flow]).rest;
+        let compression = |flow: f64| {
+            let is_low = |compression: f64| rest(compression, flow)[0] < 0.0;
+            let least = LEAST_COMPRESSION * elastic.kappa;
+            is_low(least).then(|| last(least, elastic.kappa, is_low))
+        };
+        let is_low = |flow: f64| compression(flow).is_some_and(|compression| rest(compression, flow)[1] > 0.0);
+        let flow = last(LEAST_FLOW, 10.0 * LEAST_FLOW, is_low);
+        let found = [compression(flow)?, flow];
+        let [a, b] = rest(found[0], found[1]);
+        (a.abs().max(b.abs()) <= ALMOST).then(|| found.into())
     }
 
     /// The state after trial strains, with its derivatives by them; or what is left of (8).
@@ -337,6 +381,21 @@ impl Skeleton {
             state = self.step(elastic, &state, &strain)?;
         }
         Ok(state)
+    }
+}
+
+/// The last number that is low, from a positive one that is, by bisection of orders of magnitude and then of the number itself; the first
+/// guess of one that is not is multiplied by ten as long as it is low.
+fn last(mut low: f64, mut high: f64, is_low: impl Fn(f64) -> bool) -> f64 {
+    while high.is_finite() && is_low(high) {
+        (low, high) = (high, 10.0 * high);
+    }
+    loop {
+        let middle = if low < 0.5 * high { (low * high).sqrt() } else { 0.5 * (low + high) };
+        if !(middle > low && middle < high) {
+            return low;
+        }
+        if is_low(middle) { low = middle } else { high = middle }
     }
 }
 

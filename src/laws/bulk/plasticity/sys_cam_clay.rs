@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cam_clay::{CamClay, CamClayParameters, P_C, SHEAR, invariants};
 use super::skeleton::{Skeleton, State, Tensor, values};
-use super::{Elasticity, Elastoplastic, ReturnMap, Returned, SHOWN, deviator, double_dot, in_axes, share_up_to};
+use super::{Elasticity, Elastoplastic, ReturnMap, Returned, SHOWN, deviator, double_dot, in_axes, share_within};
 use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
@@ -151,8 +151,8 @@ impl SysCamClayParameters {
 /// η̂ ((1 + c)(1 + x) + x m_b/‖η̂‖) = (1 + x) s_tr/p − β_n,   c = 6GΛ/(M² p),   x = (b_r/D) √6 Λ ‖η̂‖²/M²             (9)
 /// ```
 /// where (3), (4) and (5) are exact for the plastic strains: p_c is exponential, R has a closed form, R* is logistic. So nothing drifts: R and R* stay
-/// within 0 and 1. Newton's method finds ε_v and Λ of (8), with ‖η̂‖ of (9) inside of it. Where it fails, the way is divided into up to 256
-/// parts. The tangent is that of all parts.
+/// within 0 and 1. Newton's method finds ε_v and Λ of (8), with ‖η̂‖ of (9) inside of it, or where it fails, as near zero pressure, bisection.
+/// Where that fails as well, the way is divided into up to 256 parts. The tangent is that of all parts.
 ///
 /// # Errors
 /// [`MaterialFailure::NotConverged`] when (8) has not been solved: a tension that is the same in all directions has no solution.
@@ -350,7 +350,7 @@ impl ReturnMap for SysCamClay {
                 let [from, to] = &ways;
                 self.skeleton.least([(from.0, &from.1), (to.0, &to.1)], &rotation(history))
             }
-            None => share_up_to([before, trial].map(|stress| self.yield_indicator(stress, history))),
+            None => share_within(|share| self.yield_indicator(&(before + share * (trial - before)), history)),
         }
     }
 
