@@ -422,7 +422,7 @@ struct Planes {
     limits: Vector3<f64>,
     /// C B, 0 beyond the planes
     stiff_flows: Matrix3<f64>,
-    /// (A C B)⁻¹, 0 beyond the planes
+    /// (A C B)⁻¹, 1 beyond the planes
     inverse: Matrix3<f64>,
     /// D
     moduli: Matrix3<f64>,
@@ -445,7 +445,6 @@ impl Planes {
             return None;
         }
         planes.inverse = products.try_inverse()?;
-        (count..3).for_each(|k| planes.inverse[(k, k)] = 0.0);
         planes.moduli = stiffness - planes.stiff_flows * planes.inverse * planes.normals.transpose() * stiffness;
         Some(planes)
     }
