@@ -218,6 +218,18 @@ fn without_yielding_it_is_hencky_s() {
     }
 }
 
+/// The axes of strains so small that their squares vanish turn no stress: that of a body compressed alike on all sides stays.
+#[test]
+fn strains_that_vanish_leave_an_initial_stress() {
+    let law = with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y}));
+    let mut old = vec![0.0; law.description().variables.len()];
+    law.initial_state(Vector2::zeros(), &CauchyStress { xx: -1.0, yy: -1.0, zz: -1.0, xy: 0.0 }, &mut old);
+    for size in [1e-170, 1.6e-162, 1e-158, 1e-140] {
+        let stress = stretched(&*law, &Vector5::new(1.0, 0.0, size, 1.0, 1.0), &old).expect("an answer").0.stress;
+        assert!((stress + Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0)).amax() < 1e-14, "{size}: {stress}");
+    }
+}
+
 /// In plane strain a law answers as with F₃₃ = 1; at several points at once, and without the tangent, to the same bits.
 #[test]
 fn the_answer_is_the_same_in_plane_and_at_several_points() {

@@ -188,7 +188,8 @@ fn radius(a: f64, b: f64) -> f64 {
 /// The axes of a symmetric tensor: of half the difference of its diagonal, its shear, and the radius of both.
 #[inline(always)]
 fn principal_turn(half: f64, off: f64, radius: f64) -> Matrix2<f64> {
-    if radius == 0.0 {
+    // Squares of smaller numbers lose their digits.
+    if radius < 1e-150 {
         return Matrix2::identity();
     }
     // The parts of an axis, first the one that is not small
