@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::sums::{Sums, TrialFailure};
-use super::trial::Trial;
+use super::trial::{Trial, nodal};
 use crate::model::element::Memory;
 use crate::model::{Born, Model};
 
@@ -72,17 +72,17 @@ impl Evolving {
         forces.resize(count * dofs, 0.0);
         tangents.resize(count * size, 0.0);
         let wanted = sums.tangent.is_some();
+        let yields: Vec<bool> = model.bodies.iter().map(|body| body.material.description().flow.is_some()).collect();
         let one = |((e, new), (force, tangent)): ((usize, &mut [f64]), Place)| {
             let old = model.memories.of(e, old);
             model.write_temperatures(trial.step, trial.moment(), e, old, new);
             let body = &model.bodies[model.body_of_element[e]];
-            let (local, memory) = (model.mesh.vectors(e, u), Memory { dt: trial.dt, old, new: &mut *new });
-            let dofs = 2 * local.len();
+            let (n, memory) = (model.mesh.elements[e].nodes.len(), Memory { dt: trial.dt, old, new: &mut *new });
+            let (u, dofs) = (&nodal(model, e, u)[..n], 2 * n);
             let tangent = wanted.then_some(&mut tangent[..dofs * dofs]);
-            let found = model.as_born(born, e).evolve(&*body.material, memory, &local, &mut force[..dofs], tangent);
+            let found = model.as_born(born, e).evolve(&*body.material, memory, u, &mut force[..dofs], tangent);
             let energies = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
-            let yields = body.material.description().flow.is_some();
-            Ok((e, energies, model.heating(e, [old, new]), yields))
+            Ok((e, energies, model.heating(e, [old, new])))
         };
         let mut all = Evolved::default();
         let elements = model.memories.each_mut(memory).enumerate().zip(&*own);
@@ -96,9 +96,9 @@ impl Evolving {
             let answers: Vec<Result<_, TrialFailure>> = batch.into_par_iter().zip(places).map(one).collect();
             let places = forces.chunks_exact(dofs).zip(tangents.chunks_exact(size));
             for (answer, (force, tangent)) in answers.into_iter().zip(places) {
-                let (e, [stored, lost], work, yields) = answer?;
+                let (e, [stored, lost], work) = answer?;
                 all.stored += stored;
-                *(if yields { &mut all.plastic } else { &mut all.dissipated }) += lost;
+                *(if yields[model.body_of_element[e]] { &mut all.plastic } else { &mut all.dissipated }) += lost;
                 all.heating += work;
                 let nodes = &model.mesh.elements[e].nodes;
                 sums.push(nodes, &force[..2 * nodes.len()]);

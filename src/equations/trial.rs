@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use crate::mesh::configuration::vector;
 use crate::model::boundary::Moment;
 use crate::model::state::State;
 use crate::model::support::Prescribed;
@@ -75,4 +76,13 @@ impl<'a> Trial<'a> {
         let start = &self.old.step_start.displacement[2 * node..][..2];
         (model.mesh.nodes[node], Vector2::new(start[0], start[1]))
     }
+}
+
+/// Values at an element's nodes, from those of all dofs.
+pub(super) fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
+    let mut local = [Vector2::zeros(); 9];
+    for (local, &node) in local.iter_mut().zip(&model.mesh.elements[e].nodes) {
+        *local = vector(all, node);
+    }
+    local
 }

@@ -204,8 +204,10 @@ impl Model {
     /// Number of variables of an element's material at a point, and the index of T − T₀; `None` without thermal expansion.
     fn rises(&self, element: usize) -> Option<(usize, usize)> {
         let body = self.body_of(element);
-        let count = body.material.description().variables.len();
-        body.thermal.map(|_| (count, count - TEMPERATURE.len()))
+        body.thermal.map(|_| {
+            let count = body.material.description().variables.len();
+            (count, count - TEMPERATURE.len())
+        })
     }
 
     /// Reference positions of an element's quadrature points.

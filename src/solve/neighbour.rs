@@ -260,9 +260,9 @@ pub fn beside(groups: Vec<Vec<Seeker>>, tangent: &mut Tangent) -> Vec<Result<Vec
     let Tangent { system, solver, solids, serves, .. } = tangent;
     let (own, solids) = (&system.residual, solids.as_ref());
     let mut groups: Vec<Group> = groups.into_iter().map(Group::new).collect();
-    while *serves {
-        let mut corrections: Vec<Vec<Correction>> =
-            groups.par_iter_mut().with_max_len(1).map(|group| group.corrections(own, solids)).collect();
+    loop {
+        let of = |group: &mut Group| if *serves { group.corrections(own, solids) } else { Vec::new() };
+        let mut corrections: Vec<Vec<Correction>> = groups.par_iter_mut().with_max_len(1).map(of).collect();
         let mut columns: Vec<&mut [f64]> = corrections.iter_mut().flatten().map(|one| &mut one.way[..]).collect();
         if columns.is_empty() {
             break;

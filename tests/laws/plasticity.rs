@@ -4,9 +4,9 @@
 use crate::common::close;
 use crate::random::Random;
 use fecontact::laws::bulk::{
-    CauchyStress, Flow, Imposed, Material, MaterialFailure, MaterialParameters, Straining, Stretched,
+    CauchyStress, Flow, Imposed, Material, MaterialFailure, MaterialParameters, MaterialResponse, Straining, Stretched,
 };
-use nalgebra::{Matrix2, Matrix3, Matrix5, Rotation2, Vector2, Vector3, Vector5};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix5, Rotation2, Vector2, Vector3, Vector5};
 use serde_json::{Value, json};
 
 const E: f64 = 100.0;
@@ -192,6 +192,78 @@ fn the_tangent_equals_differences_over_random_histories() {
             yielded += usize::from(new[place] > old[place]);
         }
         assert!((100..300).contains(&yielded), "{name}: {yielded} of {compared} yield");
+    }
+}
+
+/// Within its yield surface a law of linear elasticity is Hencky's, whose stress and moduli come from other equations; at small strains
+/// and at those beyond which logarithms are no series.
+#[test]
+fn without_yielding_it_is_hencky_s() {
+    let hencky = with_elasticity(json!({"model": "hencky"}));
+    let law = with_elasticity(json!({"model": "von_mises", "sigma_y": 1e3}));
+    let mut random = Random(17);
+    for strain in [1e-6, 1e-3, 0.08, 0.12, 0.5] {
+        for f in walk(&mut random, 20, strain).iter().step_by(7) {
+            let [expected, found] =
+                [&hencky, &law].map(|law| stretched(&**law, f, &start(&**law)).expect("an answer").0);
+            assert!((expected.stress - found.stress).amax() < 1e-12 * E, "{f}: {} {}", found.stress, expected.stress);
+            assert!(
+                (expected.tangent - found.tangent).amax() < 1e-11 * E,
+                "{f}: {} {}",
+                found.tangent,
+                expected.tangent
+            );
+            assert!((expected.energy - found.energy).abs() < 1e-12 * E, "{f}: {} {}", found.energy, expected.energy);
+        }
+    }
+}
+
+/// The axes of strains so small that their squares vanish turn no stress: that of a body compressed alike on all sides stays.
+#[test]
+fn strains_that_vanish_leave_an_initial_stress() {
+    let law = with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y}));
+    let mut old = vec![0.0; law.description().variables.len()];
+    law.initial_state(Vector2::zeros(), &CauchyStress { xx: -1.0, yy: -1.0, zz: -1.0, xy: 0.0 }, &mut old);
+    for size in [1e-170, 1.6e-162, 1e-158, 1e-140] {
+        let stress = stretched(&*law, &Vector5::new(1.0, 0.0, size, 1.0, 1.0), &old).expect("an answer").0.stress;
+        assert!((stress + Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0)).amax() < 1e-14, "{size}: {stress}");
+    }
+}
+
+/// In plane strain a law answers as with F₃₃ = 1; at several points at once, and without the tangent, to the same bits.
+#[test]
+fn the_answer_is_the_same_in_plane_and_at_several_points() {
+    for (name, law) in laws() {
+        let mut random = Random(3);
+        let flat = |f: &Vector5<f64>| Vector5::new(f[0], f[1], f[2], f[3], 1.0);
+        let states = (0..4).filter_map(|_| {
+            let path: Vec<_> = walk(&mut random, 2, 0.03).iter().map(flat).collect();
+            Some((path[1], followed(&*law, &path[..1])?))
+        });
+        let states: Vec<_> = states.filter(|(f, old)| stretched(&*law, f, old).is_ok()).collect();
+        assert!(states.len() > 1, "{name}");
+        for tangent in [true, false] {
+            let strainings: Vec<_> =
+                states.iter().map(|(f, old)| with!(Straining::new(plane(f), old), dt: 0.1, tangent: tangent)).collect();
+            let mut new = vec![0.0; states.iter().map(|(_, old)| old.len()).sum()];
+            let mut responses = vec![MaterialResponse::default(); states.len()];
+            law.responses(&strainings, &mut new, &mut responses).expect("an answer");
+            let all = states.iter().zip(&strainings).zip(&responses).zip(new.chunks_exact(states[0].1.len()));
+            for ((((f, old), straining), response), new) in all {
+                let mut own = vec![0.0; old.len()];
+                assert_eq!(*response, law.respond(straining, &mut own).expect("an answer"), "{name}");
+                assert_eq!(new, own, "{name}");
+                let (expected, variables) = stretched(&*law, f, old).expect("an answer");
+                assert!((response.stress - plane(&expected.stress)).amax() < 1e-12 * E, "{name}");
+                let across = expected.stress[4] / plane(f).determinant();
+                assert!((response.stress_zz - across).abs() < 1e-12 * E, "{name}");
+                assert!((response.energy - expected.energy).abs() < 1e-12 * E, "{name}");
+                assert!((response.dissipation - expected.dissipation).abs() < 1e-12 * E, "{name}");
+                assert!(new.iter().zip(&variables).all(|(a, b)| (a - b).abs() < 1e-12), "{name}");
+                let moduli = if tangent { expected.tangent.fixed_view::<4, 4>(0, 0).into() } else { Matrix4::zeros() };
+                assert!((response.tangent - moduli).amax() < 1e-10 * E, "{name}");
+            }
+        }
     }
 }
 

@@ -32,9 +32,10 @@ use nalgebra::{Matrix2, Vector2, Vector4};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::runs::{BATCH, Places, nodal};
+use super::runs::{BATCH, Places};
 use crate::equations::coupling::Layout;
 use crate::equations::sums::{TrialFailure, add_blocks};
+use crate::equations::trial::nodal;
 use crate::laws::bulk::Material;
 use crate::linear::SparseMatrix;
 use crate::mesh::shape::ElementKind;

@@ -13,9 +13,9 @@ use rayon::prelude::*;
 use crate::equations::coupling::Layout;
 use crate::equations::evolving::evolves;
 use crate::equations::sums::{TrialFailure, add_blocks};
+use crate::equations::trial::nodal;
 use crate::laws::bulk::MaterialFailure;
 use crate::linear::SparseMatrix;
-use crate::mesh::configuration::vector;
 use crate::model::{Born, Model};
 
 /// Number of elements below which evaluation takes less time than starting another thread.
@@ -207,15 +207,6 @@ impl Runs {
             }
         }
     }
-}
-
-/// Values at an element's nodes, from those of all dofs.
-pub(super) fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
-    let mut local = [Vector2::zeros(); 9];
-    for (local, &node) in local.iter_mut().zip(&model.mesh.elements[e].nodes) {
-        *local = vector(all, node);
-    }
-    local
 }
 
 /// Number of elements whose tangents are held at once before they are added.

@@ -60,7 +60,7 @@ pub use undrained::{PORE_PRESSURE, Undrained};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
 /// Response of a law at the end of an increment; it writes its new variables itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct MaterialResponse {
@@ -299,6 +299,24 @@ pub trait Material: Debug + Send + Sync {
     /// # Errors
     /// [`MaterialFailure`] when det F is not positive, or the law's equations are not solved.
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure>;
+
+    /// The answers to an increment at several points, whose variables stand one behind the other. Compiled for each law, so that an
+    /// element calls it once.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn responses(
+        &self,
+        strainings: &[Straining],
+        new: &mut [f64],
+        responses: &mut [MaterialResponse],
+    ) -> Result<(), MaterialFailure> {
+        let count = new.len() / strainings.len();
+        for (k, (straining, response)) in strainings.iter().zip(responses).enumerate() {
+            *response = self.respond(straining, &mut new[k * count..(k + 1) * count])?;
+        }
+        Ok(())
+    }
 
     /// The answer at once, of a body that has not been strained before. Compiled for each law, so that memory that a law does not
     /// have costs nothing.

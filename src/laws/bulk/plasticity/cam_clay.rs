@@ -2,7 +2,7 @@ use nalgebra::{Matrix4, Vector3, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::von_mises::deviatoric;
+use super::elasticity::isotropic;
 use super::{
     Elasticity, Elastoplastic, LogarithmicBulk, ONE, ROUND_OFF, ReturnMap, Returned, SHOWN, deviator, double_dot,
     in_axes,
@@ -412,11 +412,10 @@ impl Increment<'_> {
         // n as it multiplies a strain, whose shear counts twice
         let along = Vector4::new(normal[0], normal[1], normal[2], 2.0 * normal[3]);
         let third = (2.0f64 / 3.0).sqrt();
-        p_by_volume * ONE * ONE.transpose()
+        isotropic(p_by_volume, by_strain / 3.0)
             - third * p_by_shear * ONE * along.transpose()
             - third * q_by_volume * normal * ONE.transpose()
             + 2.0 / 3.0 * (q_by_shear - by_strain) * normal * along.transpose()
-            + 2.0 / 3.0 * by_strain * deviatoric()
     }
 }
 

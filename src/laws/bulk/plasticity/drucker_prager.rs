@@ -2,8 +2,8 @@ use nalgebra::{Vector3, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::von_mises::deviatoric;
-use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, deviator, double_dot, in_axes};
+use super::elasticity::isotropic;
+use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, THIRD, deviator, double_dot, in_axes};
 use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative};
 
@@ -139,6 +139,7 @@ impl ReturnMap for DruckerPrager {
         self.elastic
     }
 
+    #[inline(always)]
     fn returned(
         &self,
         trial: &Vector3<f64>,
@@ -152,31 +153,28 @@ impl ReturnMap for DruckerPrager {
             return Ok(answer);
         }
         let (s, trace) = deviator(&answer.stress);
-        let (mean, root) = (trace / 3.0, (0.5 * double_dot(&s, &s)).sqrt());
-        let normal = if root > 0.0 { s / (2f64.sqrt() * root) } else { s };
-        let volume = |share: f64| bulk * share * ONE * ONE.transpose();
-        let slip = (root + friction * mean - cohesion).max(0.0) / (shear + bulk * friction * dilation);
+        let (mean, root) = (THIRD * trace, (0.5 * double_dot(&s, &s)).sqrt());
+        let over_root = if root > 0.0 { 1.0 / root } else { 0.0 };
+        let normal = 0.5f64.sqrt() * over_root * s;
+        let a = 1.0 / (shear + bulk * friction * dilation);
+        let slip = a * (root + friction * mean - cohesion).max(0.0);
         let on_cone = mean - bulk * dilation * slip;
         let (left, mean) = if root - shear * slip >= 0.0 && on_cone <= tension {
             // (5); within the cone nothing is taken off
-            let left = if root > 0.0 { 1.0 - shear * slip / root } else { 1.0 };
-            let a = 1.0 / (shear + bulk * friction * dilation);
-            answer.tangent = 2.0 * shear * left * deviatoric()
-                + 2.0 * shear * (1.0 - left - shear * a) * normal * normal.transpose()
-                - 2f64.sqrt()
-                    * shear
-                    * a
-                    * bulk
-                    * (friction * normal * ONE.transpose() + dilation * ONE * normal.transpose())
-                + volume(1.0 - bulk * friction * dilation * a);
+            let left = 1.0 - shear * slip * over_root;
+            let across = 2f64.sqrt() * shear * a * bulk;
+            let by_normal = 2.0 * shear * (1.0 - left - shear * a) * normal - across * dilation * ONE;
+            answer.tangent = isotropic(bulk * (1.0 - bulk * friction * dilation * a), shear * left)
+                + by_normal * normal.transpose()
+                - across * friction * normal * ONE.transpose();
             (left, on_cone)
         } else if root < self.radius(tension) {
-            answer.tangent = 2.0 * shear * deviatoric() + FLOOR * volume(1.0);
+            answer.tangent = isotropic(FLOOR * bulk, shear);
             (1.0, tension)
         } else {
-            let left = if root > 0.0 { self.radius(tension) / root } else { 0.0 };
+            let left = self.radius(tension) * over_root;
             answer.tangent =
-                2.0 * shear * left * (deviatoric() - normal * normal.transpose()) + FLOOR * elastic.stiffness();
+                isotropic(FLOOR * bulk, (left + FLOOR) * shear) - 2.0 * shear * left * normal * normal.transpose();
             (left, tension)
         };
         answer.stress = left * s + mean * ONE;
@@ -184,9 +182,10 @@ impl ReturnMap for DruckerPrager {
         Ok(answer)
     }
 
+    #[inline(always)]
     fn yield_indicator(&self, stress: &Vector4<f64>, _: &[f64]) -> f64 {
         let (s, trace) = deviator(stress);
-        let (mean, root) = (trace / 3.0, (0.5 * double_dot(&s, &s)).sqrt());
+        let (mean, root) = (THIRD * trace, (0.5 * double_dot(&s, &s)).sqrt());
         let cone = root + if self.friction > 0.0 { self.friction * mean } else { 0.0 } - self.cohesion;
         cone.max(mean - self.tension)
     }

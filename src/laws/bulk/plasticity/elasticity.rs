@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::von_mises::deviatoric;
 use super::{ONE, deviator, double_dot};
 use crate::laws::bulk::Lame;
 
@@ -59,6 +58,7 @@ impl LogarithmicBulk {
 
 impl Elasticity {
     /// τ of a strain.
+    #[inline(always)]
     pub(super) fn kirchhoff(&self, strain: &Vector4<f64>) -> Vector4<f64> {
         match self {
             Self::Linear(lame) => lame.kirchhoff(strain),
@@ -70,6 +70,7 @@ impl Elasticity {
     }
 
     /// The strain of a stress.
+    #[inline(always)]
     pub(super) fn strain(&self, stress: &Vector4<f64>) -> Vector4<f64> {
         match self {
             Self::Linear(lame) => lame.strain(stress),
@@ -84,7 +85,7 @@ impl Elasticity {
     pub(super) fn stiffness(&self, strain: &Vector4<f64>) -> Matrix4<f64> {
         match self {
             Self::Linear(lame) => lame.stiffness(),
-            Self::Logarithmic(law) => self.bulk(strain) * ONE * ONE.transpose() + 2.0 * law.shear * deviatoric(),
+            Self::Logarithmic(law) => isotropic(self.bulk(strain), law.shear),
         }
     }
 
@@ -97,6 +98,7 @@ impl Elasticity {
     }
 
     /// W of a strain.
+    #[inline(always)]
     pub(super) fn stored(&self, strain: &Vector4<f64>) -> f64 {
         match self {
             Self::Linear(lame) => lame.stored(strain),
@@ -115,29 +117,45 @@ impl Elasticity {
 
 impl Lame {
     /// K = λ + ⅔ G: bulk modulus [F/L²]
+    #[inline(always)]
     pub(super) fn bulk(&self) -> f64 {
         self.lambda + 2.0 / 3.0 * self.shear
     }
 
     /// τ = λ tr(ε) 1 + 2G ε
+    #[inline(always)]
     pub(super) fn kirchhoff(&self, strain: &Vector4<f64>) -> Vector4<f64> {
         self.lambda * (strain[0] + strain[1] + strain[2]) * ONE + 2.0 * self.shear * strain
     }
 
     /// The strain of a stress, ε = dev τ/2G + tr τ/9K.
+    #[inline(always)]
     pub(super) fn strain(&self, stress: &Vector4<f64>) -> Vector4<f64> {
         let (deviator, trace) = deviator(stress);
-        deviator / (2.0 * self.shear) + trace / (9.0 * self.bulk()) * ONE
+        0.5 / self.shear * deviator + trace / (9.0 * self.bulk()) * ONE
     }
 
     /// W = λ/2 (tr ε)² + G ε:ε
+    #[inline(always)]
     pub(super) fn stored(&self, strain: &Vector4<f64>) -> f64 {
         let trace = strain[0] + strain[1] + strain[2];
         0.5 * self.lambda * trace * trace + self.shear * double_dot(strain, strain)
     }
 
-    /// C = λ 1⊗1 + 2G
+    /// C = λ 1⊗1 + 2G, written out
+    #[inline(always)]
     pub(super) fn stiffness(&self) -> Matrix4<f64> {
-        self.lambda * ONE * ONE.transpose() + Matrix4::from_diagonal_element(2.0 * self.shear)
+        let along = self.lambda + 2.0 * self.shear;
+        let mut moduli = Matrix4::from_diagonal(&Vector4::new(along, along, along, 2.0 * self.shear));
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            (moduli[(i, j)], moduli[(j, i)]) = (self.lambda, self.lambda);
+        }
+        moduli
     }
+}
+
+/// K 1⊗1 + 2G dev
+#[inline(always)]
+pub(super) fn isotropic(bulk: f64, shear: f64) -> Matrix4<f64> {
+    Lame { lambda: bulk - 2.0 / 3.0 * shear, shear }.stiffness()
 }

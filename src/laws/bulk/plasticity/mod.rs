@@ -15,6 +15,7 @@ mod cam_clay;
 mod drucker_prager;
 mod elasticity;
 mod mohr_coulomb;
+mod series;
 mod skeleton;
 mod sys_cam_clay;
 mod von_mises;
@@ -24,6 +25,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use nalgebra::{Matrix4, Matrix5, Vector2, Vector3, Vector4};
+use pulp::{Arch, NullaryFnOnce};
 
 use super::spatial::{Stretched, plane, positive_stretch};
 use super::{
@@ -54,25 +56,29 @@ pub struct Returned {
 
 impl Returned {
     /// No yielding: τ = C:ε.
+    #[inline(always)]
     pub fn elastic(elastic: Lame, trial: &Vector3<f64>) -> Self {
         Self { stress: elastic.kirchhoff(&in_axes(trial)), tangent: elastic.stiffness(), plastic: Vector4::zeros() }
     }
 }
 
 /// Principal values as components.
+#[inline(always)]
 fn in_axes(principal: &Vector3<f64>) -> Vector4<f64> {
     Vector4::new(principal.x, principal.y, principal.z, 0.0)
 }
 
 /// a:b of two symmetric tensors by their components.
+#[inline(always)]
 pub(super) fn double_dot(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3]
 }
 
 /// The deviator of a tensor, and its trace.
+#[inline(always)]
 fn deviator(tensor: &Vector4<f64>) -> (Vector4<f64>, f64) {
     let trace = tensor[0] + tensor[1] + tensor[2];
-    (tensor - trace / 3.0 * ONE, trace)
+    (tensor - THIRD * trace * ONE, trace)
 }
 
 /// The first share of a way at which a law that leaves its yield surface inwards is elastic.
@@ -115,6 +121,9 @@ fn share_within(f: impl Fn(f64) -> f64) -> f64 {
     }
     low
 }
+
+/// 1/3: a product takes a fifth of the time of a quotient.
+const THIRD: f64 = 1.0 / 3.0;
 
 /// The unit tensor.
 const ONE: Vector4<f64> = Vector4::new(1.0, 1.0, 1.0, 0.0);
@@ -189,6 +198,7 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64;
 
     /// The share of the way from the committed stress to the trial stress after which it yields: where the way leaves the elastic domain.
+    #[inline(always)]
     fn onset(&self, [before, trial]: [&Vector4<f64>; 2], history: &[f64]) -> f64 {
         share_within(|share| self.yield_indicator(&(before + share * (trial - before)), history))
     }
@@ -312,69 +322,72 @@ impl<L: ReturnMap> Elastoplastic<L> {
         Ok(Self { law, density, viscosity, names, concern })
     }
 
-    /// The axes of b, the law's answer there at the end of the increment, and what was dissipated.
+    /// The axes of b, the law's answer there at the end of the increment, W and what was dissipated.
     #[inline(always)]
-    fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned, f64), MaterialFailure> {
+    fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned, [f64; 2]), MaterialFailure> {
         let Straining { deformation, stretch, dt, old, .. } = *straining;
         positive_stretch(straining)?;
         positive_jacobian(&deformation)?;
         let axes = Axes::of(&deformation, stretch, old)?;
         new.copy_from_slice(old);
         let history = &mut new[HISTORY..];
-        self.tensors(history).for_each(|tensor| axes.enter(tensor));
-        let before = Self::stress_before(&axes, old);
+        self.turn(history, |tensor| axes.entered(tensor));
+        let before = axes.entered(&Vector4::from_column_slice(&old[STRESS..HISTORY]));
         let mut found = self.law.returned(&axes.strains, &before, history)?;
         let largest = found.plastic.amax();
         if largest.is_nan() || largest > LARGEST {
             return Err(MaterialFailure::OutOfRange { law: self.law.name(), strain: largest });
         }
-        self.tensors(history).for_each(|tensor| axes.leave(tensor));
+        self.turn(history, |tensor| axes.left(tensor));
         if self.viscosity > 0.0 {
             self.lag(dt, &axes, &old[HISTORY..], history, &mut found);
         }
         let (deviator, volume) = deviator(&found.plastic);
         history[0] = old[HISTORY] + (2.0 / 3.0 * double_dot(&deviator, &deviator)).sqrt();
         history[1] = old[HISTORY + 1] + volume;
-        let dissipated = self.dissipated(&axes, old, &found, &new[HISTORY..]);
-        let unrotated = &mut new[STRESS..HISTORY];
-        unrotated.copy_from_slice(found.stress.as_slice());
-        axes.leave(unrotated);
+        let dissipated = self.dissipated(&axes, [&before, &found.stress], &found.plastic, [old, new]);
+        new[STRESS..HISTORY].copy_from_slice(axes.left(&found.stress).as_slice());
         axes.flow(&found.plastic, stretch, new);
-        Ok((axes, found, dissipated))
+        let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - old[AT_START];
+        Ok((axes, found, [energy, dissipated]))
     }
 
-    /// The committed stress in the axes.
-    fn stress_before(axes: &Axes, old: &[f64]) -> Vector4<f64> {
-        let mut before = [0, 1, 2, 3].map(|k| old[STRESS + k]);
-        axes.enter(&mut before);
-        before.into()
-    }
-
-    /// The tensors of a history.
-    fn tensors<'a>(&self, history: &'a mut [f64]) -> impl Iterator<Item = &'a mut [f64]> + use<'a, L> {
+    /// Turn the tensors of a history.
+    #[inline(always)]
+    fn turn(&self, history: &mut [f64], turned: impl Fn(&Vector4<f64>) -> Vector4<f64>) {
         let first = history.len() - 4 * self.law.tensors();
-        history[first..].chunks_exact_mut(4)
+        for tensor in history[first..].chunks_exact_mut(4) {
+            tensor.copy_from_slice(turned(&Vector4::from_column_slice(tensor)).as_slice());
+        }
     }
 
     /// A committed history in the axes.
+    #[inline(always)]
     fn history_in<'a>(&self, axes: &Axes, variables: &'a [f64]) -> Cow<'a, [f64]> {
         let mut history = Cow::from(&variables[HISTORY..]);
         if self.law.tensors() > 0 {
-            self.tensors(history.to_mut()).for_each(|tensor| axes.enter(tensor));
+            self.turn(history.to_mut(), |tensor| axes.entered(tensor));
         }
         history
     }
 
-    /// (5), with the history at the end of the increment.
-    fn dissipated(&self, axes: &Axes, old: &[f64], found: &Returned, history: &[f64]) -> f64 {
-        if found.plastic == Vector4::zeros() {
+    /// (5), of the stress in the axes and the variables at both ends of the increment.
+    #[inline(always)]
+    fn dissipated(
+        &self,
+        axes: &Axes,
+        [before, after]: [&Vector4<f64>; 2],
+        plastic: &Vector4<f64>,
+        [old, new]: [&[f64]; 2],
+    ) -> f64 {
+        if *plastic == Vector4::zeros() {
             return 0.0;
         }
-        let (before, committed) = (Self::stress_before(axes, old), self.history_in(axes, old));
+        let committed = self.history_in(axes, old);
         let trial = self.law.elasticity(&committed).kirchhoff(&in_axes(&axes.strains));
-        let met = before + self.law.onset([&before, &trial], &committed) * (trial - before);
-        let stored = self.law.stored(history) - self.law.stored(&old[HISTORY..]);
-        0.5 * double_dot(&(met + found.stress), &found.plastic) - stored
+        let met = before + self.law.onset([before, &trial], &committed) * (trial - before);
+        let stored = self.law.stored(&new[HISTORY..]) - self.law.stored(&old[HISTORY..]);
+        0.5 * double_dot(&(met + after), plastic) - stored
     }
 
     /// Let an answer lag behind, by the law of Duvaut and Lions.
@@ -396,6 +409,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
     }
 
     /// Elastic energy and that of the history.
+    #[inline(always)]
     fn stored(&self, elastic_strain: &Vector4<f64>, variables: &[f64]) -> f64 {
         self.law.elasticity(&variables[HISTORY..]).stored(elastic_strain) + self.law.stored(&variables[HISTORY..])
     }
@@ -408,16 +422,63 @@ impl<L: ReturnMap> Elastoplastic<L> {
     }
 }
 
+/// An increment at some points in plane strain. It is compiled for vectors as long as the processor has them, and with tangents and
+/// without, so that those that are not wanted cost nothing.
+struct InPlane<'a, L, const TANGENT: bool> {
+    law: &'a Elastoplastic<L>,
+    strainings: &'a [Straining<'a>],
+    new: &'a mut [f64],
+    responses: &'a mut [MaterialResponse],
+}
+
+impl<L: ReturnMap, const TANGENT: bool> NullaryFnOnce for InPlane<'_, L, TANGENT> {
+    type Output = Result<(), MaterialFailure>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self { law, strainings, new, responses } = self;
+        let points = strainings.iter().zip(new.chunks_exact_mut(law.names.len()));
+        for ((straining, new), response) in points.zip(responses) {
+            // 1 is written out, so that products with it are known as such.
+            let straining = &Straining { stretch: 1.0, ..*straining };
+            let (axes, found, [energy, dissipation]) = law.answer(straining, new)?;
+            let stress = axes.first_piola_kirchhoff(&found.stress);
+            response.stress = plane(&stress);
+            response.stress_zz = stress[4] / straining.deformation.determinant();
+            (response.energy, response.dissipation) = (energy, dissipation);
+            if TANGENT {
+                response.tangent = axes.moduli_in_plane(&found, law.law.tensors() > 0);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An increment at a point with an out-of-plane stretch, compiled alike.
+struct InSpace<'a, L, const TANGENT: bool> {
+    law: &'a Elastoplastic<L>,
+    straining: &'a Straining<'a>,
+    new: &'a mut [f64],
+}
+
+impl<L: ReturnMap, const TANGENT: bool> NullaryFnOnce for InSpace<'_, L, TANGENT> {
+    type Output = Result<Stretched, MaterialFailure>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self { law, straining, new } = self;
+        let (axes, found, [energy, dissipation]) = law.answer(straining, new)?;
+        let tangent = if TANGENT { axes.moduli(&found, law.law.tensors() > 0) } else { Matrix5::zeros() };
+        Ok(Stretched { stress: axes.first_piola_kirchhoff(&found.stress), tangent, energy, dissipation })
+    }
+}
+
 impl<L: ReturnMap> Spatial for Elastoplastic<L> {
     fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
-        let (axes, found, dissipation) = self.answer(straining, new)?;
-        let (stress, pull) = axes.first_piola_kirchhoff(&found.stress);
-        let tangent = match straining.tangent {
-            true => axes.moduli(&found, &pull, self.law.tensors() > 0),
-            false => Matrix5::zeros(),
-        };
-        let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - straining.old[AT_START];
-        Ok(Stretched { stress, tangent, energy, dissipation })
+        match straining.tangent {
+            true => Arch::new().dispatch(InSpace::<_, true> { law: self, straining, new }),
+            false => Arch::new().dispatch(InSpace::<_, false> { law: self, straining, new }),
+        }
     }
 
     /// Returns the stretch that leaves a plate without out-of-plane stress if it does not yield in the increment.
@@ -483,15 +544,21 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        let (axes, found, dissipation) = self.answer(straining, new)?;
-        let (stress, pull) = axes.first_piola_kirchhoff(&found.stress);
-        let tangent = match straining.tangent {
-            true => axes.moduli_in_plane(&found, &pull, self.law.tensors() > 0),
-            false => Matrix4::zeros(),
-        };
-        let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - straining.old[AT_START];
-        let stress_zz = stress[4] / straining.deformation.determinant();
-        Ok(MaterialResponse { stress: plane(&stress), tangent, energy, stress_zz, dissipation })
+        let mut response = [MaterialResponse::default()];
+        self.responses(std::slice::from_ref(straining), new, &mut response)?;
+        Ok(response[0])
+    }
+
+    fn responses(
+        &self,
+        strainings: &[Straining],
+        new: &mut [f64],
+        responses: &mut [MaterialResponse],
+    ) -> Result<(), MaterialFailure> {
+        match strainings.iter().any(|straining| straining.tangent) {
+            true => Arch::new().dispatch(InPlane::<_, true> { law: self, strainings, new, responses }),
+            false => Arch::new().dispatch(InPlane::<_, false> { law: self, strainings, new, responses }),
+        }
     }
 
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {

@@ -248,6 +248,7 @@ impl MohrCoulomb {
     }
 
     /// c, φ and ψ at a plastic shear strain, and how they change with it.
+    #[inline(always)]
     fn strength(&self, slip: f64) -> (Strength, Rates) {
         match &self.residual {
             None => (self.virgin, Rates::default()),
@@ -265,11 +266,13 @@ impl MohrCoulomb {
     }
 
     /// The tension cut-off, if it cuts something off.
+    #[inline(always)]
     fn cut_off(&self, strength: &Strength) -> Option<f64> {
         self.tension.filter(|tension| *tension < strength.tip())
     }
 
     /// f of sorted principal stresses: the largest of all planes.
+    #[inline(always)]
     fn excess(&self, strength: &Strength, sorted: &Vector3<f64>) -> f64 {
         let Angle { sin, cos, .. } = strength.phi;
         let shear = 0.5 * ((1.0 + sin) * sorted[0] - (1.0 - sin) * sorted[2]) - strength.c * cos;
@@ -285,6 +288,7 @@ impl MohrCoulomb {
     }
 
     /// The return (5) at a strength.
+    #[inline(always)]
     fn at_strength(&self, strength: &Strength, trial: &Vector3<f64>) -> Option<OnPlanes> {
         let rounded = ROUNDED * (trial.amax() + strength.c);
         let within = |stress: &Vector3<f64>| {
@@ -313,12 +317,8 @@ impl MohrCoulomb {
         }
     }
 
-    /// C v of principal values.
-    fn stiffened(&self, v: &Vector3<f64>) -> Vector3<f64> {
-        (2.0 * self.elastic.shear * v).add_scalar(self.elastic.lambda * v.sum())
-    }
-
     /// C⁻¹ v of principal values.
+    #[inline(always)]
     fn strain(&self, v: &Vector3<f64>) -> Vector3<f64> {
         let Lame { lambda, shear } = self.elastic;
         v.add_scalar(-lambda / (3.0 * lambda + 2.0 * shear) * v.sum()) / (2.0 * shear)
@@ -328,24 +328,20 @@ impl MohrCoulomb {
     #[inline(always)]
     fn projected(&self, strength: &Strength, trial: &Vector3<f64>, set: usize) -> Option<OnPlanes> {
         let planes = self.planes(strength, set)?;
-        let mut over = Vector3::zeros();
-        for (k, &plane) in planes.numbers.iter().enumerate() {
-            over[k] = planes.normals[k].dot(trial) - self.limit(strength, plane);
-        }
-        let multipliers = planes.inverse * over;
-        Some(OnPlanes { stress: trial - planes.returned(&multipliers), set: Some(set), multipliers })
+        let multipliers = planes.inverse * (planes.normals.tr_mul(trial) - planes.limits);
+        Some(OnPlanes { stress: trial - planes.stiff_flows * multipliers, set: Some(set), multipliers })
+    }
+
+    /// C of principal values.
+    fn stiffness(&self) -> Matrix3<f64> {
+        Matrix3::repeat(self.elastic.lambda) + Matrix3::from_diagonal_element(2.0 * self.elastic.shear)
     }
 
     /// D of (5), of a return at constant strength.
+    #[inline(always)]
     fn tangent(&self, strength: &Strength, found: &OnPlanes) -> Matrix3<f64> {
-        let mut tangent =
-            Matrix3::repeat(self.elastic.lambda) + Matrix3::from_diagonal_element(2.0 * self.elastic.shear);
-        let Some(planes) = found.set.and_then(|set| self.planes(strength, set)) else { return FLOOR * tangent };
-        let count = planes.numbers.len();
-        for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
-            tangent.ger(-planes.inverse[(a, b)], &planes.stiff_flows[a], &planes.stiff_normals[b], 1.0);
-        }
-        tangent
+        let planes = found.set.and_then(|set| self.planes(strength, set));
+        planes.map_or_else(|| FLOOR * self.stiffness(), |planes| planes.moduli)
     }
 
     /// ∂τ/∂γ_p of a return at constant trial stress, by the rates of c, φ and ψ.
@@ -365,13 +361,13 @@ impl MohrCoulomb {
             let mean = 0.5 * (found.stress[i] + found.stress[j]);
             over[k] = cos * rate.phi * mean - rate.c * cos + strength.c * sin * rate.phi;
         }
-        for k in 0..planes.numbers.len() {
-            over[k] -= planes.stiff_normals[k].dot(&turned);
-        }
-        -self.stiffened(&turned) - planes.returned(&(planes.inverse * over))
+        let stiffened = self.stiffness() * turned;
+        over -= planes.normals.tr_mul(&stiffened);
+        -stiffened - planes.stiff_flows * (planes.inverse * over)
     }
 
     /// The return with γ_p at the end of the increment, its tangent, and γ_p.
+    #[inline(always)]
     fn sorted(&self, trial: &Vector3<f64>, before: f64) -> Result<(Vector3<f64>, Matrix3<f64>, f64), MaterialFailure> {
         let none = || MaterialFailure::NotConverged {
             law: self.name(),
@@ -420,43 +416,37 @@ impl MohrCoulomb {
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Planes {
     numbers: &'static [usize],
-    /// A
-    normals: [Vector3<f64>; 3],
-    /// C Aᵀ
-    stiff_normals: [Vector3<f64>; 3],
-    /// C B
-    stiff_flows: [Vector3<f64>; 3],
-    /// (A C B)⁻¹, 0 beyond the planes
+    /// Aᵀ: a column a plane, 0 beyond them
+    normals: Matrix3<f64>,
+    /// k
+    limits: Vector3<f64>,
+    /// C B, 0 beyond the planes
+    stiff_flows: Matrix3<f64>,
+    /// (A C B)⁻¹, 1 beyond the planes
     inverse: Matrix3<f64>,
+    /// D
+    moduli: Matrix3<f64>,
 }
 
 impl Planes {
     fn of(law: &MohrCoulomb, strength: &Strength, numbers: &'static [usize]) -> Option<Self> {
+        let (stiffness, count) = (law.stiffness(), numbers.len());
         let mut planes = Self { numbers, ..Self::default() };
         for (k, &number) in numbers.iter().enumerate() {
             let [normal, flow] = strength.plane(number);
-            planes.normals[k] = normal;
-            [planes.stiff_normals[k], planes.stiff_flows[k]] = [normal, flow].map(|v| law.stiffened(&v));
+            planes.normals.set_column(k, &normal);
+            planes.stiff_flows.set_column(k, &(stiffness * flow));
+            planes.limits[k] = law.limit(strength, number);
         }
-        let product = |a: usize, b: usize| planes.normals[a].dot(&planes.stiff_flows[b]);
-        if numbers.len() == 1 {
-            planes.inverse[(0, 0)] = 1.0 / product(0, 0);
-            return Some(planes);
-        }
-        let inner = |k: usize| k < numbers.len();
-        let filled = Matrix3::from_fn(|a, b| if inner(a) && inner(b) { product(a, b) } else { f64::from(a == b) });
-        let scale: f64 = filled.column_iter().map(|column| column.norm()).product();
-        if filled.determinant().abs() <= ROUNDED * scale {
+        let mut products = planes.normals.tr_mul(&planes.stiff_flows);
+        (count..3).for_each(|k| products[(k, k)] = 1.0);
+        let scale: f64 = products.column_iter().map(|column| column.norm()).product();
+        if products.determinant().abs() <= ROUNDED * scale {
             return None;
         }
-        planes.inverse = filled.try_inverse()?;
-        (numbers.len()..3).for_each(|k| planes.inverse[(k, k)] = 0.0);
+        planes.inverse = products.try_inverse()?;
+        planes.moduli = stiffness - planes.stiff_flows * planes.inverse * planes.normals.transpose() * stiffness;
         Some(planes)
-    }
-
-    /// C B Δγ
-    fn returned(&self, multipliers: &Vector3<f64>) -> Vector3<f64> {
-        (0..self.numbers.len()).map(|k| multipliers[k] * self.stiff_flows[k]).sum()
     }
 }
 
@@ -473,6 +463,7 @@ impl ReturnMap for MohrCoulomb {
         if self.residual.is_some() { &["plastic_shear_strain"] } else { &[] }
     }
 
+    #[inline(always)]
     fn returned(
         &self,
         trial: &Vector3<f64>,
@@ -480,9 +471,9 @@ impl ReturnMap for MohrCoulomb {
         history: &mut [f64],
     ) -> Result<Returned, MaterialFailure> {
         let mut answer = Returned::elastic(self.elastic, trial);
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| trial[j].total_cmp(&trial[i]));
-        let sorted = Vector3::from(order.map(|i| answer.stress[i]));
+        let order = order(trial);
+        let [a, b, c] = order;
+        let sorted = Vector3::new(answer.stress[a], answer.stress[b], answer.stress[c]);
         let before = history.get(OWN).copied().unwrap_or(0.0);
         if self.excess(&self.strength(before).0, &sorted) <= ROUND_OFF * self.elastic.shear {
             return Ok(answer);
@@ -509,6 +500,7 @@ impl ReturnMap for MohrCoulomb {
         Ok(answer)
     }
 
+    #[inline(always)]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
         let (strength, _) = self.strength(history.get(OWN).copied().unwrap_or(0.0));
         self.excess(&strength, &principal(stress))
@@ -553,16 +545,24 @@ const OWN: usize = 2;
 const EQUAL: f64 = 1e-10;
 
 /// Principal values of a tensor, sorted.
+#[inline(always)]
 fn principal(stress: &Vector4<f64>) -> Vector3<f64> {
     let [xx, yy, zz, xy]: [f64; 4] = (*stress).into();
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let radius = (half * half + xy * xy).sqrt();
-    let [high, low] = [mean + radius, mean - radius];
-    if zz > high {
-        Vector3::new(zz, high, low)
-    } else if zz > low {
-        Vector3::new(high, zz, low)
+    let values = Vector3::new(mean + radius, mean - radius, zz);
+    let [a, b, c] = order(&values);
+    Vector3::new(values[a], values[b], values[c])
+}
+
+/// Places of principal values, the largest first, of which those in plane are in order.
+#[inline(always)]
+fn order(values: &Vector3<f64>) -> [usize; 3] {
+    if values[2] > values[0] {
+        [2, 0, 1]
+    } else if values[2] > values[1] {
+        [0, 2, 1]
     } else {
-        Vector3::new(high, low, zz)
+        [0, 1, 2]
     }
 }

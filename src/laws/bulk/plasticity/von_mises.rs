@@ -1,8 +1,9 @@
-use nalgebra::{Matrix4, Vector3, Vector4};
+use nalgebra::{Vector3, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, deviator, double_dot};
+use super::elasticity::isotropic;
+use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, THIRD, deviator, double_dot};
 use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
@@ -146,6 +147,7 @@ impl VonMises {
     }
 
     /// Y and dY/dε̄.
+    #[inline(always)]
     fn strength(&self, equivalent: f64) -> [f64; 2] {
         if self.saturation == 0.0 {
             return [self.strength + self.hardening * equivalent, self.hardening];
@@ -159,6 +161,7 @@ impl VonMises {
     }
 
     /// ζ and its change with Δε̄, Σ θ_k C_k and its derivative of Δε̄ Σ θ_k C_k.
+    #[inline(always)]
     fn shifted(&self, trial: &Vector4<f64>, back: &[f64], slip: f64) -> Shifted {
         let mut found = Shifted { zeta: *trial, slope: Vector4::zeros(), moduli: 0.0, by_slip: 0.0 };
         for (own, old) in self.back.iter().zip(back.chunks_exact(4)) {
@@ -173,9 +176,14 @@ impl VonMises {
     }
 
     /// Δε̄ of (5).
+    #[inline(always)]
     fn slip(&self, trial: &Vector4<f64>, history: &[f64]) -> Result<f64, MaterialFailure> {
         let (before, back, stiff) = (history[0], &history[TENSORS..], 3.0 * self.elastic.shear);
         let largest = equivalent(trial);
+        if back.is_empty() && self.saturation == 0.0 {
+            // (5) is linear.
+            return Ok((largest - self.strength(before)[0]) / (stiff + self.hardening));
+        }
         let most = largest + back.chunks_exact(4).map(|old| equivalent(&Vector4::from_column_slice(old))).sum::<f64>();
         let [mut low, mut high] = [0.0, most / stiff];
         let (mut slip, mut rest) = (0.0, 0.0);
@@ -216,12 +224,14 @@ struct Shifted {
 
 impl Shifted {
     /// ∂q/∂Δε̄ by ζ alone, N:∂ζ/∂Δε̄
+    #[inline(always)]
     fn turning(&self, q: f64) -> f64 {
         if q > 0.0 { 1.5 * double_dot(&self.zeta, &self.slope) / q } else { 0.0 }
     }
 }
 
 /// √(3/2) ‖a‖ of a deviator.
+#[inline(always)]
 fn equivalent(a: &Vector4<f64>) -> f64 {
     (1.5 * double_dot(a, a)).sqrt()
 }
@@ -260,23 +270,21 @@ impl ReturnMap for VonMises {
         let slip = self.slip(&deviator, history)?;
         let shifted = self.shifted(&deviator, &history[TENSORS..], slip);
         let q = equivalent(&shifted.zeta);
-        let normal = 1.5 * shifted.zeta / q;
+        let over_q = 1.0 / q;
+        let normal = 1.5 * over_q * shifted.zeta;
 
         // (6), and its derivatives: with ds_tr = 2G dev dε, dΔε̄ = N:ds_tr/M, dN = (3/2 dζ − N (N:dζ))/q
         let [_, hardening] = self.strength(before + slip);
-        let stiffness = 3.0 * shear + shifted.by_slip + hardening - shifted.turning(q);
+        let turning = double_dot(&normal, &shifted.slope);
+        let stiffness = 3.0 * shear + shifted.by_slip + hardening - turning;
         answer.plastic = slip * normal;
-        answer.stress = deviator - 2.0 * shear * slip * normal + trace / 3.0 * ONE;
-        let left = 1.0 - 3.0 * shear * slip / q;
-        // ∂Δε̄/∂ε, the shear being the tensor's component and counting twice
-        let rate = 2.0 * shear / stiffness * Vector4::new(normal[0], normal[1], normal[2], 2.0 * normal[3]);
-        let along = Vector4::new(normal[0], normal[1], normal[2], 2.0 * normal[3]) * (2.0 * shear);
-        let turning = 1.5 * shifted.slope - shifted.turning(q) * normal;
-        let of_slip = normal + slip / q * turning;
-        answer.tangent = self.elastic.bulk() * ONE * ONE.transpose()
-            + 2.0 * shear * left * deviatoric()
-            + 2.0 * shear * slip / q * normal * along.transpose()
-            - 2.0 * shear * of_slip * rate.transpose();
+        answer.stress = deviator - 2.0 * shear * slip * normal + THIRD * trace * ONE;
+        let left = 1.0 - 3.0 * shear * slip * over_q;
+        let of_slip = normal + slip * over_q * (1.5 * shifted.slope - turning * normal);
+        // The shear of a strain is the tensor's component, which counts twice in N:dε.
+        let along = 4.0 * shear * shear * Vector4::new(normal[0], normal[1], normal[2], 2.0 * normal[3]);
+        answer.tangent = isotropic(self.elastic.bulk(), shear * left)
+            + (slip * over_q * normal - 1.0 / stiffness * of_slip) * along.transpose();
         for (own, back) in self.back.iter().zip(history[TENSORS..].chunks_exact_mut(4)) {
             let old = Vector4::from_column_slice(back);
             let new = (old + 2.0 / 3.0 * own.modulus * slip * normal) / (1.0 + own.gamma * slip);
@@ -285,13 +293,14 @@ impl ReturnMap for VonMises {
         Ok(answer)
     }
 
-    #[inline]
+    #[inline(always)]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
         let mut beyond = deviator(stress).0;
         history[TENSORS..].chunks_exact(4).for_each(|back| beyond -= Vector4::from_column_slice(back));
         equivalent(&beyond) - self.strength(history[0])[0]
     }
 
+    #[inline(always)]
     fn stored(&self, history: &[f64]) -> f64 {
         let own = |(own, back): (&BackStress, &[f64])| {
             let back = Vector4::from_column_slice(back);
@@ -323,9 +332,4 @@ impl ReturnMap for VonMises {
             self.strength
         )
     }
-}
-
-/// dev: the deviator of a tensor, as a matrix.
-pub(super) fn deviatoric() -> Matrix4<f64> {
-    Matrix4::identity() - ONE * ONE.transpose() / 3.0
 }

@@ -16,7 +16,7 @@ use nalgebra::{Matrix2, Matrix4, Vector2, Vector5};
 
 use super::Formulation;
 use crate::laws::bulk::spatial::{components, plane};
-use crate::laws::bulk::{Material, MaterialFailure, Straining, Stretched};
+use crate::laws::bulk::{Material, MaterialFailure, MaterialResponse, Straining, Stretched};
 use crate::mesh::shape::ElementKind;
 
 /// A solid element: its reference geometry at the quadrature points.
@@ -323,21 +323,22 @@ impl SolidElement {
             return self.ring(material, memory, u, force, tangent);
         }
         match (self.kind, material.description().is_symmetric) {
-            (ElementKind::T3, true) => self.evolve_by::<3, true>(material, memory, u, force, tangent),
-            (ElementKind::T3, false) => self.evolve_by::<3, false>(material, memory, u, force, tangent),
-            (ElementKind::T6, true) => self.evolve_by::<6, true>(material, memory, u, force, tangent),
-            (ElementKind::T6, false) => self.evolve_by::<6, false>(material, memory, u, force, tangent),
-            (ElementKind::Q4, true) => self.evolve_by::<4, true>(material, memory, u, force, tangent),
-            (ElementKind::Q4, false) => self.evolve_by::<4, false>(material, memory, u, force, tangent),
-            (ElementKind::Q8, true) => self.evolve_by::<8, true>(material, memory, u, force, tangent),
-            (ElementKind::Q8, false) => self.evolve_by::<8, false>(material, memory, u, force, tangent),
-            (ElementKind::Q9, true) => self.evolve_by::<9, true>(material, memory, u, force, tangent),
-            (ElementKind::Q9, false) => self.evolve_by::<9, false>(material, memory, u, force, tangent),
+            (ElementKind::T3, true) => self.evolve_by::<3, 1, true>(material, memory, u, force, tangent),
+            (ElementKind::T3, false) => self.evolve_by::<3, 1, false>(material, memory, u, force, tangent),
+            (ElementKind::T6, true) => self.evolve_by::<6, 3, true>(material, memory, u, force, tangent),
+            (ElementKind::T6, false) => self.evolve_by::<6, 3, false>(material, memory, u, force, tangent),
+            (ElementKind::Q4, true) => self.evolve_by::<4, 4, true>(material, memory, u, force, tangent),
+            (ElementKind::Q4, false) => self.evolve_by::<4, 4, false>(material, memory, u, force, tangent),
+            (ElementKind::Q8, true) => self.evolve_by::<8, 9, true>(material, memory, u, force, tangent),
+            (ElementKind::Q8, false) => self.evolve_by::<8, 9, false>(material, memory, u, force, tangent),
+            (ElementKind::Q9, true) => self.evolve_by::<9, 9, true>(material, memory, u, force, tangent),
+            (ElementKind::Q9, false) => self.evolve_by::<9, 9, false>(material, memory, u, force, tangent),
         }
     }
 
-    /// The same of an element in plane, whose number of nodes and symmetry are known at compile time.
-    fn evolve_by<const N: usize, const SYMMETRIC: bool>(
+    /// The same of an element in plane, whose number of nodes, largest number of quadrature points and symmetry are known at compile
+    /// time.
+    fn evolve_by<const N: usize, const M: usize, const SYMMETRIC: bool>(
         &self,
         material: &dyn Material,
         memory: Memory,
@@ -347,23 +348,25 @@ impl SolidElement {
     ) -> Result<[f64; 2], MaterialFailure> {
         let u = &*self.since_birth(u);
         let (Memory { dt, old, new }, wanted) = (memory, tangent.is_some());
-        let count = material.description().variables.len();
-        if let Some(mean) = self.mean(u)? {
-            let answer = |k: usize, seen: &Vector5<f64>| {
-                let own = k * count..(k + 1) * count;
-                let straining = Straining { dt, tangent: wanted, ..Straining::new(plane(seen), &old[own.clone()]) };
-                material.respond(&straining, &mut new[own]).map(Stretched::from)
-            };
-            return mean.respond(answer, force, tangent);
+        let (points, mean) = (self.quadrature_points(), self.mean(u)?);
+        let (count, gradients) = (old.len() / points, self.gradients.as_chunks::<N>().0);
+        let mut strainings = [Straining { dt, tangent: wanted, ..Straining::new(Matrix2::identity(), &[]) }; M];
+        for (k, (straining, gradients)) in strainings.iter_mut().zip(gradients).enumerate() {
+            straining.deformation = deformation_gradient(gradients, u);
+            straining.old = &old[k * count..(k + 1) * count];
+        }
+        if let Some(mean) = &mean {
+            strainings.iter_mut().zip(mean.seen()).for_each(|(straining, seen)| straining.deformation = plane(&seen));
+        }
+        let mut responses = [MaterialResponse::default(); M];
+        material.responses(&strainings[..points], new, &mut responses[..points])?;
+        if let Some(mean) = mean {
+            return mean.respond(|k, _| Ok(Stretched::from(responses[k])), force, tangent);
         }
         force.fill(0.0);
         let [mut energy, mut dissipated] = [0.0; 2];
         let mut blocks = wanted.then_some([[[[0.0; 2]; 2]; N]; N]);
-        for (k, (gradients, &volume)) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes).enumerate() {
-            let own = k * count..(k + 1) * count;
-            let deformation = deformation_gradient(gradients, u);
-            let straining = Straining { dt, tangent: wanted, ..Straining::new(deformation, &old[own.clone()]) };
-            let response = material.respond(&straining, &mut new[own])?;
+        for ((gradients, &volume), response) in gradients.iter().zip(&self.volumes).zip(&responses) {
             energy += volume * response.energy;
             dissipated += volume * response.dissipation;
             add_force(gradients, &(volume * response.stress), force);
