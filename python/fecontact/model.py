@@ -1078,8 +1078,8 @@ class Output(dict[str, Any]):
         derived: Whether the fields also have what follows from stress and logarithmic strain:
             `principal_stress`, `principal_strain` and `stretch_zz`, for ParaView. The page and Python compute
             these themselves
-        displacement_gradients: Whether `gradients.zarr` also has the derivatives of the displacements of all
-            nodes by the places of `gradients`, at every row of the history
+        displacement_gradients: Whether `gradients.zarr`, at every row of the history, and the fields also have
+            the derivatives of the displacements of all nodes by the places of `gradients`
         every: Fields are written with every n-th row of the history, and at the end of each step; default:
             about 30 times in the run, equally often in each step at equal parts of its duration, or only at
             `times` and ends of steps where `times` are given
