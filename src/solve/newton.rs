@@ -21,7 +21,7 @@
 //! Source: Matthies & Strang (1979), The solution of nonlinear finite element equations, doi:10.1002/nme.1620141104.
 //!
 //! Where even these corrections come back to the same iterates, no number of them ends, and the increment is given up at once: the last
-//! two residuals and corrections are those of p iterates before, to four digits. Often there is no equilibrium near by, as where friction
+//! p residuals and corrections are those of the p before, to five digits. Often there is no equilibrium near by, as where friction
 //! weakens faster than the bodies unload, and a shorter increment has one.
 //!
 //! Near the solution the tangent of the previous iterate is nearly as good as a new one, and its factors are available. A
@@ -144,7 +144,7 @@ const LONGEST_CIRCLE: usize = 12;
 
 /// Largest relative difference of residuals and corrections that count as the same: round-off changes them by less, and what converges
 /// by so little in an iteration does not converge.
-const SAME: f64 = 1e-4;
+const SAME: f64 = 1e-5;
 
 /// Solves r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement, `work` returns the work of a
 /// residual at `u` along a correction.
@@ -300,7 +300,7 @@ fn circle(iterations: &[Iteration]) -> Option<usize> {
     let alike = |(a, b): (&Iteration, &Iteration)| same(a.residual, b.residual) && same(a.correction, b.correction);
     let returns = |period: usize| {
         let (last, before) = (iterations.iter().rev(), iterations.iter().rev().skip(period));
-        iterations.len() >= period + 2 && last.zip(before).take(2).all(alike)
+        iterations.len() >= 2 * period && last.zip(before).take(period).all(alike)
     };
     (2..=LONGEST_CIRCLE).find(|&period| returns(period))
 }

@@ -27,8 +27,8 @@ fn sources(folder: &Path) -> BTreeMap<PathBuf, String> {
     found
 }
 
-/// Declarations of types that can be stored, and of constants, by their names: without comments, attributes other than serde's, and who
-/// may see what.
+/// Declarations of types that can be stored, and of constants, by their names: without comments, fields that are skipped, attributes
+/// other than serde's, and who may see what.
 fn declarations(sources: &BTreeMap<PathBuf, String>) -> BTreeMap<String, Vec<String>> {
     let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for text in sources.values() {
@@ -52,7 +52,10 @@ fn declarations(sources: &BTreeMap<PathBuf, String>) -> BTreeMap<String, Vec<Str
             };
             let Some(end) = end else { continue };
             let name = rest.split(|c: char| !is_of_word(c)).next().unwrap_or_default();
-            let kept = lines[k..=k + end].iter().filter(|line| !is_attribute(line) || line.contains("serde"));
+            let is_skipped =
+                |at: &usize| lines[at - 1].trim() == "#[serde(skip)]" || lines[*at].trim() == "#[serde(skip)]";
+            let kept = (k..=k + end).filter(|at| *at == k || !is_skipped(at)).map(|at| lines[at]);
+            let kept = kept.filter(|line| !is_attribute(line) || line.contains("serde"));
             let words: Vec<String> =
                 kept.map(|line| seen_by_all(line.trim())).filter(|line| !line.is_empty()).collect();
             found.entry(name.into()).or_default().push(words.join(" "));

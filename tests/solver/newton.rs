@@ -65,7 +65,7 @@ fn a_circle_without_a_root_is_given_up() {
     for (around, (iterations, result)) in [(2, root(1.0, two)), (3, root(0.0, three))] {
         let Err(NewtonFailure::Circles { period, .. }) = result else { panic!("{around}: {result:?}") };
         assert_eq!(period, around);
-        assert!(iterations.len() <= 3 + 2 * around, "{around}: {} solves", iterations.len());
+        assert!(iterations.len() <= 2 + 2 * around, "{around}: {} solves", iterations.len());
     }
 }
 
@@ -74,11 +74,8 @@ fn a_circle_without_a_root_is_given_up() {
 fn slow_convergence_is_no_circle() {
     let one_sided = |u: f64| Ok([u.powi(5), 5.0 * u.powi(4)]);
     let to_and_fro = |u: f64| Ok([u.signum() * u.abs().powf(0.502), 0.502 * u.abs().powf(-0.498)]);
-    assert!(
-        root(1.0, one_sided).1.is_ok()
-            || matches!(root(1.0, one_sided).1, Err(NewtonFailure::TooManyIterations { .. }))
-    );
-    assert!(root(1.0, to_and_fro).1.is_ok());
+    assert!(root(1.0, one_sided).1.is_ok());
+    assert!(matches!(root(1.0, to_and_fro).1, Err(NewtonFailure::TooManyIterations { .. })));
 }
 
 /// From u = 1.1 the corrections of u/√(1 + u²) = 0 lead to −1.3, 2.4 and −13, farther than the equation can be evaluated
