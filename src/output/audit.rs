@@ -107,8 +107,8 @@ const GIVES_WAY: f64 = 0.01;
 const ADVISED: f64 = 0.004;
 
 impl Audit {
-    /// Records a row, given the state before it.
-    pub fn record(&mut self, model: &Model, step: &Step, old: &State, new: &State) {
+    /// Records a row, given the state before it; returns the largest change of a component of a displacement [L].
+    pub fn record(&mut self, model: &Model, step: &Step, old: &State, new: &State) -> f64 {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
         if self.steps.last().is_none_or(|last| last.step != step.name) {
@@ -131,6 +131,7 @@ impl Audit {
         let scales = || Scales { diagonal: model.mesh.diagonal(), stiffness: model.stiffness() };
         let scales = *self.scales.get_or_insert_with(scales);
         self.noise += round_off(model, scales, new, reach) * way;
+        way
     }
 
     /// Warnings at the end of a run: that the energies do not balance, or contacts give way.

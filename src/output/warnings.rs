@@ -44,7 +44,7 @@ pub struct Warnings {
     doubtful: BTreeSet<String>,
     /// Steps with a warning about their linear systems
     perturbed: BTreeSet<String>,
-    /// How far each linear body had been strained in this step when it was looked at, as [`strained`] estimates it
+    /// How far each linear body had been strained in this step when it was looked at, as [`most_strained`] estimates it
     strained: BTreeMap<usize, f64>,
     /// Linear bodies beyond their range in this step, with the largest norm of a displacement gradient
     far: BTreeMap<usize, (f64, String)>,
@@ -54,6 +54,12 @@ pub struct Warnings {
     closed: BTreeSet<usize>,
     /// Energy balance so far
     pub audit: Audit,
+    /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
+    #[serde(skip)]
+    possibly: BTreeMap<usize, f64>,
+    /// The most by which a unit of way strains an element, once asked for [1/L]
+    #[serde(skip)]
+    sharpest: Option<f64>,
     /// Callback for new warnings, and the number already passed to it
     #[serde(skip)]
     warn: Option<Warn>,
@@ -86,8 +92,8 @@ impl Observer for Warnings {
         self.error_of_touch(attempt);
         self.lost_pivots(attempt);
         self.passed(attempt, state);
-        self.linear_bodies(model, state, attempt.ends_step(state));
-        self.audit.record(model, attempt.step, attempt.old, state);
+        let way = self.audit.record(model, attempt.step, attempt.old, state);
+        self.linear_bodies(model, state, way, attempt.ends_step(state));
         let x = model.configuration(&state.displacement);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
@@ -227,20 +233,24 @@ impl Warnings {
     }
 
     /// Linear bodies that have turned or stretched too far for one: told at the end of the step, with what was the farthest, to 2 %
-    /// of it.
-    fn linear_bodies(&mut self, model: &Model, state: &State, ends_step: bool) {
+    /// of it. No component of a displacement has changed by more than `way` since the last row.
+    fn linear_bodies(&mut self, model: &Model, state: &State, way: f64, ends_step: bool) {
         let pending = |body: &usize| {
             model.bodies[*body].material.description().is_linear && !self.given.contains(&(*body, Kind::FarFromLinear))
         };
-        let largest = |body: usize| {
-            let elements = model.bodies[body].elements.par_iter().with_min_len(MANY_ELEMENTS);
-            let strained = elements.map(|&element| strained(model, element, &state.displacement));
-            (body, if state.has(body) { strained.reduce(|| 0.0, f64::max) } else { 0.0 })
-        };
-        let now: Vec<(usize, f64)> = (0..model.bodies.len()).filter(pending).map(largest).collect();
-        for (body, now) in now {
+        let pending: Vec<usize> = (0..model.bodies.len()).filter(pending).collect();
+        let sharpest = *self.sharpest.get_or_insert_with(|| sharpest(model, &pending));
+        for body in pending {
             let so_far = self.strained.get(&body).copied().unwrap_or(0.0);
-            if ends_step || now > (FURTHER * so_far).max(LEAST_STRAINED) {
+            let enough = (FURTHER * so_far).max(LEAST_STRAINED);
+            let possibly = self.possibly.entry(body).or_insert(f64::INFINITY);
+            *possibly += sharpest * way;
+            if *possibly <= enough && !ends_step {
+                continue;
+            }
+            let now = if state.has(body) { most_strained(model, body, state) } else { 0.0 };
+            *possibly = now;
+            if ends_step || now > enough {
                 self.strained.insert(body, now.max(so_far));
                 self.far_from_linear(body, model, state);
             }
@@ -351,19 +361,39 @@ fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
     format!("{start}, and {found}; lower dt.min")
 }
 
-/// Estimates how far an element is strained and turned, at less cost than its deformation at the integration points: the largest
-/// displacement of a node against the first one, over the area of the corners by their largest distance; in axisymmetry at least u_r/r.
-fn strained(model: &Model, element: usize, displacement: &[f64]) -> f64 {
+/// Estimates how far a body is strained and turned, at less cost than its deformation at the integration points: of all elements the largest
+/// displacement of a node against the first one, by [`sharpness`]; in axisymmetry at least u_r/r.
+fn most_strained(model: &Model, body: usize, state: &State) -> f64 {
+    let u = &state.displacement;
+    let strained = |&element: &usize| {
+        let nodes = &model.mesh.elements[element].nodes;
+        let (first, own) = (nodes[0], vector(u, nodes[0]));
+        let farthest = nodes.iter().map(|&node| (vector(u, node) - own).norm_squared()).fold(0.0, f64::max);
+        let hoop = if model.mesh.section.is_axisymmetric() { u[2 * first] / model.mesh.nodes[first].x } else { 0.0 };
+        (farthest.sqrt() * sharpness(model, element)).max(if hoop.is_finite() { hoop.abs() } else { 0.0 })
+    };
+    model.bodies[body].elements.par_iter().with_min_len(MANY_ELEMENTS).map(strained).reduce(|| 0.0, f64::max)
+}
+
+/// Largest distance of the corners of an element over their area [1/L].
+fn sharpness(model: &Model, element: usize) -> f64 {
     let element = &model.mesh.elements[element];
-    let (first, place) = (element.nodes[0], |a: usize| model.mesh.nodes[element.nodes[a]]);
-    let against = |&node: &usize| (vector(displacement, node) - vector(displacement, first)).norm_squared();
-    let farthest = element.nodes.iter().map(against).fold(0.0, f64::max);
-    let corners = element.kind.corners();
+    let (corners, place) = (element.kind.corners(), |a: usize| model.mesh.nodes[element.nodes[a]]);
     let twice = |a: usize| (place(a) - place(0)).perp(&(place((a + 1) % corners) - place(0)));
     let area = 0.5 * (1..corners).map(twice).sum::<f64>().abs();
     let longest = (1..corners).map(|a| (place(a) - place(a - 1)).norm_squared()).fold(0.0, f64::max);
-    let hoop = if model.mesh.section.is_axisymmetric() { displacement[2 * first] / place(0).x } else { 0.0 };
-    ((farthest * longest).sqrt() / area).max(if hoop.is_finite() { hoop.abs() } else { 0.0 })
+    longest.sqrt() / area
+}
+
+/// The most that the estimate of a body changes by if no component of a displacement changes by more than 1: two nodes by √2 either, or the
+/// radius of a ring [1/L].
+fn sharpest(model: &Model, bodies: &[usize]) -> f64 {
+    let ring = |element: usize| {
+        let radius = model.mesh.nodes[model.mesh.elements[element].nodes[0]].x;
+        if model.mesh.section.is_axisymmetric() && radius != 0.0 { 1.0 / radius.abs() } else { 0.0 }
+    };
+    let elements = bodies.iter().flat_map(|&body| &model.bodies[body].elements);
+    elements.map(|&element| (8f64.sqrt() * sharpness(model, element)).max(ring(element))).fold(0.0, f64::max)
 }
 
 /// Number of elements that one thread looks at in a go.

@@ -146,6 +146,9 @@ const LONGEST_CIRCLE: usize = 12;
 /// by so little in an iteration does not converge.
 const SAME: f64 = 1e-5;
 
+/// Smallest of the largest ‖r‖/‖f‖ in a circle, in multiples of the tolerance.
+const FAR_FROM_SOLVED: f64 = 100.0;
+
 /// Solves r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement, `work` returns the work of a
 /// residual at `u` along a correction.
 pub fn solve<E>(
@@ -267,7 +270,8 @@ impl Convergence {
         if !size.is_finite() || size > DIVERGENCE * self.largest_start {
             return Err(NewtonFailure::Diverged { residual, iterations: done });
         }
-        if let Some(period) = self.stalled_at.and_then(|stalled| circle(&iterations[stalled.min(done)..])) {
+        let since = |stalled: usize| circle(&iterations[stalled.min(done)..], self.settings.tolerance);
+        if let Some(period) = self.stalled_at.and_then(since) {
             return Err(NewtonFailure::Circles { period, residual, iterations: done });
         }
         if done == self.settings.max_iterations {
@@ -294,13 +298,14 @@ impl Convergence {
     }
 }
 
-/// Number of iterates of the circle in which the last ones go, if they do.
-fn circle(iterations: &[Iteration]) -> Option<usize> {
+/// Number of iterates of the circle in which the last ones go, if they do. Near the tolerance round-off may go to and fro for a while.
+fn circle(iterations: &[Iteration], tolerance: f64) -> Option<usize> {
     let same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
     let alike = |(a, b): (&Iteration, &Iteration)| same(a.residual, b.residual) && same(a.correction, b.correction);
     let returns = |period: usize| {
         let (last, before) = (iterations.iter().rev(), iterations.iter().rev().skip(period));
-        iterations.len() >= 2 * period && last.zip(before).take(period).all(alike)
+        let far = |iteration: &Iteration| iteration.residual > FAR_FROM_SOLVED * tolerance;
+        iterations.len() >= 2 * period && last.clone().take(period).any(far) && last.zip(before).take(period).all(alike)
     };
     (2..=LONGEST_CIRCLE).find(|&period| returns(period))
 }

@@ -69,6 +69,14 @@ fn a_circle_without_a_root_is_given_up() {
     }
 }
 
+/// A residual that goes to and fro between two values little above the tolerance, as round-off does, is no circle.
+#[test]
+fn round_off_is_no_circle() {
+    let noise = |u: f64| Ok([3e-12, u.signum()]);
+    let (iterations, result) = root(1e-12, noise);
+    assert!(matches!(result, Err(NewtonFailure::TooManyIterations { .. })), "{result:?} after {}", iterations.len());
+}
+
 /// The corrections of u⁵ = 0 leave four fifths of u, those of sgn(u) |u|^(0.502) = 0 lead to −0.992 u: slow, but no circle.
 #[test]
 fn slow_convergence_is_no_circle() {
