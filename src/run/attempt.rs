@@ -26,10 +26,6 @@ use crate::time::touching::Touching;
 /// Factor on Δt after an increment that could not be solved.
 const CUT: f64 = 0.5;
 
-/// Factor after a second attempt at it and each that follows, in dynamic steps: where friction weakens faster than the bodies unload, the
-/// increment that has an equilibrium may be a hundred times shorter, and every attempt on the way there costs as much as ten increments.
-const CUT_AGAIN: f64 = 0.25;
-
 impl Simulation {
     /// Tries an implicit or static increment.
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
@@ -81,15 +77,13 @@ impl Simulation {
 
     /// Outcome of an increment that could not be solved.
     fn unsolved(&self, cause: IncrementFailure, dt: f64, number: usize, mut touching: Touching) -> Outcome {
-        let Step { name, increments, rupture, scheme, .. } = &*self.step;
+        let Step { name, increments, rupture, .. } = &*self.step;
         if !cause.is_retryable() {
             return Outcome::Stopped(self.unsolvable(cause));
         }
         if CUT * dt >= increments.min {
             touching.cut();
-            let again = number > 1 && scheme.is_dynamic() && CUT_AGAIN * dt >= increments.min;
-            let cut = if again { CUT_AGAIN } else { CUT };
-            return Outcome::Cut(cause, Phase::Implicit { dt: cut * dt, attempt: number + 1, touching });
+            return Outcome::Cut(cause, Phase::Implicit { dt: CUT * dt, attempt: number + 1, touching });
         }
         if rupture.is_some() {
             return Outcome::Cut(cause, self.rupture());
