@@ -401,6 +401,7 @@ fn plain_found(found: &str) -> String {
     match (found, value) {
         ("map", _) => "an object {…}".into(),
         ("sequence", _) => "a list […]".into(),
+        ("unit variant", _) => "a name alone".into(),
         (_, Some(value)) => clipped(value),
         _ => clipped(found.strip_prefix("string ").unwrap_or(found)),
     }

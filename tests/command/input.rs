@@ -258,6 +258,11 @@ fn wrong_types_are_named() {
         ("/steps", json!({}), ["steps: ", "an object {…}, but must be a list"]),
         ("/steps/0/duration", json!("1 s"), ["steps[0].duration: ", "\"1 s\", but must be a number"]),
         ("/steps/0/supports/0/uy", json!({}), ["steps[0].supports[0].uy: ", "an object {…} with exactly one key"]),
+        (
+            "/steps/0/scheme",
+            json!("newmark"),
+            ["steps[0].scheme.newmark: ", "is a name alone, but must be an object {…}"],
+        ),
         ("/steps/0/supports/0/uy", json!(true), ["steps[0].supports[0].uy: ", "true, but must be a number, an expr"]),
         ("/steps/0/supports/0/uy", json!({"rate": "x"}), ["steps[0].supports[0].uy", "\"x\", but must be a number"]),
         ("/initial_velocity", json!({"block": [1, 2, 3]}), ["initial_velocity.block: ", "has 3 entries"]),
