@@ -1,7 +1,7 @@
 //! Neighbours of a case: the same case with another value at one place, for derivatives of its run ([`crate::output::gradients`]).
 //!
 //! ```text
-//! θ (1 ± 1e-4)                        or θ, θ (1 + 1e-4), θ (1 + 2e-4), or these below θ, at an end of its range
+//! θ (1 ± 1e-4)                        or θ (1 + 1e-4), θ (1 + 2e-4), or these below θ, at an end of its range
 //! ```
 //!
 //! Truncation leaves ε² of a derivative, some 1e-8 where θ acts smoothly; round-off and the tolerance of the neighbours leave
@@ -20,7 +20,7 @@ use crate::model::builder::{Checked, ModelError, refuse_if};
 use crate::model::scheme::Scheme;
 use crate::model::{Model, Step};
 use crate::output::checkpoint::MeshPrint;
-use crate::output::gradients::Parameter;
+use crate::output::gradients::{Beside, Parameter};
 use crate::solve::neighbour::TOLERANCE;
 use std::path::Path;
 use std::sync::Arc;
@@ -28,9 +28,9 @@ use std::sync::Arc;
 /// ε/θ
 const STEP: f64 = 1e-4;
 
-/// k and weights of the values θ + k ε whose difference is a derivative, to second order in ε; the weights add up to 0.
+/// k and weights of the values θ + k ε: their differences from the run add up to a derivative, to second order in ε.
 const STENCILS: [&[(f64, f64)]; 3] =
-    [&[(-1.0, -0.5), (1.0, 0.5)], &[(0.0, -1.5), (1.0, 2.0), (2.0, -0.5)], &[(0.0, 1.5), (-1.0, -2.0), (-2.0, 0.5)]];
+    [&[(-1.0, -0.5), (1.0, 0.5)], &[(1.0, 2.0), (2.0, -0.5)], &[(-1.0, -2.0), (-2.0, 0.5)]];
 
 /// Parts of a case whose values act on its run without changing mesh, increments or output.
 const PARTS: [&str; 7] = ["section", "bodies", "point_masses", "rigid_bodies", "contacts", "initial_velocity", "steps"];
@@ -96,7 +96,8 @@ impl Differentiated<'_> {
         }
         let beside = |stencil: &[(f64, f64)]| {
             let one = |(k, weight): &(f64, f64)| {
-                Ok((weight / (STEP * theta), self.with(&keys, theta * (1.0 + k * STEP), mesh)?))
+                let model = self.with(&keys, theta * (1.0 + k * STEP), mesh)?;
+                Ok(Beside { apart: *k, weight: weight / (STEP * theta), model })
             };
             stencil.iter().map(one).collect::<Result<Vec<_>, String>>()
         };

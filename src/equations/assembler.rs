@@ -13,13 +13,13 @@ use std::time::Instant;
 
 use crate::contact::pair::Presumption;
 use crate::contact::response::{LastAnswers, PairResponse};
-use crate::equations::convergence::ConvergenceCriterion;
+use crate::equations::convergence::{ConvergenceCriterion, missed};
 use crate::equations::coupling::{Coupling, Layout};
 use crate::equations::damping::ByMass;
 use crate::equations::evaluation::{ContactCounts, Evaluation, Seconds};
 use crate::equations::evolving::Evolving;
 use crate::equations::inertia::{self, Inertia};
-use crate::equations::solids::{LinearizedSolids, Solids};
+use crate::equations::solids::{LinearizedSolids, SolidForces, Solids};
 use crate::equations::sums::{Sums, TrialFailure};
 use crate::equations::term::{self, Term};
 use crate::equations::trial::Trial;
@@ -38,8 +38,7 @@ pub struct Assembler {
     /// Elements that came into a deformed model
     births: Arc<Births>,
     solids: Solids,
-    /// What stands for them in a residual beside a known solution
-    linearized: Option<Arc<LinearizedSolids>>,
+    linearization: Linearization,
     evolving: Evolving,
     mass: Option<SparseMatrix>,
     /// η M of the bodies' damping, and the η of each body
@@ -73,6 +72,18 @@ struct Motion<'a> {
     v: Option<&'a [f64]>,
 }
 
+/// The forces of the bodies, linearized about a solution.
+#[derive(Default)]
+enum Linearization {
+    #[default]
+    None,
+    /// To be found from the next tangent
+    Wanted,
+    Found(LinearizedSolids),
+    /// What stands for the bodies in a residual beside the solution
+    Given(SolidForces),
+}
+
 impl Assembler {
     /// Numbers of contact points by status, as last evaluated.
     pub fn contact_counts(&self) -> ContactCounts {
@@ -90,7 +101,7 @@ impl Assembler {
             births,
             evolving: Evolving::new(model, solids.constant(), |_| true, &born),
             solids,
-            linearized: None,
+            linearization: Linearization::None,
             mass: None,
             damping_mass: None,
             weight: supports::weight(model),
@@ -137,6 +148,13 @@ impl Assembler {
         }
     }
 
+    /// Couples nodes as another model with the same elements and nodes does.
+    pub fn couple_as(&mut self, other: &Assembler) {
+        if self.layout.take(&other.layout) {
+            (self.mass, self.damping_mass) = (None, None);
+        }
+    }
+
     /// Creates a system on the current pattern.
     pub fn system(&self) -> System {
         System {
@@ -157,7 +175,7 @@ impl Assembler {
         })
     }
 
-    /// Computes the residual beside a solution about which the bodies are linearized.
+    /// Computes the residual beside a solution about which the bodies may be linearized, without its imbalance ([`Assembler::share`]).
     ///
     /// # Errors
     /// The same as for [`Assembler::residual`].
@@ -165,25 +183,39 @@ impl Assembler {
         &mut self,
         trial: Trial,
         u: &[f64],
-        solids: Option<Arc<LinearizedSolids>>,
+        solids: Option<SolidForces>,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        self.linearized = solids;
-        let evaluated = self.residual(trial, u, system);
-        self.linearized = None;
+        self.linearization = solids.map_or(Linearization::None, Linearization::Given);
+        let evaluated = self.with_responses(trial, u, Request::Residual, |assembler, responses| {
+            assembler.sum(trial, u, responses, None, system)
+        });
+        self.linearization = Linearization::None;
         evaluated
     }
 
-    /// Linearizes the forces of the bodies about `u`; `None` where nodes follow others by their rotation, with which forces turn.
+    /// Computes the residual and the tangent without presumptions, and on request the linearized forces of the bodies: none where nodes
+    /// follow others by their rotation, with which forces turn.
     ///
     /// # Errors
-    /// Returns [`TrialFailure`] if an element is inverted.
-    pub fn linearized(&mut self, u: &[f64]) -> Result<Option<LinearizedSolids>, TrialFailure> {
-        let Self { model, layout, solids, .. } = self;
-        if !model.linkage.is_empty() {
-            return Ok(None);
-        }
-        solids.linearized(u, layout).map(Some)
+    /// The same as for [`Assembler::residual`].
+    pub fn tangent(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        linearize: bool,
+        system: &mut System,
+    ) -> Result<Option<LinearizedSolids>, TrialFailure> {
+        let wanted = linearize && self.model.linkage.is_empty();
+        self.linearization = if wanted { Linearization::Wanted } else { Linearization::None };
+        let evaluated = self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
+            assembler.assemble(trial, u, responses, Request::Tangent, system)
+        });
+        let found = match std::mem::take(&mut self.linearization) {
+            Linearization::Found(solids) => Some(solids),
+            _ => None,
+        };
+        evaluated.map(|()| found)
     }
 
     /// Computes the residual, and the tangent on request, at the displacement `u` with the given responses of the contact
@@ -199,38 +231,76 @@ impl Assembler {
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        let clock = Instant::now();
-        self.attend(trial);
-        let model = &*self.model.clone();
-        let tangent = request == Request::Tangent;
-        if tangent {
-            self.cover(trial, responses);
-            if !Arc::ptr_eq(&system.tangent.pattern, &self.layout.pattern) {
-                system.tangent = self.layout.matrix();
-            }
-        }
         self.magnitudes.fill(0.0);
-        self.evaluation.damping.clear();
-        let motion = Motion { u, v: None };
-        self.add(&OF_PLACE_AND_MOTION, trial, motion, responses, true, tangent.then_some(&mut system.tangent))?;
-        model.ties.gather(2, &mut self.evaluation.damping);
-        model.ties.gather(2, &mut self.magnitudes);
-        model.linkage.gather(&mut self.evaluation.damping);
-        model.linkage.gather_magnitudes(&mut self.magnitudes);
-        self.note_contacts(trial, responses);
-        self.balance(trial, u, tangent, system);
-        supports::prescribe(model, self.weight, trial, u, tangent, system)?;
-        self.equilibrium.retard(model, trial.step);
+        self.sum(trial, u, responses, Some(request), system)?;
+        let clock = Instant::now();
+        self.equilibrium.note_contacts(&self.model, trial, responses);
+        self.equilibrium.retard(&self.model, trial.step);
         system.forces = norm(&self.magnitudes);
         system.imbalance = self.imbalance(trial, u, &system.residual);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
+    /// Computes the residual, and the tangent and the magnitudes of all forces if these are asked for.
+    fn sum(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+        scaled: Option<Request>,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        let clock = Instant::now();
+        self.attend(trial);
+        let model = &*self.model.clone();
+        let tangent = scaled == Some(Request::Tangent);
+        if tangent {
+            self.cover(trial, responses);
+            if !Arc::ptr_eq(&system.tangent.pattern, &self.layout.pattern) {
+                system.tangent = self.layout.matrix();
+            }
+        }
+        self.evaluation.damping.clear();
+        let motion = Motion { u, v: None };
+        let matrix = tangent.then_some(&mut system.tangent);
+        self.add(&OF_PLACE_AND_MOTION, trial, motion, responses, scaled.is_some(), matrix)?;
+        model.ties.gather(2, &mut self.evaluation.damping);
+        model.linkage.gather(&mut self.evaluation.damping);
+        if scaled.is_some() {
+            model.ties.gather(2, &mut self.magnitudes);
+            model.linkage.gather_magnitudes(&mut self.magnitudes);
+        }
+        self.keep_states(responses);
+        self.balance(trial, u, tangent, system);
+        supports::prescribe(model, self.weight, trial, u, tangent, system)?;
+        self.seconds.assembly += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
     /// Returns the largest ‖r‖/‖f‖ of a part of the model, by the forces last evaluated, at the same displacement.
     pub fn imbalance(&self, trial: Trial, u: &[f64], residual: &[f64]) -> f64 {
-        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
-        self.equilibrium.imbalance(&self.model, mass, trial, u, &self.magnitudes, residual)
+        self.equilibrium.imbalance(&self.model, self.inert(trial), trial, u, &self.magnitudes, residual)
+    }
+
+    /// Returns the forces by which the residual of every part is measured with a tolerance, as last evaluated at the same displacement [F].
+    pub fn measures(&self, trial: Trial, u: &[f64], tolerance: f64) -> Vec<f64> {
+        self.equilibrium.measures(&self.model, self.inert(trial), trial, u, &self.magnitudes, tolerance)
+    }
+
+    /// Returns the largest residual of a part relative to its measure.
+    pub fn share(&self, trial: Trial, residual: &[f64], measures: &[f64]) -> f64 {
+        self.equilibrium.largest(&self.model, trial, residual, |number, _| measures[number])
+    }
+
+    /// Returns the distance from the prescribed motions, relative to the largest of them.
+    pub fn missed(&self, trial: Trial, u: &[f64]) -> f64 {
+        missed(&self.model, trial, u)
+    }
+
+    /// The mass, if the scheme counts inertia.
+    fn inert(&self, trial: Trial) -> Option<&SparseMatrix> {
+        self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some())
     }
 
     /// Computes the forces that depend on the displacement `u` only, and everything else that an accepted state takes from the
@@ -277,7 +347,7 @@ impl Assembler {
         scaled: bool,
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
-        let Self { model, layout, solids, linearized, evolving, damping_mass, magnitudes, evaluation, .. } = self;
+        let Self { model, layout, solids, linearization, evolving, damping_mass, magnitudes, evaluation, .. } = self;
         let Evaluation {
             force,
             loads,
@@ -302,10 +372,13 @@ impl Assembler {
         for term in terms {
             match term {
                 Term::Solids => {
-                    let elastic = match linearized {
-                        Some(linearized) => linearized.add(u, &mut sums),
-                        None => solids.add(u, v, &mut sums)?,
+                    let elastic = match linearization {
+                        Linearization::Given(solids) => solids.add(&mut sums),
+                        _ => solids.add(u, v, &mut sums)?,
                     };
+                    if let (Linearization::Wanted, Some(tangent)) = (&linearization, &sums.tangent) {
+                        *linearization = Linearization::Found(LinearizedSolids::of(u, sums.force, elastic, tangent));
+                    }
                     let evolved = evolving.add(model, trial, u, memory, &mut sums)?;
                     *strain_energy = elastic + evolved.stored;
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);

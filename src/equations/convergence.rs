@@ -44,6 +44,18 @@ struct BalancedSet {
     contact: Option<usize>,
 }
 
+impl BalancedSet {
+    /// Norm of nodal vectors
+    fn norm(&self, values: &[f64]) -> f64 {
+        self.nodes.iter().map(|&node| square(values, node)).sum::<f64>().sqrt()
+    }
+
+    /// ‖ρ‖ from ρ² of every node [F]
+    fn hidden(&self, round_off: &[f64]) -> f64 {
+        self.nodes.iter().map(|&node| round_off[node]).sum::<f64>().sqrt()
+    }
+}
+
 /// Parts of a model, and the possible round-off at their nodes.
 #[derive(Clone, Debug)]
 pub(super) struct ConvergenceCriterion {
@@ -170,24 +182,54 @@ impl ConvergenceCriterion {
         residual: &[f64],
     ) -> f64 {
         let tolerance = model.newton.tolerance;
-        let free = supports::free(model, trial.step, residual);
         let mut round_off = None;
-        let mut imbalance = missed(model, trial, u);
-        for part in &self.parts {
-            let norm = |values: &[f64]| part.nodes.iter().map(|&node| square(values, node)).sum::<f64>().sqrt();
-            let residual = norm(&free);
-            let forces = part.contact.map_or_else(|| norm(magnitudes), |k| self.contact_forces[k]);
-            let share = if residual <= tolerance * forces {
-                if forces > 0.0 { residual / forces } else { 0.0 }
-            } else {
-                let round_off = round_off.get_or_insert_with(|| self.round_off(model, mass, trial, u, magnitudes));
-                let hidden = part.nodes.iter().map(|&node| round_off[node]).sum::<f64>().sqrt();
-                residual / forces.max(hidden / tolerance)
-            };
-            // NaN is not an equilibrium.
-            imbalance = if share.is_nan() { f64::INFINITY } else { imbalance.max(share) };
-        }
-        imbalance
+        let measure = |number: usize, residual: f64| {
+            let forces = self.forces(&self.parts[number], magnitudes);
+            if residual <= tolerance * forces {
+                return forces;
+            }
+            let round_off = round_off.get_or_insert_with(|| self.round_off(model, mass, trial, u, magnitudes));
+            forces.max(self.parts[number].hidden(round_off) / tolerance)
+        };
+        self.largest(model, trial, residual, measure).max(missed(model, trial, u))
+    }
+
+    /// max(‖f‖, ‖ρ‖/tolerance) of every part, for residuals that differ little from the one last evaluated [F].
+    pub(super) fn measures(
+        &self,
+        model: &Model,
+        mass: Option<&SparseMatrix>,
+        trial: Trial,
+        u: &[f64],
+        magnitudes: &[f64],
+        tolerance: f64,
+    ) -> Vec<f64> {
+        let round_off = self.round_off(model, mass, trial, u, magnitudes);
+        let of = |part: &BalancedSet| self.forces(part, magnitudes).max(part.hidden(&round_off) / tolerance);
+        self.parts.iter().map(of).collect()
+    }
+
+    /// Returns the largest residual of a part relative to its measure, a function of its number and its residual, (1).
+    pub(super) fn largest(
+        &self,
+        model: &Model,
+        trial: Trial,
+        residual: &[f64],
+        mut measure: impl FnMut(usize, f64) -> f64,
+    ) -> f64 {
+        let free = supports::free(model, trial.step, residual);
+        let share = |(number, part): (usize, &BalancedSet)| {
+            let residual = part.norm(&free);
+            if residual == 0.0 { 0.0 } else { residual / measure(number, residual) }
+        };
+        // NaN is not an equilibrium.
+        let worse = |most: f64, share: f64| if share.is_nan() { f64::INFINITY } else { most.max(share) };
+        self.parts.iter().enumerate().map(share).fold(0.0, worse)
+    }
+
+    /// ‖f‖ of a part [F]
+    fn forces(&self, part: &BalancedSet, magnitudes: &[f64]) -> f64 {
+        part.contact.map_or_else(|| part.norm(magnitudes), |k| self.contact_forces[k])
     }
 
     /// Norm of the nodal forces of each contact at the last evaluation [F].
@@ -268,7 +310,7 @@ impl ConvergenceCriterion {
 
 /// Largest |u − ū| relative to the largest prescribed motion, (2), or to the round-off of the largest displacement of any
 /// dof: a support at rest is satisfied within the round-off of the linear solution. Copies are prescribed by their originals.
-fn missed(model: &Model, trial: Trial, u: &[f64]) -> f64 {
+pub(super) fn missed(model: &Model, trial: Trial, u: &[f64]) -> f64 {
     let (mut missed, mut motion) = (links::missed(model, u), 0.0f64);
     let mut farthest = u.iter().fold(0.0f64, |most, u| most.max(u.abs()));
     for support in &trial.step.supports {

@@ -47,6 +47,7 @@ pub(super) struct Skew {
 }
 
 /// Pattern of a model's tangent, and the position of each element in it.
+#[derive(Clone)]
 pub(super) struct Layout {
     model: Arc<Model>,
     /// current coupling
@@ -92,6 +93,15 @@ impl Layout {
         if changes {
             self.coupling = coupling.clone();
             self.set();
+        }
+        changes
+    }
+
+    /// Takes over the coupling and the pattern of a layout of a model with the same elements and nodes; returns whether they changed.
+    pub fn take(&mut self, other: &Layout) -> bool {
+        let changes = !Arc::ptr_eq(&other.pattern, &self.pattern);
+        if changes {
+            *self = Self { model: self.model.clone(), ..other.clone() };
         }
         changes
     }

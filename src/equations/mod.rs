@@ -45,5 +45,5 @@ pub mod trial;
 pub use assembler::Assembler;
 pub use coupling::Coupling;
 pub use evaluation::{ContactCounts, Evaluation, Seconds, regimes};
-pub use solids::LinearizedSolids;
+pub use solids::{LinearizedSolids, SolidForces};
 pub use trial::Trial;

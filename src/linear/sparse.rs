@@ -303,6 +303,26 @@ impl SparseMatrix {
         products
     }
 
+    /// A x of a symmetric matrix for several vectors: sums of columns instead of rows, which wait less for memory.
+    pub fn multiply_symmetric<const N: usize>(&self, all: [&[f64]; N]) -> [Vec<f64>; N] {
+        let mut products = all.map(|x| Vec::with_capacity(x.len()));
+        let mut rest = &self.values[..];
+        for node in 0..self.pattern.nodes() {
+            let rows = self.pattern.neighbours(node);
+            let [one, other] = [0, 1].map(|_| rest.split_off(..2 * rows.len()).unwrap_or_default());
+            let mut sums = [[0.0; 2]; N];
+            for (&row, (one, other)) in rows.iter().zip(one.chunks_exact(2).zip(other.chunks_exact(2))) {
+                for (sums, x) in sums.iter_mut().zip(all) {
+                    let x = &x[2 * row..2 * row + 2];
+                    sums[0] += one[0] * x[0] + one[1] * x[1];
+                    sums[1] += other[0] * x[0] + other[1] * x[1];
+                }
+            }
+            products.iter_mut().zip(sums).for_each(|(product, sums)| product.extend(sums));
+        }
+        products
+    }
+
     /// b − A x.
     pub fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
         self.multiply(x).iter().zip(b).map(|(ax, b)| b - ax).collect()

@@ -1,11 +1,11 @@
 //! `gradients.csv`: derivatives of the quantities of the history and of the probes by parameters of the case, at their rows.
 //!
 //! ```text
-//! dQ/dθ = Σ w_k Q(θ + k ε)/ε        k = −1, 1, w = −½, ½;  k = 0, ±1, ±2, w = ∓3/2, ±2, ∓½ at the end of the range of θ
+//! dQ/dθ = Σ w_k (Q(θ + k ε) − Q(θ))/ε        k = −1, 1, w = −½, ½;  k = ±1, ±2, w = ±2, ∓½ at the end of the range of θ
 //! ```
 //!
 //! with neighbours of the run that follow it increment by increment ([`crate::time::neighbour`]). Where a contact point has another status
-//! in one of them than in the other, the run is at a kink, and the derivative is a mean of those on both sides.
+//! in one of them, the run is at a kink, and the derivative is a mean of those on both sides.
 //!
 //! Frames show those of the displacements of nodes, on request.
 
@@ -25,6 +25,7 @@ use super::quantities::INCREMENT;
 use super::store::derivatives::{self, DerivativeStore};
 use super::warnings::Warn;
 use crate::equations::regimes;
+use crate::laws::friction::Regime;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::control::is_of;
@@ -43,26 +44,50 @@ pub struct Parameter {
     pub place: String,
     /// whether it is one of the bodies
     pub is_of_bodies: bool,
-    /// w_k/ε, and the model with θ + k ε
-    pub neighbours: Vec<(f64, Arc<Model>)>,
+    /// its neighbours
+    pub neighbours: Vec<Beside>,
+}
+
+/// A model with another value of a parameter, θ + k ε.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// k
+    pub apart: f64,
+    /// w_k/ε
+    pub weight: f64,
+    /// the model
+    pub model: Arc<Model>,
 }
 
 /// Reliability of a derivative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
-    /// number of contact points, summed over the increments, whose status differed between the neighbours: their derivatives are
-    /// one-sided
+    /// number of contact points, summed over the increments, whose status in a neighbour differed from that in the run: their derivatives
+    /// are one-sided
     pub one_sided: usize,
     /// time from which on there is no derivative, as a neighbour could not follow [T]
     pub lost_at: Option<f64>,
 }
 
-/// A neighbour of the run, its weight, and the rows of its tables.
+/// Rows of the tables of the run or of a neighbour.
+#[derive(Clone)]
+struct Quantities {
+    history: HistoryRows,
+    probes: ProbeRows,
+}
+
+/// What is differentiated, at an accepted state.
+struct End {
+    row: Vec<f64>,
+    stored: Vec<f64>,
+    statuses: Vec<Regime>,
+}
+
+/// A neighbour of the run, and its weight.
 struct Side {
     weight: f64,
     neighbour: Neighbour,
-    history: HistoryRows,
-    probes: ProbeRows,
+    quantities: Quantities,
 }
 
 /// A parameter and its neighbours.
@@ -75,8 +100,8 @@ struct Derivative {
 /// Saved memory of a derivative: its place, its account, and state, step and rows of its neighbours.
 type Memory = (String, Account, Vec<(State, Option<usize>, Vec<u8>)>);
 
-/// Saved memory of all: extent of the table, of the store, and the derivatives.
-type Whole = (Standing, derivatives::Memory, Vec<Memory>);
+/// Saved memory of all: extent of the table, of the store, displacement and rows of the run, and the derivatives.
+type Whole = (Standing, derivatives::Memory, Vec<f64>, Vec<u8>, Vec<Memory>);
 
 /// Place of a value in the case, and the derivatives of the displacements of all nodes by it [L/unit of the value].
 pub type MotionBy = (String, Vec<f64>);
@@ -99,6 +124,9 @@ pub struct Asked<'a> {
 pub struct Gradients {
     table: Table,
     tangent: Tangent,
+    /// Rows and displacement of the run
+    own: Quantities,
+    displacement: Vec<f64>,
     derivatives: Vec<Derivative>,
     store: DerivativeStore,
     /// What frames show
@@ -124,9 +152,11 @@ impl Gradients {
         Asked { units, of_displacements, goes_on }: Asked,
         warn: Warn,
     ) -> Result<Self, Error> {
-        let [history, probes] = [HistoryRows::new(model).1, ProbeRows::new(model).1];
+        let (history, columns) = HistoryRows::new(model);
+        let (probes, probed) = ProbeRows::new(model);
+        let own = Quantities { history, probes };
         let quantities: Vec<String> =
-            history.into_iter().skip(INCREMENT.len()).chain(probes.into_iter().skip(1)).collect();
+            columns.into_iter().skip(INCREMENT.len()).chain(probed.into_iter().skip(1)).collect();
         let of = |parameter: &Parameter| {
             quantities.iter().map(|quantity| format!("d({quantity})/d({})", parameter.place)).collect::<Vec<_>>()
         };
@@ -135,11 +165,10 @@ impl Gradients {
         let path = folder.join(FILE);
         let table = if goes_on { Table::reopen(&path, columns) } else { Table::create(&path, columns) }?;
         let derivative = |parameter: &Parameter| {
-            let side = |(weight, model): &(f64, Arc<Model>)| Side {
+            let side = |Beside { apart, weight, model }: &Beside| Side {
                 weight: *weight,
-                neighbour: Neighbour::new(model.clone(), !parameter.is_of_bodies),
-                history: HistoryRows::new(model).0,
-                probes: ProbeRows::new(model).0,
+                neighbour: Neighbour::new(model.clone(), *apart, !parameter.is_of_bodies),
+                quantities: if parameter.is_of_bodies { Quantities::of(model) } else { own.clone() },
             };
             let sides = parameter.neighbours.iter().map(side).collect();
             Derivative { place: parameter.place.clone(), sides, account: Account::default() }
@@ -150,12 +179,15 @@ impl Gradients {
             store.create()?;
         }
         let derivatives: Vec<Derivative> = parameters.iter().map(derivative).collect();
-        let shown = derivatives.iter().filter(|_| of_displacements).map(Derivative::motion);
+        let displacement = model.initial_state().displacement;
+        let shown = derivatives.iter().filter(|_| of_displacements).map(|derivative| derivative.motion(&displacement));
         Ok(Self {
             table,
             store,
             motions: Rc::new(RefCell::new(shown.collect())),
             tangent: Tangent::new(model),
+            own,
+            displacement,
             derivatives,
             quantities: quantities.len(),
             warn,
@@ -172,7 +204,8 @@ impl Gradients {
     /// Shows the derivatives at the accepted state.
     fn show(&self) {
         let mut motions = self.motions.borrow_mut();
-        motions.iter_mut().zip(&self.derivatives).for_each(|(shown, derivative)| *shown = derivative.motion());
+        let each = motions.iter_mut().zip(&self.derivatives);
+        each.for_each(|(shown, derivative)| *shown = derivative.motion(&self.displacement));
     }
 
     /// Returns the reliability of every derivative, by the place of its parameter.
@@ -187,46 +220,60 @@ impl Derivative {
         self.account.lost_at.is_none()
     }
 
-    /// The derivatives of the displacements of all nodes at the accepted state.
-    fn motion(&self) -> MotionBy {
-        let states = || self.sides.iter().map(|side| (side.weight, &side.neighbour.state.displacement));
-        let Some((_, first)) = states().next() else { return (self.place.clone(), Vec::new()) };
-        // The weights add up to 0.
-        let value = |k: usize| states().skip(1).map(|(weight, other)| weight * (other[k] - first[k])).sum();
-        let values = (0..first.len()).map(|k| if self.lives() { value(k) } else { f64::NAN });
-        (self.place.clone(), values.collect())
+    /// The derivatives of the displacements of all nodes at the accepted state, where that of the run is given.
+    fn motion(&self, run: &[f64]) -> MotionBy {
+        let mut values = vec![if self.lives() { 0.0 } else { f64::NAN }; run.len()];
+        for Side { weight, neighbour, .. } in &self.sides {
+            add_difference(&mut values, *weight, &neighbour.state.displacement, run);
+        }
+        (self.place.clone(), values)
     }
 
     /// The derivatives at the accepted state, of the row and of what is stored; contact points at a kink there are counted.
-    fn at_end(&mut self, store: &DerivativeStore) -> [Vec<f64>; 2] {
-        let one = |Side { weight, neighbour: Neighbour { model, old, state, .. }, history, probes }: &mut Side| {
-            let mut row = history.values(model, old, state);
-            row.extend(probes.values(model, state));
-            (*weight, [row, store.values(model, state)], regimes(&model.contacts, &state.contacts))
-        };
-        let all: Vec<_> = self.sides.iter_mut().map(one).collect();
-        let Some(((_, first, statuses), others)) = all.split_first() else { return Default::default() };
-        let at_kink = |point: &usize| others.iter().any(|(_, _, other)| other[*point] != statuses[*point]);
-        self.account.one_sided += (0..statuses.len()).filter(at_kink).count();
-        // The weights add up to 0.
-        [0, 1].map(|kind| {
-            let values =
-                |k: usize| others.iter().map(|(weight, other, _)| weight * (other[kind][k] - first[kind][k])).sum();
-            (0..first[kind].len()).map(values).collect()
-        })
+    fn at_end(&mut self, run: &End, store: &DerivativeStore) -> [Vec<f64>; 2] {
+        let mut derivatives = [vec![0.0; run.row.len()], vec![0.0; run.stored.len()]];
+        let mut at_kink = vec![false; run.statuses.len()];
+        for Side { weight, neighbour: Neighbour { model, old, state, .. }, quantities } in &mut self.sides {
+            let End { row, stored, statuses } = quantities.at(model, old, state, store);
+            add_difference(&mut derivatives[0], *weight, &row, &run.row);
+            add_difference(&mut derivatives[1], *weight, &stored, &run.stored);
+            let both = statuses.iter().zip(&run.statuses);
+            at_kink.iter_mut().zip(both).for_each(|(at_kink, (status, run))| *at_kink |= status != run);
+        }
+        self.account.one_sided += at_kink.iter().filter(|at_kink| **at_kink).count();
+        derivatives
+    }
+}
+
+/// sum ← sum + weight (values − run)
+fn add_difference(sum: &mut [f64], weight: f64, values: &[f64], run: &[f64]) {
+    sum.iter_mut().zip(values.iter().zip(run)).for_each(|(sum, (value, run))| *sum += weight * (value - run));
+}
+
+impl Quantities {
+    fn of(model: &Model) -> Self {
+        Self { history: HistoryRows::new(model).0, probes: ProbeRows::new(model).0 }
+    }
+
+    fn at(&mut self, model: &Model, old: &State, state: &State, store: &DerivativeStore) -> End {
+        let mut row = self.history.values(model, old, state);
+        row.extend(self.probes.values(model, state));
+        End { row, stored: store.values(model, state), statuses: regimes(&model.contacts, &state.contacts) }
     }
 }
 
 impl Observer for Gradients {
-    fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(new) = attempt.accepted else { return Ok(()) };
         let clock = Instant::now();
-        let Self { table, store, tangent, derivatives, quantities, warn, warnings, .. } = self;
+        let Self { table, store, tangent, own, displacement, derivatives, quantities, warn, warnings, .. } = self;
         let Attempt { step, step_number, ended, old, passes, .. } = *attempt;
         let lead = Lead { step, number: step_number, ended, old, new, passes };
         let alive = derivatives.iter_mut().filter(|derivative| derivative.lives());
         let groups = alive.map(|derivative| derivative.sides.iter_mut().map(|side| &mut side.neighbour).collect());
         let mut followed = follow(&lead, tangent, groups.collect()).into_iter();
+        let run = own.at(model, old, new, store);
+        displacement.clone_from(&new.displacement);
         table.number(new.time);
         table.text(&step.name);
         let mut by_each = Vec::new();
@@ -244,7 +291,7 @@ impl Observer for Gradients {
                 warnings.push(warning);
             }
             let [row, stored] = match derivative.lives() {
-                true => derivative.at_end(store),
+                true => derivative.at_end(&run, store),
                 false => [*quantities, store.width()].map(|count| vec![f64::NAN; count]),
             };
             table.numbers(row);
@@ -264,22 +311,25 @@ impl Observer for Gradients {
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         let mut memories: Vec<Memory> = Vec::new();
         for Derivative { place, sides, account } in &self.derivatives {
-            let side = |Side { neighbour, history, .. }: &Side| {
-                Ok::<_, Error>((neighbour.state.clone(), neighbour.begun, history.save()?))
+            let side = |Side { neighbour, quantities, .. }: &Side| {
+                Ok::<_, Error>((neighbour.state.clone(), neighbour.begun, quantities.history.save()?))
             };
             memories.push((place.clone(), account.clone(), sides.iter().map(side).collect::<Result<_, _>>()?));
         }
-        csv::remembered(&(self.table.standing()?, self.store.save()?, memories))
+        let (table, store) = (self.table.standing()?, self.store.save()?);
+        let whole: Whole = (table, store, self.displacement.clone(), self.own.history.save()?, memories);
+        csv::remembered(&whole)
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, stored, memories) = csv::recalled::<Whole>(memory)?;
+        let (stood, stored, displacement, _, memories) = csv::recalled::<Whole>(memory)?;
         let of_these = |(derivative, (place, _, sides)): (&Derivative, &Memory)| {
             let fits = |(side, (state, ..)): (&Side, &(State, _, _))| is_of(state, &side.neighbour.model);
             let Derivative { place: own, sides: neighbours, .. } = derivative;
             own == place && neighbours.len() == sides.len() && neighbours.iter().zip(sides).all(fits)
         };
-        if memories.len() != self.derivatives.len() || !self.derivatives.iter().zip(&memories).all(of_these) {
+        let fits = displacement.len() == self.displacement.len() && memories.len() == self.derivatives.len();
+        if !fits || !self.derivatives.iter().zip(&memories).all(of_these) {
             return Err(csv::failed(Path::new(FILE), &"the checkpoint holds derivatives by other parameters"));
         }
         self.store.check(&stored)?;
@@ -287,12 +337,14 @@ impl Observer for Gradients {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, stored, memories) = csv::recalled::<Whole>(memory)?;
+        let (stood, stored, displacement, row, memories) = csv::recalled::<Whole>(memory)?;
+        self.displacement = displacement;
+        self.own.history.restore(&row)?;
         for (derivative, (_, account, sides)) in self.derivatives.iter_mut().zip(memories) {
             derivative.account = account;
             for (side, (state, begun, row)) in derivative.sides.iter_mut().zip(sides) {
                 side.neighbour.go_on(state, begun);
-                side.history.restore(&row)?;
+                side.quantities.history.restore(&row)?;
             }
         }
         self.show();

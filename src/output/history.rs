@@ -1,6 +1,7 @@
 //! `history.csv`: one row per accepted increment, or those selected by an interval (`run/observer.rs`).
 
 use std::slice;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -28,13 +29,13 @@ use crate::run::observer::Attempt;
 pub type History = Sheet<HistoryRows>;
 
 /// Rows of `history.csv`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct HistoryRows {
     /// Observables of each contact whose means are written
     observed: Vec<Vec<&'static str>>,
     /// Center of each undeformed slave surface, the reference point of moments
     middles: Vec<Vector2<f64>>,
-    bodies: Vec<BodyMeans>,
+    bodies: Arc<[BodyMeans]>,
     /// ∫ N_a ds of the watched edge sets
     edges: Vec<EdgeMeans>,
     memory: Memory,

@@ -22,7 +22,7 @@ fn readings(model: &Model) -> impl Iterator<Item = String> {
 pub type Probes = Sheet<ProbeRows>;
 
 /// Rows of `probes.csv`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ProbeRows(Vec<Stencil>);
 
 impl Rows for ProbeRows {

@@ -56,7 +56,7 @@ pub struct Recovery {
 }
 
 /// A value at a place as a weighted sum of the values at the quadrature points of some elements.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Stencil {
     elements: Vec<usize>,
     /// of the quadrature points of each element, one after the other

@@ -9,13 +9,14 @@
 //! r is the residual that the tolerance of the run has left, r′ that of a neighbour by its own equations. Its tangent differs from K by
 //! O(ε) if its parameters and its state do, so a correction leaves a fraction O(ε) of the error: one or two are enough.
 //!
-//! Two neighbours on either side of the run are corrected by what they have apart and what they have in common:
+//! Neighbours with the parameters θ + k ε, k = −1, 1 or 1, 2, are corrected together, by the parts of the polynomial in k through their
+//! residuals and that of the run, k = 0:
 //! ```text
-//! u± ← u± ∓ K⁻¹ (r+ − r−)/2 − K⁻¹ ((r+ + r−)/2 − r)                                                            (2)
+//! r_k − r = a₁ k + a₂ k²,   u_k ← u_k − k K⁻¹ a₁ − k² K⁻¹ a₂                                                     (2)
 //! ```
-//! The first part is the derivative. Their tangents differ from K by as much in opposite directions, so a correction leaves a fraction O(ε²)
-//! of it. The second part is O(ε²) and drops out of the difference: it is corrected only where it is larger than that, or where a contact
-//! point has another status in one than in the other.
+//! The first part is the derivative. Their tangents differ from K in proportion to k, so its correction leaves what is proportional to k²,
+//! and only a fraction O(ε²) of a₁ itself. The second part is O(ε²) and drops out of the derivative: it is corrected only where it is larger
+//! than that, or where a contact point has another status in one than in the other.
 //!
 //! Bodies that θ does not act on, and that have no internal variables, are linear so close to the run: K_b (u′ − u) stands for the change of
 //! their forces, with the same tangent for all neighbours.
@@ -27,6 +28,7 @@
 
 use std::sync::Arc;
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::equilibrium::{equilibrium, multiply};
@@ -34,8 +36,8 @@ use super::failure::IncrementFailure;
 use super::newton::NewtonFailure;
 use super::{Pass, Workspace};
 use crate::equations::sums::TrialFailure;
-use crate::equations::{Assembler, LinearizedSolids, Trial, regimes};
-use crate::linear::system::{Request, System};
+use crate::equations::{Assembler, LinearizedSolids, SolidForces, Trial, regimes};
+use crate::linear::system::System;
 use crate::linear::{LinearSolver, Multifrontal};
 use crate::model::Model;
 use crate::model::state::State;
@@ -50,9 +52,11 @@ const SLOW: f64 = 0.1;
 /// could be, and larger than round-off is.
 const SURE: f64 = 2e-5;
 
-/// The same of what two neighbours have in common beyond the residual of the run, of second order, where contact points have the same
-/// status in both [-]
-const COMMON: f64 = 1e-9;
+/// ‖r‖/‖f‖ below which another correction would change round-off only [-]
+const ROUND_OFF: f64 = 0.02 * TOLERANCE;
+
+/// Allowed ‖r‖/‖f‖ of the part that drops out of the derivative, where contact points have the same status in all neighbours [-]
+const CURVATURE: f64 = 1e-9;
 
 /// The tangent of a run at a solution, and its factors.
 pub struct Tangent {
@@ -60,7 +64,9 @@ pub struct Tangent {
     system: System,
     solver: Multifrontal,
     /// Forces of the bodies there, if neighbours with the same bodies want them
-    solids: Option<Arc<LinearizedSolids>>,
+    solids: Option<LinearizedSolids>,
+    /// Forces by which residuals there are measured [F]
+    measures: Vec<f64>,
     /// Whether the matrix could be factorized
     serves: bool,
 }
@@ -70,7 +76,7 @@ impl Tangent {
     pub fn new(model: &Arc<Model>) -> Self {
         let assembler = Assembler::new(model);
         let system = assembler.system();
-        Self { assembler, system, solver: Multifrontal::default(), solids: None, serves: false }
+        Self { assembler, system, solver: Multifrontal::default(), solids: None, measures: Vec::new(), serves: false }
     }
 
     /// Evaluates and factorizes it at the solution of a pass of the run, in the order of elimination of the run: a resumed one has the same
@@ -79,17 +85,19 @@ impl Tangent {
     /// # Errors
     /// Returns [`IncrementFailure`] if the equations cannot be evaluated there.
     pub fn of(&mut self, trial: Trial, pass: &Pass, linearize: bool) -> Result<(), IncrementFailure> {
-        let Self { assembler, system, solver, solids, serves } = self;
+        let Self { assembler, system, solver, solids, measures, serves } = self;
         assembler.couple(&pass.coupling);
         let u = &pass.displacement;
-        let evaluated = assembler.with_responses(trial, u, Request::Tangent, |assembler, responses| {
-            assembler.assemble(trial, u, responses, Request::Tangent, system)
-        });
-        let linearized = evaluated.and_then(|()| if linearize { assembler.linearized(u) } else { Ok(None) });
-        let found = linearized.map_err(|failure| IncrementFailure::Newton(NewtonFailure::Evaluation(failure)))?;
-        *solids = found.map(Arc::new);
+        let evaluated = assembler.tangent(trial, u, linearize, system);
+        *solids = evaluated.map_err(|failure| IncrementFailure::Newton(NewtonFailure::Evaluation(failure)))?;
+        *measures = assembler.measures(trial, u, TOLERANCE);
         *serves = solver.factorize(&system.tangent).is_ok();
         Ok(())
+    }
+
+    /// Couples the nodes of a neighbour as those of the run.
+    pub fn couple(&self, work: &mut Workspace) {
+        work.assembler.couple_as(&self.assembler);
     }
 
     /// Gives the state of the run at the start of the increment the multipliers from what was found where it was evaluated.
@@ -110,68 +118,67 @@ pub struct Seeker<'a> {
     pub u: Vec<f64>,
     /// whether its bodies are those of the run
     pub has_same_bodies: bool,
+    /// k of its parameter θ + k ε
+    pub apart: f64,
 }
 
-/// A combination of the residuals of some neighbours, and what corrections have left of it.
+/// A part of (2), and what corrections have left of it.
 struct Part {
-    /// Factor of every neighbour
-    factors: Vec<f64>,
-    /// Whether it is what two neighbours have in common
-    is_common: bool,
+    /// Weights of the residuals in it
+    weights: Vec<f64>,
+    /// k or k² of every neighbour
+    powers: Vec<f64>,
+    /// Whether it drops out of the derivative
+    drops_out: bool,
     /// ‖r‖/‖f‖ at the last evaluation, and before it
     left: f64,
     before: f64,
 }
 
 impl Part {
-    fn new(factors: Vec<f64>, is_common: bool) -> Self {
-        Self { factors, is_common, left: f64::INFINITY, before: f64::INFINITY }
+    /// All parts of neighbours with these k.
+    fn of(apart: &[f64]) -> Vec<Self> {
+        let count = apart.len();
+        let powers = DMatrix::from_fn(count, count, |k, j| (0..j).fold(apart[k], |power, _| power * apart[k]));
+        let inverse = powers.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(count, count));
+        let part = |j: usize| Self {
+            weights: inverse.row(j).iter().copied().collect(),
+            powers: powers.column(j).iter().copied().collect(),
+            drops_out: j > 0,
+            left: f64::INFINITY,
+            before: f64::INFINITY,
+        };
+        (0..count).map(part).collect()
     }
 
-    /// The parts of (2) of two neighbours, or each by itself, (1).
-    fn of(count: usize) -> Vec<Self> {
-        match count {
-            2 => vec![Self::new(vec![1.0, -1.0], false), Self::new(vec![1.0, 1.0], true)],
-            _ => {
-                let alone = |k: usize| (0..count).map(|other| f64::from(u8::from(other == k))).collect();
-                (0..count).map(|k| Self::new(alone(k), false)).collect()
-            }
-        }
-    }
-
-    /// Σ factor (r′ − r)/Σ |factor|
+    /// a₁ or a₂
     fn residual(&self, neighbours: &[Seeker], own: &[f64]) -> Vec<f64> {
-        let count: f64 = self.factors.iter().map(|factor| factor.abs()).sum();
         let mut sum = vec![0.0; own.len()];
-        for (factor, neighbour) in self.factors.iter().zip(neighbours).filter(|(factor, _)| **factor != 0.0) {
+        for (weight, neighbour) in self.weights.iter().zip(neighbours) {
             let residuals = neighbour.work.system.residual.iter().zip(own);
-            sum.iter_mut().zip(residuals).for_each(|(sum, (residual, own))| *sum += factor / count * (residual - own));
+            sum.iter_mut().zip(residuals).for_each(|(sum, (residual, own))| *sum += weight * (residual - own));
         }
         sum
     }
 
     /// Whether nothing is left of it. What has not been corrected yet may be less than its error so far, and grow from increment to
-    /// increment; what neighbours have in common drops out of their difference.
+    /// increment; what drops out of the derivative may be left.
     fn is_solved(&self, tolerance: f64) -> bool {
-        let is_sure = self.before.is_finite() && (self.left <= SURE * self.before || self.before <= TOLERANCE);
-        self.left == 0.0 || self.left <= tolerance && (is_sure || tolerance == COMMON)
+        let is_corrected =
+            self.before.is_finite() && (self.left <= (SURE * self.before).max(ROUND_OFF) || self.before <= TOLERANCE);
+        self.left == 0.0 || self.left <= tolerance && (is_corrected || tolerance == CURVATURE)
     }
 
-    fn falls(&self, tolerance: f64) -> bool {
-        self.left <= tolerance || self.left <= SLOW * self.before
+    /// Whether it falls from what was left of all parts: a correction of the derivative leaves a fraction of it in the others.
+    fn falls(&self, tolerance: f64, before: f64) -> bool {
+        self.left <= tolerance || self.left <= SLOW * before
     }
 }
 
 impl Seeker<'_> {
-    fn evaluate(&mut self, solids: Option<&Arc<LinearizedSolids>>) -> Result<(), TrialFailure> {
+    fn evaluate(&mut self, solids: Option<SolidForces>) -> Result<(), TrialFailure> {
         let Workspace { assembler, system, .. } = &mut *self.work;
-        let solids = solids.filter(|_| self.has_same_bodies).cloned();
         assembler.residual_beside(self.trial, &self.u, solids, system)
-    }
-
-    /// Largest ‖r‖/‖f‖ of a residual, by the forces of this neighbour.
-    fn share_of(&self, residual: &[f64]) -> f64 {
-        self.work.assembler.imbalance(self.trial, &self.u, residual)
     }
 }
 
@@ -193,38 +200,66 @@ enum Course {
 
 /// A correction of the neighbours of a group.
 struct Correction {
-    /// Factor of every neighbour
-    factors: Vec<f64>,
-    /// The combination of their residuals, negative, and then K⁻¹ times that
+    /// k or k² of every neighbour
+    powers: Vec<f64>,
+    /// −a₁ or −a₂, and then K⁻¹ times that
     way: Vec<f64>,
+}
+
+/// The run at a solution.
+struct Beside<'a> {
+    /// r
+    residual: &'a [f64],
+    solids: Option<&'a LinearizedSolids>,
+    measures: &'a [f64],
+    assembler: &'a Assembler,
 }
 
 impl<'a> Group<'a> {
     fn new(neighbours: Vec<Seeker<'a>>) -> Self {
-        Self { parts: Part::of(neighbours.len()), neighbours, course: Course::OnItsWay }
+        let apart: Vec<f64> = neighbours.iter().map(|neighbour| neighbour.apart).collect();
+        Self { parts: Part::of(&apart), neighbours, course: Course::OnItsWay }
     }
 
-    /// Evaluates the neighbours, and returns what is to be corrected, beside the residual of the run.
-    fn corrections(&mut self, own: &[f64], solids: Option<&Arc<LinearizedSolids>>) -> Vec<Correction> {
+    fn evaluate(&mut self, solids: Option<&LinearizedSolids>) -> Result<(), TrialFailure> {
+        let same =
+            self.neighbours.iter().filter(|neighbour| neighbour.has_same_bodies).map(|neighbour| &neighbour.u[..]);
+        let mut forces = solids.map_or_else(Vec::new, |solids| solids.at(&same.collect::<Vec<_>>())).into_iter();
+        self.neighbours.iter_mut().try_for_each(|neighbour| {
+            let solids = if neighbour.has_same_bodies { forces.next() } else { None };
+            neighbour.evaluate(solids)
+        })
+    }
+
+    /// Largest distance from the prescribed motions.
+    fn missed(&self) -> f64 {
+        let of = |Seeker { work, trial, u, .. }: &Seeker| work.assembler.missed(*trial, u);
+        self.neighbours.iter().map(of).fold(0.0, f64::max)
+    }
+
+    /// Evaluates the neighbours, and returns what is to be corrected.
+    fn corrections(&mut self, run: &Beside) -> Vec<Correction> {
         if self.course != Course::OnItsWay {
             return Vec::new();
         }
-        let Self { neighbours, parts, course } = self;
-        if !neighbours.iter_mut().all(|neighbour| neighbour.evaluate(solids).is_ok()) {
-            *course = Course::Apart;
+        if self.evaluate(run.solids).is_err() {
+            self.course = Course::Apart;
             return Vec::new();
         }
+        let missed = self.missed();
+        let Self { neighbours, parts, course } = self;
         let are_alike = have_same_status(neighbours);
         let (mut corrections, mut fall) = (Vec::new(), true);
+        let before = parts.iter().map(|part| part.left).fold(0.0, f64::max);
         for part in parts {
-            let mut residual = part.residual(neighbours, own);
-            let first = part.factors.iter().position(|factor| *factor != 0.0).unwrap_or_default();
-            (part.before, part.left) = (part.left, neighbours[first].share_of(&residual));
-            let tolerance = if part.is_common && are_alike { COMMON } else { TOLERANCE };
-            fall &= part.falls(tolerance);
+            let mut residual = part.residual(neighbours, run.residual);
+            let share = run.assembler.share(neighbours[0].trial, &residual, run.measures);
+            (part.before, part.left) = (part.left, share.max(missed));
+            let tolerance = if part.drops_out && are_alike { CURVATURE } else { TOLERANCE };
+            fall &= part.falls(tolerance, before);
             if !part.is_solved(tolerance) {
                 residual.iter_mut().for_each(|r| *r = -*r);
-                corrections.push(Correction { factors: part.factors.clone(), way: residual });
+                corrections.push(Correction { powers: part.powers.clone(), way: residual });
             }
         }
         if corrections.is_empty() {
@@ -237,9 +272,9 @@ impl<'a> Group<'a> {
     }
 
     fn correct(&mut self, corrections: Vec<Correction>) {
-        for Correction { factors, way } in corrections {
-            for (neighbour, factor) in self.neighbours.iter_mut().zip(factors).filter(|(_, factor)| *factor != 0.0) {
-                neighbour.u.iter_mut().zip(&way).for_each(|(u, way)| *u += factor * way);
+        for Correction { powers, way } in corrections {
+            for (neighbour, power) in self.neighbours.iter_mut().zip(powers) {
+                neighbour.u.iter_mut().zip(&way).for_each(|(u, way)| *u += power * way);
             }
         }
     }
@@ -257,11 +292,11 @@ impl<'a> Group<'a> {
 /// Equilibrium of groups of neighbours, each group for one derivative, beside the run whose tangent is given; or why a group has none near
 /// the run. Groups are evaluated in parallel, and corrected together: the factors are read once for all of them.
 pub fn beside(groups: Vec<Vec<Seeker>>, tangent: &mut Tangent) -> Vec<Result<Vec<Vec<f64>>, IncrementFailure>> {
-    let Tangent { system, solver, solids, serves, .. } = tangent;
-    let (own, solids) = (&system.residual, solids.as_ref());
+    let Tangent { assembler, system, solver, solids, measures, serves } = tangent;
+    let run = Beside { residual: &system.residual, solids: solids.as_ref(), measures, assembler };
     let mut groups: Vec<Group> = groups.into_iter().map(Group::new).collect();
     loop {
-        let of = |group: &mut Group| if *serves { group.corrections(own, solids) } else { Vec::new() };
+        let of = |group: &mut Group| if *serves { group.corrections(&run) } else { Vec::new() };
         let mut corrections: Vec<Vec<Correction>> = groups.par_iter_mut().with_max_len(1).map(of).collect();
         let mut columns: Vec<&mut [f64]> = corrections.iter_mut().flatten().map(|one| &mut one.way[..]).collect();
         if columns.is_empty() {

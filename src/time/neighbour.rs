@@ -58,6 +58,8 @@ pub struct Neighbour {
     pub model: Arc<Model>,
     /// Whether its bodies are those of the run
     has_same_bodies: bool,
+    /// k of its parameter θ + k ε
+    apart: f64,
     /// state at the start of the last increment
     pub old: State,
     /// accepted state
@@ -71,19 +73,19 @@ pub struct Neighbour {
 
 /// A neighbour within an increment.
 struct OnItsWay {
-    /// The state at the start of the increment, with the multipliers of the pass
-    old: State,
+    /// The state at the start of the increment with the multipliers of the pass, from the second pass on
+    old: Option<State>,
     /// u at the last pass, or as expected, and that of the run [L]
     u: Vec<f64>,
     beside: Vec<f64>,
 }
 
 impl Neighbour {
-    /// Creates a neighbour in the initial state of its model, whose bodies may be those of the run.
-    pub fn new(model: Arc<Model>, has_same_bodies: bool) -> Self {
+    /// Creates a neighbour in the initial state of its model with θ + k ε, whose bodies may be those of the run.
+    pub fn new(model: Arc<Model>, apart: f64, has_same_bodies: bool) -> Self {
         let state = model.initial_state();
         let work = Workspace::new(&model, Box::<Multifrontal>::default());
-        Self { old: state.clone(), state, begun: None, step: None, work, model, has_same_bodies }
+        Self { old: state.clone(), state, begun: None, step: None, work, model, has_same_bodies, apart }
     }
 
     /// Goes on from a saved state, in the step with this number.
@@ -102,8 +104,7 @@ impl Neighbour {
         if let (true, Some(step)) = (new, step) {
             *state = begin(model, step, state, work)?;
         }
-        let mut way =
-            OnItsWay { u: state.displacement.clone(), beside: lead.old.displacement.clone(), old: state.clone() };
+        let mut way = OnItsWay { u: state.displacement.clone(), beside: lead.old.displacement.clone(), old: None };
         if let (Some(own), Some(run)) = (&state.last_increment, &lead.old.last_increment) {
             let share = (lead.new.time - lead.old.time) / own.dt;
             let ahead = |u: &mut [f64], way: &[f64]| u.iter_mut().zip(way).for_each(|(u, way)| *u += share * way);
@@ -113,18 +114,19 @@ impl Neighbour {
         Ok(way)
     }
 
-    /// Prepares a pass.
-    fn seeker<'a>(&'a mut self, lead: &Lead, pass: &Pass, way: &'a OnItsWay) -> Option<Seeker<'a>> {
-        let Self { model, has_same_bodies, step, work, .. } = self;
-        work.assembler.couple(&pass.coupling);
+    /// Prepares a pass, beside the run whose tangent is given.
+    fn seeker<'a>(&'a mut self, lead: &Lead, pass: &Pass, tangent: &Tangent, way: &'a OnItsWay) -> Option<Seeker<'a>> {
+        let Self { model, state, has_same_bodies, apart, step, work, .. } = self;
+        tangent.couple(work);
         let u = pass.displacement.iter().zip(&way.u).zip(&way.beside).map(|((run, own), beside)| run + (own - beside));
         let u = u.collect();
         Some(Seeker {
             model,
-            trial: lead.trial(&way.old, step.as_ref()?, pass),
+            trial: lead.trial(way.old.as_ref().unwrap_or(state), step.as_ref()?, pass),
             work,
             u,
             has_same_bodies: *has_same_bodies,
+            apart: *apart,
         })
     }
 
@@ -152,7 +154,9 @@ pub fn follow(lead: &Lead, tangent: &mut Tangent, mut groups: Vec<Group>) -> Vec
             tangent.multiply(&mut old);
             let each =
                 groups.iter().zip(&mut all).flat_map(|(group, ways)| group.iter().zip(ways.iter_mut().flatten()));
-            each.for_each(|(of, way)| multiply(&of.model, of.work.contacts(), &mut way.old));
+            each.for_each(|(of, way)| {
+                multiply(&of.model, of.work.contacts(), way.old.get_or_insert_with(|| of.state.clone()));
+            });
         }
         if let Err(failure) = tangent.of(lead.trial(&old, lead.step, pass), pass, linearize) {
             return groups.iter().map(|_| Err(failure.clone())).collect();
@@ -177,7 +181,7 @@ fn solve(
     for (group, ways) in groups.iter_mut().zip(&*all) {
         if let Ok(ways) = ways {
             let each = group.iter_mut().zip(ways);
-            seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, way)).collect());
+            seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, tangent, way)).collect());
         }
     }
     let found = beside(seekers, tangent);

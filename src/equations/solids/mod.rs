@@ -42,26 +42,53 @@ pub struct LinearizedSolids {
     about: Vec<f64>,
     /// f₀ [F]
     force: Vec<f64>,
-    /// Σ of the magnitudes of the forces of elements [F]
-    magnitudes: Vec<f64>,
     /// W₀ [F·L]
     energy: f64,
-    /// K [F/L]
+    /// K, symmetric [F/L]
     stiffness: SparseMatrix,
 }
 
+/// Forces of the bodies and the energy stored in them.
+pub struct SolidForces {
+    /// f [F]
+    force: Vec<f64>,
+    /// W [F·L]
+    energy: f64,
+}
+
 impl LinearizedSolids {
+    /// Those with these forces, energy and tangent at `u`.
+    pub(super) fn of(u: &[f64], force: &[f64], energy: f64, tangent: &SparseMatrix) -> Self {
+        Self { about: u.to_vec(), force: force.to_vec(), energy, stiffness: tangent.clone() }
+    }
+
+    /// The forces at several displacements.
+    pub fn at(&self, all: &[&[f64]]) -> Vec<SolidForces> {
+        let from_about = |u: &&[f64]| u.iter().zip(&self.about).map(|(u, about)| u - about).collect();
+        let ways: Vec<Vec<f64>> = all.iter().map(from_about).collect();
+        // The values of K are read once for two of them.
+        let of_few = |few: &[Vec<f64>]| match few {
+            [one, other] => Vec::from(self.stiffness.multiply_symmetric([one, other])),
+            _ => few.iter().flat_map(|way| self.stiffness.multiply_symmetric([&way[..]])).collect(),
+        };
+        ways.iter().zip(ways.chunks(2).flat_map(of_few)).map(|(way, change)| self.changed(way, change)).collect()
+    }
+
+    /// The forces a way apart, with their change K (u − u₀).
+    fn changed(&self, way: &[f64], change: Vec<f64>) -> SolidForces {
+        let both = self.force.iter().zip(&change);
+        let more = way.iter().zip(both).map(|(way, (force, change))| way * (force + 0.5 * change)).sum::<f64>();
+        let mut force = change;
+        force.iter_mut().zip(&self.force).for_each(|(change, force)| *change += force);
+        SolidForces { force, energy: self.energy + more }
+    }
+}
+
+impl SolidForces {
     /// Computes the forces in `sums`; returns the stored energy.
-    pub(super) fn add(&self, u: &[f64], sums: &mut Sums) -> f64 {
-        let Self { about, force, magnitudes, energy, stiffness } = self;
-        let way: Vec<f64> = u.iter().zip(about).map(|(u, about)| u - about).collect();
-        let change = stiffness.multiply(&way);
-        let both = force.iter().zip(&change);
-        sums.force.iter_mut().zip(both.clone()).for_each(|(sum, (force, change))| *sum = force + change);
-        if let Some(sums) = &mut sums.magnitudes {
-            sums.iter_mut().zip(magnitudes).for_each(|(sum, magnitude)| *sum += magnitude);
-        }
-        energy + way.iter().zip(both).map(|(way, (force, change))| way * (force + 0.5 * change)).sum::<f64>()
+    pub(super) fn add(&self, sums: &mut Sums) -> f64 {
+        sums.force.copy_from_slice(&self.force);
+        self.energy
     }
 }
 
@@ -122,15 +149,6 @@ impl Solids {
         let energy = others.stored(model)? + constant.stored(model, u)?;
         self.write(sums.force, sums.magnitudes.as_deref_mut());
         Ok(energy)
-    }
-
-    /// Linearizes the forces about `u`.
-    pub fn linearized(&mut self, u: &[f64], layout: &Layout) -> Result<LinearizedSolids, TrialFailure> {
-        let [mut force, mut magnitudes] = [vec![0.0; u.len()], vec![0.0; u.len()]];
-        let mut stiffness = self.constant_stiffness(layout).cloned().unwrap_or_else(|| layout.matrix());
-        let (scales, tangent) = (Some(&mut magnitudes[..]), Some(&mut stiffness));
-        let energy = self.add(u, None, &mut Sums { force: &mut force, magnitudes: scales, tangent, layout })?;
-        Ok(LinearizedSolids { about: u.to_vec(), force, magnitudes, energy, stiffness })
     }
 
     /// Computes the viscous forces of the bodies at displacements `u` and velocities `v` in `force`; they resist motion.

@@ -54,8 +54,8 @@ impl Substitution<'_> {
                 self.add(front, &mut y, values, child);
             }
             stack.truncate(own);
-            for (x, y) in self.columns(front, x, &mut y) {
-                self.forward(front, y);
+            self.forward(front, &mut y);
+            for (x, y) in self.columns(front, x, &y) {
                 x.copy_from_slice(&y[..front.pivots]);
                 stack.extend_from_slice(&y[front.pivots..]);
             }
@@ -75,8 +75,8 @@ impl Substitution<'_> {
         for &child in &front.children {
             self.add(front, &mut y, &self.waiting.take(child), &fronts[child as usize]);
         }
-        for (x, y) in self.columns(front, x, &mut y) {
-            self.forward(front, y);
+        self.forward(front, &mut y);
+        for (x, y) in self.columns(front, x, &y) {
             x.copy_from_slice(&y[..front.pivots]);
             passed_on.extend_from_slice(&y[front.pivots..]);
         }
@@ -93,10 +93,8 @@ impl Substitution<'_> {
             let own = stack.len() - self.count * front.below();
             self.gather(front, x, Some(&stack[own..]), &mut y);
             stack.truncate(own);
-            for (x, y) in self.columns(front, x, &mut y) {
-                self.backward(front, y);
-                x.copy_from_slice(&y[..front.pivots]);
-            }
+            self.backward(front, &mut y);
+            self.columns(front, x, &y).for_each(|(x, y)| x.copy_from_slice(&y[..front.pivots]));
             for &child in &front.children {
                 y.chunks_exact(front.size()).for_each(|y| stack.extend(seen(y, &fronts[child as usize])));
             }
@@ -108,10 +106,8 @@ impl Substitution<'_> {
         let front = &fronts[number as usize];
         let (above, mut y) = (self.waiting.take(number), Vec::new());
         self.gather(front, x, Some(&above), &mut y);
-        for (x, y) in self.columns(front, x, &mut y) {
-            self.backward(front, y);
-            x.copy_from_slice(&y[..front.pivots]);
-        }
+        self.backward(front, &mut y);
+        self.columns(front, x, &y).for_each(|(x, y)| x.copy_from_slice(&y[..front.pivots]));
         for &child in &front.children {
             let seen = y.chunks_exact(front.size()).flat_map(|y| seen(y, &fronts[child as usize]));
             self.waiting.put(child, seen.collect());
@@ -136,9 +132,9 @@ impl Substitution<'_> {
         &self,
         front: &Front,
         x: &'a mut [f64],
-        y: &'a mut [f64],
-    ) -> impl Iterator<Item = (&'a mut [f64], &'a mut [f64])> {
-        x.chunks_exact_mut(front.pivots).zip(y.chunks_exact_mut(front.size()))
+        y: &'a [f64],
+    ) -> impl Iterator<Item = (&'a mut [f64], &'a [f64])> {
+        x.chunks_exact_mut(front.pivots).zip(y.chunks_exact(front.size()))
     }
 
     /// Add what a child passes on to the rows of its parent.
@@ -151,7 +147,7 @@ impl Substitution<'_> {
         }
     }
 
-    /// y₁ ← L₁₁⁻¹ P y₁, y₂ ← y₂ − L₂₁ y₁
+    /// y₁ ← L₁₁⁻¹ P y₁, y₂ ← y₂ − L₂₁ y₁ in every column of y
     fn forward(&self, front: &Front, y: &mut [f64]) {
         if front.open {
             return;
@@ -159,13 +155,13 @@ impl Substitution<'_> {
         let exchanges = &self.factors.exchanges[front.first..front.first + front.pivots];
         let lower = &self.factors.values[front.values.clone()][..front.size() * front.pivots];
         if front.symmetric {
-            return Arch::new().dispatch(symmetric::Forward { lower, exchanges, y });
+            return Arch::new().dispatch(symmetric::Forward { lower, exchanges, size: front.size(), y });
         }
-        exchange(y, exchanges, 0);
-        Arch::new().dispatch(Forward { lower, y });
+        y.chunks_exact_mut(front.size()).for_each(|y| exchange(y, exchanges, 0));
+        Arch::new().dispatch(Forward { lower, size: front.size(), y });
     }
 
-    /// y₁ ← U₁₁⁻¹ (y₁ − U₁₂ y₂)
+    /// y₁ ← U₁₁⁻¹ (y₁ − U₁₂ y₂) in every column of y
     fn backward(&self, front: &Front, y: &mut [f64]) {
         if front.open {
             return;
@@ -173,11 +169,10 @@ impl Substitution<'_> {
         if front.symmetric {
             let exchanges = &self.factors.exchanges[front.first..front.first + front.pivots];
             let lower = &self.factors.values[front.values.clone()];
-            return Arch::new().dispatch(symmetric::Backward { lower, exchanges, y });
+            return Arch::new().dispatch(symmetric::Backward { lower, exchanges, size: front.size(), y });
         }
         let (lower, upper) = self.factors.values[front.values.clone()].split_at(front.size() * front.pivots);
-        let (own, below) = y.split_at_mut(front.pivots);
-        Arch::new().dispatch(Backward { lower, upper, own, below });
+        Arch::new().dispatch(Backward { lower, upper, pivots: front.pivots, size: front.size(), y });
     }
 }
 
@@ -186,8 +181,11 @@ fn seen(y: &[f64], child: &Front) -> impl Iterator<Item = f64> {
     child.to_parent.iter().flat_map(|&place| [y[place as usize], y[place as usize + 1]])
 }
 
+// Columns of the factors outside, columns of y inside: the steps of one y wait for each other, those of several do not.
+
 struct Forward<'a> {
     lower: &'a [f64],
+    size: usize,
     y: &'a mut [f64],
 }
 
@@ -196,9 +194,11 @@ impl NullaryFnOnce for Forward<'_> {
 
     #[inline(always)]
     fn call(self) {
-        for (j, column) in self.lower.chunks_exact(self.y.len()).enumerate() {
-            let (done, rest) = self.y.split_at_mut(j + 1);
-            subtract(rest, &column[j + 1..], done[j]);
+        for (j, column) in self.lower.chunks_exact(self.size).enumerate() {
+            for y in self.y.chunks_exact_mut(self.size) {
+                let (done, rest) = y.split_at_mut(j + 1);
+                subtract(rest, &column[j + 1..], done[j]);
+            }
         }
     }
 }
@@ -206,8 +206,9 @@ impl NullaryFnOnce for Forward<'_> {
 struct Backward<'a> {
     lower: &'a [f64],
     upper: &'a [f64],
-    own: &'a mut [f64],
-    below: &'a [f64],
+    pivots: usize,
+    size: usize,
+    y: &'a mut [f64],
 }
 
 impl NullaryFnOnce for Backward<'_> {
@@ -215,16 +216,18 @@ impl NullaryFnOnce for Backward<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { lower, upper, own, below } = self;
-        if !below.is_empty() {
-            for (x, row) in own.iter_mut().zip(upper.chunks_exact(below.len())) {
-                *x -= dot(row, below);
+        let Self { lower, upper, pivots, size, y } = self;
+        if size > pivots {
+            for (j, row) in upper.chunks_exact(size - pivots).enumerate() {
+                y.chunks_exact_mut(size).for_each(|y| y[j] -= dot(row, &y[pivots..]));
             }
         }
-        for (j, column) in lower.chunks_exact(own.len() + below.len()).enumerate().rev() {
-            own[j] /= column[j];
-            let (rest, done) = own.split_at_mut(j);
-            subtract(rest, column, done[0]);
+        for (j, column) in lower.chunks_exact(size).enumerate().rev() {
+            for y in y.chunks_exact_mut(size) {
+                y[j] /= column[j];
+                let (rest, done) = y.split_at_mut(j);
+                subtract(rest, column, done[0]);
+            }
         }
     }
 }

@@ -311,10 +311,11 @@ pub fn mirror(square: &mut [f64], size: usize) {
     }
 }
 
-/// y₁ ← L₁₁⁻¹ Pᵀ y₁, y₂ ← y₂ − L₂₁ y₁
+/// y₁ ← L₁₁⁻¹ Pᵀ y₁, y₂ ← y₂ − L₂₁ y₁ in every column of y
 pub struct Forward<'a> {
     pub lower: &'a [f64],
     pub exchanges: &'a [u32],
+    pub size: usize,
     pub y: &'a mut [f64],
 }
 
@@ -323,30 +324,37 @@ impl NullaryFnOnce for Forward<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { lower, exchanges, y } = self;
-        for (j, other) in exchanges.iter().enumerate() {
-            y.swap(j, (other & !PAIR) as usize);
+        let Self { lower, exchanges, size, y } = self;
+        for y in y.chunks_exact_mut(size) {
+            for (j, other) in exchanges.iter().enumerate() {
+                y.swap(j, (other & !PAIR) as usize);
+            }
         }
-        let mut columns = lower.chunks_exact(y.len()).zip(exchanges).enumerate();
+        let mut columns = lower.chunks_exact(size).zip(exchanges).enumerate();
         while let Some((j, (column, exchanged))) = columns.next() {
             let mut first = j + 1;
             if exchanged & PAIR != 0
                 && let Some((_, (next, _))) = columns.next()
             {
                 first = j + 2;
-                let (done, rest) = y.split_at_mut(first);
-                subtract(rest, &next[first..], done[j + 1]);
+                for y in y.chunks_exact_mut(size) {
+                    let (done, rest) = y.split_at_mut(first);
+                    subtract(rest, &next[first..], done[j + 1]);
+                }
             }
-            let (done, rest) = y.split_at_mut(first);
-            subtract(rest, &column[first..], done[j]);
+            for y in y.chunks_exact_mut(size) {
+                let (done, rest) = y.split_at_mut(first);
+                subtract(rest, &column[first..], done[j]);
+            }
         }
     }
 }
 
-/// y₁ ← P L₁₁⁻ᵀ (D⁻¹ y₁ − L₂₁ᵀ y₂)
+/// y₁ ← P L₁₁⁻ᵀ (D⁻¹ y₁ − L₂₁ᵀ y₂) in every column of y
 pub struct Backward<'a> {
     pub lower: &'a [f64],
     pub exchanges: &'a [u32],
+    pub size: usize,
     pub y: &'a mut [f64],
 }
 
@@ -355,8 +363,7 @@ impl NullaryFnOnce for Backward<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { lower, exchanges, y } = self;
-        let size = y.len();
+        let Self { lower, exchanges, size, y } = self;
         let mut j = exchanges.len();
         while j > 0 {
             j -= 1;
@@ -365,18 +372,24 @@ impl NullaryFnOnce for Backward<'_> {
                 let before = &lower[(j - 1) * size..][..size];
                 let (a, b, c) = (before[j - 1], before[j], column[j]);
                 let determinant = a * c - b * b;
-                let (first, second) = (y[j - 1], y[j]);
-                let rest = &y[j + 1..];
-                let sums = [dot(&before[j + 1..], rest), dot(&column[j + 1..], rest)];
-                y[j - 1] = (c * first - b * second) / determinant - sums[0];
-                y[j] = (a * second - b * first) / determinant - sums[1];
+                for y in y.chunks_exact_mut(size) {
+                    let (first, second) = (y[j - 1], y[j]);
+                    let rest = &y[j + 1..];
+                    let sums = [dot(&before[j + 1..], rest), dot(&column[j + 1..], rest)];
+                    y[j - 1] = (c * first - b * second) / determinant - sums[0];
+                    y[j] = (a * second - b * first) / determinant - sums[1];
+                }
                 j -= 1;
             } else {
-                y[j] = y[j] / column[j] - dot(&column[j + 1..], &y[j + 1..]);
+                for y in y.chunks_exact_mut(size) {
+                    y[j] = y[j] / column[j] - dot(&column[j + 1..], &y[j + 1..]);
+                }
             }
         }
-        for (j, other) in exchanges.iter().enumerate().rev() {
-            y.swap(j, (other & !PAIR) as usize);
+        for y in y.chunks_exact_mut(size) {
+            for (j, other) in exchanges.iter().enumerate().rev() {
+                y.swap(j, (other & !PAIR) as usize);
+            }
         }
     }
 }
