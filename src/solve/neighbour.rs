@@ -16,7 +16,7 @@
 //! ```
 //! The first part is the derivative. Their tangents differ from K in proportion to k, so its correction leaves what is proportional to k²,
 //! and only a fraction O(ε²) of a₁ itself. The second part is O(ε²) and drops out of the derivative: it is corrected only where it is larger
-//! than that, or where a contact point has another status in one than in the other.
+//! than that, or where a contact point has another status in one of them than in the run.
 //!
 //! Bodies that θ does not act on, and that have no internal variables, are linear so close to the run: K_b (u′ − u) stands for the change of
 //! their forces, with the same tangent for all neighbours.
@@ -37,6 +37,7 @@ use super::newton::NewtonFailure;
 use super::{Pass, Workspace};
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, LinearizedSolids, SolidForces, Trial, regimes};
+use crate::laws::friction::Regime;
 use crate::linear::system::System;
 use crate::linear::{LinearSolver, Multifrontal};
 use crate::model::Model;
@@ -48,15 +49,15 @@ pub const TOLERANCE: f64 = 1e-12;
 /// Largest fraction of ‖r‖/‖f‖ left by a correction for another one with the tangent of the run.
 const SLOW: f64 = 0.1;
 
-/// Fraction left by a correction above which another one follows, though the residual is small already: it may be as small as round-off
-/// could be, and larger than round-off is.
-const SURE: f64 = 2e-5;
+/// Fraction left by a correction above which another one follows, though the residual is small already: so much a derivative may err in an
+/// increment.
+const SURE: f64 = 3e-8;
 
 /// ‖r‖/‖f‖ below which another correction would change round-off only [-]
 const ROUND_OFF: f64 = 0.02 * TOLERANCE;
 
-/// Allowed ‖r‖/‖f‖ of the part that drops out of the derivative, where contact points have the same status in all neighbours [-]
-const CURVATURE: f64 = 1e-9;
+/// Allowed ‖r‖/‖f‖ of the part that drops out of the derivative, where contact points have the same status as in the run [-]
+const CURVATURE: f64 = 1e-10;
 
 /// The tangent of a run at a solution, and its factors.
 pub struct Tangent {
@@ -133,6 +134,8 @@ struct Part {
     /// ‖r‖/‖f‖ at the last evaluation, and before it
     left: f64,
     before: f64,
+    /// Whether the last correction was of this part too
+    was_corrected: bool,
 }
 
 impl Part {
@@ -147,6 +150,7 @@ impl Part {
             drops_out: j > 0,
             left: f64::INFINITY,
             before: f64::INFINITY,
+            was_corrected: true,
         };
         (0..count).map(part).collect()
     }
@@ -169,7 +173,7 @@ impl Part {
         self.left == 0.0 || self.left <= tolerance && (is_corrected || tolerance == CURVATURE)
     }
 
-    /// Whether it falls from what was left of all parts: a correction of the derivative leaves a fraction of it in the others.
+    /// Whether it falls from the largest part that was corrected, of which a correction leaves a fraction in all parts.
     fn falls(&self, tolerance: f64, before: f64) -> bool {
         self.left <= tolerance || self.left <= SLOW * before
     }
@@ -207,12 +211,14 @@ struct Correction {
 }
 
 /// The run at a solution.
-struct Beside<'a> {
+struct Run<'a> {
     /// r
     residual: &'a [f64],
     solids: Option<&'a LinearizedSolids>,
     measures: &'a [f64],
     assembler: &'a Assembler,
+    /// Status of every contact point
+    statuses: Vec<Regime>,
 }
 
 impl<'a> Group<'a> {
@@ -238,7 +244,7 @@ impl<'a> Group<'a> {
     }
 
     /// Evaluates the neighbours, and returns what is to be corrected.
-    fn corrections(&mut self, run: &Beside) -> Vec<Correction> {
+    fn corrections(&mut self, run: &Run) -> Vec<Correction> {
         if self.course != Course::OnItsWay {
             return Vec::new();
         }
@@ -248,16 +254,18 @@ impl<'a> Group<'a> {
         }
         let missed = self.missed();
         let Self { neighbours, parts, course } = self;
-        let are_alike = have_same_status(neighbours);
+        let status = |neighbour: &Seeker| regimes(&neighbour.model.contacts, neighbour.work.contacts());
+        let are_alike = neighbours.iter().all(|neighbour| status(neighbour) == run.statuses);
         let (mut corrections, mut fall) = (Vec::new(), true);
-        let before = parts.iter().map(|part| part.left).fold(0.0, f64::max);
+        let before = parts.iter().filter(|part| part.was_corrected).map(|part| part.left).fold(0.0, f64::max);
         for part in parts {
             let mut residual = part.residual(neighbours, run.residual);
             let share = run.assembler.share(neighbours[0].trial, &residual, run.measures);
             (part.before, part.left) = (part.left, share.max(missed));
             let tolerance = if part.drops_out && are_alike { CURVATURE } else { TOLERANCE };
             fall &= part.falls(tolerance, before);
-            if !part.is_solved(tolerance) {
+            part.was_corrected = !part.is_solved(tolerance);
+            if part.was_corrected {
                 residual.iter_mut().for_each(|r| *r = -*r);
                 corrections.push(Correction { powers: part.powers.clone(), way: residual });
             }
@@ -293,7 +301,8 @@ impl<'a> Group<'a> {
 /// the run. Groups are evaluated in parallel, and corrected together: the factors are read once for all of them.
 pub fn beside(groups: Vec<Vec<Seeker>>, tangent: &mut Tangent) -> Vec<Result<Vec<Vec<f64>>, IncrementFailure>> {
     let Tangent { assembler, system, solver, solids, measures, serves } = tangent;
-    let run = Beside { residual: &system.residual, solids: solids.as_ref(), measures, assembler };
+    let statuses = regimes(&assembler.model().contacts, &assembler.evaluation.contacts);
+    let run = Run { residual: &system.residual, solids: solids.as_ref(), measures, assembler, statuses };
     let mut groups: Vec<Group> = groups.into_iter().map(Group::new).collect();
     loop {
         let of = |group: &mut Group| if *serves { group.corrections(&run) } else { Vec::new() };
@@ -306,13 +315,6 @@ pub fn beside(groups: Vec<Vec<Seeker>>, tangent: &mut Tangent) -> Vec<Result<Vec
         groups.par_iter_mut().zip(corrections).for_each(|(group, own)| group.correct(own));
     }
     groups.into_par_iter().with_max_len(1).map(Group::end).collect()
-}
-
-/// Whether every contact point has the same status in all of them.
-fn have_same_status(neighbours: &[Seeker]) -> bool {
-    let mut all = neighbours.iter().map(|neighbour| regimes(&neighbour.model.contacts, neighbour.work.contacts()));
-    let first = all.next();
-    all.all(|other| Some(other) == first)
 }
 
 /// Equilibrium of a neighbour by Newton's method.

@@ -123,7 +123,7 @@ fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
     worst
 }
 
-/// Whether forces and displacements agree to 1e-7, and what is small beside them, to which the common part of neighbours (1e-9 of the forces) is not, to 5e-6:
+/// Whether forces and displacements agree to 1e-7, and what is small beside them, to which what drops out of derivatives (1e-10 of the forces) is not, to 5e-6:
 /// penetrations, momenta, powers.
 fn is_close([main, others]: &[(f64, String); 2]) -> bool {
     main.0 < 1e-7 && others.0 < 5e-6

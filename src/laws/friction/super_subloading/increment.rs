@@ -143,11 +143,18 @@ impl LoadPath<'_> {
             weighed_slip = weighed_slip + slip * evolution.excess(evolution.mean([from.mu, mu], slip, time));
         }
         let strengths = [from.mu.value * start_pressure.value, mu.value * pressure.value];
-        let plastic_slip = from.plastic_slip + slip;
-        let work = from.work;
-        let mut to = PathState { x, traction, mu, curve_point, plastic_slip, weighed_slip, work, overlooked: 0.0 };
-        to.work += self.mean(from, &to, strengths) * slip;
-        to
+        let tractions = [from.traction.value, traction.value];
+        let mean = mean_traction(&self.law.curve, [&from.curve_point, &curve_point], strengths, tractions);
+        PathState {
+            x,
+            traction,
+            mu,
+            curve_point,
+            plastic_slip: from.plastic_slip + slip,
+            weighed_slip,
+            work: from.work + mean * slip,
+            overlooked: 0.0,
+        }
     }
 
     /// The traction after a share of the slip without plastic slip.

@@ -12,7 +12,7 @@
 //!
 //! Responses are differentiated with respect to the parameters and the initial state.
 
-use super::increment::{LoadPath, PathState, Varied, mean_traction};
+use super::increment::{LoadPath, PathState, Varied};
 use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls};
 use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
@@ -260,11 +260,16 @@ impl LoadPath<'_> {
             return false;
         }
         let (start, end) = (self.ends(from), self.ends(to));
-        let unsteady = unsteadiness(&start, &end);
+        let (stiffness, drive) = (start.stiffness.min(end.stiffness), start.drive.min(end.drive));
+        if !(stiffness > 0.0 && drive > 0.0) {
+            return false;
+        }
+        let change = |part: fn(&Ends) -> f64| (part(&end) - part(&start)).abs();
+        let unsteady = (change(|e| e.approach) + change(|e| e.weakening)) / stiffness
+            + (change(|e| e.recovery) + change(|e| e.pressing)) / drive;
         if unsteady > STEADY {
             return false;
         }
-        let stiffness = start.stiffness.min(end.stiffness);
         let pressure = self.pressures[1].value;
         let strength = self.law.tolerance * self.law.evolution.mu_s * pressure;
         let mu_error = 0.25 * unsteady * self.law.evolution.commutator(slip, self.time.value);
@@ -272,36 +277,7 @@ impl LoadPath<'_> {
         q_error <= SHARE * strength && self.mean_error(from, to, &start, &end) <= strength
     }
 
-    /// Mean of q over the plastic slip of a step, for the work: that of [`mean_traction`], to fourth order where slip is steady,
-    ///
-    /// ```text
-    /// ∫ q dλ = ∫ μ p dA ≈ ΔA (f₀ + f₁)/2 − ΔA² (f₁′ − f₀′)/12,   A = ∫ R dλ,   f = μ p,   f′ = d(μ p)/dλ/R
-    /// ```
-    /// the trapezoidal rule with the slopes at its ends (Euler–Maclaurin). The rest of the error is what the slopes change by other than
-    /// linearly, which halves of the step show. At a jump, and where slip begins within the step, the rule stays as it is.
-    #[inline]
-    pub(super) fn mean(&self, from: &PathState, to: &PathState, strengths: [f64; 2]) -> f64 {
-        let curve_points = [&from.curve_point, &to.curve_point];
-        let rough = mean_traction(&self.law.curve, curve_points, strengths, [from.traction.value, to.traction.value]);
-        let (start, end) = (self.ends(from), self.ends(to));
-        let slips_from_start = from.traction.value >= start.ratio * strengths[0] * (1.0 - NOISE);
-        let ratio_is_steady = (end.ratio - start.ratio).abs() <= STEADY * start.ratio;
-        if !(slips_from_start && ratio_is_steady && unsteadiness(&start, &end) <= STEADY) {
-            return rough;
-        }
-        let ratio = self.law.curve.mean_ratio(&from.curve_point, &to.curve_point);
-        let area = ratio * (to.plastic_slip - from.plastic_slip);
-        let slope = |e: &Ends| {
-            let by_time = (e.recovery + e.pressing) * e.stiffness / e.drive;
-            (by_time - e.weakening) / (e.ratio * e.ratio)
-        };
-        let trapezoid = 0.5 * (strengths[0] + strengths[1]);
-        let bend = area * (slope(&end) - slope(&start)) / 12.0;
-        if bend.abs() <= STEADY * trapezoid { ratio * (trapezoid - bend) } else { rough }
-    }
-
     /// Quantities that determine the rate of plastic slip in a state.
-    #[inline]
     fn ends(&self, at: &PathState) -> Ends {
         let (pressure, ratio, mu) = (self.pressure_at(at), at.curve_point.ratio, at.mu.value);
         let approach = pressure * at.curve_point.rate * mu;
@@ -340,18 +316,6 @@ impl LoadPath<'_> {
         };
         0.125 * slip * bend
     }
-}
-
-/// Relative change of the rate of plastic slip within a step; infinite where it is not positive.
-#[inline]
-fn unsteadiness(start: &Ends, end: &Ends) -> f64 {
-    let (stiffness, drive) = (start.stiffness.min(end.stiffness), start.drive.min(end.drive));
-    if !(stiffness > 0.0 && drive > 0.0) {
-        return f64::INFINITY;
-    }
-    let change = |part: fn(&Ends) -> f64| (part(end) - part(start)).abs();
-    (change(|e| e.approach) + change(|e| e.weakening)) / stiffness
-        + (change(|e| e.recovery) + change(|e| e.pressing)) / drive
 }
 
 impl SensitiveLaw for SuperSubloading {
