@@ -55,8 +55,11 @@ pub(super) struct PathState {
     pub weighed_slip: Dual,
     /// Work dissipated since the start of the path [F/L]
     pub work: f64,
-    /// Bound of the traction lost by plastic slip that was neglected in an elastic sub-step [F/L²]
+    /// Traction lost by plastic slip that was neglected in an elastic sub-step, or by elastic slip at the start of a plastic one
+    /// [F/L²]
     pub overlooked: f64,
+    /// Difference between the rules of the mean of q in the work of the last sub-step, if not that of steady slip was taken [F/L]
+    pub doubt: f64,
 }
 
 impl LoadPath<'_> {
@@ -64,7 +67,17 @@ impl LoadPath<'_> {
     pub(super) fn start(&self, traction: Dual, mu: Dual, ratio: f64) -> PathState {
         let curve_point = self.law.curve.start(ratio);
         let weighed_slip = 0.0.into();
-        PathState { x: 0.0, traction, mu, curve_point, plastic_slip: 0.0, weighed_slip, work: 0.0, overlooked: 0.0 }
+        PathState {
+            x: 0.0,
+            traction,
+            mu,
+            curve_point,
+            plastic_slip: 0.0,
+            weighed_slip,
+            work: 0.0,
+            overlooked: 0.0,
+            doubt: 0.0,
+        }
     }
 
     /// Integrates one sub-step.
@@ -97,8 +110,10 @@ impl LoadPath<'_> {
         let traction = if trial.value > 0.0 { trial } else { 0.0.into() };
         let mu = self.varied.evolution.rested(from.mu, self.time * share);
         let curve_point = self.law.curve.start(traction.value / (mu.value * pressure));
-        let rate = self.rate(traction.value, mu.value, pressure, &curve_point);
-        PathState { x, traction, mu, curve_point, overlooked: self.law.alpha_t * rate * share, ..*from }
+        let mut to = PathState { x, traction, mu, curve_point, overlooked: 0.0, doubt: 0.0, ..*from };
+        let rates = [from, &to].map(|at| self.balance(at).rate());
+        to.overlooked = self.law.alpha_t * share * mean_of_positive(rates);
+        to
     }
 
     /// A sub-step with plastic slip. The derivatives are those of the equation of plastic slip at its root,
@@ -142,19 +157,25 @@ impl LoadPath<'_> {
             let slip = dslip + slip;
             weighed_slip = weighed_slip + slip * evolution.excess(evolution.mean([from.mu, mu], slip, time));
         }
+        let plastic_slip = from.plastic_slip + slip;
+        let work = from.work;
+        let mut to =
+            PathState { x, traction, mu, curve_point, plastic_slip, weighed_slip, work, overlooked: 0.0, doubt: 0.0 };
+        let [start, end] = [from, &to].map(|at| self.balance(at));
         let strengths = [from.mu.value * start_pressure.value, mu.value * pressure.value];
         let tractions = [from.traction.value, traction.value];
-        let mean = mean_traction(&self.law.curve, [&from.curve_point, &curve_point], strengths, tractions);
-        PathState {
-            x,
-            traction,
-            mu,
-            curve_point,
-            plastic_slip: from.plastic_slip + slip,
-            weighed_slip,
-            work: from.work + mean * slip,
-            overlooked: 0.0,
+        let steady = mean_of_steady_slip(&self.law.curve, [&from.curve_point, &curve_point], strengths);
+        let mean = mean_traction(steady, tractions);
+        if mean == steady || unsteadiness([&start, &end]) <= STEADY {
+            to.work += slip * steady;
+        } else {
+            to.work += slip * mean;
+            to.doubt = slip * (steady - mean).abs();
         }
+        if !start.in_core && end.drive > 0.0 {
+            to.overlooked = share * mean_of_positive([-start.drive, -end.drive]);
+        }
+        to
     }
 
     /// The traction after a share of the slip without plastic slip.
@@ -163,17 +184,25 @@ impl LoadPath<'_> {
         from.traction + self.varied.alpha_t * self.slip * share
     }
 
-    /// dλ/dx of the rate equations, 0 where R decreases without slip or the solution is not unique.
+    /// The balance of plastic slip in a state.
     #[inline]
-    fn rate(&self, traction: f64, mu: f64, pressure: f64, curve_point: &CurvePoint) -> f64 {
-        if traction < curve_point.ratio * mu * pressure * (1.0 - ROUND_OFF) {
-            return 0.0; // inside the elastic core
+    pub(super) fn balance(&self, at: &PathState) -> Balance {
+        let (pressure, mu) = (self.pressure(at.x.into()).value, at.mu.value);
+        let CurvePoint { ratio, rate, .. } = at.curve_point;
+        let approach = pressure * rate * mu;
+        let weakening = pressure * ratio * self.law.evolution.weakening(mu);
+        let recovery = ratio * pressure * self.law.evolution.recovery(mu) * self.time.value;
+        let pressing = ratio * mu * self.pressure_change();
+        Balance {
+            approach,
+            weakening,
+            recovery,
+            pressing,
+            stiffness: self.law.alpha_t + approach - weakening,
+            drive: self.law.alpha_t * self.slip.value - recovery - pressing,
+            ratio,
+            in_core: at.traction.value < ratio * mu * pressure * (1.0 - ROUND_OFF),
         }
-        let (weakening, recovery) = (self.law.evolution.weakening(mu), self.law.evolution.recovery(mu));
-        let drive = self.law.alpha_t * self.slip.value
-            - curve_point.ratio * (recovery * self.time.value * pressure + mu * self.pressure_change());
-        let stiffness = self.law.alpha_t + pressure * (curve_point.rate * mu - curve_point.ratio * weakening);
-        if drive > 0.0 && stiffness > 0.0 { drive / stiffness } else { 0.0 }
     }
 
     /// p [F/L²]
@@ -187,20 +216,69 @@ impl LoadPath<'_> {
     }
 }
 
-/// Mean of q over the plastic slip of a step: μ p is taken as linear in ∫ R dλ. Where the traction decreases, it is itself
-/// taken as linear in λ, which is exact for a jump: the contact springs back, and the energy not taken by the strength is lost
-/// too.
-pub(super) fn mean_traction(
-    curve: &SlidingCurve,
-    curve_points: [&CurvePoint; 2],
-    strengths: [f64; 2],
-    tractions: [f64; 2],
-) -> f64 {
-    let mean = |[start, end]: [f64; 2]| 0.5 * (start + end);
-    if tractions[1] < tractions[0] {
-        mean(tractions)
+/// Mean of q over the plastic slip of a step in which it is steady: μ p is taken as linear in ∫ R dλ.
+pub(super) fn mean_of_steady_slip(curve: &SlidingCurve, [start, end]: [&CurvePoint; 2], strengths: [f64; 2]) -> f64 {
+    curve.mean_ratio(start, end) * 0.5 * (strengths[0] + strengths[1])
+}
+
+/// Mean of q over the plastic slip of a step, steady or not: where the traction decreases, it is itself taken as linear in λ,
+/// which is exact for a jump: the contact springs back, and the energy not taken by the strength is lost too.
+pub(super) fn mean_traction(steady: f64, [start, end]: [f64; 2]) -> f64 {
+    if end < start { 0.5 * (start + end) } else { steady }
+}
+
+/// The rate equation of plastic slip in a state of the path, D dλ/dx = drive.
+pub(super) struct Balance {
+    /// p U μ, contribution of the approach of R to D [F/L³]
+    pub approach: f64,
+    /// p R κ (μ/μ_k − 1), reduction of D by weakening [F/L³]
+    pub weakening: f64,
+    /// R p ξ (1 − μ/μ_s) dt/dx and R μ dp/dx: reductions of the drive by recovery and pressure [F/L²]
+    pub recovery: f64,
+    pub pressing: f64,
+    /// D = α_t + approach − weakening [F/L³]
+    pub stiffness: f64,
+    /// α_t du/dx − recovery − pressing; negative where R decreases without plastic slip [F/L²]
+    pub drive: f64,
+    /// R [-]
+    pub ratio: f64,
+    /// Whether the traction is below R μ p, inside the elastic core.
+    pub in_core: bool,
+}
+
+impl Balance {
+    /// dλ/dx, negative where R decreases without plastic slip; 0 in the elastic core and where the solution is not unique.
+    #[inline]
+    fn rate(&self) -> f64 {
+        if self.in_core || self.stiffness <= 0.0 { 0.0 } else { self.drive / self.stiffness }
+    }
+}
+
+/// Largest relative change of the rate of plastic slip within a step in which slip counts as steady.
+pub(super) const STEADY: f64 = 0.25;
+
+/// Relative change of the rate of plastic slip within a step; infinite where it is not positive.
+#[inline]
+pub(super) fn unsteadiness([start, end]: [&Balance; 2]) -> f64 {
+    let (stiffness, drive) = (start.stiffness.min(end.stiffness), start.drive.min(end.drive));
+    if !(stiffness > 0.0 && drive > 0.0) {
+        return f64::INFINITY;
+    }
+    let change = |part: fn(&Balance) -> f64| (part(end) - part(start)).abs();
+    (change(|e| e.approach) + change(|e| e.weakening)) / stiffness
+        + (change(|e| e.recovery) + change(|e| e.pressing)) / drive
+}
+
+/// Mean of the positive part of a quantity that is linear in a sub-step, from its ends.
+#[inline]
+fn mean_of_positive([start, end]: [f64; 2]) -> f64 {
+    let (most, least) = (start.max(end), start.min(end));
+    if most <= 0.0 {
+        0.0
+    } else if least >= 0.0 {
+        0.5 * (most + least)
     } else {
-        curve.mean_ratio(curve_points[0], curve_points[1]) * mean(strengths)
+        0.5 * most * most / (most - least)
     }
 }
 

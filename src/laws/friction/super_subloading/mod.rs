@@ -14,7 +14,7 @@ pub use crate::laws::approach::Approach;
 use crate::laws::approach::SlidingCurve;
 use crate::laws::dual::Dual;
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
-use increment::{ROUND_OFF, SlipEquation, mean_traction};
+use increment::{ROUND_OFF, SlipEquation, mean_of_steady_slip, mean_traction};
 use peak::PeakEvolution;
 pub use peak::{Integration, Onset, Rise};
 
@@ -159,7 +159,8 @@ impl SuperSubloading {
         let start_pressure = old.pressure + passed * (pressure - old.pressure);
         let strengths = [old_mu * start_pressure, end.peak.mu * pressure];
         let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
-        let mean = mean_traction(&self.curve, [&equation.start, &end.curve_point], strengths, tractions);
+        let steady = mean_of_steady_slip(&self.curve, [&equation.start, &end.curve_point], strengths);
+        let mean = mean_traction(steady, tractions);
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
         Ok(FrictionResponse {
             state: ruled(

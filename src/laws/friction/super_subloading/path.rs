@@ -12,7 +12,7 @@
 //!
 //! Responses are differentiated with respect to the parameters and the initial state.
 
-use super::increment::{LoadPath, PathState, Varied};
+use super::increment::{Balance, LoadPath, PathState, STEADY, Varied, unsteadiness};
 use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls};
 use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
@@ -95,6 +95,12 @@ impl Halves<'_> {
         let slips = |from: &PathState, to: &PathState| to.plastic_slip > from.plastic_slip;
         slips(self.from, self.coarse) && slips(self.from, self.middle) && slips(self.middle, self.fine)
     }
+
+    /// Doubt of the work, which the difference of whole and halves shows only if one rule was taken in all three.
+    fn doubt(&self) -> f64 {
+        let doubts = [self.coarse, self.middle, self.fine].map(|state| state.doubt);
+        if doubts.iter().all(|doubt| *doubt > 0.0) { 0.0 } else { doubts.into_iter().fold(0.0, f64::max) }
+    }
 }
 
 impl LoadPath<'_> {
@@ -128,9 +134,11 @@ impl LoadPath<'_> {
         let middle = self.advance(from, 0.5 * (from.x + coarse.x))?;
         let fine = self.advance(&middle, coarse.x)?;
         let halves = Halves { from, coarse, middle: &middle, fine: &fine };
+        let expected = [expected[0], expected[1], self.expected_work(from, coarse).unwrap_or(expected[2])];
         let (differences, allowed) = (self.differences(&halves), self.allowed(&halves));
         let overlooked = coarse.overlooked.max(middle.overlooked).max(fine.overlooked);
         let agree = overlooked <= allowed[0]
+            && halves.doubt() <= allowed[2]
             && (0..3).all(|i| {
                 let left = differences[i].abs() / CAUTION;
                 let left = if halves.slide() { left.min((differences[i] - expected[i]).abs()) } else { left };
@@ -180,12 +188,13 @@ impl LoadPath<'_> {
     fn allowed(&self, halves: &Halves) -> Differences {
         let Halves { from, fine, .. } = *halves;
         let share = fine.x - from.x;
-        let (start_pressure, pressure) = (self.pressure_at(from), self.pressure_at(fine));
+        let pressure = self.pressure_at(fine);
         let slip = self.slip.value.abs() * share;
         let noise = NOISE * (fine.traction.value + from.traction.value + self.law.alpha_t * slip);
         let tolerance = self.law.tolerance * self.law.evolution.mu_s;
         let strength = tolerance * pressure * (share * share.sqrt()).sqrt() + noise;
-        let work = (tolerance * pressure.max(start_pressure) + noise) * (slip + fine.plastic_slip - from.plastic_slip);
+        let most = self.pressures[0].value.max(self.pressures[1].value);
+        let work = (tolerance * most + noise) * (slip + fine.plastic_slip - from.plastic_slip);
         [strength, strength, work + NOISE * self.energy(fine)]
     }
 
@@ -207,6 +216,7 @@ impl LoadPath<'_> {
             weighed_slip: fine.weighed_slip + (fine.weighed_slip - coarse.weighed_slip) / 3.0,
             work: (energy - 0.5 * traction.value * traction.value / self.law.alpha_t).max(from.work),
             overlooked: 0.0,
+            doubt: 0.0,
         }
     }
 
@@ -225,26 +235,6 @@ impl LoadPath<'_> {
 /// meets a jump, which must be far below its resolution.
 const SHARE: f64 = 0.01;
 
-/// Largest relative change of the rate of plastic slip within a single step, required for bounds from its ends.
-const STEADY: f64 = 0.25;
-
-/// Quantities that determine the rate of plastic slip at one end of a step.
-struct Ends {
-    /// p U μ, contribution of the approach of R to D = α_t + p (U μ − R κ (μ/μ_k − 1)) [F/L³]
-    approach: f64,
-    /// p R κ (μ/μ_k − 1), reduction of D by weakening [F/L³]
-    weakening: f64,
-    /// R p ξ (1 − μ/μ_s) and R μ dp/dx: reductions of α_t du/dx by recovery and pressure, per x [F/L²]
-    recovery: f64,
-    pressing: f64,
-    /// D [F/L³]
-    stiffness: f64,
-    /// α_t du/dx − recovery − pressing: D dλ/dx [F/L²]
-    drive: f64,
-    /// R [-]
-    ratio: f64,
-}
-
 impl LoadPath<'_> {
     /// Whether a single step over the whole path, with plastic slip, is accurate to the tolerance.
     ///
@@ -259,63 +249,54 @@ impl LoadPath<'_> {
         if !(self.law.evolution.is_linear() && slip > 0.0) {
             return false;
         }
-        let (start, end) = (self.ends(from), self.ends(to));
-        let (stiffness, drive) = (start.stiffness.min(end.stiffness), start.drive.min(end.drive));
-        if !(stiffness > 0.0 && drive > 0.0) {
-            return false;
-        }
-        let change = |part: fn(&Ends) -> f64| (part(&end) - part(&start)).abs();
-        let unsteady = (change(|e| e.approach) + change(|e| e.weakening)) / stiffness
-            + (change(|e| e.recovery) + change(|e| e.pressing)) / drive;
+        let [start, end] = [from, to].map(|at| self.balance(at));
+        let unsteady = unsteadiness([&start, &end]);
         if unsteady > STEADY {
             return false;
         }
+        let stiffness = start.stiffness.min(end.stiffness);
         let pressure = self.pressures[1].value;
         let strength = self.law.tolerance * self.law.evolution.mu_s * pressure;
         let mu_error = 0.25 * unsteady * self.law.evolution.commutator(slip, self.time.value);
         let q_error = mu_error * pressure * (self.law.alpha_t / stiffness).max(1.0);
-        q_error <= SHARE * strength && self.mean_error(from, to, &start, &end) <= strength
+        q_error <= SHARE * strength && mean_error(slip, &start, &end) <= strength
     }
 
-    /// Quantities that determine the rate of plastic slip in a state.
-    fn ends(&self, at: &PathState) -> Ends {
-        let (pressure, ratio, mu) = (self.pressure_at(at), at.curve_point.ratio, at.mu.value);
-        let approach = pressure * at.curve_point.rate * mu;
-        let weakening = pressure * ratio * self.law.evolution.weakening(mu);
-        let recovery = ratio * pressure * self.law.evolution.recovery(mu) * self.time.value;
-        let pressing = ratio * mu * self.pressure_change();
-        Ends {
-            approach,
-            weakening,
-            recovery,
-            pressing,
-            stiffness: self.law.alpha_t + approach - weakening,
-            drive: self.law.alpha_t * self.slip.value - recovery - pressing,
-            ratio,
+    /// Difference of the work of two halves of a step and that of the whole, where slip is steady and plastic from the start: the
+    /// trapezoidal rule of the mean of q (`mean_of_steady_slip`) errs by
+    ///
+    /// ```text
+    /// A (f₀ + f₁)/2 − ∫ f dA ≈ A² (f₁′ − f₀′)/12,   A = ∫ R dλ,   f = μ p,   f′ = d(μ p)/dλ/R
+    /// ```
+    /// (Euler–Maclaurin), and its halves by a quarter of that.
+    fn expected_work(&self, from: &PathState, to: &PathState) -> Option<f64> {
+        let [start, end] = [from, to].map(|at| self.balance(at));
+        let far = (end.ratio - start.ratio).abs() > STEADY * start.ratio;
+        if start.in_core || far || unsteadiness([&start, &end]) > STEADY {
+            return None;
         }
+        let slope = |e: &Balance| {
+            let by_time = (e.recovery + e.pressing) * e.stiffness / e.drive;
+            (by_time - e.weakening) / (e.ratio * e.ratio)
+        };
+        let ratio = self.law.curve.mean_ratio(&from.curve_point, &to.curve_point);
+        let area = ratio * (to.plastic_slip - from.plastic_slip);
+        Some(-0.75 / 12.0 * area * area * (slope(&end) - slope(&start)))
     }
+}
 
-    /// Bound of the error of the mean of q, by which plastic slip is multiplied in the dissipation: the error of a trapezoidal
-    /// rule of f over the length L is at most L |f′(end) − f′(start)|/8 where f′ is monotonic, applied to each part. The rule
-    /// is for q over λ where q decreases, else for μ p over ∫ R dλ (`mean_traction`).
-    fn mean_error(&self, from: &PathState, to: &PathState, start: &Ends, end: &Ends) -> f64 {
-        let slip = to.plastic_slip - from.plastic_slip;
-        // R d(μ p)/dλ from weakening, recovery and pressure, and μ p dR/dλ
-        let parts = |e: &Ends| {
-            let per_rate = e.stiffness / e.drive;
-            [e.weakening, e.recovery * per_rate, e.pressing * per_rate, e.approach]
-        };
-        let (start_parts, end_parts) = (parts(start), parts(end));
-        let falls = to.traction.value < from.traction.value;
-        let change = |i: usize, per: [f64; 2]| (end_parts[i] / per[1] - start_parts[i] / per[0]).abs();
-        let bend: f64 = if falls {
-            (0..4).map(|i| change(i, [1.0, 1.0])).sum()
-        } else {
-            let squares = [start.ratio * start.ratio, end.ratio * end.ratio];
-            end.ratio * end.ratio * (0..3).map(|i| change(i, squares)).sum::<f64>()
-        };
-        0.125 * slip * bend
-    }
+/// Bound of the error of the mean of q, by which plastic slip is multiplied in the dissipation: the error of a trapezoidal rule
+/// of f over the length L is at most L |f′(end) − f′(start)|/8 where f′ is monotonic, applied to each part; here μ p over
+/// ∫ R dλ.
+fn mean_error(slip: f64, start: &Balance, end: &Balance) -> f64 {
+    // d(μ p)/dλ/R from weakening, recovery and pressure
+    let parts = |e: &Balance| {
+        let per_rate = e.stiffness / e.drive;
+        [e.weakening, e.recovery * per_rate, e.pressing * per_rate].map(|part| part / (e.ratio * e.ratio))
+    };
+    let (start_parts, end_parts) = (parts(start), parts(end));
+    let bend: f64 = (0..3).map(|i| (end_parts[i] - start_parts[i]).abs()).sum();
+    0.125 * slip * end.ratio * end.ratio * bend
 }
 
 impl SensitiveLaw for SuperSubloading {
