@@ -369,30 +369,48 @@ impl MohrCoulomb {
     /// The return with γ_p at the end of the increment, its tangent, and γ_p.
     #[inline(always)]
     fn sorted(&self, trial: &Vector3<f64>, before: f64) -> Result<(Vector3<f64>, Matrix3<f64>, f64), MaterialFailure> {
-        let none = || MaterialFailure::NotConverged {
-            law: self.name(),
-            residual: self.excess(&self.strength(before).0, trial) / trial.amax(),
-        };
-        let at = |slip: f64| {
-            let found = self.at_strength(&self.strength(slip).0, trial).ok_or_else(none)?;
-            let plastic = self.strain(&(trial - found.stress));
-            Ok((found, plastic, before + plastic.abs().sum() - slip))
-        };
-        if self.residual.is_none_or(|(_, strain)| before >= strain) {
-            let (found, _, slip) = at(before)?;
-            return Ok((found.stress, self.tangent(&self.strength(before).0, &found), before + slip));
+        if self.residual.is_some_and(|(_, strain)| before < strain) {
+            return self.softening(trial, before);
         }
-        // γ_p,n + Σ |Δε_p,i(γ_p)| − γ_p has its root between γ_p,n, where it is positive, and where it is not
+        let (strength, _) = self.strength(before);
+        let found = self.at_strength(&strength, trial).ok_or_else(|| self.none(trial, before))?;
+        Ok((found.stress, self.tangent(&strength, &found), before + self.slip(trial, &found)))
+    }
+
+    /// Σ |Δε_p,i| of a return.
+    #[inline(always)]
+    fn slip(&self, trial: &Vector3<f64>, found: &OnPlanes) -> f64 {
+        self.strain(&(trial - found.stress)).abs().sum()
+    }
+
+    /// There is no return.
+    #[cold]
+    fn none(&self, trial: &Vector3<f64>, before: f64) -> MaterialFailure {
+        let residual = self.excess(&self.strength(before).0, trial) / trial.amax();
+        MaterialFailure::NotConverged { law: self.name(), residual }
+    }
+
+    /// That of a strength that falls with γ_p: γ_p,n + Σ |Δε_p,i(γ_p)| − γ_p has its root between γ_p,n, where it is positive, and where
+    /// it is not.
+    fn softening(
+        &self,
+        trial: &Vector3<f64>,
+        before: f64,
+    ) -> Result<(Vector3<f64>, Matrix3<f64>, f64), MaterialFailure> {
+        let at = |slip: f64| {
+            let found = self.at_strength(&self.strength(slip).0, trial).ok_or_else(|| self.none(trial, before))?;
+            Ok((found, before + self.slip(trial, &found) - slip))
+        };
         let [mut low, mut high] = [before, before + self.strain(trial).abs().sum()];
-        while at(high)?.2 > 0.0 {
+        while at(high)?.1 > 0.0 {
             (low, high) = (high, 2.0 * high);
         }
         let mut now = low;
         for _ in 0..ITERATIONS {
-            let (found, plastic, rest) = at(now)?;
+            let (found, rest) = at(now)?;
             let (strength, rate) = self.strength(now);
             let by_slip = self.softened(&strength, &rate, &found);
-            let signs = plastic.map(f64::signum);
+            let signs = self.strain(&(trial - found.stress)).map(f64::signum);
             let slope = -signs.dot(&self.strain(&by_slip)) - 1.0;
             if rest.abs() <= KNOWN {
                 let mut tangent = self.tangent(&strength, &found);
@@ -408,7 +426,7 @@ impl MohrCoulomb {
             let next = now - rest / slope;
             now = if next > low && next < high { next } else { 0.5 * (low + high) };
         }
-        Err(none())
+        Err(self.none(trial, before))
     }
 }
 
@@ -471,21 +489,18 @@ impl ReturnMap for MohrCoulomb {
         history: &mut [f64],
     ) -> Result<Returned, MaterialFailure> {
         let mut answer = Returned::elastic(self.elastic, trial);
-        let order = order(trial);
-        let [a, b, c] = order;
-        let sorted = Vector3::new(answer.stress[a], answer.stress[b], answer.stress[c]);
+        let rank = rank_across(trial);
+        let sorted = Vector3::from(sorted(rank, [answer.stress[0], answer.stress[1], answer.stress[2]]));
         let before = history.get(OWN).copied().unwrap_or(0.0);
         if self.excess(&self.strength(before).0, &sorted) <= ROUND_OFF * self.elastic.shear {
             return Ok(answer);
         }
         let (stress, moduli, slip) = self.sorted(&sorted, before)?;
+        let [x, y, z] = unsorted(rank, stress.into());
+        answer.stress = Vector4::new(x, y, z, 0.0);
+        let columns = unsorted(rank, [0, 1, 2].map(|column| unsorted(rank, moduli.column(column).into_owned().into())));
         let mut tangent = Matrix4::zeros();
-        for (a, &i) in order.iter().enumerate() {
-            answer.stress[i] = stress[a];
-            for (b, &j) in order.iter().enumerate() {
-                tangent[(i, j)] = moduli[(a, b)];
-            }
-        }
+        tangent.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::from(columns));
         // The axes of τ are those of the strains.
         let difference = trial.x - trial.y;
         tangent[(3, 3)] = match difference.abs() <= EQUAL {
@@ -551,18 +566,31 @@ fn principal(stress: &Vector4<f64>) -> Vector3<f64> {
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let radius = (half * half + xy * xy).sqrt();
     let values = Vector3::new(mean + radius, mean - radius, zz);
-    let [a, b, c] = order(&values);
-    Vector3::new(values[a], values[b], values[c])
+    Vector3::from(sorted(rank_across(&values), values.into()))
 }
 
-/// Places of principal values, the largest first, of which those in plane are in order.
+/// Place of the principal value across the plane among all, the largest first; those in plane are in order.
 #[inline(always)]
-fn order(values: &Vector3<f64>) -> [usize; 3] {
-    if values[2] > values[0] {
-        [2, 0, 1]
-    } else if values[2] > values[1] {
-        [0, 2, 1]
-    } else {
-        [0, 1, 2]
+fn rank_across(values: &Vector3<f64>) -> usize {
+    usize::from(values[2] <= values[0]) + usize::from(values[2] <= values[1])
+}
+
+/// What belongs to the axes, the largest first.
+#[inline(always)]
+fn sorted<T: Copy>(rank: usize, [x, y, z]: [T; 3]) -> [T; 3] {
+    match rank {
+        0 => [z, x, y],
+        1 => [x, z, y],
+        _ => [x, y, z],
+    }
+}
+
+/// What belongs to the axes, from the largest first.
+#[inline(always)]
+fn unsorted<T: Copy>(rank: usize, [a, b, c]: [T; 3]) -> [T; 3] {
+    match rank {
+        0 => [b, c, a],
+        1 => [a, c, b],
+        _ => [a, b, c],
     }
 }

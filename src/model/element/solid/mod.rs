@@ -13,6 +13,7 @@ mod volume;
 use std::array;
 
 use nalgebra::{Matrix2, Matrix4, Vector2, Vector5};
+use pulp::{Arch, NullaryFnOnce};
 
 use super::Formulation;
 use crate::laws::bulk::spatial::{components, plane};
@@ -150,17 +151,17 @@ impl SolidElement {
             return self.ring_at_once(material, u, force, Some(tangent));
         }
         match self.kind {
-            ElementKind::T3 => self.evaluate::<3>(material, u, force, tangent),
-            ElementKind::T6 => self.evaluate::<6>(material, u, force, tangent),
-            ElementKind::Q4 => self.evaluate::<4>(material, u, force, tangent),
-            ElementKind::Q8 => self.evaluate::<8>(material, u, force, tangent),
-            ElementKind::Q9 => self.evaluate::<9>(material, u, force, tangent),
+            ElementKind::T3 => self.evaluate::<3, 1>(material, u, force, tangent),
+            ElementKind::T6 => self.evaluate::<6, 3>(material, u, force, tangent),
+            ElementKind::Q4 => self.evaluate::<4, 4>(material, u, force, tangent),
+            ElementKind::Q8 => self.evaluate::<8, 9>(material, u, force, tangent),
+            ElementKind::Q9 => self.evaluate::<9, 9>(material, u, force, tangent),
         }
     }
 
-    /// Force (2) and tangent (3). The number of nodes is known at compile time, so that the loops over them are
-    /// unrolled.
-    fn evaluate<const N: usize>(
+    /// Force (2) and tangent (3). The numbers of nodes and, at most, of quadrature points are known at compile time, so that the loops
+    /// over them are unrolled.
+    fn evaluate<const N: usize, const M: usize>(
         &self,
         material: &dyn Material,
         u: &[Vector2<f64>],
@@ -172,16 +173,13 @@ impl SolidElement {
             let answer = |_, seen: &Vector5<f64>| material.at_once(&plane(seen)).map(Stretched::from);
             return mean.respond(answer, force, Some(tangent)).map(|[energy, _]| energy);
         }
-        force.fill(0.0);
-        let mut energy = 0.0;
-        let mut blocks = [[[[0.0; 2]; 2]; N]; N];
-        for (gradients, &volume) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes) {
-            let response = material.at_once(&deformation_gradient(gradients, u))?;
-            energy += volume * response.energy;
-            add_force(gradients, &(volume * response.stress), force);
-            add_tangent::<N, true>(gradients, &(volume * response.tangent), &mut blocks);
+        let (gradients, volumes) = (self.gradients.as_chunks::<N>().0, &self.volumes);
+        let mut responses = [MaterialResponse::default(); M];
+        for (response, gradients) in responses.iter_mut().zip(gradients) {
+            *response = material.at_once(&deformation_gradient(gradients, u))?;
         }
-        write_blocks::<N, true>(&blocks, tangent);
+        let (responses, tangent) = (&responses[..gradients.len()], Some(tangent));
+        let [energy, _] = Arch::new().dispatch(Gathered::<N, true> { gradients, volumes, responses, force, tangent });
         Ok(energy)
     }
 
@@ -197,6 +195,7 @@ fn deformation_gradient(gradients: &[Vector2<f64>], u: &[Vector2<f64>]) -> Matri
 }
 
 /// f_ai += P_iJ N_a,J
+#[inline(always)]
 fn add_force(gradients: &[Vector2<f64>], stress: &Matrix2<f64>, force: &mut [f64]) {
     for (force, gradient) in force.chunks_exact_mut(2).zip(gradients) {
         let f = stress * gradient;
@@ -206,6 +205,7 @@ fn add_force(gradients: &[Vector2<f64>], stress: &Matrix2<f64>, force: &mut [f64
 }
 
 /// K_ai,bk += N_a,J A_iJkL N_b,L in `blocks[b][a][k][i]`, of a symmetric A for a ≥ b alone: the rest follows.
+#[inline(always)]
 fn add_tangent<const N: usize, const SYMMETRIC: bool>(
     gradients: &[Vector2<f64>; N],
     tangent: &Matrix4<f64>,
@@ -224,6 +224,7 @@ fn add_tangent<const N: usize, const SYMMETRIC: bool>(
 }
 
 /// Writes the blocks, and the transposes of symmetric ones, into the tangent, column by column.
+#[inline(always)]
 fn write_blocks<const N: usize, const SYMMETRIC: bool>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f64]) {
     for (b, columns) in blocks.iter().enumerate() {
         for (a, block) in columns.iter().enumerate().skip(if SYMMETRIC { b } else { 0 }) {
@@ -363,10 +364,31 @@ impl SolidElement {
         if let Some(mean) = mean {
             return mean.respond(|k, _| Ok(Stretched::from(responses[k])), force, tangent);
         }
+        let (volumes, responses) = (&self.volumes, &responses[..points]);
+        Ok(Arch::new().dispatch(Gathered::<N, SYMMETRIC> { gradients, volumes, responses, force, tangent }))
+    }
+}
+
+/// Force and tangent of the answers at the quadrature points, compiled for vectors as long as the processor has them; returns the stored
+/// and the dissipated energy.
+struct Gathered<'a, const N: usize, const SYMMETRIC: bool> {
+    gradients: &'a [[Vector2<f64>; N]],
+    volumes: &'a [f64],
+    responses: &'a [MaterialResponse],
+    force: &'a mut [f64],
+    tangent: Option<&'a mut [f64]>,
+}
+
+impl<const N: usize, const SYMMETRIC: bool> NullaryFnOnce for Gathered<'_, N, SYMMETRIC> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self { gradients, volumes, responses, force, tangent } = self;
         force.fill(0.0);
         let [mut energy, mut dissipated] = [0.0; 2];
-        let mut blocks = wanted.then_some([[[[0.0; 2]; 2]; N]; N]);
-        for ((gradients, &volume), response) in gradients.iter().zip(&self.volumes).zip(&responses) {
+        let mut blocks = tangent.is_some().then_some([[[[0.0; 2]; 2]; N]; N]);
+        for ((gradients, &volume), response) in gradients.iter().zip(volumes).zip(responses) {
             energy += volume * response.energy;
             dissipated += volume * response.dissipation;
             add_force(gradients, &(volume * response.stress), force);
@@ -377,6 +399,6 @@ impl SolidElement {
         if let (Some(blocks), Some(tangent)) = (blocks, tangent) {
             write_blocks::<N, SYMMETRIC>(&blocks, tangent);
         }
-        Ok([energy, dissipated])
+        [energy, dissipated]
     }
 }
