@@ -273,6 +273,16 @@ fn increments_of_all_kinds_are_right_to_the_tolerance() {
     assert!(by_chance <= 10, "{by_chance}");
 }
 
+/// The first contact, within the elastic core: nothing is plastic.
+#[test]
+fn a_first_contact_in_the_elastic_core_is_elastic() {
+    let law = law(json!({"kappa": 10, "xi": 0.002, "elastic_core": 0.3}));
+    let slip = 0.2 * MU_S * PRESSURE / ALPHA_T;
+    let answer = law.respond(&with!(pressed(MU_S, 0.0), pressure: 0.0), Sliding::new(slip, PRESSURE, 1.0)).unwrap();
+    assert!((answer.state.traction - ALPHA_T * slip).abs() < 1e-12 * PRESSURE, "{}", answer.state.traction);
+    assert_eq!(answer.state.plastic_increment, 0.0);
+}
+
 /// Tangents of whole increments, sub-steps and all, against differences.
 #[test]
 fn tangents_belong_to_the_answers() {
