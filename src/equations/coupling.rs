@@ -119,6 +119,7 @@ impl Layout {
         self.pattern = Arc::new(pattern.symmetric_but(skew));
         let mut blocks = std::mem::take(&mut self.blocks);
         blocks.clear();
+        blocks.reserve_exact(self.starts.last().copied().unwrap_or(0));
         model.mesh.elements.iter().for_each(|element| blocks.extend(self.blocks_between(&element.nodes)));
         self.blocks = blocks;
         self.contacts.clear();

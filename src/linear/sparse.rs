@@ -52,11 +52,13 @@ impl Pattern {
                 neighbours[node].extend_from_slice(group);
             }
         }
-        let mut starts = vec![0];
-        let mut rows = Vec::new();
         for list in &mut neighbours {
             list.sort_unstable();
             list.dedup();
+        }
+        let mut starts = vec![0];
+        let mut rows = Vec::with_capacity(neighbours.iter().map(Vec::len).sum());
+        for list in &neighbours {
             rows.extend_from_slice(list);
             starts.push(rows.len());
         }

@@ -21,7 +21,7 @@ use crate::model::{Body, Model};
 #[derive(Clone, Debug)]
 pub struct BodyMeans {
     density: f64,
-    /// ∫ N_a N_b dV of its nodes, a ≤ b
+    /// ∫ N_a N_b dV of its nodes, a ≤ b; none without density, where nothing asks for them
     pairs: Vec<(usize, usize, f64)>,
     shares: Vec<Share>,
     centre: Vector2<f64>,
@@ -63,12 +63,15 @@ impl BodyMeans {
         let origin = body.nodes.first().map_or_else(Vector2::zeros, |&node| place(node));
         let mut lengths = vec![(0.0, Vector2::zeros(), 0.0); body.nodes.len()];
         let local = |node: &usize| body.nodes.binary_search(node).unwrap_or(0);
+        let density = body.material.description().density;
         let mut pairs = Vec::new();
         for &element in &body.elements {
             let (nodes, matrix) = (&model.mesh.elements[element].nodes, model.element_volumes(element));
-            let both = |a: usize| (0..nodes.len()).map(move |b| (a, b));
-            let ordered = (0..nodes.len()).flat_map(both).filter(|&(a, b)| nodes[a] <= nodes[b]);
-            pairs.extend(ordered.map(|(a, b)| (nodes[a], nodes[b], matrix[(a, b)])));
+            if density > 0.0 {
+                let both = |a: usize| (0..nodes.len()).map(move |b| (a, b));
+                let ordered = (0..nodes.len()).flat_map(both).filter(|&(a, b)| nodes[a] <= nodes[b]);
+                pairs.extend(ordered.map(|(a, b)| (nodes[a], nodes[b], matrix[(a, b)])));
+            }
             let lumped = model.element_lumped_volumes(element);
             for (a, node) in nodes.iter().enumerate() {
                 let (volume, moment, concentrated) = &mut lengths[local(node)];
@@ -89,7 +92,6 @@ impl BodyMeans {
         let shares: Vec<Share> = body.nodes.iter().zip(lengths).map(share).collect();
         let pairs = summed(pairs);
         let inertia = shares.iter().map(|share| share.moment.dot(&(place(share.node) - origin - from_origin))).sum();
-        let density = body.material.description().density;
         Self { density, pairs, shares, centre: origin + from_origin, inertia }
     }
 

@@ -122,18 +122,27 @@ pub enum Unusable {
 /// Returns [`Error::Output`] if it cannot be written; existing checkpoints are then kept.
 pub fn write(folder: &Path, checkpoint: &Checkpoint) -> Result<(), Error> {
     let newest = folder.join(NEWEST);
-    let body = postcard::to_allocvec(checkpoint).map_err(|cause| failed(&newest, &cause))?;
-    let mut bytes = Vec::with_capacity(HEAD + body.len());
-    bytes.extend_from_slice(MAGIC);
-    bytes.extend_from_slice(&VERSION.to_le_bytes());
-    bytes.extend_from_slice(&(body.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(&crc32fast::hash(&body).to_le_bytes());
-    bytes.extend_from_slice(&body);
+    let bytes = to_bytes(checkpoint).map_err(|cause| failed(&newest, &cause))?;
     let keep = || match newest.symlink_metadata() {
         Ok(known) if known.is_file() => kept(&newest, &folder.join(PREVIOUS)),
         _ => Ok(()),
     };
     files::replace_for_good_after(&newest, &bytes, keep).map_err(|cause| failed(&newest, &cause))
+}
+
+/// The content of the file, built in place: a copy of it would be a tenth of the memory of a large model.
+fn to_bytes(checkpoint: &Checkpoint) -> postcard::Result<Vec<u8>> {
+    let length = postcard::experimental::serialized_size(checkpoint)?;
+    let mut bytes = Vec::with_capacity(HEAD + length);
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&VERSION.to_le_bytes());
+    bytes.extend_from_slice(&(length as u64).to_le_bytes());
+    let checksum = bytes.len();
+    bytes.resize(HEAD, 0);
+    let mut bytes = postcard::to_extend(checkpoint, bytes)?;
+    let crc = crc32fast::hash(&bytes[HEAD..]);
+    bytes[checksum..HEAD].copy_from_slice(&crc.to_le_bytes());
+    Ok(bytes)
 }
 
 /// Links the newest checkpoint as the previous one in one operation, so that a previous one always exists. Without hard
