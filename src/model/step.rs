@@ -126,6 +126,20 @@ impl Entry {
 
 #[doc(hidden)]
 impl Step {
+    /// Δt of the next attempt after the given one at an increment, of length `dt`, could not be solved: half of it, as long as that is no
+    /// less than the minimum. In dynamic steps a quarter follows, and then eighths: before fast slip increments must become thousands of
+    /// times shorter, and a failed attempt takes more solves than the increments by which a length grows again.
+    #[doc(hidden)]
+    pub fn shorter(&self, dt: f64, attempt: usize) -> Option<f64> {
+        let share = match attempt {
+            2 if self.scheme.is_dynamic() => 0.25,
+            3.. if self.scheme.is_dynamic() => 0.125,
+            _ => 0.5,
+        };
+        let min = self.increments.min;
+        (0.5 * dt >= min).then(|| (share * dt).max(min))
+    }
+
     /// Whether a body is there.
     pub fn has(&self, body: usize) -> bool {
         !self.absent.get(body).copied().unwrap_or(false)

@@ -23,9 +23,6 @@ use crate::time::quasi_dynamic::{Gone, QuasiDynamic};
 use crate::time::step_size::{Judgement, bounded, fastest_slip, judge, on_ladder};
 use crate::time::touching::Touching;
 
-/// Factor on Δt after an increment that could not be solved.
-const CUT: f64 = 0.5;
-
 impl Simulation {
     /// Tries an implicit or static increment.
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
@@ -35,7 +32,7 @@ impl Simulation {
         let (iterations, solved) = advance(model, step, old, dt, work);
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
-        let shortest = CUT * dt < step.increments.min;
+        let half = step.shorter(dt, 1);
         let outcome = match solved {
             Ok(mut new) => {
                 let mut judgement = judge(model, step, [old, &new], hardest_pass(&iterations), number > 1);
@@ -51,8 +48,10 @@ impl Simulation {
                 judgement.next = on_ladder(step, judgement.next, work);
                 let ruptures = step.rupture.as_ref().is_some_and(|r| fastest_slip(model, old, &new) > r.slip_rate);
                 match judgement {
-                    _ if ruptures && shortest => Outcome::Rejected(Verdict::Rupture, self.rupture()),
-                    _ if ruptures => Outcome::Rejected(Verdict::Rupture, again(CUT * dt, Touching::default())),
+                    _ if ruptures => {
+                        let phase = half.map_or_else(|| self.rupture(), |dt| again(dt, Touching::default()));
+                        Outcome::Rejected(Verdict::Rupture, phase)
+                    }
                     Judgement { accepted: true, next, .. } => match course(step, [old, &new]) {
                         Some(UntilStatus::Passed(dt)) => {
                             let dt = Until::shorter(dt, new.dt, number);
@@ -81,9 +80,9 @@ impl Simulation {
         if !cause.is_retryable() {
             return Outcome::Stopped(self.unsolvable(cause));
         }
-        if CUT * dt >= increments.min {
+        if let Some(dt) = self.step.shorter(dt, number) {
             touching.cut();
-            return Outcome::Cut(cause, Phase::Implicit { dt: CUT * dt, attempt: number + 1, touching });
+            return Outcome::Cut(cause, Phase::Implicit { dt, attempt: number + 1, touching });
         }
         if rupture.is_some() {
             return Outcome::Cut(cause, self.rupture());

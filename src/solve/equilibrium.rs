@@ -289,6 +289,7 @@ fn settings(model: &Model, trial: Trial) -> newton::Settings {
         max_iterations: model.newton.max_iterations,
         old_tangents: model.aids.old_tangents,
         downhill: model.aids.downhill,
+        gives_up: trial.step.scheme.is_dynamic() && trial.step.shorter(trial.dt, 1).is_some(),
     }
 }
 

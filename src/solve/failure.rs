@@ -113,6 +113,7 @@ impl IncrementFailure {
             Self::Newton(NewtonFailure::Overflow) => "forces beyond double precision",
             Self::Newton(NewtonFailure::Diverged { .. }) => "divergence",
             Self::Newton(NewtonFailure::Circles { .. }) => "iterations in a circle",
+            Self::Newton(NewtonFailure::Stalled { .. }) => "stalled iterations",
             Self::Newton(NewtonFailure::TooManyIterations { .. }) => "too many iterations",
             Self::Penetration { .. } => "penetration",
             Self::ElasticSlip { .. } => "elastic slip",

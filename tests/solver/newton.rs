@@ -14,10 +14,15 @@ use serde_json::{Value, json};
 
 /// Solve r(u) = 0 from a start value; `equation` gives r and r′, or fails.
 fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated<()> {
+    root_or_shorter(start, false, equation)
+}
+
+/// The same, in an increment that is given up where iterations stall if `gives_up`.
+fn root_or_shorter(start: f64, gives_up: bool, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated<()> {
     let pattern = std::sync::Arc::new(Pattern::new(1, std::iter::once(&[0usize][..])));
     let tangent = SparseMatrix::zero(pattern);
     let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };
-    let settings = Settings { tolerance: 1e-12, max_iterations: 30, old_tangents: true, downhill: true };
+    let settings = Settings { tolerance: 1e-12, max_iterations: 30, old_tangents: true, downhill: true, gives_up };
     let evaluate = |u: &[f64], request, system: &mut System| {
         let [r, slope] = equation(u[0])?;
         system.residual = vec![r, 0.0];
@@ -84,6 +89,25 @@ fn slow_convergence_is_no_circle() {
     let to_and_fro = |u: f64| Ok([u.signum() * u.abs().powf(0.502), 0.502 * u.abs().powf(-0.498)]);
     assert!(root(1.0, one_sided).1.is_ok());
     assert!(matches!(root(1.0, to_and_fro).1, Err(NewtonFailure::TooManyIterations { .. })));
+}
+
+/// u² + 1 has no root, and its corrections lead from cot φ to cot 2φ: to and fro without a circle, and never below 1. They are given up
+/// where a shorter increment may follow, after eight of them, and otherwise after all 30. Those of u⁵ = 0 leave a third of it, and seven steps
+/// of one lead to where an equation falls from −1.06 to its root: neither is given up.
+#[test]
+fn corrections_that_halve_nothing_are_given_up_where_a_shorter_increment_may_follow() {
+    let without = |u: f64| Ok([u * u + 1.0, 2.0 * u]);
+    let start = 1.0 / 0.7f64.tan();
+    let (iterations, result) = root_or_shorter(start, true, without);
+    assert!(matches!(result, Err(NewtonFailure::Stalled { .. })), "{result:?}");
+    assert!((8..=11).contains(&iterations.len()), "{} solves", iterations.len());
+    let (iterations, result) = root_or_shorter(start, false, without);
+    assert!(matches!(result, Err(NewtonFailure::TooManyIterations { .. })) && iterations.len() == 30, "{result:?}");
+    let slow = |u: f64| Ok([u.powi(5), 5.0 * u.powi(4)]);
+    assert!(root_or_shorter(1.0, true, slow).1.is_ok());
+    let steps = |u: f64| Ok(if u < 7.0 { [-1.0 - 0.01 * u, 1.0 + 0.01 * u] } else { [u - 7.0, 1.0] });
+    let (iterations, result) = root_or_shorter(0.0, true, steps);
+    assert!(result.is_ok() && iterations.len() == 7, "{result:?} after {}", iterations.len());
 }
 
 /// From u = 1.1 the corrections of u/√(1 + u²) = 0 lead to −1.3, 2.4 and −13, farther than the equation can be evaluated

@@ -372,13 +372,13 @@ fn wilson_commits_the_law_at_the_end_of_the_increment() {
     assert!(deviation(&run, &slider.phases()) < 0.01);
 }
 
-/// Numbers of the attempts at each increment, and whether they were accepted.
+/// Numbers and lengths of the attempts, and whether they were accepted.
 #[derive(Default)]
-struct Attempts(Vec<(usize, bool)>);
+struct Attempts(Vec<(usize, f64, bool)>);
 
 impl Observer for Attempts {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
-        self.0.push((attempt.number, attempt.accepted.is_some()));
+        self.0.push((attempt.number, attempt.dt, attempt.accepted.is_some()));
         Ok(())
     }
 }
@@ -391,11 +391,41 @@ fn rejected_attempts_are_counted_apart_from_cut_backs() {
     let model = Arc::new(model);
     let report = run(&model, &mut [&mut attempts]).0;
     assert!(report.rejected > 0 && report.cutbacks == 0);
-    assert_eq!(report.rejected, attempts.0.iter().filter(|(_, accepted)| !accepted).count());
+    assert_eq!(report.rejected, attempts.0.iter().filter(|(_, _, accepted)| !accepted).count());
     let mut expected = 1;
-    for (number, accepted) in attempts.0 {
+    for (number, _, accepted) in attempts.0 {
         assert_eq!(number, expected);
         expected = if accepted { 1 } else { number + 1 };
+    }
+}
+
+/// A block pressed to less than nothing: what cannot be solved is cut to a half, in a dynamic step then to a quarter and to eighths, but
+/// not below the minimum, until half of it would be less.
+#[test]
+fn cuts_of_a_dynamic_increment_become_stronger() {
+    const MIN: f64 = 1e-3;
+    let dynamic = json!({"generalized_alpha": {"rho_infinity": 0.8}});
+    for (scheme, shares) in [(json!("static"), [0.5, 0.5, 0.5]), (dynamic, [0.5, 0.25, 0.125])] {
+        let model = Arc::new(model(&json!({
+            "mesh": Blocks::default().rectangle("block", [2, 2], [0.0, 0.0], [1.0, 1.0]).json(),
+            "bodies": {"block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3, "density": 1e-3}}},
+            "steps": [{"name": "crush", "duration": 1, "scheme": scheme, "dt": {"initial": 1, "min": MIN},
+                       "supports": [{"on": "block_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -2.2}]}],
+        })));
+        let mut attempts = Attempts::default();
+        assert!(run(&model, &mut [&mut attempts]).1.is_err());
+        let mut most = 0;
+        for pair in attempts.0.windows(2) {
+            let [(number, dt, accepted), (next_number, next, _)] = pair else { unreachable!("windows of two") };
+            if !accepted {
+                let share = shares[(*number).min(3) - 1];
+                assert_eq!((*next_number, *next), (number + 1, (share * dt).max(MIN)), "{scheme}");
+                assert!(0.5 * dt >= MIN, "{scheme}: {pair:?}");
+                most = most.max(*number);
+            }
+        }
+        let (_, last, accepted) = attempts.0[attempts.0.len() - 1];
+        assert!(!accepted && 0.5 * last < MIN && most >= 3, "{scheme}: {last}, {most}");
     }
 }
 
