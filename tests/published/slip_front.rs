@@ -476,8 +476,8 @@ fn how_far_a_front_gets_is_neither_of_the_mesh_nor_of_the_increments() {
     println!("|---|---|---|---|---|---|---|\n{table}");
 }
 
-/// All lengths scale with the pressure, the allowed error with them. What single runs tell of the two lower pressures is that their forces are
-/// above that of the highest: they scatter by a tenth, and are no farther apart.
+/// Displacements scale with the pressure, and so does the allowed error. Single runs tell of the two lower pressures that their forces are above
+/// that of the highest: they scatter by a tenth, and are no farther apart.
 #[test]
 #[ignore = "docs/slip_fronts.md, the force"]
 fn the_force_falls_with_length_and_pressure() {
