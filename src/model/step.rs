@@ -127,8 +127,8 @@ impl Entry {
 #[doc(hidden)]
 impl Step {
     /// Δt of the next attempt after the given one at an increment, of length `dt`, could not be solved: half of it, as long as that is no
-    /// less than the minimum. In dynamic steps a quarter follows the second attempt, and eighths the later ones: before fast slip increments must become thousands of
-    /// times shorter, and a failed attempt takes more solves than the increments by which a length grows again.
+    /// less than the minimum. In dynamic steps a quarter follows the second attempt, and eighths the later ones: before fast slip increments
+    /// must become thousands of times shorter, and a failed attempt takes more solves than the increments by which a length grows again.
     #[doc(hidden)]
     pub fn shorter(&self, dt: f64, attempt: usize) -> Option<f64> {
         let share = match attempt {
