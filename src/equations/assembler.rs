@@ -231,14 +231,42 @@ impl Assembler {
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
+        self.add_up(trial, u, responses, request, system)?;
+        let clock = Instant::now();
+        system.imbalance = self.imbalance(trial, u, &system.residual);
+        self.seconds.assembly += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Computes the residual without contact, and the tangent on request, but not whether they are in balance.
+    ///
+    /// # Errors
+    /// The same as for [`Assembler::assemble`].
+    pub fn bodies(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        system.imbalance = f64::INFINITY;
+        self.add_up(trial, u, &[], request, system)
+    }
+
+    /// Computes the residual, the tangent on request, and what their balance is measured by.
+    fn add_up(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+        request: Request,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
         self.magnitudes.fill(0.0);
         self.sum(trial, u, responses, Some(request), system)?;
-        let clock = Instant::now();
         self.equilibrium.note_contacts(&self.model, trial, responses);
         self.equilibrium.retard(&self.model, trial.step);
         system.forces = norm(&self.magnitudes);
-        system.imbalance = self.imbalance(trial, u, &system.residual);
-        self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
     }
 

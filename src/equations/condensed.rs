@@ -32,7 +32,6 @@
 //! by contact is constrained by its jumps. A node has no jump if it participates in more than its own point, is tied to
 //! another, or is supported while its opposite nodes are not: the contact force on these would not cancel.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::Assembler;
@@ -77,12 +76,13 @@ fn bound_at_contacts(model: &Model, step: &Step) -> bool {
 pub struct CondensedEquations<'a> {
     nodes: &'a ContactNodes,
     bodies: &'a Condensed,
-    /// Rows between which each column of S is not zero: bodies that only contact joins do not reach each other
-    reach: Vec<Range<usize>>,
     /// x₀ [L]
     start: Vec<f64>,
     /// ρ₀ [F]
     constant: Vec<f64>,
+    /// x where the bodies were evaluated last [L], and ρ₀ + S (x − x₀) there [F]
+    last: Vec<f64>,
+    of_bodies: Vec<f64>,
     /// Weight 1 − α_f of the contact forces at the end of the increment.
     share: f64,
     /// Whether a dof has an equation of forces, not that of a support or copy
@@ -115,13 +115,13 @@ impl<'a> CondensedEquations<'a> {
         let hidden = nodes.sides.iter().map(hidden).collect();
         let ways = nodes.sides.iter().map(|side| assembler.ways(trial, u, side)).collect();
         let (start, forces) = (nodes.gather(u), system.forces);
-        let reach = bodies.stiffness.chunks_exact(start.len().max(1)).map(reach).collect();
-        Self { nodes, bodies, reach, start, constant, share, free, hidden, ways, forces }
+        let (last, of_bodies) = (start.clone(), constant.clone());
+        Self { nodes, bodies, start, constant, last, of_bodies, share, free, hidden, ways, forces }
     }
 
     /// Computes ρ at `x` with the given responses of the contact points, and its tangent on request.
     pub fn assemble(
-        &self,
+        &mut self,
         assembler: &mut Assembler,
         trial: Trial,
         x: &[f64],
@@ -130,16 +130,10 @@ impl<'a> CondensedEquations<'a> {
         system: &mut System,
     ) {
         assembler.note_contacts(trial, responses);
-        let size = x.len();
-        system.residual.clone_from(&self.constant);
-        let columns = self.bodies.stiffness.chunks_exact(size).zip(&self.reach);
-        for ((column, reach), (x, start)) in columns.zip(x.iter().zip(&self.start)) {
-            let way = x - start;
-            let rows = system.residual[reach.clone()].iter_mut().zip(&column[reach.clone()]);
-            rows.for_each(|(residual, s)| *residual += s * way);
-        }
+        self.evaluate_bodies(x);
+        system.residual.clone_from(&self.of_bodies);
         if request == Request::Tangent {
-            system.tangent.values.copy_from_slice(&self.bodies.stiffness);
+            self.bodies.copy_to(&mut system.tangent.values);
         }
         let (mut dofs, mut rates) = (Vec::new(), Vec::new());
         for (_, closed) in responses.iter().flat_map(PairResponse::all_acting) {
@@ -148,6 +142,22 @@ impl<'a> CondensedEquations<'a> {
             self.add(&closed, &dofs, request, system);
         }
         self.measure(assembler, system);
+    }
+
+    /// Computes ρ₀ + S (x − x₀); a tangent often follows a residual at the same x.
+    fn evaluate_bodies(&mut self, x: &[f64]) {
+        if self.last == x {
+            return;
+        }
+        let Self { bodies, start, constant, last, of_bodies, .. } = self;
+        of_bodies.clone_from(constant);
+        let columns = bodies.stiffness.chunks_exact(x.len()).zip(&bodies.reach);
+        for ((column, reach), (x, start)) in columns.zip(x.iter().zip(start)) {
+            let way = x - *start;
+            let rows = of_bodies[reach.clone()].iter_mut().zip(&column[reach.clone()]);
+            rows.for_each(|(force, s)| *force += s * way);
+        }
+        x.clone_into(last);
     }
 
     /// Contribution of a closed point to the equations of its jump, if it has one: contact acts on that node only.
@@ -201,16 +211,10 @@ impl<'a> CondensedEquations<'a> {
     }
 }
 
-/// Returns the range from the first to the last value that is not zero.
-fn reach(column: &[f64]) -> Range<usize> {
-    let first = column.iter().position(|value| *value != 0.0).unwrap_or(0);
-    first..column.iter().rposition(|value| *value != 0.0).map_or(0, |last| last + 1)
-}
-
 /// Nodes at contacts: those of the slaves, and all that they may slide to unless the slave nodes are jumps. Copies are
 /// represented by their originals.
 pub struct ContactNodes {
-    /// The nodes, ascending
+    /// The nodes, body after body, in each along its longer extent
     pub nodes: Vec<usize>,
     /// Index of each node among them
     places: Vec<Option<u32>>,
@@ -245,6 +249,7 @@ impl ContactNodes {
             together.iter().map(|pair| sorted(pair.iter().flat_map(own).collect())).collect();
         let copies = model.ties.pairs().iter().filter(|(_, original)| of_pairs.iter().flatten().any(|n| n == original));
         let nodes = sorted(of_pairs.iter().flatten().copied().chain(copies.map(|(copy, _)| *copy)).collect());
+        let nodes = along_contacts(model, nodes);
         let mut places = vec![None; model.mesh.nodes.len()];
         nodes.iter().enumerate().for_each(|(place, &node)| places[node] = Some(place as u32));
         let place = |node: &usize| places[*node].map(|place| place as usize);
@@ -328,6 +333,26 @@ impl ContactNodes {
 /// Weight 1 − α_f of the contact forces at the end of the increment.
 fn contact_share(step: &Step) -> f64 {
     step.scheme.coefficients().map_or(1.0, |scheme| 1.0 - scheme.alpha_f)
+}
+
+/// Orders ascending nodes by their bodies, those of no body last, and in each along the longer extent of them.
+fn along_contacts(model: &Model, nodes: Vec<usize>) -> Vec<usize> {
+    let mut own = vec![model.bodies.len(); model.mesh.nodes.len()];
+    for (body, nodes) in model.bodies.iter().map(|body| &body.nodes).enumerate().rev() {
+        nodes.iter().for_each(|&node| own[node] = body);
+    }
+    let at = |node: usize| model.mesh.nodes[node];
+    let ordered = (0..=model.bodies.len()).flat_map(|body| {
+        let mut of_body: Vec<usize> = nodes.iter().copied().filter(|&node| own[node] == body).collect();
+        let extent = |i: usize| {
+            let ends = of_body.iter().map(|&node| at(node)[i]);
+            ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.fold(f64::INFINITY, f64::min)
+        };
+        let axis = usize::from(extent(1) > extent(0));
+        of_body.sort_by(|&a, &b| at(a)[axis].total_cmp(&at(b)[axis]));
+        of_body
+    });
+    ordered.collect()
 }
 
 /// Sorts a list and removes duplicates.

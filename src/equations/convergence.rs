@@ -285,7 +285,7 @@ impl ConvergenceCriterion {
             old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();
         let scheme = step.scheme.coefficients();
         if let (Some(scheme), Some(mass)) = (scheme, mass) {
-            let inertia = mass.multiply(&way);
+            let [inertia] = mass.multiply_symmetric([&way]);
             let (dacceleration, dvelocity) = (scheme.dacceleration(dt), scheme.dvelocity(dt));
             for (node, squared) in squares.iter_mut().enumerate() {
                 *squared += square(&inertia, node) * dacceleration.powi(2);

@@ -96,7 +96,8 @@ pub(super) fn add_damping(
     let damped = momentum.is_some() || is_viscous;
     let Some((velocity, dvelocity)) = motion(model, trial, u).filter(|_| damped) else { return };
     if let Some(momentum) = momentum {
-        for (dof, pull) in momentum.multiply(&velocity).into_iter().enumerate() {
+        let [pulls] = momentum.multiply_symmetric([&velocity]);
+        for (dof, pull) in pulls.into_iter().enumerate() {
             sums.add(dof, pull);
             damping[dof] -= pull;
         }

@@ -95,7 +95,7 @@ impl Inertia {
         let rate = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
         turning.iter().for_each(|plate| plate.weighted(scheme, rate, &mut weighted));
         links::spread_turning(model, rate, u, &mut weighted);
-        let [force, weighted] = mass.multiply_all([&acceleration, &weighted]);
+        let [force, weighted] = mass.multiply_symmetric([&acceleration, &weighted]);
         Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme, dt })
     }
 
@@ -122,7 +122,7 @@ impl Inertia {
 
 /// Kinetic energy ½ vᵀ M v [F·L].
 pub fn kinetic_energy(mass: &SparseMatrix, velocity: &[f64]) -> f64 {
-    let momentum = mass.multiply(velocity);
+    let [momentum] = mass.multiply_symmetric([velocity]);
     0.5 * momentum.iter().zip(velocity).map(|(p, v)| p * v).sum::<f64>()
 }
 

@@ -1,13 +1,17 @@
 //! Sparse matrices of two unknowns per node, and the linear solvers with a common trait.
 
+mod blocks;
 mod dense;
+mod halved;
 mod lu;
 pub mod memory;
 mod multifrontal;
 mod sparse;
 pub mod system;
 
-pub use dense::{DenseLu, Eliminated, HalvedLu, Steady};
+pub use blocks::BlockLu;
+pub use dense::DenseLu;
+pub use halved::{Eliminated, HalvedLu, Steady};
 pub use lu::SparseLu;
 pub use multifrontal::{Condensation, Condensed, Forwarded, Multifrontal};
 pub use sparse::{BlockPosition, Pattern, SparseMatrix};
@@ -50,8 +54,8 @@ pub trait LinearSolver: Send {
     /// Overwrites b with A⁻¹ b of the last factorized matrix.
     fn solve(&mut self, b: &mut [f64]);
 
-    /// Whether pivots are chosen among all rows, so that a solution needs no refinement: its backward error is of the order of
-    /// round-off of the largest entries.
+    /// Whether pivots are chosen such that a solution needs no refinement: its backward error is of the order of round-off of the
+    /// largest entries.
     fn is_stable(&self) -> bool {
         false
     }

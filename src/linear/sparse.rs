@@ -272,37 +272,24 @@ impl SparseMatrix {
 
     /// The product A x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
-        let [y] = self.multiply_all([x]);
-        y
-    }
-
-    /// A x for several vectors, reading the values once.
-    pub fn multiply_all<const N: usize>(&self, all: [&[f64]; N]) -> [Vec<f64>; N] {
-        let mut products = all.map(|x| vec![0.0; x.len()]);
+        let mut product = vec![0.0; x.len()];
         if self.pattern.rows.len() == self.pattern.nodes().pow(2) {
             // All nodes are coupled: a dense matrix.
-            for (j, column) in self.values.chunks_exact(self.size().max(1)).enumerate() {
-                for (y, x) in products.iter_mut().zip(all) {
-                    y.iter_mut().zip(column).for_each(|(y, a)| *y += a * x[j]);
-                }
+            for (column, x) in self.values.chunks_exact(self.size().max(1)).zip(x) {
+                product.iter_mut().zip(column).for_each(|(y, a)| *y += a * x);
             }
-            return products;
+            return product;
         }
-        let mut k = 0;
+        let mut values = self.values.chunks_exact(2);
         for node in 0..self.pattern.nodes() {
-            let rows = self.pattern.neighbours(node);
-            for column in 2 * node..2 * node + 2 {
-                let here = all.map(|x| x[column]);
-                for &row in rows {
-                    for (y, x) in products.iter_mut().zip(here) {
-                        y[2 * row] += self.values[k] * x;
-                        y[2 * row + 1] += self.values[k + 1] * x;
-                    }
-                    k += 2;
+            for x in &x[2 * node..2 * node + 2] {
+                for (&row, pair) in self.pattern.neighbours(node).iter().zip(&mut values) {
+                    product[2 * row] += pair[0] * x;
+                    product[2 * row + 1] += pair[1] * x;
                 }
             }
         }
-        products
+        product
     }
 
     /// A x of a symmetric matrix for several vectors: sums of columns instead of rows, which wait less for memory.

@@ -36,7 +36,7 @@ pub struct CondensedNewton {
     /// contact nodes
     pub nodes: ContactNodes,
     /// Whether LU of all their equations pays, not only of the half that varies while nothing opens
-    pub whole: bool,
+    whole: bool,
     /// The equations without contact
     bodies: Assembler,
     system: System,
@@ -59,6 +59,8 @@ pub struct Rung {
     pub bodies: Condensed,
     /// condensed further on the equations that vary
     pub eliminated: Option<Eliminated>,
+    /// First unknowns of the parts of S that are not coupled, if LU of all equations pays
+    pub parts: Option<Vec<usize>>,
 }
 
 /// All data of a step that affect the constant part of its equations.
@@ -147,12 +149,13 @@ impl CondensedNewton {
         // Memory already used counts as available.
         let most = (held + free).min(MOST_MEMORY) / one.max(1);
         self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
-        let Self { nodes, bodies, system, pattern, condensation, .. } = self;
-        bodies.assemble(trial, &trial.old.displacement, &[], Request::Tangent, system)?;
+        let Self { nodes, whole, bodies, system, pattern, condensation, .. } = self;
+        bodies.bodies(trial, &trial.old.displacement, Request::Tangent, system)?;
         let matrix = nodes.counted(bodies.model(), trial.step, &system.tangent, pattern);
-        let rung = |condensed| {
+        let rung = |condensed: Condensed| {
             let eliminated = nodes.eliminated(bodies.model(), trial.step, &condensed);
-            Arc::new(Rung { bodies: condensed, eliminated })
+            let parts = whole.then(|| condensed.parts());
+            Arc::new(Rung { bodies: condensed, eliminated, parts })
         };
         Ok(condensation.condense(&matrix).map(rung))
     }
@@ -186,7 +189,7 @@ impl<'a> Round<'a> {
         assembler: &mut Assembler,
         system: &mut System,
     ) -> Result<Self, TrialFailure> {
-        assembler.assemble(trial, u, &[], Request::Residual, system)?;
+        assembler.bodies(trial, u, Request::Residual, system)?;
         let forwarded = bodies.forward(&nodes.balanced(assembler.model(), trial.step, &system.residual));
         let constant = forwarded.right.clone();
         let equations = CondensedEquations::new(nodes, bodies, trial, u, constant, assembler, system);

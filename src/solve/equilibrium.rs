@@ -152,13 +152,13 @@ fn round(
     work: &mut Workspace,
 ) -> Option<Result<(), NewtonFailure<TrialFailure>>> {
     let Workspace { assembler, iteration, system, foreseen, interface, .. } = work;
-    let CondensedNewton { nodes, whole, solver, condensed, .. } = interface.as_mut()?;
-    let round = Round::begin(nodes, &rung.bodies, trial, u, assembler, system).ok()?;
+    let CondensedNewton { nodes, solver, condensed, .. } = interface.as_mut()?;
+    let mut round = Round::begin(nodes, &rung.bodies, trial, u, assembler, system).ok()?;
     let mut all = u.to_vec();
     let (iterations, result) = newton::solve(
         nodes.gather(u),
         settings(model, trial),
-        &mut solver.with(rung.eliminated.as_ref(), *whole),
+        &mut solver.with(rung.eliminated.as_ref(), rung.parts.as_deref()),
         condensed,
         |x, request, system| {
             nodes.scatter(x, &mut all);

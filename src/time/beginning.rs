@@ -273,7 +273,7 @@ fn start_dynamics(
     tie(model, &mut mass, scale);
     links::begin(model, scale, state, &mut mass, &mut right);
     now.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(IncrementFailure::Mass)?.x;
-    let mut inertia = work.assembler.mass().multiply(&now.acceleration);
+    let [mut inertia] = work.assembler.mass().multiply_symmetric([&now.acceleration]);
     model.linkage.gather(&mut inertia);
     let [force, inertia] = [&now.force, &inertia].map(|forces| links::relieved(model, &state.displacement, forces));
     for support in &step.supports {

@@ -49,10 +49,13 @@ const FEW_BLOCKS: usize = 2;
 /// internal variables; with F-bar the tangent varies nevertheless.
 pub fn is_constant(model: &Model, element: usize) -> bool {
     let material = &model.bodies[model.body_of_element[element]].material;
-    material.description().is_linear
-        && material.description().is_symmetric
-        && !material.description().evolves
-        && !model.solids[element].is_f_bar()
+    is_linear_elastic(&**material) && !model.solids[element].is_f_bar()
+}
+
+/// Whether the tangent of a law is the same at every strain, and symmetric.
+pub(super) fn is_linear_elastic(material: &dyn Material) -> bool {
+    let description = material.description();
+    description.is_linear && description.is_symmetric && !description.evolves
 }
 
 /// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F; not every linear law has one.

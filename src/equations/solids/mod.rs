@@ -13,15 +13,18 @@ use super::coupling::Layout;
 use super::sums::{Dependence, Sums};
 use crate::equations::sums::TrialFailure;
 use crate::linear::SparseMatrix;
+use crate::model::element::SolidElement;
 use crate::model::{Born, Model, Step};
 pub(super) use constant::damps_by_stiffness;
 pub use constant::is_constant;
-use constant::{Constant, Pass};
+use constant::{Constant, Pass, is_linear_elastic};
 use runs::{Runs, gather, gather_magnitudes};
 
 /// The matrix is constant if all elements are.
 pub(super) fn dependence(model: &Model) -> Dependence {
-    let all = (0..model.solids.len()).all(|e| is_constant(model, e));
+    let is_elastic: Vec<bool> = model.bodies.iter().map(|body| is_linear_elastic(&*body.material)).collect();
+    let is_constant = |(solid, &body): (&SolidElement, &usize)| is_elastic[body] && !solid.is_f_bar();
+    let all = model.solids.iter().zip(&model.body_of_element).all(is_constant);
     if all { Dependence::Nothing } else { Dependence::Displacement }
 }
 

@@ -8,6 +8,7 @@
 //! The kept nodes are the unknowns of one front, the last, which sums up S and stays open. Source: Guyan (1965), Reduction of
 //! stiffness and mass matrices, doi:10.2514/3.2874; by fronts as in the multifrontal method.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::super::memory::room_for;
@@ -26,7 +27,7 @@ pub struct Condensation {
 }
 
 impl Condensation {
-    /// Keep these nodes, ascending, all of which the pattern couples with each other.
+    /// Keep these nodes, in this order, all of which the pattern couples with each other.
     ///
     /// # Errors
     /// [`LinearFailure`] when the pattern is too large for an order of elimination.
@@ -62,8 +63,10 @@ impl Condensation {
         }
         let places = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         let [rows, columns] = [&scaling.rows, &scaling.columns].map(|all| places().map(|dof| all[dof]).collect());
-        let mut condensed = Condensed { symbolic: symbolic.clone(), rows, columns, stiffness: Vec::new(), factors };
+        let mut condensed =
+            Condensed { symbolic: symbolic.clone(), rows, columns, stiffness: Vec::new(), reach: Vec::new(), factors };
         condensed.stiffness = condensed.unscaled(*kept);
+        condensed.reach = condensed.stiffness.chunks_exact((*kept).max(1)).map(reach).collect();
         Some(condensed)
     }
 }
@@ -77,17 +80,49 @@ pub struct Condensed {
     columns: Vec<f64>,
     /// S, column by column
     pub stiffness: Vec<f64>,
+    /// Rows between which each column of S is not zero: bodies that only contact joins do not reach each other
+    pub reach: Vec<Range<usize>>,
+}
+
+/// Returns the range from the first to the last value that is not zero.
+fn reach(column: &[f64]) -> Range<usize> {
+    let first = column.iter().position(|value| *value != 0.0).unwrap_or(0);
+    first..column.iter().rposition(|value| *value != 0.0).map_or(0, |last| last + 1)
 }
 
 impl Condensed {
+    /// Writes S over the values of a dense matrix.
+    pub fn copy_to(&self, values: &mut [f64]) {
+        let size = self.reach.len().max(1);
+        let columns = values.chunks_exact_mut(size).zip(self.stiffness.chunks_exact(size));
+        for ((to, from), reach) in columns.zip(&self.reach) {
+            to[..reach.start].fill(0.0);
+            to[reach.clone()].copy_from_slice(&from[reach.clone()]);
+            to[reach.end..].fill(0.0);
+        }
+    }
+
+    /// First unknowns of the parts of S that it does not couple with each other.
+    pub fn parts(&self) -> Vec<usize> {
+        let (mut parts, mut end) = (Vec::new(), 0);
+        for (k, reach) in self.reach.iter().enumerate() {
+            if end <= k && self.reach[k..].iter().all(|reach| reach.is_empty() || reach.start >= k) {
+                parts.push(k);
+            }
+            end = end.max(reach.end);
+        }
+        parts
+    }
+
     /// S from that of the scaled matrix. The scales are powers of two: not a bit is lost.
     fn unscaled(&self, kept: usize) -> Vec<f64> {
         let scaled = &self.factors.values[self.factors.values.len() - kept * kept..];
         let first = self.rows.len() - kept;
-        let column = |(k, column): (usize, &[f64])| -> Vec<f64> {
-            column.iter().zip(&self.rows[first..]).map(|(s, row)| s / row / self.columns[first + k]).collect()
-        };
-        scaled.chunks_exact(kept.max(1)).enumerate().flat_map(column).collect()
+        let mut stiffness = Vec::with_capacity(scaled.len());
+        for (column, scale) in scaled.chunks_exact(kept.max(1)).zip(&self.columns[first..]) {
+            stiffness.extend(column.iter().zip(&self.rows[first..]).map(|(s, row)| s / row / scale));
+        }
+        stiffness
     }
 
     /// g from b, with what [`Condensed::backward`] needs of b.

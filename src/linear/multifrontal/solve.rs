@@ -219,7 +219,9 @@ impl NullaryFnOnce for Backward<'_> {
         let Self { lower, upper, pivots, size, y } = self;
         if size > pivots {
             for (j, row) in upper.chunks_exact(size - pivots).enumerate() {
-                y.chunks_exact_mut(size).for_each(|y| y[j] -= dot(row, &y[pivots..]));
+                for y in y.chunks_exact_mut(size) {
+                    y[j] -= dot(row, &y[pivots..]);
+                }
             }
         }
         for (j, column) in lower.chunks_exact(size).enumerate().rev() {

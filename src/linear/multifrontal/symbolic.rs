@@ -42,10 +42,12 @@ pub struct Symbolic {
 }
 
 impl Symbolic {
-    /// The `kept` nodes, ascending and all coupled with each other by the pattern, make up the last front, which stays open.
+    /// The `kept` nodes, all coupled with each other by the pattern, make up the last front, which stays open.
     pub fn new(pattern: Arc<Pattern>, kept: &[usize]) -> Result<Self, LinearFailure> {
         let mut order = order(&pattern)?;
-        order.retain(|node| kept.binary_search(node).is_err());
+        let mut stays = vec![false; pattern.nodes()];
+        kept.iter().for_each(|&node| stays[node] = true);
+        order.retain(|&node| !stays[node]);
         order.extend(kept);
         let eliminated = pattern.nodes() - kept.len();
         let elimination = with_skew_late(&pattern, Elimination::new(&pattern, order));
