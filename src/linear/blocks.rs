@@ -28,7 +28,7 @@ use super::{LinearFailure, LinearSolver, SparseMatrix};
 /// Unknowns of a block: fewer make products that are bound by memory, more leave fewer zeros.
 const BLOCK: usize = 40;
 
-/// Largest entry of L; the error of a solution may exceed round-off by this factor.
+/// Largest entry of L: with exchanges among all rows none exceeds 1, and every block may multiply round-off by this factor.
 const LARGEST: f64 = 100.0;
 
 /// LU by blocks on one thread, for a matrix of which all nodes are coupled.
