@@ -231,7 +231,7 @@ impl Assembler {
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        self.add_up(trial, u, responses, request, system)?;
+        self.sum_and_measure(trial, u, responses, request, system)?;
         let clock = Instant::now();
         system.imbalance = self.imbalance(trial, u, &system.residual);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
@@ -242,7 +242,7 @@ impl Assembler {
     ///
     /// # Errors
     /// The same as for [`Assembler::assemble`].
-    pub fn bodies(
+    pub fn without_contacts(
         &mut self,
         trial: Trial,
         u: &[f64],
@@ -250,11 +250,11 @@ impl Assembler {
         system: &mut System,
     ) -> Result<(), TrialFailure> {
         system.imbalance = f64::INFINITY;
-        self.add_up(trial, u, &[], request, system)
+        self.sum_and_measure(trial, u, &[], request, system)
     }
 
     /// Computes the residual, the tangent on request, and what their balance is measured by.
-    fn add_up(
+    fn sum_and_measure(
         &mut self,
         trial: Trial,
         u: &[f64],
@@ -534,8 +534,7 @@ impl Assembler {
 
     /// Square of the possible round-off at every node, at the last evaluated displacement [F²].
     pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
-        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
-        self.equilibrium.round_off(&self.model, mass, trial, u, &self.magnitudes)
+        self.equilibrium.round_off(&self.model, self.inert(trial), trial, u, &self.magnitudes)
     }
 
     /// Stores the trial states of the contact points for the accepted state.

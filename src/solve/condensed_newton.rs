@@ -150,7 +150,7 @@ impl CondensedNewton {
         let most = (held + free).min(MOST_MEMORY) / one.max(1);
         self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
         let Self { nodes, whole, bodies, system, pattern, condensation, .. } = self;
-        bodies.bodies(trial, &trial.old.displacement, Request::Tangent, system)?;
+        bodies.without_contacts(trial, &trial.old.displacement, Request::Tangent, system)?;
         let matrix = nodes.counted(bodies.model(), trial.step, &system.tangent, pattern);
         let rung = |condensed: Condensed| {
             let eliminated = nodes.eliminated(bodies.model(), trial.step, &condensed);
@@ -189,7 +189,7 @@ impl<'a> Round<'a> {
         assembler: &mut Assembler,
         system: &mut System,
     ) -> Result<Self, TrialFailure> {
-        assembler.bodies(trial, u, Request::Residual, system)?;
+        assembler.without_contacts(trial, u, Request::Residual, system)?;
         let forwarded = bodies.forward(&nodes.balanced(assembler.model(), trial.step, &system.residual));
         let constant = forwarded.right.clone();
         let equations = CondensedEquations::new(nodes, bodies, trial, u, constant, assembler, system);
