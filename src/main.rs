@@ -9,7 +9,7 @@ use fecontact::cli::{self, Failure, Input, Options, defect};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
-#[command(version)]
+#[command(name = "fecontact", bin_name = "fecontact", version = cli::VERSION)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -28,6 +28,9 @@ use crate::output::{quantities, report};
 use crate::run::error::Error;
 use crate::run::law::{Hold, LawReport, PathPoint};
 
+/// Version of the program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// Input that a schema describes.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Input {

@@ -50,7 +50,7 @@ const QUICK: &[&str] = &[
 ];
 
 fn cases() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases")
+    crate::common::repository("cases")
 }
 
 /// All cases whose mesh is there: one is made first (`meshes/coulomb_drag.rs`). The driven laws of `cases/law` are no cases.
@@ -74,7 +74,7 @@ fn unexpected(name: &str, lines: &str, mark: &str) -> Vec<String> {
 /// Warnings of a run.
 fn of_run(name: &str) -> Vec<String> {
     let folder = TempDir::new().expect("a folder");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact_tested"));
     command.current_dir(folder.path()).args(["run", "--quiet", "--out", "out"]).arg(cases().join(name));
     let output = command.output().expect("the program runs");
     let told = String::from_utf8_lossy(&output.stderr);
@@ -87,7 +87,7 @@ fn of_run(name: &str) -> Vec<String> {
 #[test]
 fn the_committed_cases_are_checked_without_warnings() {
     let of_check = |name: &String| {
-        let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).arg("check").arg(cases().join(name)).output();
+        let output = Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).arg("check").arg(cases().join(name)).output();
         let output = output.expect("the program runs");
         assert_eq!(output.status.code(), Some(0), "{name}: {}", String::from_utf8_lossy(&output.stderr));
         let told = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 fn fecontact(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_fecontact"))
+    Command::new(env!("CARGO_BIN_EXE_fecontact_tested"))
         .args(arguments)
         .current_dir(folder)
         .output()

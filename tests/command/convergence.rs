@@ -6,8 +6,8 @@ use std::process::Command;
 
 /// Run a committed case with the binary; returns its output folder.
 fn run(case: &str, arguments: &[&str], out: &Path) -> PathBuf {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(case);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact"));
+    let case = crate::common::repository("cases").join(case);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact_tested"));
     let status = command.arg("run").arg(case).arg("--quiet").arg("--out").arg(out).args(arguments).status();
     assert!(status.expect("the program runs").success());
     out.to_owned()

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 fn start(folder: &Path, case: &Value, more: &[&str]) -> Output {
     fs::write(folder.join("case.json"), case.to_string()).expect("a file");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact_tested"));
     command.current_dir(folder).args(["run", "case.json", "--quiet", "--out", "out"]).args(more);
     command.output().expect("the program runs")
 }

@@ -85,7 +85,7 @@ fn without(pointer: &str) -> Value {
 }
 
 fn fecontact(folder: &Path, arguments: &[&str]) -> Output {
-    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).current_dir(folder).args(arguments).output();
+    let output = Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).current_dir(folder).args(arguments).output();
     let output = output.expect("the program starts");
     assert!(!stderr(&output).contains("panicked"), "{arguments:?}: {}", stderr(&output));
     output
@@ -1501,7 +1501,7 @@ fn degenerate_meshes_are_named() {
 /// gmsh's parser gives up without a word on some lines.
 #[test]
 fn every_reason_says_something() {
-    let mesh = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quad4.msh")).unwrap();
+    let mesh = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("data/quad4.msh")).unwrap();
     let line = "1 0 0 0 2 1 0 1 1 4 1 2 3 4";
     assert!(mesh.contains(line));
     let folder = TempDir::new().unwrap();

@@ -39,7 +39,8 @@ fn good() -> Value {
 
 fn law(folder: &Path, test: &Value) -> Output {
     fs::write(folder.join("test.json"), test.to_string()).expect("the temporary folder can be written");
-    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).current_dir(folder).args(["law", "test.json"]).output();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).current_dir(folder).args(["law", "test.json"]).output();
     output.expect("the program starts")
 }
 
@@ -224,7 +225,7 @@ impl Rates {
 /// Peaks after holds of 1 to 2048 against the rate equations; between, ageing at rest has its closed form.
 #[test]
 fn peaks_after_holds_agree_with_the_rate_equations() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/law/hold_slide_hold.json");
+    let path = crate::common::repository("cases/law/hold_slide_hold.json");
     let mut test: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     for slide in test["path"].as_array_mut().unwrap().iter_mut().step_by(2) {
         slide["dt"] = json!(0.0005);
@@ -550,7 +551,7 @@ fn bad_normal_conditions_are_named() {
 /// Every committed test runs, and has a title.
 #[test]
 fn committed_tests_run() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/law");
+    let folder = crate::common::repository("cases/law");
     let mut count = 0;
     for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
         if path.extension() != Some("json".as_ref()) {

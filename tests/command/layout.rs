@@ -88,7 +88,7 @@ fn seen_by_all(line: &str) -> String {
 
 /// What a checkpoint stores: the types that its parts are read as, and those that these name.
 fn layout() -> String {
-    let sources = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let sources = sources(&crate::common::repository("src"));
     let declarations = declarations(&sources);
     // The checkpoint, the run in it, and what every observer of the run remembers.
     let mut roots: Vec<String> = vec!["Checkpoint".into(), "Written".into()];
@@ -118,7 +118,7 @@ fn layout() -> String {
 
 #[test]
 fn another_layout_has_another_version() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/command/surface/checkpoint.txt");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("command/surface/checkpoint.txt");
     let found = format!("version {VERSION}\n{}", layout());
     let known = fs::read_to_string(&file).unwrap_or_default();
     if known == found {

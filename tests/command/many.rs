@@ -13,7 +13,7 @@ use tempfile::TempDir;
 fn checked(case: &Value) -> String {
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("case.json"), case.to_string()).expect("a file");
-    let program = env!("CARGO_BIN_EXE_fecontact");
+    let program = env!("CARGO_BIN_EXE_fecontact_tested");
     let output = Command::new(program).current_dir(folder.path()).args(["check", "case.json"]).output();
     let output = output.expect("the program runs");
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));

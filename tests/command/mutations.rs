@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact_tested");
 
 /// A run that takes longer is asked to end: far more than any takes, also where the machine has other work.
 const LIMIT: Duration = Duration::from_secs(60);
@@ -537,7 +537,7 @@ fn changed_mesh(chance: &mut Chance, mesh: &[u8]) -> Vec<u8> {
 
 #[test]
 fn mutated_meshes_end_with_a_reason() {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let names = ["quad4.msh", "quad4_binary.msh", "tri6.msh", "quad9_binary.msh", "quad8.msh"];
     let meshes = names.map(|name| fs::read(data.join(name)).expect("a mesh"));
     let folder = TempDir::new().expect("a folder");

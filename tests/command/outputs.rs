@@ -29,7 +29,7 @@ fn start(folder: &Path, case: &Value) -> Output {
     let more = [("exact", json!(true)), ("every", json!(1))].into_iter().take(if chosen { 1 } else { 2 });
     more.for_each(|(key, value)| case["output"][key] = value);
     fs::write(folder.join("case.json"), case.to_string()).expect("a file");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact_tested"));
     command.current_dir(folder).args(["run", "case.json", "--quiet", "--threads", "1", "--out", "out"]);
     command.output().expect("the program runs")
 }

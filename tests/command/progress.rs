@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use crate::survive::dragged;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact_tested");
 
 /// A run that is told of by its penetration: the penalty is soft.
 fn soft(increments: usize) -> (TempDir, Value) {

@@ -14,7 +14,7 @@ use tempfile::TempDir;
 use vtkio::model::{Attribute, DataSet};
 
 fn fecontact(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).output().expect("the program starts")
+    Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).args(arguments).output().expect("the program starts")
 }
 
 fn stderr(output: &Output) -> String {
@@ -352,7 +352,7 @@ fn a_line_that_is_being_written_is_left_out() {
 
 /// Of a test of a law.
 fn law(folder: &Path, name: &str) -> PathBuf {
-    let test = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/law/{name}.json"));
+    let test = crate::common::repository(format!("cases/law/{name}.json"));
     let out = folder.join(name);
     let told = fecontact(&["law", test.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert!(told.status.success(), "{}", stderr(&told));

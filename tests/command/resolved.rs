@@ -58,7 +58,7 @@ fn bits(model: Model) -> Vec<u64> {
 #[test]
 fn a_resolved_case_is_the_same_case() {
     let (mut compared, mut run) = (0, 0);
-    for path in cases(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases")) {
+    for path in cases(&crate::common::repository("cases")) {
         let text = fs::read_to_string(&path).unwrap();
         let Ok(opened) = Written::from_text(&text, &path).and_then(Opened::begin) else { continue };
         if opened.inputs.iter().any(|input| !input.exists()) {
@@ -83,7 +83,7 @@ fn a_resolved_case_is_the_same_case() {
 }
 
 fn fecontact(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).args(arguments).current_dir(folder).output().unwrap()
 }
 
 /// What is inherited and what the mesh decides is given, and a case that begins with another can still begin there.

@@ -41,7 +41,11 @@ fn slider(duration: f64, dt: f64) -> Value {
 
 fn attempt(folder: &Path, case: &Value) -> Output {
     fs::write(folder.join("case.json"), case.to_string()).unwrap();
-    Command::new(env!("CARGO_BIN_EXE_fecontact")).current_dir(folder).args(["run", "case.json"]).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_fecontact_tested"))
+        .current_dir(folder)
+        .args(["run", "case.json"])
+        .output()
+        .unwrap()
 }
 
 fn run(folder: &Path, case: &Value) -> Output {

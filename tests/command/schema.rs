@@ -13,7 +13,7 @@ fn schema() -> Value {
 }
 
 fn printed(arguments: &[&str]) -> Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).output().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).args(arguments).output().unwrap();
     assert!(output.status.success());
     serde_json::from_slice(&output.stdout).unwrap()
 }
@@ -27,7 +27,7 @@ fn cases(folder: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn every_case_is_valid() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let folder = crate::common::repository("cases");
     let (tests, cases): (Vec<_>, Vec<_>) =
         cases(&folder).into_iter().partition(|path| path.starts_with(folder.join("law")));
     every_file_is_valid(&tests, &printed(&["schema", "law"]));
@@ -140,7 +140,7 @@ fn every_key_is_explained() {
 /// The whole page is compared by `docs/reference.py --check`, which needs Python; this tells of a key that it lacks.
 #[test]
 fn the_reference_has_every_key() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/case_file.md");
+    let page = crate::common::repository("docs/reference/case_file.md");
     let page = fs::read_to_string(page).unwrap();
     let mut keys = BTreeSet::new();
     find_keys(&schema(), &mut keys);

@@ -15,14 +15,14 @@ use tempfile::TempDir;
 
 /// What the program prints.
 fn printed(arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).output().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).args(arguments).output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
 
 /// Compare what there is with what the file of this name says, or write it there.
 fn compare(name: &str, found: &str) {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/command/surface").join(name);
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("command/surface").join(name);
     if std::env::var("SURFACE").is_ok_and(|way| way == "renew") {
         fs::write(&file, found).unwrap();
         return;

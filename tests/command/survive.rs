@@ -14,7 +14,7 @@ use fecontact::output::store::read;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact_tested");
 
 /// Wall time between checkpoints so short that there is one at every increment [min].
 const ALWAYS: f64 = 1e-9;
@@ -855,7 +855,7 @@ fn a_damaged_checkpoint_is_told() {
 /// What fuzzing of checkpoints begins with would else be refused at its head.
 #[test]
 fn the_seed_of_a_checkpoint_has_the_format_of_now() {
-    let seed = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds/checkpoint/0");
+    let seed = crate::common::repository("fuzz/seeds/checkpoint/0");
     assert!(checkpoint::read(&seed).is_ok_and(|checkpoint| checkpoint.complete));
 }
 

@@ -2,13 +2,14 @@
 //! every state.
 #![allow(dead_code, unused_imports, reason = "each test program uses a part")]
 
-#[cfg(feature = "internals")]
+#[cfg(feature = "cli")]
 mod cases;
 pub mod store;
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fecontact::laws::bulk::{ElasticConstants, Linear, NeoHookean};
+use fecontact::laws::bulk::{ElasticConstants, Material, MaterialParameters};
 use fecontact::mesh::{InlineMesh, Mesh};
 use fecontact::model::boundary::{Drive, Expression};
 use fecontact::model::builder::{Builder, MasterSide};
@@ -19,7 +20,7 @@ use fecontact::run::{RunReport, run};
 use nalgebra::{Rotation2, Vector2};
 use serde_json::{Value, json};
 
-#[cfg(feature = "internals")]
+#[cfg(feature = "cli")]
 pub use cases::*;
 
 /// A mesh of blocks of Q4 elements, and of rings. A block named `b` brings the groups `b` (elements), `b_bottom`, `b_right`,
@@ -92,19 +93,29 @@ impl Blocks {
     }
 }
 
+/// A file of the repository.
+pub fn repository(file: impl AsRef<Path>) -> PathBuf {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(file)
+}
+
 /// Constants of an elastic material.
 pub fn elastic(young: f64, poisson: f64, density: f64) -> ElasticConstants {
     ElasticConstants::new(young, poisson).density(density)
 }
 
 /// A neo-Hookean material.
-pub fn neo_hookean(young: f64, poisson: f64, density: f64) -> NeoHookean {
-    NeoHookean::new(&elastic(young, poisson, density)).expect("good constants")
+pub fn neo_hookean(young: f64, poisson: f64, density: f64) -> Box<dyn Material> {
+    MaterialParameters::NeoHookean(elastic(young, poisson, density)).build().expect("good constants")
+}
+
+/// A material of Saint Venant and Kirchhoff.
+pub fn saint_venant_kirchhoff(young: f64, poisson: f64, density: f64) -> Box<dyn Material> {
+    MaterialParameters::SaintVenantKirchhoff(elastic(young, poisson, density)).build().expect("good constants")
 }
 
 /// A linear material.
-pub fn linear(young: f64, poisson: f64, density: f64) -> Linear {
-    Linear::new(&elastic(young, poisson, density)).expect("good constants")
+pub fn linear(young: f64, poisson: f64, density: f64) -> Box<dyn Material> {
+    MaterialParameters::Linear(elastic(young, poisson, density)).build().expect("good constants")
 }
 
 /// The half-space below the line y = 0.

@@ -1,7 +1,6 @@
 //! Contact that is hard without thinking: what penalties that nobody gives leave of an answer, the elastic slip that `stick` takes away, the
 //! method that surfaces choose, and what is told where a contact gives way.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use fecontact::model::method::Method;
@@ -185,7 +184,7 @@ fn what_slides_is_as_before() {
 
 /// α_t of the first law of `cases/indenter.json`, and the linear solves and cut-backs of a disk that is pressed in, dragged for a way and rolls on.
 fn rolling(alpha_t: Option<f64>) -> (f64, [usize; 2]) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/indenter.json");
+    let path = crate::common::repository("cases/indenter.json");
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
     case["mesh"]["blocks"][0]["elements"] = json!([48, 6]);
     case["contacts"]["indentation"]["friction"]["alpha_t"] = json!(alpha_t);

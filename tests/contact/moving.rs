@@ -387,7 +387,7 @@ fn a_rigid_box_wears_by_its_way() {
 /// spring in series, N₀ + d/(1/K + 2 H (1 − ν²)/(E A)), but for the ends of the bars (1 %), and nothing is cut back.
 #[test]
 fn a_shear_box_presses_as_its_spring_and_its_halves_do() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/shear_box.json");
+    let path = crate::common::repository("cases/shear_box.json");
     let case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
     let run = crate::common::finish_at(&case, &path);
     assert_eq!(run.report.cutbacks, 0);
@@ -428,7 +428,7 @@ fn sums(state: &State, contact: usize) -> Sums {
 /// that cannot widen in series, N₀ + δ/(1/K + H/(M L)), while the sand is elastic; where it yields, it dilates as well, and presses more.
 #[test]
 fn sand_slips_at_the_smooth_plate_and_rough_plates_press_by_their_dilation() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/soil_shear_box.json");
+    let path = crate::common::repository("cases/soil_shear_box.json");
     let case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
     let mut elastic = case.clone();
     for body in ["sand", "other_sand"] {

@@ -2,7 +2,6 @@
 //! meshes; contacts that start closed.
 
 use std::f64::consts::PI;
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, close, distance, finish, model, turned};
@@ -675,7 +674,7 @@ impl Observer for Trace {
 
 /// A case of `cases/paper` run for a while with increments of one length.
 fn paper(name: &str, [dt, duration]: [f64; 2]) -> Vec<[f64; 5]> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/paper/{name}.json"));
+    let path = crate::common::repository(format!("cases/paper/{name}.json"));
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     case["steps"][0]["dt"] = json!({"initial": dt});
     case["steps"][0]["duration"] = json!(duration);

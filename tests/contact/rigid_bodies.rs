@@ -551,7 +551,7 @@ fn free_rigid_bodies_need_something_that_holds_them() {
 /// The disk of `cases/indenter.json`: pressed in, its forces are those of the base; dragged, it slides everywhere, Q = μ N; rolling, hardly.
 #[test]
 fn an_indenter_is_pressed_in_dragged_and_rolls() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/indenter.json");
+    let path = crate::common::repository("cases/indenter.json");
     let case: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("a case");
     let run = finish_at(&case, &path);

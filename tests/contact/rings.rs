@@ -237,7 +237,7 @@ fn a_press_fit_is_pulled_out_by_the_shear_lag() {
 /// when the toe comes to its peak.
 #[test]
 fn a_pile_bears_the_integral_over_its_shaft() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/pile.json");
+    let path = crate::common::repository("cases/pile.json");
     let case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
     let pulled = |kappa: f64| {
         let mut case = case.clone();

@@ -1,7 +1,6 @@
 //! A surface that touches itself: a slotted ring squeezed until its lips meet, a tube pressed flat.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, distance, finish, finish_at};
 use fecontact::contact::master::Master;
@@ -177,7 +176,7 @@ fn tangent_of_self_contact_equals_differences() {
 /// bar presses with; the upper wall is held off the lower one, on both sides of the middle alike; hardly an increment is hard.
 #[test]
 fn a_tube_pressed_flat_touches_itself() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/tube.json");
+    let path = crate::common::repository("cases/tube.json");
     let case = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
     let run = finish_at(&case, &path);
     let x = run.model.configuration(&run.last().displacement);

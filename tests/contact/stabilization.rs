@@ -29,13 +29,13 @@ fn column(blocks: usize, turn: f64, fall: LoadStep) -> Builder {
             [x, bottom + y]
         });
     }
-    let material = neo_hookean(1000.0, 0.0, 0.0);
-    let mut model = Model::builder(mesh.mesh()).body("ground", material);
+    let material = || neo_hookean(1000.0, 0.0, 0.0);
+    let mut model = Model::builder(mesh.mesh()).body("ground", material());
     let mut below = "ground";
     for (k, name) in names.iter().enumerate() {
         let ([bottom, _], [_, top]) = (sides(name), sides(below));
         let contact = Contact::new(format!("under{k}"), bottom, MasterSide::Group(top), CoulombParameters::new(0.5));
-        model = model.body(name, material).contact(contact);
+        model = model.body(name, material()).contact(contact);
         below = name;
     }
     model.step(fall.fix("ground_bottom").load(Load::pressure(sides(below)[1].as_str(), PRESSURE)))
@@ -128,15 +128,15 @@ fn row(count: usize, smooth: Option<usize>, lifted: Option<usize>) -> Builder {
         let group = if smooth == Some(k) { "smooth" } else { "rough" };
         mesh.edges.entry(group.into()).or_default().push(vec![4 + 4 * k, 5 + 4 * k]);
     }
-    let material = linear(1000.0, 0.3, 0.0);
-    let mut model = Model::builder(mesh.build().expect("a mesh")).body("ground", material);
+    let material = || linear(1000.0, 0.3, 0.0);
+    let mut model = Model::builder(mesh.build().expect("a mesh")).body("ground", material());
     model = model.contact(Contact::new("rough", "rough", "ground_top", CoulombParameters::new(0.5)));
     if smooth.is_some() {
         model = model.contact(Contact::new("smooth", "smooth", "ground_top", Frictionless));
     }
     let mut press = LoadStep::new("press", 1.0).dt(1.0).fix("ground");
     for k in 0..count {
-        model = model.body(format!("b{k}"), material);
+        model = model.body(format!("b{k}"), material());
         press = press.load(Load::traction(format!("b{k}_top").as_str(), [0.0, -1e-3]));
     }
     model.step(press)
@@ -169,10 +169,10 @@ fn bodies_that_share_nodes_float_together() {
         edges: [("bottom".into(), vec![vec![0, 1], vec![1, 2]]), ("top".into(), vec![vec![3, 4], vec![4, 5]])].into(),
         ..InlineMesh::default()
     };
-    let material = linear(1000.0, 0.3, 0.0);
+    let material = || linear(1000.0, 0.3, 0.0);
     let model = Model::builder(mesh.build().expect("a mesh"))
-        .body("left", material)
-        .body("right", material)
+        .body("left", material())
+        .body("right", material())
         .contact(Contact::new("base", "bottom", floor(), Frictionless))
         .step(LoadStep::new("press", 1.0).load(Load::traction("top", [0.0, -1.0])));
     let text = why(model);

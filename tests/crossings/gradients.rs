@@ -43,7 +43,7 @@ fn table(folder: &TempDir, file: &str) -> Columns {
 fn run(case: &Value) -> Option<TempDir> {
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("case.json"), case.to_string()).expect("a file");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact_tested"));
     command.current_dir(folder.path()).args(["run", "case.json", "--quiet", "--threads", "1", "--out", "out"]);
     command.output().expect("the program runs").status.success().then_some(folder)
 }

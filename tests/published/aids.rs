@@ -4,7 +4,6 @@
 //! `docs/aids.md`, `CASES=greco,tube` in the environment the columns of these alone.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use fecontact::contact::force::ContactState;
@@ -29,7 +28,7 @@ struct Case {
 }
 
 fn committed(name: &str, change: impl Fn(&mut Value)) -> Model {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.json"));
+    let path = crate::common::repository(format!("cases/{name}.json"));
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
     change(&mut case);
     model_at(&case, &path)

@@ -3,7 +3,6 @@
 //! What is compared does not come from elsewhere: meshes with each other, explicit increments with implicit ones, and the
 //! interface that heals with one that does not.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{self, Blocks};
@@ -95,7 +94,7 @@ impl Observer for Course {
 /// The committed case on elements of another size, whose damping goes with them.
 fn case(h: f64) -> Value {
     let [length, height] = [14e3, 3e3];
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/healing/healing.json");
+    let path = crate::common::repository("cases/healing/healing.json");
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(path).expect("a case")).expect("JSON");
     let divisions = [(length / h).round() as usize, (height / h).round() as usize];
     case["mesh"] = Blocks::default()

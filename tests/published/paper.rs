@@ -3,7 +3,7 @@
 //! References. Case 2 and the slope: closed forms. Onsets without ringing: the quasi-static solution. Events with ringing:
 //! Runge–Kutta of fourth order on the rate form of the law (increments of 0.5 ms and 2 ms agree to 0.01 s at the first).
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::common::{close, model_at};
@@ -43,7 +43,7 @@ impl Observer for Rows {
 }
 
 fn paper(name: &str) -> (Value, PathBuf) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/paper").join(name);
+    let path = crate::common::repository("cases/paper").join(name);
     let text = std::fs::read_to_string(&path).unwrap();
     (serde_json::from_str(&text).unwrap(), path)
 }

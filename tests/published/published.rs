@@ -3,8 +3,6 @@
 //! Each problem gives rows: a quantity, its reference, ours, and the difference allowed. The tests check them;
 //! `cargo test --release --test published -- --ignored --nocapture table` prints them all, with processor times.
 
-use std::path::Path;
-
 use crate::common::{Finished, finish_at};
 use fecontact::laws::friction::{FrictionState, Regime};
 use fecontact::mesh::Group;
@@ -87,7 +85,7 @@ fn processor_seconds() -> Option<f64> {
 
 /// Run `cases/validation/NAME.json` after `change`.
 fn solve(name: &str, change: impl FnOnce(&mut Value)) -> (Finished, Option<f64>) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/validation/{name}.json"));
+    let path = crate::common::repository(format!("cases/validation/{name}.json"));
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
     change(&mut case);
     let before = processor_seconds();

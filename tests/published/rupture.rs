@@ -40,7 +40,7 @@ fn fault_in([length, height]: [f64; 2], h: f64, patches: bool, duration: f64, fi
 }
 
 fn committed(name: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/rupture/{name}.json"));
+    let path = crate::common::repository(format!("cases/rupture/{name}.json"));
     serde_json::from_str(&std::fs::read_to_string(path).expect("a case")).expect("JSON")
 }
 
@@ -304,7 +304,6 @@ fn a_balanced_fault_below_its_strength_stays_at_rest() {
 }
 
 /// From the command line: the files of a case that asks for fronts, and their figures.
-#[cfg(feature = "cli")]
 #[test]
 fn a_case_that_asks_for_fronts_has_its_files_and_figures() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -312,8 +311,10 @@ fn a_case_that_asks_for_fronts_has_its_files_and_figures() {
     let (path, out) = (folder.path().join("fault.json"), folder.path().join("out"));
     std::fs::write(&path, case.to_string()).expect("written");
     let fecontact = |arguments: &[&str]| {
-        let output =
-            std::process::Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).output().expect("it starts");
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_fecontact_tested"))
+            .args(arguments)
+            .output()
+            .expect("it starts");
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     };
     let [path, out_name] = [&path, &out].map(|path| path.to_str().expect("unicode"));

@@ -304,7 +304,7 @@ const ERROR: f64 = 5e-5;
 
 /// The committed case, and where it lies.
 fn committed() -> (Value, PathBuf) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/slip_front.json");
+    let path = crate::common::repository("cases/slip_front.json");
     (serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON"), path)
 }
 
@@ -354,7 +354,7 @@ fn fronts(case: &Value, path: &Path, pressure: f64) -> (Vec<Event>, Slips) {
 /// `cases/stick_slip.json` on finer or coarser elements: when its ruptures set out [s], at which F_t/F_n, and the speeds of their
 /// fronts over c_R.
 fn ruptures(fine: f64) -> Vec<Event> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/stick_slip.json");
+    let path = crate::common::repository("cases/stick_slip.json");
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
     case["mesh"]["parameters"]["fine"] = json!(fine);
     let model = model_at(&case, &path);
@@ -508,7 +508,7 @@ fn the_force_falls_with_length_and_pressure() {
 /// two ways to solve the same equations agree by more than a few digits.
 #[test]
 fn increments_of_one_list_give_one_history_condensed_or_not() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/slip_front.json");
+    let path = crate::common::repository("cases/slip_front.json");
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
     case["steps"][0]["duration"] = json!(0.2);
     case["newton"]["tolerance"] = json!(2e-9);

@@ -1,7 +1,6 @@
 //! Meshes of blocks: where nodes lie, what is joined, and what is refused with which words.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::path::Path;
 
 use fecontact::mesh::{Block, BlockKind, Blocks, Grading, Group, InlineMesh, Mesh};
 use serde_json::{Value, json};
@@ -461,7 +460,7 @@ fn parameters_are_checked() {
 /// 0.05 % of Δσ.
 #[test]
 fn a_sample_with_a_saw_cut_slides_by_its_angle() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/sawcut.json");
+    let path = crate::common::repository("cases/sawcut.json");
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     for angle in [45.0f64, 55.0] {
         case["mesh"]["parameters"]["angle"] = json!(angle);

@@ -4,10 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::{
-    self, Blocks, elastic, expression, finish_at, finished, floor, linear, model, model_at, neo_hookean,
+    self, Blocks, expression, finish_at, finished, floor, linear, model, model_at, neo_hookean, saint_venant_kirchhoff,
 };
 use fecontact::case::law_test;
-use fecontact::laws::bulk::{Material, MaterialDescription, NeoHookean, SaintVenantKirchhoff};
+use fecontact::laws::bulk::{Material, MaterialDescription};
 use fecontact::laws::friction::{
     Coulomb, CoulombParameters, Description, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure,
     Sliding, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
@@ -24,7 +24,7 @@ use fecontact::model::{Damping, Model, NewtonSettings};
 use serde_json::{Value, json};
 
 fn committed(case: &str) -> (PathBuf, Value) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(case);
+    let path = crate::common::repository("cases").join(case);
     let text = std::fs::read_to_string(&path).expect("a committed case");
     (path, serde_json::from_str(&text).expect("JSON"))
 }
@@ -49,13 +49,13 @@ fn built(builder: Builder) -> Model {
 }
 
 fn coulomb_drag() -> Builder {
-    let elastic = SaintVenantKirchhoff::new(&elastic(1e9, 0.3, 0.0)).expect("good constants");
+    let elastic = || saint_venant_kirchhoff(1e9, 0.3, 0.0);
     let friction = CoulombParameters { mu: 0.3, alpha_t: Some(1e11) };
     let contact = Contact::new("base", "block_bottom", "ground_top", friction).alpha_n(1e12);
     let top = || Support::on("block_top");
     on_mesh_of(&committed("coulomb_drag_5k.json"))
-        .body("block", elastic)
-        .body("ground", elastic)
+        .body("block", elastic())
+        .body("ground", elastic())
         .contact(contact.method(Method::GaussToSegment))
         .step(LoadStep::new("press", 5.0).dt(1.0).fix("ground_bottom").support(top().ux(0.0).uy(-1e-3)))
         .step(LoadStep::new("drag", 20.0).support(top().ux(2e-2)))
@@ -74,7 +74,7 @@ fn a_committed_case_from_code_is_the_same_model() {
 #[test]
 fn a_committed_dynamic_case_from_code_is_the_same_model() {
     let given = committed("slip_front.json");
-    let acrylic = linear(5600.0, 0.3, 1.17e-9);
+    let acrylic = || linear(5600.0, 0.3, 1.17e-9);
     let friction = SuperSubloadingParameters {
         kappa: 18.0,
         xi: 15.0,
@@ -90,8 +90,8 @@ fn a_committed_dynamic_case_from_code_is_the_same_model() {
         .support(Support::on("block_left").ux(Drive::Rate(0.1)).uy(0.0));
     let sides = ["block_top", "block_right", "base_bottom", "base_right"];
     let code = on_mesh_of(&given)
-        .body("base", acrylic)
-        .body("block", acrylic)
+        .body("base", acrylic())
+        .body("block", acrylic())
         .contact(contact.initial(5.0, 0.5).balanced())
         .newton(NewtonSettings { tolerance: 1e-6, ..NewtonSettings::default() })
         .step(sides.into_iter().fold(push, |push, side| push.load(Load::absorbing(side))))
@@ -110,7 +110,7 @@ fn a_committed_rupture_from_code_is_the_same_model() {
         [18000.0, 6000.0],
     );
     given["mesh"] = mesh.json();
-    let rock = linear(80095.3008, 0.25, 0.00267);
+    let rock = || linear(80095.3008, 0.25, 0.00267);
     let pairs = |key: &Value| serde_json::from_value::<Vec<[f64; 2]>>(key["x"].clone()).expect("pairs");
     let fault = &given["contacts"]["fault"];
     let cohesion = Profile::X(pairs(&fault["along"]["cohesion"]));
@@ -129,8 +129,8 @@ fn a_committed_rupture_from_code_is_the_same_model() {
     let sides = ["lower_left", "lower_right", "lower_bottom", "upper_left", "upper_right", "upper_top"];
     let code = Model::builder(mesh.mesh())
         .title(given["title"].as_str().expect("a title"))
-        .body("lower", rock)
-        .body("upper", rock)
+        .body("lower", rock())
+        .body("upper", rock())
         .damping("lower", damping)
         .damping("upper", damping)
         .contact(contact.initial(120.0, traction).balanced())
@@ -310,7 +310,7 @@ fn press() -> LoadStep {
 
 /// Twice as stiff as what it wraps: a law of a user.
 #[derive(Debug)]
-struct Doubled(NeoHookean);
+struct Doubled(Box<dyn Material>);
 
 impl Material for Doubled {
     fn description(&self) -> MaterialDescription<'_> {

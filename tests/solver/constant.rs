@@ -204,10 +204,10 @@ fn stored_elements_answer_as_each_by_itself() {
         ] {
             for retardations in [[0.0; 3], [0.0, 0.02, 0.0], [0.01, 0.02, 0.03]] {
                 let laws = || -> [Box<dyn Material>; 3] {
-                    [linear(100.0, 0.3, 2.0).into(), linear(300.0, 0.2, 1.0).into(), linear(50.0, 0.4, 3.0).into()]
+                    [linear(100.0, 0.3, 2.0), linear(300.0, 0.2, 1.0), linear(50.0, 0.4, 3.0)]
                 };
                 let mut with_another = laws();
-                with_another[2] = neo_hookean(50.0, 0.4, 3.0).into();
+                with_another[2] = neo_hookean(50.0, 0.4, 3.0);
                 for laws in [laws(), with_another] {
                     let what = format!("{kind:?} in {section:?}, {laws:?}, retardations {retardations:?}");
                     check(&what, &built(strip(kind, section, map), laws, retardations));
@@ -238,8 +238,7 @@ fn stressed_elements_answer_as_each_by_itself() {
             (|[x, y]| distorted([x + 0.5, y]), Section::Axisymmetric),
         ] {
             for retardations in [[0.0; 3], [0.0, 0.02, 0.0]] {
-                let laws =
-                    [linear(100.0, 0.3, 2.0).into(), linear(300.0, 0.2, 1.0).into(), linear(50.0, 0.4, 3.0).into()];
+                let laws = [linear(100.0, 0.3, 2.0), linear(300.0, 0.2, 1.0), linear(50.0, 0.4, 3.0)];
                 let builder = bodies(strip(kind, section, map), laws, retardations);
                 let builder = builder.initial_stress("left", stress([-3.0, -1.0], section));
                 let model = of_step(builder.initial_stress("middle", stress([2.0, 5.0], section)));
@@ -309,7 +308,7 @@ fn direct_forces(model: &Model, u: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
 #[test]
 fn a_far_translation_costs_no_digits() {
     for kind in KINDS {
-        let law = || linear(100.0, 0.3, 2.0).into();
+        let law = || linear(100.0, 0.3, 2.0);
         let model = built(strip(kind, Section::PlaneStrain, |x| x), [law(), law(), law()], [0.01; 3]);
         let dyadic = |dof: usize| (arbitrary(dof) * 1024.0).round() / 65536.0;
         let moved = |far: f64| -> Vec<f64> { (0..model.dofs()).map(|dof| far + dyadic(dof)).collect() };
@@ -337,8 +336,7 @@ fn equal_elements_share_their_matrix() {
     for kind in KINDS {
         let triangles = if kind.corners() == 3 { 2 } else { 1 };
         let count = |section, map: fn([f64; 2]) -> [f64; 2]| {
-            let laws =
-                [linear(100.0, 0.3, 1.0).into(), linear(300.0, 0.3, 1.0).into(), neo_hookean(1.0, 0.3, 1.0).into()];
+            let laws = [linear(100.0, 0.3, 1.0), linear(300.0, 0.3, 1.0), neo_hookean(1.0, 0.3, 1.0)];
             Assembler::new(&built(strip(kind, section, map), laws, [0.0; 3])).stored_matrices()
         };
         assert_eq!(count(Section::PlaneStrain, |x| x), 2 * triangles, "{kind:?}");
@@ -380,7 +378,7 @@ fn linear_laws_with_more_than_a_stiffness_answer_as_each_by_itself() {
     for kind in KINDS {
         for (initial, retardations) in [(3.0, [0.0; 3]), (0.0, [0.02; 3]), (3.0, [0.02, 0.0, 0.01])] {
             let what = format!("{kind:?}, initial stress {initial}, retardations {retardations:?}");
-            let laws = [law(initial), linear(100.0, 0.3, 2.0).into(), law(0.0)];
+            let laws = [law(initial), linear(100.0, 0.3, 2.0), law(0.0)];
             check(&what, &built(strip(kind, Section::PlaneStrain, distorted), laws, retardations));
         }
     }
@@ -391,7 +389,7 @@ fn linear_laws_with_more_than_a_stiffness_answer_as_each_by_itself() {
 fn viscous_forces_do_not_stay_for_the_next_evaluation() {
     let constants = ViscoelasticConstants { young: 100.0, poisson: 0.3, relaxing: 50.0, tau: 0.7, density: 1.0 };
     let remembering = || Viscoelastic::new(&constants).expect("good constants").into();
-    let laws = [remembering(), linear(100.0, 0.3, 1.0).into(), remembering()];
+    let laws = [remembering(), linear(100.0, 0.3, 1.0), remembering()];
     let model = built(strip(ElementKind::Q4, Section::PlaneStrain, distorted), laws, [0.02; 3]);
     let (state, mut assembler) = (model.initial_state(), Assembler::new(&model));
     let trial = Trial::new(&state, &model.steps[0], 0.1, 0.1);
@@ -408,7 +406,7 @@ fn viscous_forces_do_not_stay_for_the_next_evaluation() {
 /// Where a displacement is not a number, the failure names the element, as other laws do.
 #[test]
 fn strains_that_are_no_numbers_name_their_element() {
-    let law = || linear(100.0, 0.3, 2.0).into();
+    let law = || linear(100.0, 0.3, 2.0);
     let model = built(strip(ElementKind::Q4, Section::PlaneStrain, distorted), [law(), law(), law()], [0.0; 3]);
     let (state, mut assembler) = (model.initial_state(), Assembler::new(&model));
     let node = model.mesh.elements[5].nodes[2];

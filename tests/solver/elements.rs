@@ -7,6 +7,7 @@ use fecontact::laws::bulk::{
     CauchyStress, ElasticConstants, Material, MaterialDescription, MaterialFailure, MaterialParameters,
     MaterialResponse, Straining, Viscoelastic, ViscoelasticConstants,
 };
+use fecontact::linear::DenseLu;
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::{ElementKind, edge_values, gauss};
 use fecontact::model::element::Formulation::{self, Displacement, FBar, Reduced};
@@ -465,9 +466,11 @@ fn solve(
         if residual.amax() < 1e-14 * material.description().p_wave_modulus * size {
             return iteration;
         }
-        let correction = tangent.lu().solve(&residual).unwrap();
+        let mut lu = DenseLu::default();
+        lu.factorize_columns(residual.len(), tangent.as_slice().to_vec()).unwrap();
+        lu.solve_columns(residual.as_mut_slice());
         for (a, u) in u.iter_mut().enumerate() {
-            *u += correction.fixed_rows::<2>(2 * a);
+            *u += residual.fixed_rows::<2>(2 * a);
         }
     }
     panic!("Newton has not converged for {:?} {:?}", patch.kind, patch.formulation);

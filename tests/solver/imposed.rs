@@ -1,7 +1,6 @@
 //! Bodies with an initial stress, and bodies that are heated: whole models against closed forms.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use crate::common::{self, Blocks, Finished, close, finish, half_way, quadratic, refusal};
 use fecontact::contact::force::ContactState;
@@ -241,7 +240,7 @@ fn a_hot_ring_is_shrunk_into_a_cold_one() {
 /// heat is torque × angle.
 #[test]
 fn a_shrunk_hub_holds_its_shaft_by_lames_pressure() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/shrink_fit.json");
+    let path = crate::common::repository("cases/shrink_fit.json");
     let case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
     let run = crate::common::finish_at(&case, &path);
     assert_eq!(run.report.cutbacks, 0);

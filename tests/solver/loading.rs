@@ -33,7 +33,7 @@ const SCHEMES: [Scheme; 6] = [
 const ANGLE: f64 = std::f64::consts::PI / 6.0;
 
 fn material(soft: bool) -> Box<dyn Material> {
-    if soft { Box::new(neo_hookean(100.0, 0.3, 1.0)) } else { Box::new(linear(100.0, 0.3, 1.0)) }
+    if soft { neo_hookean(100.0, 0.3, 1.0) } else { linear(100.0, 0.3, 1.0) }
 }
 
 /// A block 2 × 1 of E = 100 and ρ = 1, turned about the origin.

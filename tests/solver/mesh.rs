@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde_json::{Value, json};
 
 fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
 }
 
 fn read(name: &str) -> Mesh {
@@ -470,7 +470,7 @@ fn the_meshes_of_the_examples_are_sound() {
         ("block_on_ground.msh", 20_228, 10),
         ("cook.msh", 578, 3),
     ] {
-        let mesh = gmsh::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes").join(file)).unwrap();
+        let mesh = gmsh::read(&crate::common::repository("meshes").join(file)).unwrap();
         assert_eq!((2 * mesh.nodes.len(), mesh.groups.len()), (dofs, groups), "{file}");
         assert!(mesh.elements.iter().all(|element| element.kind == ElementKind::Q4));
         if let (Ok(top), Ok(bottom)) = (mesh.group("ground_top"), mesh.group("block_bottom")) {

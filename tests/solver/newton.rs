@@ -127,10 +127,10 @@ fn foam(steel: Option<f64>, tolerance: f64, scale: f64) -> Finished {
     let mesh = steel.map_or(Blocks::default(), |_| beside(Blocks::default()));
     let mesh =
         mesh.rectangle("ground", [24, 4], [0.0, -0.6], [4.0, 0.0]).rectangle("foam", [9, 4], [1.0, 0.0], [2.0, 0.6]);
-    let foam = neo_hookean(0.05, 0.3, 0.0);
+    let foam = || neo_hookean(0.05, 0.3, 0.0);
     let top = |y: f64| Support::on("foam_top").ux(0.0).uy(y);
     let mut press = LoadStep::new("press", 1.0).dt(0.5).fix("ground_bottom").support(top(-1e-2 * scale));
-    let mut model = Model::builder(mesh.mesh()).body("ground", foam).body("foam", foam);
+    let mut model = Model::builder(mesh.mesh()).body("ground", foam()).body("foam", foam());
     if let Some(young) = steel {
         model = model.body("steel", neo_hookean(young, 0.3, 0.0));
         press = press.fix("steel_bottom").support(Support::on("steel_top").ux(0.0).uy(-0.01));

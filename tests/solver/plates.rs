@@ -2,7 +2,6 @@
 //! box under constant load, constant stiffness and constant volume; and bodies that are launched after a step at rest.
 
 use crate::common::{self, Blocks, Finished, close, expression, finish, linear, neo_hookean, run_through, turned};
-use fecontact::laws::bulk::Material;
 use fecontact::laws::friction::CoulombParameters;
 use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
@@ -120,8 +119,7 @@ fn shear_box(angle: f64, condensed: bool) -> Builder {
     let mesh = Blocks::default().rectangle("box", [4, 2], [0.0, 0.0], [1.0, 0.5]).turned(angle).mesh();
     let ground = MasterSide::Plane { point: [0.0, 0.0], normal: turned([0.0, 1.0], angle) };
     let friction = CoulombParameters { mu: MU, alpha_t: Some(ALPHA) };
-    let soft: Box<dyn Material> = Box::new(neo_hookean(100.0, 0.3, 1.0));
-    let material = if condensed { Box::new(linear(100.0, 0.3, 1.0)) } else { soft };
+    let material = if condensed { linear(100.0, 0.3, 1.0) } else { neo_hookean(100.0, 0.3, 1.0) };
     Model::builder(mesh)
         .body("box", material)
         .plate("box")

@@ -20,7 +20,7 @@ use fecontact::run::{Axis, Saved, SavedRun, Simulation, watch};
 use serde_json::{Value, json};
 
 fn repository(file: &str) -> (Value, std::path::PathBuf) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let path = crate::common::repository(file);
     let case = std::fs::read_to_string(&path).expect("a committed case");
     (serde_json::from_str(&case).expect("JSON"), path)
 }

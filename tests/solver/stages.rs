@@ -461,7 +461,7 @@ fn a_narrow_place_is_told() {
 /// wall yields and settles. Numbers are those of the gallery, to what a finer mesh changes.
 #[test]
 fn an_excavation_beside_a_wall() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/excavation.json");
+    let path = crate::common::repository("cases/excavation.json");
     let case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("JSON");
     let run = finish(&case);
     assert!(run.at(1.0).displacement.iter().all(|u| u.abs() < 1e-12));

@@ -4,12 +4,12 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, close, elastic, linear, neo_hookean};
+use crate::common::{self, Blocks, close, linear, neo_hookean, saint_venant_kirchhoff};
 use crate::grids::{Grids, add, noise};
 use crate::terms::{arbitrary_displacement, moving};
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
-use fecontact::laws::bulk::{Material, SaintVenantKirchhoff};
+use fecontact::laws::bulk::Material;
 use fecontact::laws::friction::{CoulombParameters, Frictionless};
 use fecontact::linear::system::Request;
 use fecontact::linear::{LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve};
@@ -47,11 +47,11 @@ fn skewness(matrix: &SparseMatrix, left_out: &[bool]) -> [f64; 2] {
 }
 
 /// A block over another one, pressed together by a displacement.
-fn pressed(section: Section, material: impl Material + Clone + 'static) -> Builder {
+fn pressed(section: Section, material: fn() -> Box<dyn Material>) -> Builder {
     let upper = |s: f64, t: f64| [1.5 + s + 0.2 * t * (s - 0.3), -0.012 + 0.5 * t];
     let mesh = Blocks::default().rectangle("lower", [3, 2], [1.0, -1.0], [3.0, 0.0]).block("upper", [2, 2], upper);
     let mesh = fecontact::mesh::Mesh { section, ..mesh.mesh() };
-    Model::builder(mesh).body("lower", material.clone()).body("upper", material)
+    Model::builder(mesh).body("lower", material()).body("upper", material())
 }
 
 fn step() -> LoadStep {
@@ -96,7 +96,7 @@ fn check(what: &str, term: Term, builder: Builder, skew: bool) {
 
 #[test]
 fn contributions_say_whether_they_are_symmetric() {
-    let (soft, hard) = (neo_hookean(100.0, 0.3, 2.0), linear(100.0, 0.3, 2.0));
+    let (soft, hard) = (|| neo_hookean(100.0, 0.3, 2.0), || linear(100.0, 0.3, 2.0));
     let dynamic = || step().scheme(Scheme::Hht { alpha: -0.05 });
     let held = || step().fix("upper_top");
     for section in [Section::PlaneStrain, Section::PlaneStress { thickness: 0.3 }, Section::Axisymmetric] {
@@ -121,7 +121,7 @@ fn contributions_say_whether_they_are_symmetric() {
         }
     }
     let block = || pressed(Section::PlaneStrain, soft);
-    let other = SaintVenantKirchhoff::new(&elastic(100.0, 0.3, 2.0)).expect("good constants");
+    let other = || saint_venant_kirchhoff(100.0, 0.3, 2.0);
     check("F-bar", Term::Solids, pressed(Section::PlaneStrain, other).f_bar("upper").step(held()), false);
     let damped = |retardation: f64, mass: f64| Damping { retardation, mass };
     let viscous = |block: Builder| block.damping("upper", damped(0.01, 0.2)).step(dynamic().fix("upper_top"));
@@ -406,7 +406,7 @@ fn a_column_loses_its_stability_at_eulers_load() {
         euler / (1.0 + euler / (5.0 / 6.0 * 0.5 * young * height))
     };
     let most = 1.1 * load(2.0);
-    let material = SaintVenantKirchhoff::new(&elastic(young, 0.0, 0.0)).expect("good constants");
+    let material = saint_venant_kirchhoff(young, 0.0, 0.0);
     let press = LoadStep::new("press", most)
         .dt(most / 220.0)
         .fix("column_left")

@@ -7,7 +7,6 @@ use crate::common::{Blocks, Finished, close, distance, expression, finish, linea
 use crate::simulation;
 use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
-use fecontact::laws::bulk::Material;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Load, LoadStep, Place, Plate, Support};
 use fecontact::model::scheme::Scheme;
@@ -19,8 +18,7 @@ const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };
 
 /// A block 2 × 1 of E = 100 and ρ = 2; its top has the nodes 15 to 19.
 fn block(soft: bool) -> Builder {
-    let material: Box<dyn Material> =
-        if soft { Box::new(neo_hookean(100.0, 0.3, 2.0)) } else { Box::new(linear(100.0, 0.3, 2.0)) };
+    let material = if soft { neo_hookean(100.0, 0.3, 2.0) } else { linear(100.0, 0.3, 2.0) };
     Model::builder(Blocks::default().rectangle("block", [4, 3], [0.0, 0.0], [2.0, 1.0]).mesh())
         .body("block", material)
         .newton(NewtonSettings { tolerance: 1e-12, max_iterations: 40 })
