@@ -134,7 +134,7 @@ fn dipping(h: f64, duration: f64, [width, down]: [f64; 2], Choice { damping, poi
             "initial": {"pressure": {"y": [[y(end), pressure(end)], [0.0, 0.0]]}, "balanced": true,
                 "traction": {"y": tractions.map(|(s, q)| [y(s), q])}}}},
         "steps": explicit(duration, &["foot_left", "foot_bottom", "hanging_right", "hanging_bottom"]),
-        "output": {"interval": 0.002, "fields": false}})
+        "output": {"interval": f64::max(2e-5 * h, 0.002), "fields": false}})
 }
 
 /// SCEC TPV14-2D: a fault along y and a branch that leaves it at y = 2 km under 30°. Right of it the rock is two bodies: the
@@ -181,7 +181,7 @@ fn branched(h: f64, duration: f64, right_lateral: bool) -> Value {
             "branch": contact("wedge_branch", "right_branch", vec![[low, 0.0], [tip, 0.0], [tip, 1e4], [high, 1e4]], branching)},
         "steps": explicit(duration, &["left_left", "left_bottom", "left_top", "right_right", "right_bottom", "right_top",
             "wedge_top"]),
-        "output": {"interval": 0.005, "fields": false}})
+        "output": {"interval": f64::max(5e-5 * h, 0.005), "fields": false}})
 }
 
 /// Add the wedge: n rows of triangles, all alike.
