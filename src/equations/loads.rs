@@ -6,7 +6,6 @@ use super::links;
 use super::sums::{Dependence, Sums};
 use super::trial::Trial;
 use crate::equations::sums::TrialFailure;
-use crate::model::boundary::NodalWeight;
 use crate::model::element::follower_pressure;
 use crate::model::{Model, Step};
 
@@ -69,9 +68,7 @@ pub(super) fn add(
 fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut Sums) {
     let (Trial { old, step, time, .. }, at) = (trial, trial.moment());
     for load in &step.loads.dead {
-        for &NodalWeight { node, weight, position } in &load.weights {
-            loads[2 * node + load.component] += weight * load.amplitude.value(position, at);
-        }
+        load.forces(at).for_each(|(node, force)| loads[2 * node + load.component] += force);
     }
     if !step.loads.pressures.is_empty() {
         let x = model.configuration(u);

@@ -8,7 +8,7 @@
 
 use nalgebra::Vector2;
 
-use super::boundary::{Loads, NodalWeight};
+use super::boundary::Loads;
 use super::element::{Memory, follower_pressure};
 use super::text::number;
 use super::{Body, Model, Step};
@@ -111,9 +111,9 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
 
 fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
     for load in &loads.dead {
-        for &NodalWeight { node, weight, position } in &load.weights {
+        for (node, value) in load.forces(time) {
             let mut force = Vector2::zeros();
-            force[load.component] = -weight * load.amplitude.value(position, time);
+            force[load.component] = -value;
             forces.add(node, force);
         }
     }

@@ -328,11 +328,16 @@ impl Amplitude {
     /// repeated changes within a step would accumulate. An amplitude that varies in space is unchanged.
     #[must_use]
     pub fn settled(&self, time: f64) -> Self {
-        if self.chain().any(|amplitude| amplitude.drive.depends_on_position()) {
+        if self.depends_on_position() {
             return self.clone();
         }
         let value = self.value(Vector2::zeros(), time);
         Self { drive: Drive::Table(vec![[time, value]]), span: self.span, before: None }
+    }
+
+    /// Whether it varies in space.
+    fn depends_on_position(&self) -> bool {
+        self.chain().any(|amplitude| amplitude.drive.depends_on_position())
     }
 
     /// Itself and the previous amplitudes that it refers to.
@@ -355,6 +360,21 @@ pub struct DeadLoad {
     pub amplitude: Amplitude,
     /// nodes on which it acts
     pub weights: Vec<NodalWeight>,
+}
+
+impl DeadLoad {
+    /// Nodes and the components of the force on them at a run time. The nodes of a Gauss point follow each other: its value is computed
+    /// once, as is one that is the same everywhere.
+    pub fn forces(&self, at: impl Into<Moment>) -> impl Iterator<Item = (usize, f64)> {
+        let (at, is_uniform) = (at.into(), !self.amplitude.depends_on_position());
+        let mut last: Option<(Vector2<f64>, f64)> = None;
+        self.weights.iter().map(move |&NodalWeight { node, weight, position }| {
+            let known = last.filter(|(there, _)| is_uniform || *there == position);
+            let value = known.map_or_else(|| self.amplitude.value(position, at), |(_, value)| value);
+            last = Some((position, value));
+            (node, weight * value)
+        })
+    }
 }
 
 /// Fraction of a load at a node.
