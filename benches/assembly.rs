@@ -23,7 +23,7 @@ const YIELDING: [&str; 3] = [
 ];
 
 fn assembly(criterion: &mut Criterion) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_20k.json");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/coulomb_drag_20k.json");
     let mut case = case::read(&path).expect("a committed case");
     let model = Arc::new(case::build(&case, &path).expect("a committed case"));
     let step = &model.steps[0];

@@ -201,7 +201,7 @@ fn memory() -> f64 {
     32.0 * n as f64 / seconds
 }
 
-/// `cargo bench --bench explicit -- viscous` measures the blocks alone whose names have that in it.
+/// `cargo bench -p fecontact-benches --bench explicit -- viscous` measures the blocks alone whose names have that in it.
 fn main() {
     let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).unwrap_or_default();
     let limit = (0..3).map(|_| arithmetic()).fold(0.0, f64::max);

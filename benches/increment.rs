@@ -13,7 +13,7 @@ use fecontact::time::beginning::begin;
 use fecontact::time::increment::advance;
 
 fn model() -> Model {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/coulomb_drag_5k.json");
     let case = case::read(&path).expect("a committed case");
     case::build(&case, &path).expect("a committed case")
 }

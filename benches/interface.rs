@@ -3,7 +3,7 @@
 //! point a node). Milliseconds of processor time a linear solve, one thread.
 //!
 //! ```text
-//! cargo run --release --example interface [-- 100 300]
+//! cargo run --release -p fecontact-benches --bin interface [-- 100 300]
 //! ```
 //!
 //! The blocks have 15 rows of elements, half as many columns as points in finite sliding, about as many points as columns in

@@ -8,7 +8,7 @@ use fecontact::case;
 use fecontact::run::run;
 
 fn convergence(criterion: &mut Criterion) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/coulomb_drag_5k.json");
     let case = case::read(&path).expect("a committed case");
     let model = case::build(&case, &path).expect("a committed case");
     let model = Arc::new(model);

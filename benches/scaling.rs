@@ -1,7 +1,7 @@
 //! The drag problem from 5 000 to a million degrees of freedom: the table in `README.md`, a row a size and thread count.
 //!
 //! ```text
-//! cargo run --release --example scaling [-- 5k 20k 80k 300k 1M]
+//! cargo run --release -p fecontact-benches --bin scaling [-- 5k 20k 80k 300k 1M]
 //! ```
 //!
 //! Each run has a process of its own, so that its peak memory and processor time are its own.
@@ -61,7 +61,7 @@ fn prepare(name: &str, n: i64, b: i64) -> Result<PathBuf, Box<dyn Error>> {
     if !mesh.exists() {
         coulomb_drag::write(n, b, &mesh)?;
     }
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/coulomb_drag_5k.json");
     let mut case: serde_json::Value = serde_json::from_str(&fs::read_to_string(model)?)?;
     case["mesh"] = mesh.display().to_string().into();
     case["output"] = serde_json::json!({"fields": false});

@@ -464,21 +464,28 @@ pub fn excluded(a: Feature, b: Feature) -> Option<&'static str> {
 
 /// All pairs that cannot meet: by a rule, or because no value of another slot goes with both.
 fn all_excluded() -> HashMap<(Feature, Feature), &'static str> {
-    let values = |&(slot, values): &Slot| values.iter().map(move |(value, _)| (slot, *value));
-    let all: Vec<Feature> = SLOTS.iter().flat_map(values).collect();
-    let pairs: Vec<(Feature, Feature)> = all.iter().flat_map(|a| all.iter().map(move |b| (*a, *b))).collect();
-    let by_rule = pairs.iter().filter_map(|&(a, b)| Some(((a, b), why_not(a, b)?)));
-    let mut why: HashMap<(Feature, Feature), &'static str> = by_rule.collect();
+    let all: Vec<Feature> =
+        SLOTS.iter().flat_map(|(slot, values)| values.iter().map(|(value, _)| (*slot, *value))).collect();
+    let slots: Vec<&[Feature]> = all.chunk_by(|a, b| a.0 == b.0).collect();
+    // By the numbers of the features: nothing is looked up in what is gone through many times.
+    let mut why: Vec<Vec<Option<&str>>> = all.iter().map(|a| all.iter().map(|b| why_not(*a, *b)).collect()).collect();
     loop {
-        let goes = |a, b: Feature| !why.contains_key(&(a, b));
-        let none = |a, b| SLOTS.iter().any(|slot| !values(slot).any(|value| goes(a, value) && goes(b, value)));
-        let further: Vec<(Feature, Feature)> =
-            pairs.iter().copied().filter(|&(a, b)| goes(a, b) && none(a, b)).collect();
+        let none = |a: usize, b: usize| {
+            let mut values = why[a].iter().zip(&why[b]).map(|(a, b)| a.is_none() && b.is_none());
+            slots.iter().any(|slot| values.by_ref().take(slot.len()).filter(|goes| *goes).count() == 0)
+        };
+        let pairs = (0..all.len()).flat_map(|a| (0..all.len()).map(move |b| (a, b)));
+        let further: Vec<(usize, usize)> = pairs.filter(|&(a, b)| why[a][b].is_none() && none(a, b)).collect();
         if further.is_empty() {
-            return why;
+            break;
         }
-        why.extend(further.into_iter().map(|pair| (pair, "what one needs does not go with the other")));
+        further.iter().for_each(|&(a, b)| why[a][b] = Some("what one needs does not go with the other"));
     }
+    let told = |(a, row): (usize, Vec<Option<&'static str>>)| {
+        let all = &all;
+        row.into_iter().enumerate().filter_map(move |(b, why)| Some(((all[a], all[b]), why?)))
+    };
+    why.into_iter().enumerate().flat_map(told).collect()
 }
 
 /// What the rules say of two features.

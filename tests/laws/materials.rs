@@ -245,9 +245,7 @@ fn impossible_constants_are_named() {
 }
 
 #[test]
-fn the_case_file_is_read_as_its_schema_says() {
-    let schema = serde_json::to_value(schemars::schema_for!(MaterialParameters)).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
+fn known_models_with_all_their_constants_are_read() {
     for (case, good) in [
         (json!({"model": "neo_hookean", "E": 1.0, "nu": 0.3, "density": 2.0}), true),
         (json!({"model": "saint_venant_kirchhoff", "E": 1.0, "nu": 0.3}), true),
@@ -256,8 +254,7 @@ fn the_case_file_is_read_as_its_schema_says() {
         (json!({"model": "linear", "E": 1.0, "nu": 0.3, "rho": 1.0}), false),
         (json!({"E": 1.0, "nu": 0.3}), false),
     ] {
-        assert_eq!(validator.is_valid(&case), good, "schema: {case}");
-        assert_eq!(serde_json::from_value::<MaterialParameters>(case.clone()).is_ok(), good, "reader: {case}");
+        assert_eq!(serde_json::from_value::<MaterialParameters>(case.clone()).is_ok(), good, "{case}");
     }
     let dense: MaterialParameters =
         serde_json::from_value(json!({"model": "hencky", "E": 1.0, "nu": 0.3, "density": 2.5})).unwrap();

@@ -20,7 +20,7 @@ use fecontact::model::scheme::Scheme;
 use fecontact::model::{Damping, Model};
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -176,7 +176,7 @@ fn dense(matrix: &SparseMatrix) -> DMatrix<f64> {
 }
 
 fn negative_eigenvalues(matrix: &SparseMatrix) -> usize {
-    SymmetricEigen::new(dense(matrix)).eigenvalues.iter().filter(|value| **value < 0.0).count()
+    dense(matrix).symmetric_eigenvalues().iter().filter(|value| **value < 0.0).count()
 }
 
 /// A chain of springs between two walls, one along each direction: the eigenvalues are 2 − 2 cos(kπ/(n + 1)), all of them twice.
