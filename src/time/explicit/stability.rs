@@ -355,13 +355,26 @@ fn bounds(
 /// The bound (2) of a matrix and the lumped masses of its nodes.
 fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
     let n = matrix.nrows();
-    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (mass[i / 2] * mass[j / 2]).sqrt());
+    let root = mass.map(|mass| mass.sqrt().recip());
+    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] * root[i / 2] * root[j / 2]);
     let largest = scaled.amax();
     if largest == 0.0 {
         return 0.0;
     }
-    let square = (&scaled / largest).pow(2);
-    largest * (&square * &square).norm().powf(0.25)
+    largest * squared(&squared(&(scaled / largest))).norm().powf(0.25)
+}
+
+/// The square of a matrix of an element: too small for a general product of matrices, which divides them into blocks.
+fn squared(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = matrix.nrows();
+    let mut square = DMatrix::zeros(n, n);
+    let columns = matrix.as_slice().chunks_exact(n);
+    for (sum, factors) in square.as_mut_slice().chunks_exact_mut(n).zip(columns.clone()) {
+        for (column, factor) in columns.clone().zip(factors) {
+            sum.iter_mut().zip(column).for_each(|(sum, entry)| *sum += factor * entry);
+        }
+    }
+    square
 }
 
 /// For each element, the first element of a linear body with bitwise the same shape and masses, and therefore the same bounds
