@@ -671,7 +671,7 @@ fn damaged_results_are_drawn_or_refused() {
     let kinds = ["history.csv", "solid/00001.vtu", "interface.zarr/.zmetadata", "checkpoint.bin"];
     assert!(kinds.iter().all(|kind| sources[0].iter().any(|(name, _)| name == Path::new(kind))));
     let (mut faults, mut first) = (0, String::new());
-    for seed in 0..count(80, 1000) as u64 {
+    for seed in 0..count(50, 1000) as u64 {
         let mut chance = Chance(seed);
         let results = folder.path().join("bad");
         let kind = chance.below(2);

@@ -302,7 +302,7 @@ fn a_store_that_is_taken_away_counts_nothing() {
 #[test]
 fn there_are_two_checkpoints_at_any_moment() {
     let folder = TempDir::new().expect("a folder");
-    written(folder.path(), &dragged(json!("static"), 600));
+    written(folder.path(), &dragged(json!("static"), 250));
     let out = folder.path().join("out");
     let mut child = command(folder.path(), "out", &[]).spawn().expect("it runs");
     let two = || ["checkpoint.bin", "checkpoint_prev.bin"].iter().all(|name| out.join(name).exists());
@@ -396,7 +396,7 @@ fn fifty_signals_over_five_cases_leave_no_trace() {
 #[test]
 fn a_signal_ends_a_run_with_its_results_whole() {
     let folder = TempDir::new().expect("a folder");
-    written(folder.path(), &dragged(json!("static"), 200));
+    written(folder.path(), &dragged(json!("static"), 100));
     done(&run(folder.path(), "straight", &[]));
     for (k, name) in ["INT", "TERM", "HUP"].into_iter().enumerate() {
         let out = folder.path().join(name);
@@ -421,7 +421,7 @@ fn a_signal_ends_a_run_with_its_results_whole() {
 #[test]
 fn a_signal_that_is_ignored_stays_so() {
     let folder = TempDir::new().expect("a folder");
-    written(folder.path(), &dragged(json!("static"), 600));
+    written(folder.path(), &dragged(json!("static"), 150));
     let text = format!("trap '' HUP; exec {PROGRAM} run case.json --quiet --out out");
     let mut child = Command::new("sh").args(["-c", &text]).current_dir(folder.path()).spawn().expect("it runs");
     wait_for_rows(&mut child, &folder.path().join("out"), 5);
@@ -743,7 +743,7 @@ fn interrupted(case: &Value) -> TempDir {
 /// A case may change where its run has not come yet, and in what is written; else it is told where it differs.
 #[test]
 fn a_run_goes_on_with_its_own_case_alone() {
-    let case = dragged(json!("static"), 400);
+    let case = dragged(json!("static"), 120);
     let folder = interrupted(&case);
     let changed: [(&str, &str, Value, &str); 5] = [
         ("friction", "/contacts/base/friction/mu_k", json!(0.25), "`contacts.base.friction.mu_k` is 0.25, and was 0.2"),
@@ -818,7 +818,7 @@ fn a_finished_run_goes_on_with_another_step() {
 /// A damaged checkpoint is told, and the one before it taken; two damaged ones end the command, and a later format too.
 #[test]
 fn a_damaged_checkpoint_is_told() {
-    let folder = interrupted(&dragged(json!("static"), 400));
+    let folder = interrupted(&dragged(json!("static"), 120));
     let out = folder.path().join("out");
     let newest = out.join("checkpoint.bin");
     let bytes = fs::read(&newest).expect("a checkpoint");

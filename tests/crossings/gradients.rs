@@ -1,6 +1,6 @@
 //! Derivatives of drawn models are central differences of their complete runs with the same increments.
 //!
-//! `GRADIENTS=300 cargo test --release --test crossings -- derivatives --nocapture` tries as many seeds (30 unless given).
+//! `GRADIENTS=300 cargo test --release --test crossings -- derivatives --nocapture` tries as many seeds (20 unless given).
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -119,7 +119,7 @@ fn checked(seed: u64) -> Outcome {
 
 #[test]
 fn derivatives_are_those_of_differences() {
-    let count = std::env::var("GRADIENTS").map_or(30, |text| text.parse().expect("a number"));
+    let count = std::env::var("GRADIENTS").map_or(20, |text| text.parse().expect("a number"));
     let outcomes: Vec<Outcome> = (0..count).into_par_iter().map(checked).collect();
     let mut idle: BTreeMap<&str, usize> = BTreeMap::new();
     let (mut held, mut broken) = (0, Vec::new());

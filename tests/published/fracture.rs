@@ -370,7 +370,7 @@ impl Observer for Energies {
 #[test]
 fn fronts_end_where_fracture_mechanics_says() {
     for law in [slip_weakening(), super_subloading()] {
-        let mut problem = Problem::new(0.02, law);
+        let mut problem = Problem::new(0.025, law);
         let unit = critical_length(problem.energy);
         (problem.lower, problem.duration) = (Some((1.8 * unit, 0.3)), 8.0 * unit);
         let (mut low, mut high) = (1.8, 4.0);
