@@ -277,9 +277,9 @@ def photograph(time: float, seed: int, noise: float) -> DisplacementField:
 
 def test_displacement_fields_alone_tell_the_friction_over_the_stiffness() -> None:
     noise = 1e-4
-    found = [fc.fit(Run(pushed(), fields=[photograph(time, seed, noise) for time in TIMES]), free=[*TRUTH], start=START) for seed in range(4)]
+    found = [fc.fit(Run(pushed(), fields=[photograph(time, seed, noise) for time in TIMES]), free=[*TRUTH], start=START) for seed in range(2)]
     inside = [covered(one)[name] for one in found for name in TRUTH]
-    assert sum(inside) >= 10, [one.table for one in found]
+    assert sum(inside) >= 5, [one.table for one in found]
     for one in found:
         assert one.parameters[FRICTION + "mu_k"] == pytest.approx(0.2, rel=0.1) and len(one._problem.records[0].measured) == 3 * 2 * (X.size - 1)
 
