@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use super::csv::failed;
 use super::frames::{Shown, contact_frame, points_frame, solid_frame};
 use super::gradients::Motions;
+use super::recovery::NodalRecovery;
 use super::vtu::Grid;
 use super::{csv, files};
 use crate::linear::memory::room_for;
@@ -93,6 +94,8 @@ struct Collection {
     /// Number of frames listed in the index, and the time of that listing
     listed: (usize, Option<Instant>),
     grid: Grid,
+    /// Recovery of the solids, made for the first frame
+    recovery: Option<NodalRecovery>,
     /// Whether what follows from stress and strain is written, too
     derived: bool,
 }
@@ -259,7 +262,8 @@ impl Collection {
         let frames = folder.join(name);
         files::folder(&frames).map_err(|cause| failed(&frames, &cause))?;
         let (folder, grid) = (folder.to_owned(), Grid::new(asked.exact));
-        Ok(Self { folder, name, times: Vec::new(), listed: (0, None), grid, derived: asked.derived })
+        let (times, recovery, derived) = (Vec::new(), None, asked.derived);
+        Ok(Self { folder, name, times, listed: (0, None), grid, recovery, derived })
     }
 
     fn file(&self, number: usize) -> String {
@@ -270,7 +274,10 @@ impl Collection {
     fn show(&mut self, model: &Model, shown: &Shown) -> Result<(), Error> {
         let path = self.folder.join(self.file(self.times.len()));
         match self.name {
-            "solid" => solid_frame(model, shown, self.derived, &mut self.grid),
+            "solid" => {
+                let recovery = self.recovery.get_or_insert_with(|| NodalRecovery::new(model));
+                solid_frame(model, shown, recovery, self.derived, &mut self.grid);
+            }
             "points" => points_frame(model, shown, self.derived, &mut self.grid),
             _ => contact_frame(model, shown, &mut self.grid),
         }

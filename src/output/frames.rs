@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::gradients::MotionBy;
-use super::recovery::{nodal_fields, shown_names};
+use super::recovery::{NodalRecovery, shown_names};
 use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
@@ -34,8 +34,14 @@ impl Shown {
 }
 
 /// Fills the grid of the bodies. Rigid bodies have no cells and no fields.
-pub fn solid_frame(model: &Model, Shown { state, contact_forces, motions }: &Shown, derived: bool, grid: &mut Grid) {
-    let fields = nodal_fields(model, state);
+pub fn solid_frame(
+    model: &Model,
+    Shown { state, contact_forces, motions }: &Shown,
+    recovery: &NodalRecovery,
+    derived: bool,
+    grid: &mut Grid,
+) {
+    let fields = recovery.fields(model, state);
     let nodes = model.mesh.own_nodes();
     // Each body has exactly one material, so the two ids agree.
     let body = || model.body_of_element.iter().map(|&body| body as i32);

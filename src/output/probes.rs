@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::csv::{Rows, Sheet, Table};
 use super::quantities::{HOOP, PROBE, names};
-use super::recovery::{Recovery, Stencil};
+use super::recovery::{ElementValues, Recovery, Stencil};
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
@@ -104,8 +104,8 @@ impl Reading {
     }
 }
 
-/// Values of elements at their quadrature points.
-type Values = BTreeMap<usize, Vec<f64>>;
+/// Values of elements.
+type Values = BTreeMap<usize, ElementValues>;
 
 /// The stencils of some probes.
 fn stencils(model: &Model, probes: &[Probe]) -> Vec<Stencil> {
@@ -118,12 +118,14 @@ fn stencils(model: &Model, probes: &[Probe]) -> Vec<Stencil> {
     probes.iter().map(stencil).collect()
 }
 
-/// Stress, strain and hoop strain at the quadrature points of the elements that stencils need.
+/// Stress, strain and hoop strain of the elements that stencils need.
 fn values(model: &Model, state: &State, stencils: &[Stencil]) -> Values {
     let elements: BTreeSet<usize> = stencils.iter().flat_map(Stencil::elements).copied().collect();
-    elements.into_iter().map(|e| (e, stress_and_strain(model, state, e))).collect()
+    let of_element = |e| (e, ElementValues::new(&model.solids[e], stress_and_strain(model, state, e)));
+    elements.into_iter().map(of_element).collect()
 }
 
+/// Stress, strain and hoop strain at the quadrature points of an element.
 fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (solid, u) = (&*model.solid(state, e), model.mesh.vectors(e, &state.displacement));
     let material = &*model.body_of(e).material;

@@ -30,6 +30,7 @@ use nalgebra::{Rotation2, Vector2};
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::shape::{ElementKind, QuadraturePoint};
 use crate::model::Model;
+use crate::model::element::SolidElement;
 use crate::model::state::State;
 
 /// The largest sum of magnitudes of the weights of samples: above it errors of the samples would be amplified.
@@ -55,12 +56,45 @@ pub struct Recovery {
     elements: Vec<usize>,
 }
 
-/// A value at a place as a weighted sum of the values at the quadrature points of some elements.
+/// A value at a place as a weighted sum of values at points of some elements.
 #[derive(Clone, Debug)]
 pub struct Stencil {
-    elements: Vec<usize>,
-    /// of the quadrature points of each element, one after the other
-    weights: Vec<f64>,
+    elements: Box<[usize]>,
+    points: Points,
+    /// of these points of each element, one after the other
+    weights: Box<[f64]>,
+}
+
+/// The points of elements whose values count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Points {
+    /// those of the quadrature one order lower
+    Reduced,
+    /// all quadrature points
+    All,
+}
+
+/// Values of an element: all components at a point, then at the next, …
+#[derive(Clone, Debug)]
+pub struct ElementValues {
+    /// at the points of the quadrature one order lower
+    reduced: Vec<f64>,
+    /// at all quadrature points
+    all: Vec<f64>,
+}
+
+impl ElementValues {
+    /// Creates the values of an element from those at its quadrature points.
+    pub fn new(solid: &SolidElement, all: Vec<f64>) -> Self {
+        let shares = solid.reduced();
+        let components = all.len() / shares.ncols();
+        let mut reduced = vec![0.0; shares.nrows() * components];
+        for (sums, row) in reduced.chunks_exact_mut(components.max(1)).zip(shares.row_iter()) {
+            let points = all.chunks_exact(components.max(1));
+            row.iter().zip(points).for_each(|(share, point)| combine(sums, *share, point));
+        }
+        Self { reduced, all }
+    }
 }
 
 impl Stencil {
@@ -69,12 +103,13 @@ impl Stencil {
         &self.elements
     }
 
-    /// The sums, component by component. `values` are those of an element: all components at its first quadrature point, then at
-    /// its second, …
-    pub fn sum<'v>(&self, sums: &mut [f64], values: impl Fn(usize) -> &'v [f64]) {
+    /// Adds the sums, component by component, of the values of the elements.
+    pub fn sum<'v>(&self, sums: &mut [f64], values: impl Fn(usize) -> &'v ElementValues) {
         let mut weights = self.weights.iter();
-        for &e in &self.elements {
-            let points = values(e).chunks_exact(sums.len());
+        for &e in &*self.elements {
+            let ElementValues { reduced, all } = values(e);
+            let own = if self.points == Points::Reduced { reduced } else { all };
+            let points = own.chunks_exact(sums.len());
             for (point, weight) in points.zip(&mut weights) {
                 combine(sums, *weight, point);
             }
@@ -125,22 +160,21 @@ impl Recovery {
         if fit.terms < 2 {
             // Samples in a row.
             let all = points(model, &elements, |e| model.solids[e].quadrature());
-            return Stencil { weights: Fit::new(&all, place, 2).weights, elements };
+            let weights = Fit::new(&all, place, 2).weights.into();
+            return Stencil { elements: elements.into(), points: Points::All, weights };
         }
-        let shares: Vec<_> = elements.iter().map(|&e| model.solids[e].reduced()).collect();
         let mut starts = vec![0];
-        starts.extend(shares.iter().scan(0, |end, shares| {
-            *end += shares.ncols();
+        starts.extend(elements.iter().scan(0, |end, &e| {
+            *end += model.solids[e].reduced().nrows();
             Some(*end)
         }));
         let mut weights = vec![0.0; starts[elements.len()]];
         for (sample, weight) in samples.iter().zip(&fit.weights) {
             for &(k, point) in &sample.of {
-                let (row, own) = (shares[k].row(point), &mut weights[starts[k]..]);
-                own.iter_mut().zip(row.iter()).for_each(|(sum, share)| *sum += weight / sample.of.len() as f64 * share);
+                weights[starts[k] + point] += weight / sample.of.len() as f64;
             }
         }
-        Stencil { elements, weights }
+        Stencil { elements: elements.into(), points: Points::Reduced, weights: weights.into() }
     }
 
     /// The seeds with as many layers of neighbours in the same body as a fit needs, and the fit.
@@ -184,48 +218,71 @@ pub struct NodalFields {
     pub shown: Vec<(&'static str, Vec<f64>)>,
 }
 
-/// Cauchy stress at the nodes.
-pub fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    nodal_fields(model, state).tensors.into_iter().map(|(stress, _)| stress).collect()
+/// The stencils of all nodes. They depend on the undeformed mesh alone: one set serves all frames of a run.
+#[derive(Debug)]
+pub struct NodalRecovery {
+    /// those of each node, one for each body there, with its number
+    of_node: Vec<Box<[(usize, Stencil)]>>,
+    /// whether any of them takes all quadrature points of an element
+    takes_all: Vec<bool>,
 }
 
-/// Fields at the nodes, of the bodies that are there; zero at nodes that only absent ones have. An element that the material law cannot answer counts as 0: it never occurs in an accepted state.
-pub fn nodal_fields(model: &Model, state: &State) -> NodalFields {
-    let elements = 0..model.mesh.elements.len();
-    let tensors: Vec<Vec<f64>> = elements.clone().map(|e| stress_and_strain(model, state, e)).collect();
-    let shown: Vec<Vec<f64>> = elements.map(|e| shown(model, state, e)).collect();
-    let (recovery, names) = (Recovery::new(model), shown_names(model));
-    let nodes = model.mesh.nodes.len();
-    let mut fields = NodalFields {
-        tensors: Vec::with_capacity(nodes),
-        shown: names.iter().map(|name| (*name, Vec::with_capacity(nodes))).collect(),
-    };
-    for node in 0..nodes {
-        let mut stencils = recovery.at_node(model, node);
-        stencils.retain(|(body, _)| state.has(*body));
-        let mut sums = [0.0; 8];
-        stencils.iter().for_each(|(_, stencil)| stencil.sum(&mut sums, |e| &tensors[e]));
-        let [xx, yy, zz, xy, strain @ ..] = sums.map(|sum| sum / stencils.len().max(1) as f64);
-        fields.tensors.push((CauchyStress { xx, yy, zz, xy }, strain));
-        let of_bodies: Vec<(&[&str], Vec<f64>)> = stencils
-            .iter()
-            .map(|(body, stencil)| {
-                let names = model.bodies[*body].material.description().shown;
-                let mut sums = vec![0.0; names.len()];
-                if !names.is_empty() {
-                    stencil.sum(&mut sums, |e| &shown[e]);
-                }
-                (names, sums)
-            })
-            .collect();
-        for (name, values) in &mut fields.shown {
-            let own = |(names, sums): &(&[&str], Vec<f64>)| Some(sums[names.iter().position(|own| own == name)?]);
-            let found: Vec<f64> = of_bodies.iter().filter_map(own).collect();
-            let mean = found.iter().sum::<f64>() / found.len() as f64;
-            values.push(if found.is_empty() { f64::NAN } else { mean });
-        }
+impl NodalRecovery {
+    /// Creates the stencils for the mesh of a model.
+    pub fn new(model: &Model) -> Self {
+        let recovery = Recovery::new(model);
+        let of_node: Vec<Box<[_]>> =
+            (0..model.mesh.nodes.len()).map(|node| recovery.at_node(model, node).into()).collect();
+        let mut takes_all = vec![false; model.mesh.elements.len()];
+        let stencils = of_node.iter().flatten().map(|(_, stencil)| stencil);
+        let of_all = stencils.filter(|stencil| stencil.points == Points::All);
+        of_all.flat_map(Stencil::elements).for_each(|&e| takes_all[e] = true);
+        Self { of_node, takes_all }
     }
-    fields
+
+    /// Fields at the nodes, of the bodies that are there; zero at nodes that only absent ones have. An element that the material law cannot answer counts as 0: it never occurs in an accepted state.
+    pub fn fields(&self, model: &Model, state: &State) -> NodalFields {
+        let of_elements = |values: fn(&Model, &State, usize) -> Vec<f64>| -> Vec<ElementValues> {
+            let of_element = |(e, &takes_all): (usize, &bool)| {
+                let found = ElementValues::new(&model.solids[e], values(model, state, e));
+                if takes_all { found } else { ElementValues { all: Vec::new(), ..found } }
+            };
+            self.takes_all.iter().enumerate().map(of_element).collect()
+        };
+        let (tensors, shown) = (of_elements(stress_and_strain), of_elements(shown));
+        let (names, nodes) = (shown_names(model), self.of_node.len());
+        let mut fields = NodalFields {
+            tensors: Vec::with_capacity(nodes),
+            shown: names.iter().map(|name| (*name, Vec::with_capacity(nodes))).collect(),
+        };
+        for stencils in &self.of_node {
+            let stencils = || stencils.iter().filter(|(body, _)| state.has(*body));
+            let mut sums = [0.0; 8];
+            stencils().for_each(|(_, stencil)| stencil.sum(&mut sums, |e| &tensors[e]));
+            let [xx, yy, zz, xy, strain @ ..] = sums.map(|sum| sum / stencils().count().max(1) as f64);
+            fields.tensors.push((CauchyStress { xx, yy, zz, xy }, strain));
+            if names.is_empty() {
+                continue;
+            }
+            let of_bodies: Vec<(&[&str], Vec<f64>)> = stencils()
+                .map(|(body, stencil)| {
+                    let names = model.bodies[*body].material.description().shown;
+                    let mut sums = vec![0.0; names.len()];
+                    if !names.is_empty() {
+                        stencil.sum(&mut sums, |e| &shown[e]);
+                    }
+                    (names, sums)
+                })
+                .collect();
+            for (name, values) in &mut fields.shown {
+                let own = |(names, sums): &(&[&str], Vec<f64>)| Some(sums[names.iter().position(|own| own == name)?]);
+                let found: Vec<f64> = of_bodies.iter().filter_map(own).collect();
+                let mean = found.iter().sum::<f64>() / found.len() as f64;
+                values.push(if found.is_empty() { f64::NAN } else { mean });
+            }
+        }
+        fields
+    }
 }
 
 /// Names of what the laws of the bodies show.
@@ -239,7 +296,7 @@ pub fn shown_names(model: &Model) -> Vec<&'static str> {
     names
 }
 
-/// Stress and logarithmic strain at the quadrature points of an element, as [`Stencil::sum`] takes them.
+/// Stress and logarithmic strain at the quadrature points of an element, as [`ElementValues`] take them.
 fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (u, solid) = (model.mesh.vectors(e, &state.displacement), &*model.solid(state, e));
     let (material, memory) = (&*model.body_of(e).material, model.memories.of(e, &state.memory));
@@ -254,7 +311,7 @@ fn stress_and_strain(model: &Model, state: &State, e: usize) -> Vec<f64> {
     both.unwrap_or_else(|_| vec![0.0; 8 * solid.quadrature_points()])
 }
 
-/// Returns what the law of an element shows at its quadrature points, as [`Stencil::sum`] takes it.
+/// Returns what the law of an element shows at its quadrature points, as [`ElementValues`] take it.
 fn shown(model: &Model, state: &State, e: usize) -> Vec<f64> {
     let (u, solid) = (model.mesh.vectors(e, &state.displacement), &*model.solid(state, e));
     let material = &*model.body_of(e).material;

@@ -4,11 +4,19 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::common::{self, Blocks, Finished, close, finish, half_way, quadratic};
 use fecontact::laws::bulk::CauchyStress;
-use fecontact::output::recovery::nodal_stresses;
+use fecontact::model::Model;
+use fecontact::model::state::State;
+use fecontact::output::recovery::NodalRecovery;
 use serde_json::{Value, json};
 
 const E: f64 = 200.0;
 const NU: f64 = 0.3;
+
+/// Cauchy stress at the nodes.
+fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
+    let fields = NodalRecovery::new(model).fields(model, state);
+    fields.tensors.into_iter().map(|(stress, _)| stress).collect()
+}
 
 fn linear() -> Value {
     json!({"material": {"model": "linear", "E": E, "nu": NU}})
