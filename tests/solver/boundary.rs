@@ -267,6 +267,25 @@ fn dead_traction_and_gravity_add_up_to_the_reaction() {
     close("Fy", fy, 0.2 * 2.0 + 10.0 * mass, 1e-9);
 }
 
+/// Tractions that vary along upright and level sides: the reactions balance their resultants ∫ y² dy = 1/3 and ∫ x dx = 1/2, and their
+/// moments about the origin, −∫ y³ dy = −1/4 and −∫ x² dx = −1/3.
+#[test]
+fn tractions_that_vary_in_place_have_their_resultants_and_moments() {
+    let run = finish(&json!({
+        "mesh": Blocks::default().rectangle("body", [3, 4], [0.0, 0.0], [1.0, 1.0]).json(),
+        "bodies": {"body": {"material": {"model": "linear", "E": 50, "nu": 0.3}}},
+        "newton": {"tolerance": 1e-12},
+        "steps": [{"name": "load", "duration": 1, "dt": {"initial": 1},
+                   "supports": [{"on": "body_bottom", "ux": 0, "uy": 0}],
+                   "loads": [{"on": "body_right", "traction": {"x": "y^2"}}, {"on": "body_top", "traction": {"y": "-x"}}]}],
+    }));
+    let [fx, fy] = run.reaction("body_bottom", run.last());
+    close("Fx", fx, -1.0 / 3.0, 1e-12);
+    close("Fy", fy, 0.5, 1e-12);
+    let moment = |node: usize| run.model.mesh.nodes[node].x * run.last().reaction[2 * node + 1];
+    close("moment", run.nodes("body_bottom").into_iter().map(moment).sum(), 0.25 + 1.0 / 3.0, 1e-12);
+}
+
 /// The bar (stiffness 3) in series with two springs of 1 each to a driver that moves by d: u = 2 d/(2 + 3), reaction of
 /// the left side −3 u. With the driver left out the springs go to the ground and only add stiffness to a nodal force.
 #[test]
