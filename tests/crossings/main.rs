@@ -7,7 +7,6 @@
 
 mod features;
 mod frame;
-mod gradients;
 mod hunt;
 mod law;
 mod mesh;

@@ -121,7 +121,25 @@ impl Sheet {
             number.push(at.unwrap_or(kept.len()));
             kept.extend(at.is_none().then_some(*place));
         }
-        self.nodes = kept;
+        self.renumber(kept, &number);
+    }
+
+    /// Make all nodes at a place one.
+    pub fn weld_at(&mut self, place: [f64; 2]) {
+        let Some(first) = self.nodes.iter().position(|at| *at == place) else { return };
+        let mut number: Vec<usize> = Vec::new();
+        let mut kept = Vec::new();
+        for (k, at) in self.nodes.iter().enumerate() {
+            let again = k > first && *at == place;
+            number.push(if again { number[first] } else { kept.len() });
+            kept.extend((!again).then_some(*at));
+        }
+        self.renumber(kept, &number);
+    }
+
+    /// Other nodes, by the numbers that the old ones have now.
+    fn renumber(&mut self, nodes: Vec<[f64; 2]>, number: &[usize]) {
+        self.nodes = nodes;
         let groups = self.elements.values_mut().chain(self.edges.values_mut());
         groups.flatten().flatten().for_each(|node| *node = number[*node]);
         self.points.values_mut().flatten().for_each(|node| *node = number[*node]);
@@ -155,10 +173,8 @@ impl Sheet {
         }
         let mut number = vec![0; order.len()];
         order.iter().enumerate().for_each(|(new, &old)| number[old] = new);
-        self.nodes = order.iter().map(|&old| self.nodes[old]).collect();
-        let groups = self.elements.values_mut().chain(self.edges.values_mut());
-        groups.flatten().flatten().for_each(|node| *node = number[*node]);
-        self.points.values_mut().flatten().for_each(|node| *node = number[*node]);
+        let nodes = order.iter().map(|&old| self.nodes[old]).collect();
+        self.renumber(nodes, &number);
         for elements in self.elements.values_mut() {
             for element in elements.iter_mut() {
                 let corners = if matches!(element.len(), 3 | 6) { 3 } else { 4 };

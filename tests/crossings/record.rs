@@ -64,6 +64,8 @@ pub enum Lead {
     Dropped,
     /// The first step as a run of its own, with which another begins
     Begun,
+    /// All but the last step as a run of its own, which goes on with the last
+    Further,
 }
 
 /// Run a case in a folder of its own.
@@ -93,6 +95,7 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
         Lead::Through => led(Simulation::new(model.clone()), &mut outputs),
         Lead::Dropped => dropped(Simulation::new(model.clone()), &mut outputs),
         Lead::Resumed => resumed(document, folder.path(), &model, &mut outputs),
+        Lead::Further => further(document, folder.path(), &model, &mut outputs),
         Lead::Begun => begun(document, folder.path(), &model, &mut outputs),
     };
     let (simulation, ended) = match result {
@@ -242,6 +245,25 @@ fn resumed(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Ou
     led(simulation, outputs)
 }
 
+/// All but the last step, finished, saved and taken up with one step more.
+fn further(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Outputs) -> Result<Led, String> {
+    let mut shorter = document.clone();
+    shorter["steps"].as_array_mut().expect("steps").pop();
+    let first = built(&shorter)?;
+    *outputs = Outputs::create(folder, &first);
+    // As `led`, but saved before the observers finish.
+    let mut simulation = Simulation::new(first);
+    while attempts(&mut simulation, outputs, 1) {}
+    let saved =
+        SavedRun::new(&simulation, &mut outputs.all()).and_then(SavedRun::bytes).map_err(|error| error.to_string())?;
+    outputs.all().into_iter().for_each(|observer| drop(observer.finish()));
+    drop(simulation);
+    *outputs = Outputs::reopen(folder, model);
+    let saved = SavedRun::from_bytes(saved, model).map_err(|error| error.to_string())?;
+    let simulation = saved.resume(model, &mut outputs.all()).map_err(|error| error.to_string())?;
+    led(simulation, outputs)
+}
+
 /// The first step as a run of its own, then the others from where it has ended.
 fn begun(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Outputs) -> Result<Led, String> {
     let mut alone = document.clone();
@@ -379,14 +401,18 @@ fn entries(header: &[&str], columns: &[(Form, Arc<str>)], values: &[f64], frame:
 
 /// The column with the canonical names of bodies and contacts.
 fn own_name(column: &str, ways: &Ways) -> String {
-    let Names { block, ground, contact, second } = Names::of(ways);
+    // A node by its place, whose coordinates are others in another frame.
+    if let Some((_, quantity)) = column.rsplit_once('.').filter(|_| column.starts_with("near_")) {
+        return format!("near.{quantity}");
+    }
+    let Names { block, ground, contact, second, tie } = Names::of(ways);
     for (now, own) in [(block, "block"), (ground, "ground")] {
         let rest = column.strip_prefix(now).filter(|rest| rest.starts_with(['_', '.']));
         if let Some(rest) = rest {
             return format!("{own}{rest}");
         }
     }
-    for (now, own) in [(contact, "c"), (second, "d")] {
+    for (now, own) in [(contact, "c"), (second, "d"), (tie, "tie")] {
         if let Some(rest) = column.strip_prefix(now).filter(|rest| rest.starts_with('.')) {
             return format!("{own}{rest}");
         }

@@ -1,12 +1,15 @@
 //! Every key of the schema, and every law by its name, is in a model that is drawn, or in the list of those that change nothing in it.
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
 
 use fecontact::case;
 use serde_json::Value;
 
 use crate::features::Draft;
 use crate::model::{Ways, case as written};
+use crate::relations::RELATIONS;
 
 /// Keys that no drawn model has, and why.
 const ELSEWHERE: &[(&[&str], &str)] = &[
@@ -31,18 +34,15 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         &["blocks", "apart", "joined", "arcs", "corners", "grading", "kind", "middle", "sides", "body"],
         "another way to write a mesh: tests/solver/blocks.rs",
     ),
-    (&["node", "near"], "other ways to name a node: tests/solver/boundary.rs"),
+    (&["node"], "another way to name a node: tests/solver/boundary.rs"),
     (&["area"], "slaves that are points: tests/contact/contact.rs"),
-    (&["tied"], "surfaces that are held together: tests/contact/tied.rs"),
     (&["hole"], "the rim of a hole: tests/contact/contact.rs"),
-    (&["outline", "group"], "a polyline by another name: tests/contact/rigid_bodies.rs"),
     (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),
     (&["beta", "gamma", "rho_infinity"], "parameters of schemes: tests/time/time_integration.rs"),
     (
         &["gradients", "displacement_gradients"],
-        "derivatives of what is computed: gradients.rs, tests/command/gradients.rs",
+        "the relation `derivatives` asks for them, tests/command/gradients.rs for those of all nodes",
     ),
-    (&["add", "remove"], "bodies that come and go: tests/solver/stages.rs"),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 
@@ -96,4 +96,65 @@ fn every_key_is_crossed() {
     let missing: Vec<&String> =
         known.iter().filter(|key| !written_keys.contains(*key) && !elsewhere.contains(key.as_str())).collect();
     assert!(missing.is_empty(), "no model that is drawn has {missing:?}: enter them in tests/crossings/features.rs");
+}
+
+/// Every command, option and reader, and the relation that crosses it, or the file in which it is tried.
+const AROUND: &[(&str, &str)] = &[
+    ("run", "derivatives"),
+    ("run --out", "derivatives"),
+    ("run --threads", "threads"),
+    ("run --quiet", "derivatives"),
+    ("run --resume", "further"),
+    ("check", "tests/command/input.rs"),
+    ("check --resolved", "tests/command/resolved.rs"),
+    ("converge", "tests/command/converge.rs"),
+    ("converge --measure", "tests/command/converge.rs"),
+    ("converge --levels", "tests/command/converge.rs"),
+    ("converge --out", "tests/command/converge.rs"),
+    ("converge --threads", "tests/command/converge.rs"),
+    ("law", "tests/command/law.rs"),
+    ("law --out", "tests/command/law.rs"),
+    ("report", "tests/command/report.rs"),
+    ("report --out", "tests/command/report.rs"),
+    ("schema", "tests/command/schema.rs"),
+    ("fecontact.Mesh.read", "python/tests/test_meshes.py"),
+];
+
+/// Commands and their options as the frozen list has them, and functions of the Python package that read.
+fn around() -> Vec<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the checkout");
+    let read = |file: &str| fs::read_to_string(root.join(file)).expect(file);
+    let mut found = Vec::new();
+    let mut command = String::new();
+    for line in read("tests/command/surface/commands.txt").lines() {
+        match line.trim().split(' ').next().filter(|word| word.starts_with("--")) {
+            Some(option) => found.push(format!("{command} {option}")),
+            None if !line.starts_with(' ') => {
+                command = line.to_owned();
+                found.push(command.clone());
+            }
+            None => {}
+        }
+    }
+    let names = read("python/tests/surface.txt");
+    let functions = names.lines().filter_map(|line| line.split_once('(')).map(|(name, _)| name);
+    found.extend(
+        functions.filter(|name| name.rsplit('.').next().is_some_and(|last| last.starts_with("read"))).map(String::from),
+    );
+    found
+}
+
+#[test]
+fn every_option_and_reader_is_crossed() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the checkout");
+    for (what, place) in AROUND {
+        let is_there = RELATIONS.iter().any(|relation| relation.name == *place) || root.join(place).is_file();
+        assert!(is_there, "{what}: there is no relation or file {place}");
+    }
+    let missing: Vec<String> =
+        around().into_iter().filter(|what| !AROUND.iter().any(|(known, _)| known == what)).collect();
+    assert!(
+        missing.is_empty(),
+        "{missing:?}: enter a relation that crosses each in tests/crossings, or its test, in AROUND"
+    );
 }

@@ -1,0 +1,66 @@
+//! What one run has to say of itself.
+
+use super::*;
+
+/// Dilatancy does not keep surfaces apart: what closes without it closes with it.
+pub(super) fn dilating(base: &Base) -> Outcome {
+    let Some(plainer) = base.draft.with("dilatancy", "no").filter(|_| base.draft.has("dilatancy")) else {
+        return Outcome::Idle;
+    };
+    // A law that jumps at a threshold of the pressure may leave no equilibrium at it, nor may the traction η v of radiation, which does
+    // not vanish with the pressure: closed, it slows the slip below what lifts the surfaces into contact, and open, it does not.
+    if moves(base.draft) || base.draft.is("friction", "registered") || base.draft.has("radiation") {
+        return Outcome::Idle;
+    }
+    let Ended::Stopped(why) = &base.record.ended else { return Outcome::Holds };
+    // A body whose material fails on the way is no contact that does not close, nor is one that is augmented too slowly.
+    if why.contains(": element ") || why.contains("augmentations") {
+        return Outcome::Idle;
+    }
+    let without = Base::new(&plainer);
+    if !base.record.closed && without.record.closed && without.has_ended_well() {
+        let place = format!("ended {why}, and closes without dilatancy");
+        Outcome::Broken(Difference { share: f64::INFINITY, place, values: [0.0; 2] })
+    } else {
+        Outcome::Idle
+    }
+}
+
+/// What the contact says it puts on its slave is p and q summed up along it.
+pub(super) fn resultants(base: &Base) -> Outcome {
+    let draft = base.draft;
+    // Along a straight surface that does not turn.
+    if !base.has_ended_well()
+        || draft.of("section").starts_with("rings")
+        || draft.is("master", "itself")
+        || draft.is("master", "circle")
+    {
+        return Outcome::Idle;
+    }
+    let mut worst = Difference::default();
+    for (time, row) in &base.record.rows {
+        let of = |name: &str| row.iter().find(|entry| &*entry.column == name).map_or(f64::NAN, |entry| entry.value);
+        let [normal, tangential, x, y] =
+            ["normal_force", "tangential_force", "force_x", "force_y"].map(|name| of(&format!("c.{name}")).abs());
+        let whole = normal.hypot(tangential);
+        // A block that is not held may turn, where one hits the ground again and again that is bent by half a right angle, and a block
+        // sinks into clay askew.
+        let straight = draft.is("press", "displacement")
+            && !moves(draft)
+            && !draft.is("ground_law", "cam_clay")
+            && !draft.is("ground_law", "sys_cam_clay");
+        let compared = match straight {
+            true => vec![("along", [tangential, x]), ("across", [normal, y])],
+            false => vec![("as a whole", [whole, x.hypot(y)])],
+        };
+        for (name, [told, put]) in compared {
+            let share = (told - put).abs() / whole.max(1e-9);
+            if share > worst.share && whole > 1e-6 {
+                worst = Difference { share, place: format!("c.force, {name}, at t = {time}"), values: [told, put] };
+            }
+        }
+    }
+    // Points of a bent surface have directions of their own.
+    let bent = if moves(draft) { 0.25 } else { 0.1 };
+    if worst.share <= bent { Outcome::Holds } else { Outcome::Broken(worst) }
+}
