@@ -28,6 +28,9 @@ pub struct Rectangle<'a> {
     pub warp: f64,
 }
 
+/// The curve that is a rigid master.
+pub const DIE: &str = "die";
+
 /// The nearest multiple of 2⁻¹⁶.
 pub fn dyadic(x: f64) -> f64 {
     (x * 65536.0).round() / 65536.0
@@ -188,8 +191,10 @@ impl Sheet {
                 elements.swap(k, below(k + 1));
             }
         }
-        for edges in self.edges.values_mut() {
-            edges.iter_mut().filter(|_| below(2) == 0).for_each(|edge| edge.swap(0, 1));
+        for (name, edges) in &mut self.edges {
+            // The sense of an outline says where the solid is.
+            let may_turn = name != DIE;
+            edges.iter_mut().filter(|_| below(2) == 0 && may_turn).for_each(|edge| edge.swap(0, 1));
             for k in (1..edges.len()).rev() {
                 edges.swap(k, below(k + 1));
             }

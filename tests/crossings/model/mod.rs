@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::features::{Draft, hash};
 use crate::frame::{Frame, Kind};
-use crate::mesh::{Rectangle, Sheet, dyadic, is_quadratic};
+use crate::mesh::{DIE, Rectangle, Sheet, dyadic, is_quadratic};
 
 /// How a draft is written.
 #[derive(Clone, Debug)]
@@ -132,9 +132,6 @@ const STOP: &str = "stop";
 
 /// A body beside the ground that carries the surface on.
 const OUTSKIRTS: &str = "outskirts";
-
-/// The curve of the mesh that is a rigid master.
-const DIE: &str = "die";
 
 const DYNAMIC: [&str; 5] = ["newmark", "hht", "generalized_alpha", "wilson", "explicit"];
 

@@ -243,6 +243,9 @@ impl Writer<'_> {
         if self.scheme != "explicit" {
             step.insert("dt".into(), json!({"initial": self.write(Kind::Time, duration)}));
         }
+        if self.has("stabilize") {
+            step.insert("stabilize".into(), json!(1e-3));
+        }
         let (mut supports, mut loads) = (Vec::new(), Vec::new());
         self.first(&mut supports, &mut loads);
         let change = Change { from: [0.0; 2], to: [0.0; 2], start: -duration, end: 0.0, goes_on: [false; 2] };
