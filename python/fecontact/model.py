@@ -569,10 +569,11 @@ class Contact(dict[str, Any]):
         fluid_pressure: p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend
             on the run time t and on the reference position x, y of the slave. It acts on both surfaces wherever
             the slave projects onto the master, closed or open, in addition to the contact pressure p; friction,
-            `initial.pressure` and all outputs called pressure use this effective p only. The pressure is
-            prescribed: there is no flow. "of_bodies" takes it from the pores of the slave's bodies
-            (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it. Not
-            for quasi_dynamic steps [F/L²]
+            `initial.pressure` and all outputs called pressure use this effective p only. What acts at t = 0 of
+            a contact with `initial` is there before anything moves, in addition to `initial.pressure`; what the
+            run raises is 0 at t = 0. The pressure is prescribed: there is no flow. "of_bodies" takes it from
+            the pores of the slave's bodies (`pore_fluid`), whose total stress the contact carries: friction
+            goes by what p_w leaves of it. Not for quasi_dynamic steps [F/L²]
         friction: Friction law; only surfaces that are tied have none
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
             point is then measured, throughout the run, relative to the gap at which this pressure acts in its

@@ -243,17 +243,28 @@ impl ContactPair {
         self.pores.as_ref().map_or(0.0, |pores| pores[point].pressure(x))
     }
 
-    /// p_w at a slave point; 0 without a fluid [F/L²].
+    /// p_w at a slave point, 0 for the round-off of a negative value; 0 without a fluid [F/L²].
     pub fn fluid_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
+        let given = self.given_pressure(slave, x, time);
+        if given < 0.0 { 0.0 } else { given }
+    }
+
+    /// p_w at a slave point as its expression gives it [F/L²].
+    fn given_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
         let at = || x.apart(&slave.position, Vector2::zeros())[0];
         self.fluid.as_ref().map_or(0.0, |fluid| fluid.pressure(at(), time))
     }
 
-    /// First point with a negative or non-finite fluid pressure.
+    /// First point with a negative or non-finite fluid pressure. A negative value within the round-off of the largest one, or of the
+    /// initial pressure of the contact, or of the stiffness of its bodies, is none.
     pub fn bad_fluid_pressure(&self, x: &Configuration, time: f64) -> Option<BadPressure> {
         self.fluid.as_ref()?;
-        let pressures = self.points.iter().map(|slave| (slave, self.fluid_pressure(slave, x, time)));
-        let bad = pressures.into_iter().find(|(_, pressure)| !(pressure.is_finite() && *pressure >= 0.0));
+        let pressures = || self.points.iter().map(|slave| (slave, self.given_pressure(slave, x, time)));
+        pressures().find(|(_, pressure)| !(pressure.is_finite() && *pressure >= 0.0))?;
+        let initial = self.initial.iter().flatten().map(|initial| initial.pressure);
+        let largest = pressures().map(|(_, pressure)| pressure.abs()).chain(initial).fold(0.0, f64::max);
+        let least = -(ROUND_OFF * largest).max(f64::EPSILON * self.modulus);
+        let bad = pressures().find(|(_, pressure)| !(pressure.is_finite() && *pressure >= least));
         bad.map(|(slave, pressure)| BadPressure { at: x.apart(&slave.position, Vector2::zeros())[0], pressure })
     }
 
@@ -431,6 +442,9 @@ impl fmt::Debug for Fluid {
         formatter.write_str("a fluid")
     }
 }
+
+/// Negative fluid pressures that are round-off, relative to the largest.
+const ROUND_OFF: f64 = 1e-12;
 
 /// A fluid pressure that is negative or not finite, with its position.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -109,7 +109,9 @@ impl SmallPoint {
         let Kinematics { normal, tangent, length, .. } = *k;
         let takes_part =
             |k: &Kinematics, at: usize| k.relative[at] != 0.0 || k.lever.is_some_and(|lever| lever.at == at);
-        let part = (0..k.nodes.len()).filter(|&at| takes_part(k, at));
+        // Where slave and master share the node, as at the tip of a crack, none takes part; one stands for the point.
+        let none = !(0..k.nodes.len()).any(|at| takes_part(k, at));
+        let part = (0..k.nodes.len()).filter(|&at| takes_part(k, at) || none && at == 0);
         let (nodes, weights): (Vec<usize>, Vec<f64>) = part.map(|at| (k.nodes[at], k.relative[at])).unzip();
         let place = |lever: Lever| nodes.iter().position(|node| *node == k.nodes[lever.at]);
         let lever = k.lever.and_then(|lever| Some(Lever { at: place(lever)?, ..lever }));

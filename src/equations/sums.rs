@@ -9,7 +9,7 @@ use crate::laws::friction::LawFailure;
 use crate::linear::{BlockPosition, SparseMatrix};
 use crate::model::Model;
 use crate::model::scheme::time_text;
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 
 /// Nodal forces and, on request, their magnitudes and tangent.
 pub(super) struct Sums<'a> {
@@ -160,8 +160,8 @@ pub enum TrialFailure {
     },
     /// A fluid pressure is negative or not finite.
     #[error(
-        "contact `{contact}`: its fluid_pressure is {pressure} at ({}, {}) and time {}: it must be a finite number, zero or positive",
-        at[0], at[1], time_text(*time)
+        "contact `{contact}`: its fluid_pressure is {} at {} and time {}: it must be a finite number, zero or positive",
+        number(*pressure), vector(*at), time_text(*time)
     )]
     FluidPressure {
         /// contact pair

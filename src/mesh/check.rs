@@ -318,6 +318,9 @@ pub(super) struct RawCell {
     pub nodes: Vec<u64>,
 }
 
+/// Largest coordinate of a node; squares of lengths up to it are finite [L].
+const FARTHEST: f64 = 1e100;
+
 /// Map from node tags to node numbers.
 struct NodeNumbers(HashMap<u64, usize>);
 
@@ -326,8 +329,8 @@ impl NodeNumbers {
     pub(super) fn new(nodes: &[(u64, Vector2<f64>)]) -> Result<Self, MeshError> {
         let mut numbers = HashMap::with_capacity(nodes.len());
         for (number, (tag, at)) in nodes.iter().enumerate() {
-            if !at.iter().all(|x| x.is_finite()) {
-                return Err(MeshError::NotFinite(*tag));
+            if !at.iter().all(|x| x.abs() <= FARTHEST) {
+                return Err(MeshError::TooFar(*tag, at[at.iamax()]));
             }
             if numbers.insert(*tag, number).is_some() {
                 return Err(MeshError::SameNodeTag(*tag));

@@ -163,9 +163,9 @@ pub enum MeshError {
     /// Two nodes have the same tag.
     #[error("two nodes have the tag {0}; renumber the mesh")]
     SameNodeTag(u64),
-    /// A coordinate is not finite.
-    #[error("node {0} has a coordinate that is not finite")]
-    NotFinite(u64),
+    /// A coordinate is not finite, or too large to be squared.
+    #[error("node {0} has the coordinate {1:e}: it must lie between -1e100 and 1e100; choose other units")]
+    TooFar(u64, f64),
     /// A node does not exist.
     #[error("{cell} of `{group}` uses node {node}, which the mesh does not have")]
     UnknownNode {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::balance;
-use super::text::{count, number};
+use super::text::{count, number, vector};
 use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::{ContactPair, Reverse};
@@ -36,7 +36,8 @@ impl Model {
                 false => Gaps::of(self, pair, farthest).warnings(),
             };
             let further = faces_away(self, pair).into_iter().chain(friction_of_total_pressure(self, pair));
-            let further = further.chain(facets_of_a_fit(self, pair)).chain(truncated(pair));
+            let further =
+                further.chain(isolated_pressure(self, pair)).chain(facets_of_a_fit(self, pair)).chain(truncated(pair));
             warnings
                 .into_iter()
                 .chain(further)
@@ -126,6 +127,39 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
     Some(format!(
         "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: take that part \
          from the pores of the slave (`\"fluid_pressure\": \"of_bodies\"`), or give it (`fluid_pressure`), or a strength by total stress (friction law `adhesion`)"
+    ))
+}
+
+/// Fluid pressure that is none beside the one at a neighbour [-]
+const NONE_BESIDE: f64 = 1e-6;
+
+/// Warns of a fluid that starts with a pressure at one point and comes to the points beside it only later: it counts as there before the
+/// run, in addition to the initial pressure.
+fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
+    pair.initial.as_ref().filter(|_| pair.fluid.is_some())?;
+    let (x, end) = (model.mesh.undeformed(), model.steps.last()?.span.end);
+    let mut at_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (k, point) in pair.points.iter().enumerate() {
+        let nodes = point.length.iter().flat_map(|share| &share.tangent).map(|(node, _)| *node);
+        nodes.collect::<BTreeSet<_>>().into_iter().for_each(|node| at_node.entry(node).or_default().push(k));
+    }
+    let pressure = |k: usize, time: f64| pair.fluid_pressure(&pair.points[k], &x, time);
+    let is_alone = |k: usize| {
+        let least = NONE_BESIDE * pressure(k, 0.0);
+        let nodes = pair.points[k].length.iter().flat_map(|share| &share.tangent);
+        let beside: BTreeSet<usize> =
+            nodes.filter_map(|(node, _)| at_node.get(node)).flatten().copied().filter(|other| *other != k).collect();
+        least > 0.0
+            && !beside.is_empty()
+            && beside.iter().all(|&other| pressure(other, 0.0) <= least)
+            && beside.iter().any(|&other| pressure(other, end) > least)
+    };
+    let alone = (0..pair.points.len()).find(|&k| is_alone(k))?;
+    Some(format!(
+        "its fluid_pressure is {} at {} at t = 0 and none beside it: that is there before anything moves, in addition to the initial pressure. \
+         If the run raises it, let it be 0 at t = 0, such as P*erfc((abs(x) + 1e-9)/(2*sqrt(D*t + 1e-30)))",
+        number(pressure(alone, 0.0)),
+        vector(pair.points[alone].at(&x))
     ))
 }
 

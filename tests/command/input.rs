@@ -405,6 +405,125 @@ fn fluids_that_would_pull_are_found_before_the_run() {
     outcome("check", &[fluid(json!("0.2 - 0.5*t")), ("/steps/0/until", until)]);
 }
 
+/// Standard output of `check` of the good case with edits.
+fn checked(edits: &[(&str, Value)]) -> String {
+    let folder = TempDir::new().expect("a folder");
+    write(folder.path(), "case.json", with(edits).to_string());
+    let output = fecontact(folder.path(), &["check", "case.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// Edges of the block's bottom begin at x = 0.5, 1.5, 2.5: a pressure at x = 1.5 alone is an isolated one.
+#[test]
+fn a_fluid_that_starts_at_one_point_is_told_and_round_off_is_no_suction() {
+    let initial = ("/contacts/base/initial", json!({"pressure": 1.0}));
+    let nodal = ("/contacts/base/method", json!("node_to_segment"));
+    let at_start =
+        |text: &str| checked(&[initial.clone(), nodal.clone(), ("/contacts/base/fluid_pressure", json!(text))]);
+    let told = "its fluid_pressure is 0.1 at (1.5, 0) at t = 0 and none beside it";
+    let diffusing = at_start("0.1*erfc(abs(x - 1.5)/(2*sqrt(0.1*t + 1e-12)))");
+    assert!(diffusing.contains(told), "{diffusing}");
+    for right in [
+        "0.1*erfc((abs(x - 1.5) + 1e-9)/(2*sqrt(0.1*t + 1e-30)))", // begins with 0
+        "0.1*erfc(abs(x - 1.5)/(2*sqrt(0.1*t + 0.1)))",            // begins everywhere
+        "0.1*(1 + t)*max(0, 1 - abs(x - 1.5))",                    // stays there
+        "0.1*t*erfc(x) - 1e-306",
+        "-1e-306",
+    ] {
+        let text = at_start(right);
+        assert!(!text.contains("none beside it"), "{right}: {text}");
+    }
+    refused_edits(
+        &[("/contacts/base/fluid_pressure", json!("-1e-3"))],
+        &["fluid_pressure: is -0.001 at (", "zero or positive"],
+    );
+    refused_edits(&[("/contacts/base/fluid_pressure", json!("-1e300"))], &["fluid_pressure: is -1e300 at ("]);
+}
+
+#[test]
+fn numbers_that_cannot_be_squared_are_refused_with_their_place() {
+    for far in [1e200, 1.797e308] {
+        refused_edits(
+            &[("/contacts/base/master", json!({"polyline": {"points": [[far, 0.8], [2.4, 0.0], [2.1, 0.8]]}}))],
+            &["contacts.base.master.polyline.points: is 1", "places must lie between -1e100 and 1e100"],
+        );
+        refused_edits(
+            &[("/contacts/base/master", json!({"circle": {"centre": [0, far], "radius": 1}}))],
+            &["contacts.base.master.circle.centre: is 1"],
+        );
+        refused_edits(
+            &[("/contacts/base/master", json!({"circle": {"centre": [0, 0], "radius": far}}))],
+            &["contacts.base.master.circle.radius: is 1"],
+        );
+        refused_edits(
+            &[("/contacts/base/master", json!({"plane": {"point": [0, far], "normal": [0, 1]}}))],
+            &["contacts.base.master.plane.point: is 1"],
+        );
+        refused_edits(&[("/mesh/nodes/0/1", json!(far))], &["mesh: node 0 has the coordinate 1", "choose other units"]);
+    }
+    // Less than the smallest length that is positive when squared
+    refused_edits(
+        &[("/contacts/base/master", json!({"polyline": {"points": [[0, 0], [1e-200, 0], [4, 0]]}}))],
+        &["contacts.base.master.polyline.points: points 0 and 1 are the same"],
+    );
+    refused_edits(&[("/bodies/block/material/nu", json!(-1e300))], &["is -1e300, but"]);
+}
+
+#[test]
+fn a_static_step_cannot_start_above_the_strength_of_any_law() {
+    let laws = [
+        (json!({"law": "coulomb", "mu": 0.6}), "0.6"),
+        (json!({"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.5, "D_c": 0.1}), "0.6"),
+        (json!({"law": "slip_weakening", "mu_s": 0.5, "mu_d": 0.4, "D_c": 0.1, "cohesion": 0.1}), "0.6"),
+        (json!({"law": "adhesion", "strength": 0.6}), "0.6"),
+    ];
+    for (law, strength) in laws {
+        let of = |traction: f64| {
+            [
+                ("/contacts/base/friction", law.clone()),
+                ("/contacts/base/initial", json!({"pressure": 1.0, "traction": traction, "balanced": true})),
+            ]
+        };
+        let words = format!("{strength}");
+        refused_edits(
+            &of(0.601),
+            &["contacts.base.initial.traction: is 0.601 at (", "exceeds the initial strength", &words],
+        );
+        checked(&of(0.599));
+    }
+}
+
+/// The tip of a crack, whose node is on both sides: it neither opens nor slips. The crack is closed along y = 0 and pressed.
+#[test]
+fn a_crack_whose_sides_share_a_node_runs_with_every_method() {
+    let block = |corners: Value, sides: Value| json!({"body": "b", "corners": corners, "elements": [2, 1], "kind": "Q4", "sides": sides});
+    for method in ["node_to_segment", "gauss_to_segment", "mortar"] {
+        for sliding in ["small", "finite"] {
+            let case = json!({
+                "mesh": {"apart": ["low", "up"], "blocks": [
+                    block(json!([[0, -1], [1, -1], [1, 0], [0, 0]]), json!(["bottom", null, "low", null])),
+                    block(json!([[1, -1], [2, -1], [2, 0], [1, 0]]), json!(["bottom", null, null, null])),
+                    block(json!([[0, 0], [1, 0], [1, 1], [0, 1]]), json!(["up", null, "top", null])),
+                    block(json!([[1, 0], [2, 0], [2, 1], [1, 1]]), json!([null, null, "top", null])),
+                ]},
+                "bodies": {"b": {"material": {"model": "linear", "E": 500, "nu": 0.3}}},
+                "contacts": {"crack": {"slave": "up", "master": "low", "method": method, "sliding": sliding,
+                    "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 1e4}, "normal": {"alpha_n": 4e4}}},
+                "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.5}, "supports": [
+                    {"on": "bottom", "ux": 0, "uy": 0}, {"on": "top", "ux": 0.001, "uy": -0.01}]}],
+                "output": {"fields": false, "report": false}
+            });
+            let folder = TempDir::new().expect("a folder");
+            write(folder.path(), "case.json", case.to_string());
+            for command in ["check", "run"] {
+                let output = fecontact(folder.path(), &[command, "case.json"]);
+                assert_eq!(output.status.code(), Some(0), "{method}, {sliding}: {}", stderr(&output));
+            }
+        }
+    }
+}
+
 #[test]
 fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
     let at = "contacts.base.master";
@@ -952,7 +1071,10 @@ fn numbers_beyond_double_precision_stop_the_run() {
     let load = |load: Value| with(&[("/steps/0/loads", json!([load]))]);
     stopped(&load(json!({"on": "ground_top", "force": {"x": 1e300}})), &[fragment, "too large for double precision"]);
     stopped(&load(json!({"on": "ground_top", "pressure": -1e300})), &[fragment, "too large for double precision"]);
-    refused_edits(&[("/mesh/nodes/6", json!([-1e300, 1e300]))], &["mesh: element 0 of `block`"]);
+    refused_edits(
+        &[("/mesh/nodes/6", json!([-1e300, 1e300]))],
+        &["mesh: node 6 has the coordinate -1e300: it must lie between -1e100 and 1e100"],
+    );
 }
 
 #[test]

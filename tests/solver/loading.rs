@@ -326,6 +326,28 @@ fn told(builder: Builder) -> String {
 }
 
 #[test]
+fn directions_that_agree_in_time_are_accepted_and_a_contradiction_has_its_instant() {
+    let step = || LoadStep::new("load", 1.0).dt(0.5).support(Support::on("block_top").ux(0.0).uy(0.0));
+    let corner = || Support::on(Place::Node(0));
+    let three = |along: &str, ux: &str, uy: &str| {
+        let (along, ux, uy) = (expression(along), expression(ux), expression(uy));
+        step().support(corner().along([0.6, 0.8], along).ux(ux).uy(uy))
+    };
+    let twice = |text: &str| {
+        step()
+            .support(corner().along([1.0, 1.0], expression("0.1*t")))
+            .support(corner().along([1.0, 1.0], expression(text)))
+    };
+    for agrees in [three("0*t", "0*t", "0*t"), three("0.11*t", "0.05*t", "0.1*t"), twice("t/10")] {
+        assert_eq!(told(block(0.0, false).step(agrees)), "");
+    }
+    let later = told(block(0.0, false).step(three("0.11*t + max(0, t - 0.5)", "0.05*t", "0.1*t")));
+    assert!(later.contains("contradictory values: at t = 0.51 two of them move it by 0.0561"), "{later}");
+    let later = told(block(0.0, false).step(twice("0.1*t^2")));
+    assert!(later.contains("contradicts what this step gives node 0 along the same direction"), "{later}");
+}
+
+#[test]
 fn what_inclined_supports_cannot_say_is_refused() {
     let step = || LoadStep::new("load", 1.0).dt(0.5).support(Support::on("block_top").ux(0.0).uy(0.0));
     let bottom = || Support::on("block_bottom");

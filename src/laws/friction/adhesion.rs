@@ -79,6 +79,7 @@ impl FrictionLaw for Adhesion {
             stiffness: self.alpha_t,
             stiffness_is_penalty: true,
             observables: Some(&["R"]),
+            released_above: Some([self.strength, 0.0]),
             least_coefficient: Some(0.0),
             ..Description::default()
         }

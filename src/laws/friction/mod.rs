@@ -270,6 +270,9 @@ pub struct Description {
     pub takes_means: bool,
     /// Largest initial |q|/p of a point without previous slip; `None` for a law that releases an excess by slip [-]
     pub starting_coefficient: Option<f64>,
+    /// c and μ of the strength c + μ p at the start of a law that releases an excess over it by slip; `None` for laws without
+    /// [F/L²], [-]
+    pub released_above: Option<[f64; 2]>,
     /// Lower bound of |q|/p in continued sliding, at any rate and state; `None` if there is no such bound, or the
     /// law does not define it [-]
     pub least_coefficient: Option<f64>,

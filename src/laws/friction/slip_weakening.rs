@@ -224,6 +224,7 @@ impl FrictionLaw for SlipWeakening {
             stiffness_is_penalty: true,
             variables: &["weakening_slip"],
             observables: Some(&["R", "mu", "structure"]),
+            released_above: Some([self.cohesion, self.mu_s]),
             least_coefficient: Some(self.mu_d),
             weakening: self.weakening,
             ..Description::default()

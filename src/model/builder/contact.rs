@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
+use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
 use super::friction::{Along, Friction, check_in_time};
 use super::groups::{self, TIMES};
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
@@ -14,6 +14,7 @@ use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::method::Method;
+use crate::model::text::{number, vector};
 use crate::model::written::{Written, written};
 
 /// A contact pair.
@@ -89,7 +90,8 @@ pub struct Contact {
     /// p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend on the run time t and on
     /// the reference position x, y of the slave. It acts on both surfaces wherever the slave projects onto the master,
     /// closed or open, in addition to the contact pressure p; friction, `initial.pressure` and all outputs called
-    /// pressure use this effective p only. The pressure is prescribed: there is no flow. "of_bodies" takes it from the pores of the
+    /// pressure use this effective p only. What acts at t = 0 of a contact with `initial` is there before anything moves, in addition
+    /// to `initial.pressure`; what the run raises is 0 at t = 0. The pressure is prescribed: there is no flow. "of_bodies" takes it from the pores of the
     /// slave's bodies (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it. Not for
     /// quasi_dynamic steps [F/L²]
     #[schemars(with = "Option<Profile>")]
@@ -413,8 +415,10 @@ pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model, time: f64) ->
         return Ok(());
     };
     let message = format!(
-        "is {pressure} at ({}, {}) and t = {time}: must be a finite number, zero or positive, which pushes the surfaces apart",
-        at.x, at.y
+        "is {} at {} and t = {}: must be a finite number, zero or positive, which pushes the surfaces apart",
+        number(pressure),
+        vector(at),
+        number(time)
     );
     Err(ModelError::new(format!("{place}.fluid_pressure"), message))
 }
@@ -450,8 +454,9 @@ pub fn shape(side: &MasterSide, mesh: &Mesh, place: &str) -> Checked<Shape> {
         MasterSide::Group(group) => Err(ModelError::new(place, format!("`{group}` is a group, not a rigid body"))),
         MasterSide::Plane { point, normal } => plane(*point, *normal, place),
         MasterSide::Circle { centre, radius, hole } => {
-            check_finite(&format!("{place}.circle.centre"), *centre)?;
+            check_place(&format!("{place}.circle.centre"), *centre)?;
             check_positive(&format!("{place}.circle.radius"), *radius, "")?;
+            check_place(&format!("{place}.circle.radius"), [*radius])?;
             Ok(Shape::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
         }
         MasterSide::Polyline { points } => {
@@ -466,16 +471,16 @@ pub fn shape(side: &MasterSide, mesh: &Mesh, place: &str) -> Checked<Shape> {
 }
 
 fn polyline(corners: Vec<Vector2<f64>>, place: &str) -> Checked<Shape> {
-    check_finite(place, corners.iter().flatten().copied())?;
+    check_place(place, corners.iter().flatten().copied())?;
     refuse_if(corners.len() < 2, place, format_args!("has {} points: must have two or more", corners.len()))?;
-    if let Some(k) = corners.windows(2).position(|pair| pair[0] == pair[1]) {
+    if let Some(k) = corners.windows(2).position(|pair| (pair[1] - pair[0]).norm() == 0.0) {
         return Err(ModelError::new(place, format!("points {} and {} are the same: leave one out", k, k + 1)));
     }
     Ok(Shape::Polyline(Polyline::new(corners)))
 }
 
 fn plane(point: [f64; 2], normal: [f64; 2], place: &str) -> Checked<Shape> {
-    check_finite(&format!("{place}.plane.point"), point)?;
+    check_place(&format!("{place}.plane.point"), point)?;
     let given = Vector2::from(normal);
     let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
         let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);

@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::Builder;
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::names::is_unwritable;
+use crate::model::text::readable;
 
 /// An error in the input of a model.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -29,7 +30,7 @@ pub type Checked<T> = Result<T, ModelError>;
 impl ModelError {
     /// Creates an error at a place.
     pub fn new(place: impl Into<String>, message: impl ToString) -> Self {
-        Self { place: place.into(), message: message.to_string() }
+        Self { place: place.into(), message: readable(&message.to_string()) }
     }
 }
 
@@ -72,6 +73,18 @@ pub fn check_finite(place: &str, values: impl IntoIterator<Item = f64>) -> Check
     let mut values = values.into_iter();
     values
         .try_for_each(|value| refuse_if(!value.is_finite(), place, format_args!("is {value}: must be a finite number")))
+}
+
+/// Largest coordinate; squares of lengths up to it are finite [L].
+const FARTHEST: f64 = 1e100;
+
+/// Checks that coordinates and lengths can be squared.
+pub fn check_place(place: &str, values: impl IntoIterator<Item = f64>) -> Checked<()> {
+    let message = |value: f64| {
+        format!("is {value:e}: places must lie between -{FARTHEST:e} and {FARTHEST:e}; choose other units")
+    };
+    let mut values = values.into_iter();
+    values.try_for_each(|value| refuse_if(!(value.abs() <= FARTHEST), place, message(value)))
 }
 
 /// Maximum length of a name [bytes]; combined with a quantity, it is a column of a table and the name of a file.

@@ -16,7 +16,7 @@ use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::scheme::Scheme;
-use crate::model::text::vector;
+use crate::model::text::{number, vector};
 
 /// Tolerance by which an initial traction may exceed the strength μ p: numbers are given with a few digits.
 const ROUNDED: f64 = 1e-9;
@@ -122,13 +122,44 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
         if traction.abs() > limit * (1.0 + ROUNDED) {
             let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
             let message = format!(
-                "is {traction}: it exceeds the initial strength, mu p = {limit} with mu = {mu} and p = {pressure}"
+                "is {} at {}: it exceeds the initial strength, mu p = {} with mu = {mu} and p = {}",
+                number(*traction),
+                vector(position(point, &model.mesh)),
+                number(limit),
+                number(pressure)
             );
             return Err(ModelError::new(format!("{place}.traction"), message));
         }
     }
     let closed = pair.start_closed(initial, &undeformed);
     closed.map_err(|point| without_projection(pair, point, model, place))
+}
+
+/// Refuses initial tractions above the strength where the first step is static: what the interface cannot carry accelerates the bodies.
+pub fn check_excess(model: &Model) -> Checked<()> {
+    let undeformed = model.mesh.undeformed();
+    for pair in &model.contacts {
+        let Some(first) = model.steps.iter().find(|step| step.joins(pair)) else { continue };
+        let has_inertia = first.scheme.is_dynamic() || first.may_be_explicit();
+        let initial = pair.initial.as_deref().filter(|_| !has_inertia && !pair.tied).unwrap_or_default();
+        for (k, (point, InitialTraction { pressure: total, traction })) in pair.points.iter().zip(initial).enumerate() {
+            let Some([cohesion, mu]) = pair.law(point).description.released_above else { continue };
+            let pressure = effective(*total, pair.pore_pressure(k, &undeformed))[0];
+            let strength = cohesion + mu * pressure;
+            if traction.abs() > strength * (1.0 + ROUNDED) {
+                let message = format!(
+                    "is {} at {}: it exceeds the initial strength, {} under the pressure {}, which a static step cannot follow; lower it, \
+                     or begin with a dynamic or explicit step, or one with `rupture`",
+                    number(*traction),
+                    vector(position(point, &model.mesh)),
+                    number(strength),
+                    number(pressure)
+                );
+                return Err(ModelError::new(format!("contacts.{}.initial.traction", pair.name), message));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn without_projection(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {

@@ -44,6 +44,7 @@ macro_rules! setters {
     };
 }
 
+mod agreement;
 mod body;
 mod checks;
 mod contact;
@@ -292,6 +293,7 @@ impl Builder {
         checks::check_schemes(&self.contacts, &model)?;
         requests::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;
+        initial::check_excess(&model)?;
         contact::check_fluids_in_time(&self.contacts, &model)?;
         unconstrained::check(&self.steps, &model)?;
         Ok(model)

@@ -121,8 +121,8 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         pair.slide_little(&model.mesh.undeformed());
     }
     check_stick(&pair, &place)?;
-    contact::check_fluid(&pair, &place, model, 0.0)?;
     start(&mut pair, contact, model, &place)?;
+    contact::check_fluid(&pair, &place, model, 0.0)?;
     Ok(pair)
 }
 

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::contact::Contact;
-use super::error::{Checked, ModelError, check_finite, check_positive, refuse_if};
+use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
 use super::groups::{Place, group, nodes_at};
 use super::load::Change;
 use super::load_step::{LoadStep, Support};
@@ -267,7 +267,7 @@ pub struct RigidBodyInput {
 pub fn add_bodies(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
     for (name, RigidBodyInput { reference, inertia }) in given {
         let place = format!("rigid_bodies.{name}");
-        check_finite(&format!("{place}.reference"), *reference)?;
+        check_place(&format!("{place}.reference"), *reference)?;
         check_positive(&format!("{place}.inertia"), inertia.unwrap_or(1.0), " (leave it out for none)")?;
         let message = "is a group of the mesh as well, and supports would not know which: rename it";
         refuse_if(mesh.groups.contains_key(name), place, message)?;

@@ -30,6 +30,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
+use super::agreement::{self, Clash, clash, rests};
 use super::error::{Checked, ModelError, refuse_if};
 use super::groups::{Place, dofs_of, edges, nodes_at, pressure_weights};
 use super::load::Change;
@@ -171,7 +172,7 @@ impl SupportsInForce {
         for (&node, held) in &self.inclined {
             let given: Vec<Prescribed> = dofs_of(&[node]).filter_map(|dof| all.remove(&dof)).collect();
             let tag = model.mesh.node_tags[node];
-            let resolved = resolved(node, given, held)
+            let resolved = resolved(node, model.mesh.nodes[node], given, held)
                 .map_err(|why| ModelError::new(format!("{place}.supports"), format!("node {tag} {why}")))?;
             all.extend(resolved.into_iter().map(|support| (support.at.dof, support)));
         }
@@ -194,8 +195,8 @@ impl SupportsInForce {
             let dof = 2 * model.ties.original(node);
             let held = Prescribed::displacement(dof, Drive::Constant(0.0), span);
             let given = self.dofs.entry(dof).or_insert(held);
-            let rests = |drive: &Drive| matches!(drive, Drive::Constant(0.0) | Drive::Rate(0.0));
-            if matches!(&given.motion, Motion::Displacement(drive, _) if rests(drive)) {
+            let rests = |drive: &Drive, own: Span| rests(drive, x[node], own, axis.unwrap_or_default());
+            if matches!(&given.motion, Motion::Displacement(drive, own) if rests(drive, *own)) {
                 continue;
             }
             let message = match model.mesh.rigid_bodies.iter().find(|body| body.reference == node) {
@@ -329,9 +330,6 @@ const LEAST_ANGLE: f64 = 15.0;
 /// Angle between two sides below which they share a normal at their common node [°].
 pub const CORNER: f64 = 45.0;
 
-/// Relative tolerance by which a third direction at a node may deviate from the other two.
-const ROUNDED: f64 = 1e-9;
-
 /// A support along d at a node.
 pub struct Along<'s> {
     /// node
@@ -397,16 +395,17 @@ impl Along<'_> {
         };
         match same {
             Some(k) => {
-                let drive = toward(&all[k].support.direction);
+                let new = held(all[k].support.direction, toward(&all[k].support.direction));
                 let other = all[k].given.as_ref().is_some_and(|given| *given != self.key);
-                if other && !is_same(&drive, &all[k].support.drive) {
+                let at = model.mesh.nodes[self.node];
+                if other && !agreement::is_same(at, [&all[k].support, &new.support]) {
                     let tag = model.mesh.node_tags[self.node];
                     let message = format!(
                         "contradicts what this step gives node {tag} along the same direction: give one of the two"
                     );
                     return Err(ModelError::new(&self.key, message));
                 }
-                all[k] = held(all[k].support.direction, drive);
+                all[k] = new;
             }
             None => all.push(held(self.d, drive.clone())),
         }
@@ -425,15 +424,6 @@ impl Along<'_> {
     }
 }
 
-fn is_same(a: &Drive, b: &Drive) -> bool {
-    match (a, b) {
-        (Drive::Constant(a), Drive::Constant(b)) | (Drive::Rate(a), Drive::Rate(b)) => a == b,
-        (Drive::Table(a), Drive::Table(b)) => a == b,
-        (Drive::ByPlace(a, of_a), Drive::ByPlace(b, of_b)) => a == b && of_a == of_b,
-        _ => false,
-    }
-}
-
 /// Why the supports of a node contradict each other.
 #[derive(Clone, Copy, Debug, Error)]
 enum Contradiction {
@@ -448,14 +438,22 @@ enum Contradiction {
     )]
     Close(f64),
     #[error(
-        "is constrained along three directions with contradictory values: two determine its displacement, so leave it out of the \
-         third"
+        "is constrained along three directions with contradictory values: at t = {} two of them move it by {} along the third, which \
+         gives {}; leave it out of one",
+        number(.0.time),
+        number(.0.moved),
+        number(.0.said)
     )]
-    Three,
+    Three(Clash),
 }
 
 /// Supports of a node with the coordinate supports `given` and some inclined directions, or an error.
-fn resolved(node: usize, given: Vec<Prescribed>, held: &[InclinedSupport]) -> Result<Vec<Prescribed>, Contradiction> {
+fn resolved(
+    node: usize,
+    position: Vector2<f64>,
+    given: Vec<Prescribed>,
+    held: &[InclinedSupport],
+) -> Result<Vec<Prescribed>, Contradiction> {
     let mut all: Vec<Inclined> = Vec::new();
     for support in &given {
         let Motion::Displacement(drive, span) = &support.motion else {
@@ -476,7 +474,7 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[InclinedSupport]) -> Re
     let d = [&all[0], &all[1]].map(|of| of.direction.transpose());
     let inverse = Matrix2::from_rows(&d).try_inverse().ok_or(Contradiction::Twice)?;
     for third in &all[2..] {
-        check_agrees([&all[0], &all[1], third], inverse)?;
+        clash(position, [&all[0], &all[1]], inverse, third).map_err(Contradiction::Three)?;
     }
     let component = |i: usize| {
         let part = |k: usize| Inclined { share: inverse[(i, k)], ..all[k].clone() };
@@ -500,23 +498,6 @@ fn check_angles(straight: usize, held: &[InclinedSupport], all: &[Inclined]) -> 
         }
     }
     Ok(())
-}
-
-/// Checks that a third direction agrees with the first two.
-fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -> Result<(), Contradiction> {
-    let value = |of: &Inclined| match (&of.drive, &first.drive) {
-        (Drive::Constant(value), Drive::Constant(_)) | (Drive::Rate(value), Drive::Rate(_)) => Some(*value),
-        _ => None,
-    };
-    let agrees = [first, second, third].map(value);
-    if let [Some(first), Some(second), Some(said)] = agrees {
-        let u = inverse * Vector2::new(first, second);
-        let size = first.abs().max(second.abs()).max(said.abs());
-        if (third.direction.dot(&u) - said).abs() <= ROUNDED * size {
-            return Ok(());
-        }
-    }
-    Err(Contradiction::Three)
 }
 
 /// Distance from the axis, relative to the model size, within which a node is on the axis.
