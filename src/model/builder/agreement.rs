@@ -75,7 +75,7 @@ pub fn clash(
     };
     let all: Vec<(Clash, f64)> = times(span, &all.map(|of| &of.drive)).map(compared).collect();
     let size = all.iter().map(|(_, size)| *size).fold(0.0, f64::max);
-    let clashes = |Clash { moved, said, .. }: &Clash| !((moved - said).abs() <= ROUNDED * size);
+    let clashes = |Clash { moved, said, .. }: &Clash| (moved - said).is_nan() || (moved - said).abs() > ROUNDED * size;
     all.into_iter().map(|(at, _)| at).find(clashes).map_or(Ok(()), Err)
 }
 

@@ -84,7 +84,7 @@ pub fn check_place(place: &str, values: impl IntoIterator<Item = f64>) -> Checke
         format!("is {value:e}: places must lie between -{FARTHEST:e} and {FARTHEST:e}; choose other units")
     };
     let mut values = values.into_iter();
-    values.try_for_each(|value| refuse_if(!(value.abs() <= FARTHEST), place, message(value)))
+    values.try_for_each(|value| refuse_if(value.is_nan() || value.abs() > FARTHEST, place, message(value)))
 }
 
 /// Maximum length of a name [bytes]; combined with a quantity, it is a column of a table and the name of a file.
