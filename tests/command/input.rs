@@ -485,10 +485,9 @@ fn a_static_step_cannot_start_above_the_strength_of_any_law() {
                 ("/contacts/base/initial", json!({"pressure": 1.0, "traction": traction, "balanced": true})),
             ]
         };
-        let words = format!("{strength}");
         refused_edits(
             &of(0.601),
-            &["contacts.base.initial.traction: is 0.601 at (", "exceeds the initial strength", &words],
+            &["contacts.base.initial.traction: is 0.601 at (", "exceeds the initial strength", strength],
         );
         checked(&of(0.599));
     }
