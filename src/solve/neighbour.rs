@@ -19,7 +19,8 @@
 //! than that, or where a contact point has another status in one of them than in the run.
 //!
 //! Bodies that θ does not act on, and that have no internal variables, are linear so close to the run: K_b (u′ − u) stands for the change of
-//! their forces, with the same tangent for all neighbours.
+//! their forces, with the same tangent for all neighbours. Bodies that came into the deformed model are without stress at another place in
+//! each neighbour: where such places differ, bodies are evaluated.
 //!
 //! If a contact point has another status than in the run, K may not serve. The neighbours are then solved by Newton's method with their
 //! own tangents, r′ = 0.

@@ -56,8 +56,8 @@ impl Lead<'_> {
 pub struct Neighbour {
     /// its model
     pub model: Arc<Model>,
-    /// Whether its bodies are those of the run
-    has_same_bodies: bool,
+    /// Whether its parameter acts on no body
+    spares_bodies: bool,
     /// k of its parameter θ + k ε
     apart: f64,
     /// state at the start of the last increment
@@ -81,16 +81,21 @@ struct OnItsWay {
 }
 
 impl Neighbour {
-    /// Creates a neighbour in the initial state of its model with θ + k ε, whose bodies may be those of the run.
-    pub fn new(model: Arc<Model>, apart: f64, has_same_bodies: bool) -> Self {
+    /// Creates a neighbour in the initial state of its model with θ + k ε, where θ may act on no body.
+    pub fn new(model: Arc<Model>, apart: f64, spares_bodies: bool) -> Self {
         let state = model.initial_state();
         let work = Workspace::new(&model, Box::<Multifrontal>::default());
-        Self { old: state.clone(), state, begun: None, step: None, work, model, has_same_bodies, apart }
+        Self { old: state.clone(), state, begun: None, step: None, work, model, spares_bodies, apart }
     }
 
     /// Goes on from a saved state, in the step with this number.
     pub fn go_on(&mut self, state: State, begun: Option<usize>) {
         (self.state, self.begun, self.step) = (state, begun, None);
+    }
+
+    /// Whether its bodies are those of the run, with the same stress-free places of those that came into the deformed model.
+    fn has_same_bodies(&self, lead: &Lead) -> bool {
+        self.spares_bodies && self.state.step_start.births == lead.old.step_start.births
     }
 
     /// Begins the increment, and its step if that is a new one.
@@ -116,7 +121,8 @@ impl Neighbour {
 
     /// Prepares a pass, beside the run whose tangent is given.
     fn seeker<'a>(&'a mut self, lead: &Lead, pass: &Pass, tangent: &Tangent, way: &'a OnItsWay) -> Option<Seeker<'a>> {
-        let Self { model, state, has_same_bodies, apart, step, work, .. } = self;
+        let has_same_bodies = self.has_same_bodies(lead);
+        let Self { model, state, apart, step, work, .. } = self;
         tangent.couple(work);
         let u = pass.displacement.iter().zip(&way.u).zip(&way.beside).map(|((run, own), beside)| run + (own - beside));
         let u = u.collect();
@@ -125,7 +131,7 @@ impl Neighbour {
             trial: lead.trial(way.old.as_ref().unwrap_or(state), step.as_ref()?, pass),
             work,
             u,
-            has_same_bodies: *has_same_bodies,
+            has_same_bodies,
             apart: *apart,
         })
     }
@@ -148,7 +154,7 @@ pub fn follow(lead: &Lead, tangent: &mut Tangent, mut groups: Vec<Group>) -> Vec
     let set_out = |group: &mut Group| group.iter_mut().map(|neighbour| neighbour.set_out(lead)).collect();
     let mut all: Vec<Result<Vec<OnItsWay>, _>> = groups.par_iter_mut().with_max_len(1).map(set_out).collect();
     let mut old = lead.old.clone();
-    let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies);
+    let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies(lead));
     for (k, pass) in lead.passes.iter().enumerate() {
         if k > 0 {
             tangent.multiply(&mut old);

@@ -236,6 +236,78 @@ fn of_motion_are_those_of_complete_runs_in_every_scheme() {
     }
 }
 
+/// Elastic ground that is hot, stressed and pressed by a block, beside which a fill comes, goes and comes again.
+fn staged(scheme: &Value, model: &str) -> Value {
+    let block = |body: &str, low: [f64; 2], high: [f64; 2], sides: [Option<&str>; 4]| json!({"body": body, "corners": [low, [high[0], low[1]], high, [low[0], high[1]]], "elements": [3, 2], "sides": sides});
+    let material = json!({"model": model, "E": 1000, "nu": 0.3, "density": 100});
+    let step = |name: &str, more: Value| {
+        let mut step =
+            json!({"name": name, "duration": 0.2, "scheme": scheme, "dt": {"initial": 0.05, "min": 0.05, "max": 0.05}});
+        for (key, value) in more.as_object().expect("keys") {
+            step[key] = value.clone();
+        }
+        step
+    };
+    let weight = json!([{"on": "fill", "gravity": {"y": -0.05}}]);
+    json!({
+        "mesh": {"joined": [["ground", "fill", "wall"]], "blocks": [
+            block("ground", [0.0, -1.0], [2.0, 0.0], [Some("bottom"), None, Some("ground_top"), None]),
+            block("ground", [2.0, -1.0], [4.0, 0.0], [Some("bottom"), None, None, None]),
+            block("fill", [2.0, 0.0], [4.0, 1.0], [None; 4]),
+            block("wall", [4.0, -1.0], [5.0, 0.0], [None, Some("wall_side"), None, None]),
+            block("block", [0.5, 0.0], [1.5, 1.0], [Some("block_bottom"), None, Some("block_top"), None]),
+        ]},
+        "bodies": {
+            "ground": {"material": material},
+            "fill": {"material": material, "thermal": {"expansion": 0.001}},
+            "wall": {"material": material, "initial_stress": {"components": {"xx": 1.0, "yy": -2.0, "zz": 0.0}}},
+            "block": {"material": material},
+        },
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "normal": {"alpha_n": 4e3},
+            "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 2e3}}},
+        "steps": [
+            step("press", json!({"loads": [{"on": "wall_side", "traction": {"y": -3}}, {"on": "ground", "gravity": {"y": -0.02}}],
+                "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.03}]})),
+            step("fill", json!({"add": ["fill"], "loads": weight, "temperature": {"fill": 2}})),
+            step("drag", json!({"supports": [{"on": "block_top", "ux": 0.03}]})),
+            step("dig", json!({"remove": ["fill"]})),
+            step("again", json!({"add": ["fill"], "remove": ["wall"],
+                "loads": [weight[0], {"on": "wall_side", "traction": null}], "temperature": {"fill": 1},
+                "supports": [{"on": "block_top", "uy": -0.02}]})),
+        ],
+        "watch": ["bottom", "wall_side", {"near": [4, 1]}],
+    })
+}
+
+/// Bodies that come are without stress where their nodes are then, at another place in each neighbour.
+#[test]
+fn of_bodies_that_come_and_go_are_those_of_complete_runs_in_every_scheme() {
+    let dynamic = [
+        json!({"newmark": {}}),
+        json!({"hht": {"alpha": -0.1}}),
+        json!({"generalized_alpha": {}}),
+        json!({"wilson": {}}),
+    ];
+    let places = [
+        "steps[0].supports[1].uy",
+        "steps[0].loads[0].traction.y",
+        "steps[0].loads[1].gravity.y",
+        "steps[1].temperature.fill",
+        "steps[2].supports[0].ux",
+        "contacts.base.normal.alpha_n",
+        "contacts.base.friction.mu",
+        "bodies.block.material.E",
+        "bodies.fill.thermal.expansion",
+        "bodies.wall.initial_stress.components.xx",
+    ];
+    for scheme in dynamic.iter().chain([&json!("static")]) {
+        for model in ["linear", "neo_hookean"] {
+            let worst = compared(&staged(scheme, model), &places);
+            assert!(is_close(&worst), "{scheme}, {model}: {worst:?}");
+        }
+    }
+}
+
 /// Soil that yields under a rough, stiff block, which slips on it; initial tractions and a pressure by a table.
 #[test]
 fn of_yielding_soil_are_those_of_complete_runs() {
