@@ -150,6 +150,25 @@ impl ContactPair {
         self.initial = Some(vec![InitialTraction::default(); met.len()]);
     }
 
+    /// Ties surfaces that carry the stress σ of the slave's body from the start, as nodes do that bodies share.
+    ///
+    /// ```text
+    /// σ N = p n − q s   →   p = n·σ N,   q = −s·σ N        N: outward normal of the slave
+    /// ```
+    pub fn carry(&mut self, stress: impl Fn(&SlavePoint) -> Matrix2<f64>, x: &Configuration) {
+        let met = self.meetings(x, false);
+        let mut initial = vec![InitialTraction::default(); met.len()];
+        for ((slave, met), initial) in self.points.iter_mut().zip(met).zip(&mut initial) {
+            let (Some((_, Kinematics { normal, tangent, .. })), Some(outward)) = (met, slave.outward(x)) else {
+                continue;
+            };
+            let carried = stress(slave) * outward;
+            *initial = InitialTraction { pressure: normal.dot(&carried), traction: -tangent.dot(&carried) };
+            slave.touch += initial.pressure / self.alpha_n;
+        }
+        self.initial = Some(initial);
+    }
+
     fn keep_feet(&mut self, turning: bool, x: &Configuration) {
         let met = self.meetings(x, false).into_iter().zip(&self.points);
         let point = |((met, k), slave): ((Meeting, Kinematics), &SlavePoint)| {

@@ -89,6 +89,8 @@ pub struct Springs {
     pub stored: f64,
     /// What is numerical, along the normal and the tangent: an exact contact would not give way there [F·L]
     pub numerical: [f64; 2],
+    /// What has changed since a start under tractions; otherwise all [F·L]
+    pub changed: f64,
 }
 
 impl Springs {
@@ -110,11 +112,16 @@ impl Springs {
             let [given, held] = [pair.penetration, pair.stick].map(|allowed| allowed.is_none());
             let [pressure, traction] = [start.pressure, start.traction];
             let clearance = clearance + if given { pressure / pair.alpha_n } else { 0.0 };
-            springs.numerical[0] += length * normal(clearance);
+            let slip = slip - if held && stiffness > 0.0 { traction / stiffness } else { 0.0 };
+            let changed = [normal(clearance), tangential(slip)].map(|energy| length * energy);
+            springs.changed += changed[0] + changed[1];
+            springs.numerical[0] += changed[0];
             if stiffness_is_penalty {
-                let slip = slip - if held { traction / stiffness } else { 0.0 };
-                springs.numerical[1] += length * tangential(slip);
+                springs.numerical[1] += changed[1];
             }
+        }
+        if pair.initial.is_none() {
+            springs.changed = springs.stored;
         }
         springs
     }

@@ -14,8 +14,12 @@ use super::text::number;
 use super::{Body, Model, Step};
 use crate::mesh::configuration::vector;
 
-/// Residual fraction of the forces on a body that causes a warning; stresses and weights are given with a few digits.
-const OUT_OF_BALANCE: f64 = 1e-6;
+/// Residual fraction of the forces on a body that causes a warning: stresses and weights are given with a few digits, and straight edges that
+/// stand for curves leave more than their round-off.
+const OUT_OF_BALANCE: f64 = 1e-4;
+
+/// Resultant that causes one, as a fraction of the loads: of a wrong weight, which is little of the forces between many elements.
+const OF_LOADS: f64 = 1e-3;
 
 /// Relative round-off of a resultant.
 const ROUND_OFF: f64 = 1e-9;
@@ -24,6 +28,8 @@ const ROUND_OFF: f64 = 1e-9;
 struct Forces {
     sum: Vec<f64>,
     magnitude: Vec<f64>,
+    /// That of loads and contacts alone
+    loads: Vec<f64>,
 }
 
 impl Forces {
@@ -39,6 +45,14 @@ impl Forces {
 struct Imbalance {
     resultant: Vector2<f64>,
     share: f64,
+    /// Ratio of the resultant to loads and contact forces
+    of_loads: f64,
+}
+
+impl Imbalance {
+    fn is_worth_telling(&self) -> bool {
+        self.share > OUT_OF_BALANCE || self.of_loads > OF_LOADS
+    }
 }
 
 /// Warnings about bodies whose initial stress is not in equilibrium.
@@ -53,7 +67,7 @@ pub(super) fn concerns(model: &Model) -> Vec<String> {
     let concern = |body: &Body| {
         let found = imbalance(model, step, &start, body);
         let later = imbalance(model, step, &end, body);
-        (found.share > OUT_OF_BALANCE).then(|| message(body, &found, &later, step))
+        found.is_worth_telling().then(|| message(body, &found, &later, step))
     };
     stressed().filter_map(concern).collect()
 }
@@ -61,7 +75,7 @@ pub(super) fn concerns(model: &Model) -> Vec<String> {
 fn message(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> String {
     let rounded = |force: f64| if force.abs() < ROUND_OFF * found.resultant.norm() { 0.0 } else { force };
     let [x, y, percent] = [rounded(found.resultant.x), rounded(found.resultant.y), 100.0 * found.share].map(number);
-    let cure = match later.share <= OUT_OF_BALANCE {
+    let cure = match !later.is_worth_telling() {
         true => format!(
             "it would be in equilibrium at the end of the step `{}`, whose loads grow from zero: give them as \
              expressions, such as \"-9.81\" for a gravity, which act from the start",
@@ -80,21 +94,13 @@ fn message(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> St
 
 /// Forces of the bodies' initial stress minus the loads on them, at a time of the first step.
 fn forces(model: &Model, step: &Step, time: f64) -> Forces {
-    let mut forces = Forces { sum: vec![0.0; model.dofs()], magnitude: vec![0.0; model.dofs()] };
-    let initial = model.initial_memory();
-    for e in 0..model.solids.len() {
-        let body = model.body_of(e);
-        if !body.is_stressed() || !step.has(model.body_of_element[e]) {
-            continue;
-        }
-        let (old, nodes) = (model.memories.of(e, &initial), &model.mesh.elements[e].nodes);
-        let (mut new, mut force) = (old.to_vec(), vec![0.0; 2 * nodes.len()]);
-        let memory = Memory { dt: 0.0, old, new: &mut new };
-        let still = vec![Vector2::zeros(); nodes.len()];
-        // The law has a response in the undeformed body.
-        let _ = model.solids[e].evolve(&*body.material, memory, &still, &mut force, None);
-        nodes.iter().zip(force.chunks_exact(2)).for_each(|(&node, f)| forces.add(node, Vector2::new(f[0], f[1])));
+    let none = || vec![0.0; model.dofs()];
+    let mut forces = Forces { sum: none(), magnitude: none(), loads: none() };
+    let stressed = (0..model.bodies.len()).filter(|&body| model.bodies[body].is_stressed() && step.has(body));
+    for (node, force) in stressed.flat_map(|body| of_stress(model, body)) {
+        forces.add(node, force);
     }
+    let inner = forces.magnitude.clone();
     add_loads(model, &step.loads, time, &mut forces);
     let undeformed = model.mesh.undeformed();
     let contacts = model.contacts.iter().filter(|pair| step.joins(pair));
@@ -104,9 +110,27 @@ fn forces(model: &Model, step: &Step, time: f64) -> Forces {
     for (node, force) in model.prestress.chunks_exact(2).enumerate() {
         forces.add(node, -Vector2::new(force[0], force[1]));
     }
+    forces.loads = forces.magnitude.iter().zip(&inner).map(|(all, inner)| all - inner).collect();
     model.ties.gather(2, &mut forces.sum);
+    model.ties.gather(2, &mut forces.loads);
     model.ties.gather(2, &mut forces.magnitude);
     forces
+}
+
+/// Forces of the initial stress of a body on its nodes, element by element, before anything has moved [F].
+pub fn of_stress(model: &Model, body: usize) -> Vec<(usize, Vector2<f64>)> {
+    let (initial, material) = (model.initial_memory(), &*model.bodies[body].material);
+    let of = |&e: &usize| {
+        let (old, nodes) = (model.memories.of(e, &initial), &model.mesh.elements[e].nodes);
+        let (mut new, mut force) = (old.to_vec(), vec![0.0; 2 * nodes.len()]);
+        let memory = Memory { dt: 0.0, old, new: &mut new };
+        let still = vec![Vector2::zeros(); nodes.len()];
+        // The law has a response in the undeformed body.
+        let _ = model.solids[e].evolve(material, memory, &still, &mut force, None);
+        let forces: Vec<_> = force.chunks_exact(2).map(|f| Vector2::new(f[0], f[1])).collect();
+        nodes.iter().copied().zip(forces)
+    };
+    model.bodies[body].elements.iter().flat_map(of).collect()
 }
 
 fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
@@ -134,11 +158,12 @@ fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
 
 /// Imbalance of the forces on the free dofs of a body.
 fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbalance {
-    let (mut resultant, mut square, mut all) = (Vector2::zeros(), 0.0, 0.0);
+    let (mut resultant, mut square, mut all, mut loads) = (Vector2::zeros(), 0.0, 0.0, 0.0);
     for node in model.ties.originals(body.nodes.iter().copied()) {
         let mut free = vector(&forces.sum, node);
         for dof in [2 * node, 2 * node + 1] {
             all += forces.magnitude[dof].powi(2);
+            loads += forces.loads[dof];
             if let Ok(k) = step.supports.binary_search_by_key(&dof, |support| support.at.dof) {
                 let held = step.supports[k].at.vector();
                 free -= held * held.dot(&free);
@@ -148,5 +173,6 @@ fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbala
         square += free.norm_squared();
     }
     let share = if square > 0.0 { (square / all).sqrt() } else { 0.0 };
-    Imbalance { resultant: -resultant, share }
+    let of_loads = if resultant.norm() > ROUND_OFF * all.sqrt() { resultant.norm() / loads } else { 0.0 };
+    Imbalance { resultant: -resultant, share, of_loads }
 }

@@ -1,6 +1,6 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
-mod balance;
+pub(crate) mod balance;
 mod body;
 pub mod boundary;
 pub mod builder;

@@ -21,7 +21,13 @@ pub fn concerns(model: &Model) -> Vec<String> {
 fn locks(model: &Model, body: &Body) -> Option<String> {
     let undrained = body.pore_fluid.is_some();
     let flow = if undrained { Some(Flow::Isochoric) } else { body.material.description().flow };
-    let flow = flow.filter(|_| !model.mesh.section.is_plate())?;
+    // An element alone has a few ways to strain, which its nodes can follow.
+    let flow = flow.filter(|_| !model.mesh.section.is_plate() && body.elements.len() > 1)?;
+    let flow = match flow {
+        Flow::DilatingBelow(pressure) if least_pressure(model, body) >= pressure => Flow::Isochoric,
+        Flow::DilatingBelow(_) => Flow::Dilating,
+        flow => flow,
+    };
     let is_unfit = |e: &&usize| match (model.mesh.elements[**e].kind, model.solids[**e].formulation(), flow) {
         (ElementKind::T6, ..) | (_, Formulation::Reduced, _) => false,
         (_, Formulation::FBar, flow) => flow != Flow::Isochoric,
@@ -53,6 +59,17 @@ fn locks(model: &Model, body: &Body) -> Option<String> {
              Q8 with \"element\": \"reduced\", or T6"
         ),
     })
+}
+
+/// Least pressure of the initial effective stress of a body [F/L²].
+fn least_pressure(model: &Model, body: &Body) -> f64 {
+    let Some(stress) = &body.initial_stress else { return f64::NEG_INFINITY };
+    let pressure = |at| {
+        let [xx, yy, _, zz] = stress.at(at, model.mesh.section.is_plate());
+        -(xx + yy + zz) / 3.0
+    };
+    let places = body.elements.iter().flat_map(|&element| model.quadrature_positions(element));
+    places.map(pressure).fold(f64::INFINITY, f64::min)
 }
 
 /// An element with reduced integration bends into an hourglass without forces unless an edge holds it: one that it shares with another

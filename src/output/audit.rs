@@ -11,11 +11,25 @@
 //!
 //! An exact contact stores no energy along its normal, and none while it sticks. The energy stored in the penalties, relative
 //! to the elastic energy of bodies and contacts when that was largest, measures the error of the penalty method; as p²/2α_n it
-//! falls with the penalty.
+//! falls with the penalty. Where bodies start under stress and contacts under tractions, what has changed since counts:
+//!
+//! ```text
+//! strain energy − f(σ₀)·u = ½ ∫ Δσ:ε dV,   (p − p₀)²/2α_n                  f(σ₀): forces of the initial stress
+//! ```
+//! the energy measured from a stress that stays is first order in u, of any sign, and says nothing of how far bodies give way.
+//!
+//! # Touch
+//!
+//! The work of a static increment is that of its mean force. Where surfaces close within it they act in a part of it alone, which the
+//! balance does not see: the states at its ends are right all the same. Such errors are counted for themselves.
+
+use nalgebra::Vector2;
 
 use crate::contact::pair::ContactPair;
 use crate::contact::point::ContactState;
 use crate::equations::contacts::Springs;
+use crate::mesh::configuration::vector;
+use crate::model::balance;
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -35,8 +49,12 @@ pub struct Audit {
     pub supplied: f64,
     /// Error at the last row [F·L]
     error: f64,
-    /// Largest error, and its time [F·L, T]
-    worst: (f64, f64),
+    /// That of static increments in which surfaces closed or parted [F·L]
+    touch: f64,
+    /// When the error was largest
+    worst: Worst,
+    /// External work, all of it taken as positive [F·L]
+    work: f64,
     /// Contribution of every step to the error
     steps: Vec<StepError>,
     /// Error that arose in all increments in which masses have inertia, and its largest gain [F·L]
@@ -49,6 +67,27 @@ pub struct Audit {
     /// Size and stiffness of the model, once asked for: they take a look at every element
     #[serde(skip)]
     scales: Option<Scales>,
+    /// Initial stress of the bodies that are there from the start, once asked for
+    #[serde(skip)]
+    stresses: Option<Vec<Stress>>,
+}
+
+/// Largest energy error.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Worst {
+    /// [F·L]
+    error: f64,
+    /// The part of it that came by touch [F·L]
+    touch: f64,
+    /// [T]
+    time: f64,
+}
+
+/// Forces of the initial stress of a body on its nodes [F].
+#[derive(Clone, Debug)]
+struct Stress {
+    body: usize,
+    forces: Vec<(usize, Vector2<f64>)>,
 }
 
 /// What the round-off of the forces on a model goes by.
@@ -94,11 +133,19 @@ struct Penalties {
     stiffness: [f64; 2],
     /// Whether bodies are behind its points, that would give way instead
     on_bodies: bool,
+    /// Whether the bodies are under stress at the start, and its surfaces are not
+    starts_free: bool,
     /// Whether a largest penetration may be asked for
     by_steps: bool,
     /// Whether its slave has mass in implicit steps, which a stiffer penalty would make ring
     rings: bool,
 }
+
+/// Energy error by touch that causes a warning, as a fraction of the work of the run.
+const BY_TOUCH: f64 = 0.05;
+
+/// Change of the tractions that a contact starts under which is none, squared [-]
+const REST: f64 = 1e-6;
 
 /// Share of the elastic energy in penalties that is worth a warning [-]
 const GIVES_WAY: f64 = 0.01;
@@ -122,11 +169,16 @@ impl Audit {
             self.moving += error - self.error;
             self.gained = self.gained.max(-self.moving);
         }
-        self.error = error;
-        if error.abs() > self.worst.0.abs() || error.is_nan() {
-            self.worst = (error, new.time);
+        if matches!(step.scheme, Scheme::Static) && touches(old, new) {
+            self.touch += error - self.error;
         }
-        self.give.record(model, new);
+        self.work += (new.energy.external_work - old.energy.external_work).abs();
+        self.error = error;
+        if error.abs() > self.worst.error.abs() || error.is_nan() {
+            self.worst = Worst { error, touch: self.touch, time: new.time };
+        }
+        let stresses = self.stresses.get_or_insert_with(|| stresses(model));
+        self.give.record(model, new, stresses);
         let [reach, way] = largest([&old.displacement, &new.displacement]);
         let scales = || Scales { diagonal: model.mesh.diagonal(), stiffness: model.stiffness() };
         let scales = *self.scales.get_or_insert_with(scales);
@@ -153,9 +205,13 @@ impl Audit {
     }
 
     fn unbalanced(&self) -> Option<String> {
-        let (worst, time) = self.worst;
-        if worst.abs() <= (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise) {
+        let Worst { error: worst, touch, time } = self.worst;
+        let allowed = (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise);
+        if worst.abs() <= allowed {
             return None;
+        }
+        if (worst - touch).abs() <= allowed {
+            return self.by_touch(touch, time);
         }
         let largest = self.steps.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
         let StepError { step: name, remedy, .. } = largest?;
@@ -177,9 +233,50 @@ impl Audit {
     }
 }
 
+impl Audit {
+    /// Warning about an error that came by touch alone.
+    fn by_touch(&self, touch: f64, time: f64) -> Option<String> {
+        let work = self.work.max(self.supplied);
+        (touch.abs() > BY_TOUCH * work).then(|| {
+            format!(
+                "surfaces close or part within increments, whose work is known to {:.3e} by t = {}, {:.1} % of the work of the run: displacements                  and forces at the ends of increments do not suffer, but energies do; where these matter, take shorter increments as they                  close (dt.max, dt.error)",
+                touch.abs(),
+                time_text(time),
+                100.0 * touch.abs() / work
+            )
+        })
+    }
+}
+
+/// Whether points of contacts close or part from one state to the next.
+fn touches(old: &State, new: &State) -> bool {
+    let mut points = old.contacts.iter().flatten().zip(new.contacts.iter().flatten());
+    points.any(|(old, new)| old.is_closed() != new.is_closed())
+}
+
+/// Initial stress of the bodies that are there from the start.
+fn stresses(model: &Model) -> Vec<Stress> {
+    let from_start =
+        |body: &usize| model.bodies[*body].is_stressed() && model.steps.first().is_some_and(|step| step.has(*body));
+    let bodies = (0..model.bodies.len()).filter(from_start);
+    bodies.map(|body| Stress { body, forces: balance::of_stress(model, body) }).collect()
+}
+
+/// Elastic energy of bodies and contacts, of what has changed since the start [F·L].
+fn changed(model: &Model, state: &State, stresses: &[Stress]) -> f64 {
+    let there = stresses.iter().filter(|stress| state.has(stress.body)).flat_map(|stress| &stress.forces);
+    let first_order: f64 = there.map(|(node, force)| force.dot(&vector(&state.displacement, *node))).sum();
+    let mut elastic = state.energy.strain - first_order + state.energy.contact_elastic;
+    for (pair, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.initial.is_some()) {
+        let Springs { stored, changed, .. } = Springs::of(pair, states);
+        elastic += changed.max(REST * stored) - stored;
+    }
+    elastic
+}
+
 impl Give {
-    fn record(&mut self, model: &Model, state: &State) {
-        let elastic = state.energy.strain + state.energy.contact_elastic;
+    fn record(&mut self, model: &Model, state: &State, stresses: &[Stress]) {
+        let elastic = changed(model, state, stresses);
         if elastic <= self.elastic {
             return;
         }
@@ -197,6 +294,8 @@ impl Give {
                 pair.laws.iter().map(|law| law.description.stiffness).fold(f64::INFINITY, f64::min),
             ],
             on_bodies: pair.compliance > 0.0,
+            starts_free: pair.initial.is_none()
+                && pair.bodies.iter().flatten().any(|&body| model.bodies[body].is_stressed()),
             by_steps: solved,
             rings: moves && !pair.tied && has_mass(pair),
         };
@@ -218,7 +317,7 @@ impl Give {
 
     fn concern(
         &self,
-        Penalties { contact, energy, stiffness, by_steps, rings, .. }: &Penalties,
+        Penalties { contact, energy, stiffness, starts_free, by_steps, rings, .. }: &Penalties,
         way: usize,
     ) -> Option<String> {
         let share = energy[way] / self.elastic;
@@ -228,11 +327,13 @@ impl Give {
         // Multipliers on surfaces that have mass gain energy.
         let or = [("penetration", *by_steps && !rings), ("stick", *by_steps)]
             .map(|(key, helps)| if helps { format!(", or `{key}`") } else { String::new() });
+        let start =
+            if *starts_free { "start it under the stress of the bodies (`initial`, `of_bodies`), or " } else { "" };
         let what = ["lets the surfaces penetrate", "lets surfaces slip that should stick"];
         (share > GIVES_WAY).then(|| {
             format!(
                 "contact `{contact}`: at t = {} {:.1} % of the elastic energy is in its penalty, which {}: displacements \
-                 and forces are off by about as much; give it {}{}",
+                 and forces are off by about as much; {start}give it {}{}",
                 time_text(self.time),
                 100.0 * share,
                 what[way],

@@ -262,13 +262,15 @@ pub enum MaterialFailure {
 pub struct InadmissibleStress(pub String);
 
 /// Change of volume of a body that yields, which its elements must be able to follow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Flow {
     /// It stays
     Isochoric,
     /// It grows with the shear
     Dilating,
+    /// It grows with the shear where the pressure at the start is less than this [F/L²]; elsewhere the body contracts until its volume stays
+    DilatingBelow(f64),
 }
 
 /// J = det F, known to be positive and finite.

@@ -1,6 +1,6 @@
 //! Initial state of a run: velocities of bodies and point masses, and contacts that start closed.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -12,6 +12,7 @@ use super::groups;
 use super::load_step::LoadStep;
 use crate::contact::pair::{ContactPair, InitialTraction};
 use crate::contact::pores::effective;
+use crate::contact::surface::SlavePoint;
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
@@ -160,6 +161,29 @@ pub fn check_excess(model: &Model) -> Checked<()> {
         }
     }
     Ok(())
+}
+
+/// Lets a tie carry the initial stress of the bodies of its slave, if they have any.
+pub fn carry(pair: &mut ContactPair, slave: &str, model: &Model) {
+    let Some(Group::Edges(edges)) = model.mesh.groups.get(slave) else { return };
+    let mut bodies: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+    for (edge, &node) in edges.iter().flat_map(|edge| edge.nodes.iter().map(move |node| (edge, node))) {
+        bodies.entry(node).or_default().insert(model.body_of_element[edge.element]);
+    }
+    if !bodies.values().flatten().any(|&body| model.bodies[body].is_stressed()) {
+        return;
+    }
+    let x = model.mesh.undeformed();
+    let stress = |point: &SlavePoint| {
+        // An edge belongs to one body, its ends perhaps to two.
+        let sides: Vec<_> = point.position.iter().filter_map(|(node, _)| bodies.get(node)).collect();
+        let body =
+            sides.first().and_then(|first| first.iter().find(|body| sides.iter().all(|side| side.contains(body))));
+        let total = |&body: &usize| model.bodies[body].total_stress(point.at(&x), model.mesh.section.is_plate());
+        let CauchyStress { xx, yy, xy, .. } = body.and_then(total).unwrap_or_default();
+        Matrix2::new(xx, xy, xy, yy)
+    };
+    pair.carry(stress, &x);
 }
 
 fn without_projection(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {

@@ -114,6 +114,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair
         contact::check_tied(contact, &place)?;
         pair.tie(contact.sliding == SlidingRange::Small, &model.mesh.undeformed());
         contact::check_ties(&pair, &place)?;
+        initial::carry(&mut pair, &contact.slave, model);
     } else if contact.sliding == SlidingRange::Small {
         let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \
                        take finite sliding, or name the two parts that touch as slave and master";
@@ -482,6 +483,8 @@ pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
 /// Finds surface nodes of the slave's bodies that are not on the slave and initially outside a rigid master, whose penetration
 /// would not be detected.
 fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
+    // What another contact looks after is seen: the sides of a tool are often contacts of their own.
+    let slaves: Vec<BTreeSet<usize>> = pairs.iter().map(|pair| pair.nodes().collect()).collect();
     // Several contacts may belong to the same bodies.
     let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
     for (contact, pair) in contacts.iter().zip(pairs) {
@@ -489,9 +492,9 @@ fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
             continue;
         };
         let bodies: BTreeSet<usize> = slave.iter().map(|edge| model.body_of_element[edge.element]).collect();
-        let seen: BTreeSet<usize> = slave.iter().flat_map(|edge| &edge.nodes).copied().collect();
+        let seen = |node: &usize| slaves.iter().any(|slave| slave.contains(node));
         let surface = surfaces.entry(bodies).or_insert_with_key(|bodies| surface_nodes(model, bodies));
-        let others = surface.iter().filter(|node| !seen.contains(node)).map(|&node| lone_point(node, 0.0));
+        let others = surface.iter().filter(|node| !seen(node)).map(|&node| lone_point(node, 0.0));
         pair.unseen = others.filter(|point| is_outside(rigid, point, &model.mesh)).collect();
     }
 }

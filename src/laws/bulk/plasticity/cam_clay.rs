@@ -127,7 +127,7 @@ pub struct CamClay {
     /// p_min
     floor: f64,
     shear: Shear,
-    start: Start,
+    pub(super) start: Start,
     /// Pressure of the moduli that are told [F/L²]
     typical: f64,
 }
@@ -142,9 +142,20 @@ enum Shear {
 
 /// Initial size of the yield surface as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Start {
+pub(super) enum Start {
     Pressure(f64),
     Ratio(f64),
+}
+
+impl Start {
+    /// Soil dilates to critical state where p is less than half of p_c/R*, and contracts to it above.
+    pub(super) fn flow(self, structure: f64) -> Flow {
+        match self {
+            Self::Pressure(p_c) => Flow::DilatingBelow(0.5 * p_c / structure),
+            Self::Ratio(ratio) if ratio > 2.0 => Flow::Dilating,
+            Self::Ratio(_) => Flow::Isochoric,
+        }
+    }
 }
 
 /// History of the law itself.
@@ -497,7 +508,7 @@ impl ReturnMap for CamClay {
     }
 
     fn flow(&self) -> Flow {
-        Flow::Dilating
+        self.start.flow(1.0)
     }
 
     /// Flow is associated, but p_c of the end of the increment makes D unsymmetric.

@@ -355,7 +355,7 @@ impl ReturnMap for SysCamClay {
     }
 
     fn flow(&self) -> Flow {
-        Flow::Dilating
+        self.clay.start.flow(self.structure)
     }
 
     /// Flow is associated, but the skeleton at the end of the increment makes D unsymmetric.
