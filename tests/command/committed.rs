@@ -7,6 +7,8 @@ use std::process::Command;
 
 use tempfile::TempDir;
 
+use crate::common::warnings::is_listed;
+
 /// Warnings that belong to a case: the beginning of its name, a part of the warning, and why it stays.
 const SHOWN: &[(&str, &str, &str)] = &[
     (
@@ -68,6 +70,9 @@ fn committed() -> BTreeSet<String> {
 fn unexpected(name: &str, lines: &str, mark: &str) -> Vec<String> {
     let shown = |line: &str| SHOWN.iter().any(|(case, part, _)| name.starts_with(case) && line.contains(part));
     let warnings = lines.lines().filter(|line| line.starts_with(mark));
+    for told in warnings.clone() {
+        assert!(is_listed(told), "docs/reference/warnings.md has no entry for: {told}");
+    }
     warnings.filter(|line| !shown(line)).map(|line| format!("{name}: {line}")).collect()
 }
 

@@ -22,3 +22,4 @@ mod results;
 mod schema;
 mod surface;
 mod survive;
+mod warnings;

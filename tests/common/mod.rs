@@ -5,6 +5,7 @@
 #[cfg(feature = "cli")]
 mod cases;
 pub mod store;
+pub mod warnings;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

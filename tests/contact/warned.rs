@@ -16,6 +16,9 @@ const NU: f64 = 0.25;
 fn warnings(case: &Value) -> Vec<String> {
     let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(case)));
     fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
+    for told in &warnings.list {
+        assert!(common::warnings::is_listed(told), "docs/reference/warnings.md has no entry for: {told}");
+    }
     warnings.list
 }
 
@@ -425,4 +428,96 @@ fn an_error_in_the_shortest_increment_is_told() {
     let inexact = told(1e-9);
     assert!(inexact.len() == 1 && inexact[0].ends_with("lower dt.min"), "{inexact:?}");
     assert_eq!(told(1e3), Vec::<String>::new());
+}
+
+/// Two layers of ground under geostatic stress on each other, tied, of so many elements along the seam, with a weight to hold and then a
+/// pressure on top.
+fn layers(elements: [usize; 2], [weight, pressure]: [f64; 2], alpha_n: Option<f64>) -> Value {
+    let layer = |body: &str, columns: usize, [low, high]: [f64; 2], sides: [&str; 4]| json!({"body": body, "corners": [[0, low], [10, low], [10, high], [0, high]], "elements": [columns, 5], "sides": sides});
+    let body = json!({"material": {"model": "linear", "E": 5000, "nu": 0.3, "density": 1},
+                      "initial_stress": {"geostatic": {"surface": 0, "weight": 18, "K0": 0.5}}});
+    let gravity = |on: &str| json!({"on": on, "gravity": {"y": format!("-{weight}")}});
+    let mut seam = json!({"slave": "seam", "master": "bed", "tied": true});
+    if let Some(alpha_n) = alpha_n {
+        seam["normal"] = json!({"alpha_n": alpha_n});
+    }
+    json!({
+        "mesh": {"blocks": [layer("lower", elements[0], [-10.0, -5.0], ["bottom", "sides", "bed", "sides"]),
+                            layer("upper", elements[1], [-5.0, 0.0], ["seam", "sides", "top", "sides"])]},
+        "bodies": {"lower": body, "upper": body},
+        "contacts": {"seam": seam},
+        "steps": [{"name": "rest", "duration": 1, "loads": [gravity("lower"), gravity("upper")],
+                   "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "sides", "ux": 0}]},
+                  {"name": "load", "duration": 1, "loads": [{"on": "top", "pressure": pressure}]}]
+    })
+}
+
+/// A tie carries the stress of its bodies from the start, as shared nodes do: at rest nothing moves, and 10 kPa press the layers together by
+/// q H/M. A weight that is wrong by a hundredth is told, one that is rounded is not.
+#[test]
+fn layers_tied_at_rest_are_not_told_but_a_wrong_weight_is() {
+    for elements in [[10, 10], [10, 7], [5, 8]] {
+        let finished = common::finish(&layers(elements, [18.0, 10.0], None));
+        let [rest, pressed] = [0, finished.states.len() - 1].map(|k| &finished.states[k].displacement);
+        let largest = |u: &[f64]| u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        let modulus = 5000.0 * 0.7 / (1.3 * 0.4);
+        assert!(largest(rest) < 1e-12, "{elements:?}: {:.3e}", largest(rest));
+        common::close("the top", largest(pressed), 10.0 * 10.0 / modulus, 1e-4 * 10.0 * 10.0 / modulus);
+        assert_eq!(warnings(&layers(elements, [18.0, 10.0], None)), Vec::<String>::new());
+        assert_eq!(warnings(&layers(elements, [18.0005, 10.0], None)), Vec::<String>::new(), "rounded");
+    }
+    let told = warnings(&layers([10, 10], [18.18, 10.0], None));
+    assert!(told.len() == 2 && told.iter().all(|told| told.contains("is not in equilibrium")), "{told:?}");
+}
+
+/// A tie that gives way as much as a twentieth of its bodies is told under initial stress too, by how much the load presses the layers
+/// together, and is not with the penalty advised.
+#[test]
+fn a_soft_tie_is_told_and_its_remedy_ends_that() {
+    let told = warnings(&layers([10, 10], [18.0, 10.0], Some(15_000.0)));
+    // p²/2α_n beside p² H/2M
+    let share = |alpha_n: f64| 1.0 / (1.0 + alpha_n * 10.0 * 1.3 * 0.4 / (5000.0 * 0.7));
+    let words = format!("{:.1} % of the elastic energy is in its penalty", 100.0 * share(15_000.0));
+    assert!(told.len() == 1 && told[0].contains(&words), "{words} {told:?}");
+    let advised = told[0].split_once("\"alpha_n\": ").expect("a number").1;
+    let advised = advised.split(',').next().and_then(|text| text.trim().parse().ok()).expect("a number");
+    assert!(share(advised) < 0.01);
+    assert_eq!(warnings(&layers([10, 10], [18.0, 10.0], Some(advised))), Vec::<String>::new());
+}
+
+/// A side that another contact has as its slave is looked after.
+#[test]
+fn the_slave_of_another_contact_is_not_unseen() {
+    let circle = json!({"circle": {"centre": [5.5, 1.0], "radius": 1.0}});
+    let mut case = moved(&circle, [0.8, 0.0]);
+    case["contacts"]["side"] = case["contacts"]["base"].clone();
+    case["contacts"]["side"]["slave"] = json!("right");
+    let told = warnings(&case);
+    assert!(!told.iter().any(|told| told.contains("outside the slave group")), "{told:?}");
+}
+
+/// Elements that lock are told as their bodies flow: Cam-clay contracts unless it is heavily overconsolidated; an element alone does not lock.
+#[test]
+fn what_locks_is_told_by_how_it_flows() {
+    let told = |elements: [usize; 2], start: Value| {
+        let mut clay = json!({"model": "cam_clay", "lambda": 0.1, "kappa": 0.02, "M": 1.0, "nu": 0.3, "p_min": 1.0});
+        clay.as_object_mut().expect("keys").extend(start.as_object().expect("keys").clone());
+        let model = common::model(&json!({
+            "mesh": {"blocks": [{"body": "soil", "corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "elements": elements,
+                                 "sides": ["bottom", "right", "top", "left"]}]},
+            "bodies": {"soil": {"material": clay, "initial_stress": {"xx": -100, "yy": -100, "zz": -100}}},
+            "steps": [{"name": "press", "duration": 1,
+                       "supports": [{"on": "bottom", "uy": 0}, {"on": "top", "uy": -0.01}, {"on": "left", "ux": 0}, {"on": "right", "ux": 0}]}]
+        }));
+        model.warnings().into_iter().filter(|told| told.contains("limit loads")).collect::<Vec<_>>()
+    };
+    for wet in [json!({"OCR": 1}), json!({"p_c": 100}), json!({"p_c": 199})] {
+        let said = told([2, 2], wet);
+        assert!(said.len() == 1 && said[0].contains("up to a third") && !said[0].contains("dilates"), "{said:?}");
+    }
+    for dry in [json!({"OCR": 4}), json!({"p_c": 400})] {
+        let said = told([2, 2], dry.clone());
+        assert!(said.len() == 1 && said[0].contains("yields and dilates"), "{said:?}");
+        assert_eq!(told([1, 1], dry), Vec::<String>::new());
+    }
 }
