@@ -169,7 +169,8 @@ impl Audit {
             self.moving += error - self.error;
             self.gained = self.gained.max(-self.moving);
         }
-        if matches!(step.scheme, Scheme::Static) && touches(old, new) {
+        let overlaps = self.steps.last().is_some_and(|step| step.remedy == OVERLAP);
+        if matches!(step.scheme, Scheme::Static) && !overlaps && touches(old, new) {
             self.touch += error - self.error;
         }
         self.work += (new.energy.external_work - old.energy.external_work).abs();
@@ -210,7 +211,7 @@ impl Audit {
         if worst.abs() <= allowed {
             return None;
         }
-        if (worst - touch).abs() <= allowed {
+        if (worst - touch).abs() <= allowed && self.work > 0.0 {
             return self.by_touch(touch, time);
         }
         let largest = self.steps.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
@@ -239,7 +240,9 @@ impl Audit {
         let work = self.work.max(self.supplied);
         (touch.abs() > BY_TOUCH * work).then(|| {
             format!(
-                "surfaces close or part within increments, whose work is known to {:.3e} by t = {}, {:.1} % of the work of the run: displacements                  and forces at the ends of increments do not suffer, but energies do; where these matter, take shorter increments as they                  close (dt.max, dt.error)",
+                "surfaces close or part within increments, whose work is known to {:.3e} by t = {}, {:.1} % of the work of the run: displacements \
+                 and forces at the ends of increments do not suffer, but energies do; where these matter, take shorter increments as they \
+                 close (dt.max, dt.error)",
                 touch.abs(),
                 time_text(time),
                 100.0 * touch.abs() / work

@@ -464,9 +464,11 @@ fn layers_tied_at_rest_are_not_told_but_a_wrong_weight_is() {
         assert!(largest(rest) < 1e-12, "{elements:?}: {:.3e}", largest(rest));
         common::close("the top", largest(pressed), 10.0 * 10.0 / modulus, 1e-4 * 10.0 * 10.0 / modulus);
         assert_eq!(warnings(&layers(elements, [18.0, 10.0], None)), Vec::<String>::new());
-        assert_eq!(warnings(&layers(elements, [18.0005, 10.0], None)), Vec::<String>::new(), "rounded");
+        for weight in [18.0, 18.0005] {
+            assert_eq!(common::model(&layers(elements, [weight, 10.0], None)).warnings(), Vec::<String>::new());
+        }
     }
-    let told = warnings(&layers([10, 10], [18.18, 10.0], None));
+    let told = common::model(&layers([10, 10], [18.18, 10.0], None)).warnings();
     assert!(told.len() == 2 && told.iter().all(|told| told.contains("is not in equilibrium")), "{told:?}");
 }
 
@@ -505,7 +507,7 @@ fn what_locks_is_told_by_how_it_flows() {
         let model = common::model(&json!({
             "mesh": {"blocks": [{"body": "soil", "corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "elements": elements,
                                  "sides": ["bottom", "right", "top", "left"]}]},
-            "bodies": {"soil": {"material": clay, "initial_stress": {"xx": -100, "yy": -100, "zz": -100}}},
+            "bodies": {"soil": {"material": clay, "initial_stress": {"components": {"xx": -100, "yy": -100, "zz": -100}}}},
             "steps": [{"name": "press", "duration": 1,
                        "supports": [{"on": "bottom", "uy": 0}, {"on": "top", "uy": -0.01}, {"on": "left", "ux": 0}, {"on": "right", "ux": 0}]}]
         }));
