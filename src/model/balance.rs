@@ -19,7 +19,7 @@ use crate::mesh::configuration::vector;
 const OUT_OF_BALANCE: f64 = 1e-4;
 
 /// Resultant that causes one, as a fraction of the loads: of a wrong weight, which is little of the forces between many elements.
-const OF_LOADS: f64 = 1e-3;
+const OF_LOADS: f64 = 3e-4;
 
 /// Relative round-off of a resultant.
 const ROUND_OFF: f64 = 1e-9;
