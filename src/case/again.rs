@@ -3,6 +3,7 @@
 //!
 //! Two cases are compared key by key.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::slice;
 use std::sync::Arc;
@@ -83,6 +84,7 @@ impl Opened {
         let before = document_of(&checkpoint).map_err(complain)?;
         join(&mut document, &steps(&before)[..checkpoint.taken_over.min(steps(&before).len())]);
         unchanged(&before, &document, checkpoint.begun).map_err(complain)?;
+        same_bodies(&before, &document, checkpoint.taken_over).map_err(complain)?;
         let case = read::input(&document).map_err(complain)?;
         let taken_over = checkpoint.taken_over;
         Ok(Self { taken_over, resumes: true, ..Self::new(path, document, case, Some(checkpoint)) })
@@ -144,7 +146,9 @@ impl Opened {
         mesh: &MeshPrint,
         model: &Arc<Model>,
     ) -> Result<Saved, CaseError> {
-        unchanged(before, &self.document, run.begun()).map_err(|complaint| complaint.in_file(&self.path))?;
+        unchanged(before, &self.document, run.begun())
+            .and_then(|()| same_bodies(before, &self.document, self.taken_over))
+            .map_err(|complaint| complaint.in_file(&self.path))?;
         same_defaults(before, &self.case, &model.mesh).map_err(|complaint| complaint.in_file(&self.path))?;
         check_mesh(mesh, model)
             .and_then(|()| run.on(model).map_err(|error| error.to_string()))
@@ -262,7 +266,9 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
     }
     differences.retain(|difference| !difference.is_variant());
     refuse(differences, "this case cannot begin with the end of that run")?;
+    let taken_over = steps(&before).len();
     join(document, steps(&before));
+    same_bodies(&before, document, taken_over)?;
     Ok((file, checkpoint))
 }
 
@@ -279,6 +285,41 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
         compare(format!("steps[{k}]"), steps(&before).get(k), steps(&now).get(k), &mut differences);
     }
     refuse(differences, "the case has changed since its checkpoint was written")
+}
+
+/// Checks that the bodies that are absent from the start are those of the run so far: later steps decide that. Steps are numbered without
+/// those taken over.
+fn same_bodies(before: &Value, now: &Value, taken_over: usize) -> Checked<()> {
+    let [was, is] = [before, now].map(coming);
+    let own = |[step, k]: [usize; 2]| format!("steps[{}].add[{k}]", step.saturating_sub(taken_over));
+    if let Some((body, place)) = is.iter().find(|(body, _)| !was.contains_key(*body)) {
+        let message = format!(
+            "`{body}` is there from the start of the run so far, and a body that a step adds before any removes it is absent until then: \
+             remove it in a step before this one, or run the case with all its steps from the beginning"
+        );
+        return Err(ModelError::new(own(*place), message));
+    }
+    let Some((body, place)) = was.iter().find(|(body, _)| !is.contains_key(*body)) else { return Ok(()) };
+    let message = format!(
+        "`{body}` is absent from the start of the run so far, whose {} added it; without that it is there from the start: keep the step that \
+         adds it, or run the case from the beginning",
+        own(*place)
+    );
+    Err(ModelError::new("steps", message))
+}
+
+/// Bodies that a step adds before any removes them, with the numbers of the step and of the entry.
+fn coming(document: &Value) -> BTreeMap<&str, [usize; 2]> {
+    let mut first = BTreeMap::new();
+    for (step, given) in steps(document).iter().enumerate() {
+        for key in ["add", "remove"] {
+            let names = given[key].as_array().map_or(&[][..], Vec::as_slice).iter().filter_map(Value::as_str);
+            for (k, name) in names.enumerate() {
+                first.entry(name).or_insert((key == "add").then_some([step, k]));
+            }
+        }
+    }
+    first.into_iter().filter_map(|(body, place)| Some((body, place?))).collect()
 }
 
 /// Checks that the methods and penalties that a case leaves open are those of the run so far. They are other ones where a step has inertia

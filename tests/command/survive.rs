@@ -1058,6 +1058,45 @@ fn a_case_begins_where_another_has_ended() {
     assert!(told(&run(folder.path(), "none", &[]), 2).contains("the run is not complete"));
 }
 
+/// A body that a later step adds is absent from the start: a run in which it was there cannot go on as that case.
+#[test]
+fn later_steps_do_not_change_who_was_there() {
+    let block = |body: &str, low: f64, sides: [Option<&str>; 4]| json!({"body": body, "corners": [[0, low], [2, low], [2, low + 1.0], [0, low + 1.0]], "elements": [2, 1], "sides": sides});
+    let body = json!({"material": {"model": "linear", "E": 1000, "nu": 0.3, "density": 1}});
+    let rest = json!({"name": "rest", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "bottom", "ux": 0, "uy": 0}]});
+    let changing = |name: &str, key: &str| json!({"name": name, "duration": 1, key: ["fill"]});
+    let case = |steps: Value| {
+        json!({
+            "mesh": {"joined": [["ground", "fill"]],
+                "blocks": [block("ground", -1.0, [Some("bottom"), None, None, None]), block("fill", 0.0, [None; 4])]},
+            "bodies": {"ground": body, "fill": body}, "steps": steps,
+            "output": {"fields": false, "report": false},
+        })
+    };
+    let folder = TempDir::new().expect("a folder");
+    let start = |case: &Value, out: &str, more: &[&str]| {
+        written(folder.path(), case);
+        run(folder.path(), out, more)
+    };
+    done(&start(&case(json!([rest])), "there", &[]));
+    let there = "`fill` is there from the start of the run so far";
+    let added = case(json!([rest, changing("build", "add")]));
+    let refusal = told(&start(&added, "there", &["--resume"]), 2);
+    assert!(refusal.contains("steps[1].add[0]") && refusal.contains(there), "{refusal}");
+    let mut begins = case(json!([changing("build", "add")]));
+    begins["begin_with"] = json!("there");
+    let refusal = told(&start(&begins, "begun", &[]), 2);
+    assert!(refusal.contains("steps[0].add[0]") && refusal.contains(there), "{refusal}");
+    assert!(!folder.path().join("begun").exists(), "nothing is written");
+    // Removed in between it may come again.
+    let both = json!([rest, changing("dig", "remove"), changing("build", "add")]);
+    done(&start(&case(both.clone()), "there", &["--resume"]));
+    done(&start(&case(both), "whole", &[]));
+    let [resumed, whole] =
+        ["there", "whole"].map(|out| fs::read(folder.path().join(out).join("history.csv")).expect("a table"));
+    assert!(resumed == whole, "in one go or resumed");
+}
+
 /// The number of threads is checked wherever it comes from, and threads that cannot be had are told.
 #[cfg(unix)]
 #[test]
