@@ -80,9 +80,10 @@ impl Evolving {
             let (n, memory) = (model.mesh.elements[e].nodes.len(), Memory { dt: trial.dt, old, new: &mut *new });
             let (u, dofs) = (&nodal(model, e, u)[..n], 2 * n);
             let tangent = wanted.then_some(&mut tangent[..dofs * dofs]);
-            let found = model.as_born(born, e).evolve(&*body.material, memory, u, &mut force[..dofs], tangent);
+            let solid = model.as_born(born, e);
+            let found = solid.evolve(&*body.material, memory, u, &mut force[..dofs], tangent);
             let energies = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
-            Ok((e, energies, model.heating(e, [old, new])))
+            Ok((e, energies, model.heating(solid, e, [old, new])))
         };
         let mut all = Evolved::default();
         let elements = model.memories.each_mut(memory).enumerate().zip(&*own);

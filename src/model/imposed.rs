@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::boundary::{Amplitude, Moment, Profile};
+use super::element::SolidElement;
 use super::{Body, Model, Step};
 use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
@@ -188,9 +189,9 @@ impl Model {
         self.rises(element).map(of).into_iter().flatten()
     }
 
-    /// Work of a temperature change on an element in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: the change of
+    /// Work of a temperature change on an element, as it came, in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: the change of
     /// the stored energy at constant displacement [F·L].
-    pub fn heating(&self, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
+    pub fn heating(&self, solid: &SolidElement, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
         let (Some((count, rise)), Some(thermal)) = (self.rises(element), self.body_of(element).thermal) else {
             return 0.0;
         };
@@ -198,7 +199,7 @@ impl Model {
             -0.5 * (old[rise + 1] + new[rise + 1]) * thermal.expansion * (new[rise] - old[rise]) * volume
         };
         let points = old.chunks_exact(count).zip(new.chunks_exact(count));
-        self.solids[element].point_volumes().iter().zip(points).map(of).sum()
+        solid.point_volumes().iter().zip(points).map(of).sum()
     }
 
     /// Number of variables of an element's material at a point, and the index of T − T₀; `None` without thermal expansion.

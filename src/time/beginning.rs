@@ -63,7 +63,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 }
 
 /// Lets bodies come or go without a jump: what the forces change by fades over the step. Nodes that only absent bodies have come to
-/// rest. The energy that bodies bring or take counts as external work.
+/// rest. The energy that bodies bring or take counts as external work, as does that of temperatures that jump with them.
 fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
     model.bear(step, state).map_err(|(e, share)| IncrementFailure::Start(TrialFailure::narrow(model, e, share)))?;
     model.forget(step, state);
@@ -85,9 +85,18 @@ fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Works
             states.clone_from(found);
         }
     }
-    let [strain, contact] = [work.assembler.evaluation.strain_energy, contacts::stored(model, &state.contacts)];
-    state.energy.external_work += strain - state.energy.strain + contact - state.energy.contact_elastic;
-    (state.energy.strain, state.energy.contact_elastic) = (strain, contact);
+    let evaluation = &work.assembler.evaluation;
+    let [strain, contact] = [evaluation.strain_energy, contacts::stored(model, &state.contacts)];
+    let energy = &mut state.energy;
+    energy.external_work += strain - energy.strain + contact - energy.contact_elastic;
+    (energy.strain, energy.contact_elastic) = (strain, contact);
+    if !step.temperatures.is_empty() {
+        // Temperatures that jump here have acted, under the force that fades: the first increment goes on from them.
+        state.memory.clone_from(&evaluation.memory);
+        energy.external_work += evaluation.plastic + evaluation.dissipated;
+        energy.plastic_dissipation += evaluation.plastic;
+        energy.damping_dissipation += evaluation.dissipated;
+    }
     Arc::make_mut(&mut state.step_start).fading = fading;
     Ok(())
 }
