@@ -241,6 +241,11 @@ impl Warnings {
         let pending: Vec<usize> = (0..model.bodies.len()).filter(pending).collect();
         let sharpest = *self.sharpest.get_or_insert_with(|| sharpest(model, &pending));
         for body in pending {
+            if !state.has(body) {
+                // Nodes that it shares go on with the others; it is looked at when it comes again.
+                self.possibly.remove(&body);
+                continue;
+            }
             let so_far = self.strained.get(&body).copied().unwrap_or(0.0);
             let enough = (FURTHER * so_far).max(LEAST_STRAINED);
             let possibly = self.possibly.entry(body).or_insert(f64::INFINITY);
@@ -248,7 +253,7 @@ impl Warnings {
             if *possibly <= enough && !ends_step {
                 continue;
             }
-            let now = if state.has(body) { most_strained(model, body, state) } else { 0.0 };
+            let now = most_strained(model, body, state);
             *possibly = now;
             if ends_step || now > enough {
                 self.strained.insert(body, now.max(so_far));

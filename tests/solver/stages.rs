@@ -9,6 +9,7 @@ use crate::terms::tangent_error;
 use fecontact::equations::Trial;
 use fecontact::model::Model;
 use fecontact::model::state::State;
+use fecontact::output::warnings::Warnings;
 use serde_json::{Value, json};
 
 /// A column of `ground`, 2 high, below 1 of `cut`: 1 wide, with rollers, joined, elements of 1/n.
@@ -437,6 +438,53 @@ fn what_has_gone_holds_nothing_and_is_not_named() {
     let (_, result) = fecontact::run::run(&Arc::new(model(&case)), &mut []);
     let said = result.expect_err("it slides").to_string();
     assert!(said.contains("nothing resists the motion of body `block` along x"), "{said}");
+}
+
+/// A column of `ground` with a warm `cut` on it that goes and comes back warm, to the place that it has by then, and is heated on; a feather
+/// on top goes with the first change. Whatever the temperature does, at constant displacement its work is what the bodies store: linear
+/// bodies balance to round-off, in static steps and by the trapezoidal rule.
+#[test]
+fn bodies_come_and_go_with_their_heat() {
+    for (scheme, dt) in [(json!("static"), 0.25), (json!({"newmark": {}}), 0.05)] {
+        for [warm, jump, back] in [["1", "0", "1 + 0*t"], ["-1", "2", "0.5 + t"], ["0", "1 + 0*t", "2"]] {
+            let mut mesh = column(2);
+            let feather = json!({"body": "feather", "corners": [[0, 3], [1, 3], [1, 3.5], [0, 3.5]], "elements": [1, 1], "sides": [null, null, null, null]});
+            mesh["blocks"].as_array_mut().expect("blocks").push(feather);
+            mesh["blocks"][1]["sides"][2] = Value::Null;
+            mesh["joined"][0] = json!(["ground", "cut", "feather"]);
+            let body = |stiffness: f64, expansion: f64| json!({"material": {"model": "linear", "E": stiffness, "nu": 0.25, "density": 2}, "thermal": {"expansion": expansion}});
+            let case = json!({
+                "mesh": mesh,
+                "bodies": {"ground": body(1000.0, 0.01), "cut": body(1000.0, 0.02), "feather": body(0.001, 0.0)},
+                "steps": [
+                    {"name": "rest", "duration": 1, "scheme": scheme, "dt": {"initial": dt}, "loads": gravity(&["ground", "cut"]),
+                     "temperature": {"ground": warm, "cut": warm},
+                     "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}]},
+                    {"name": "jump", "duration": 1, "remove": ["feather"], "temperature": {"ground": jump, "cut": jump}},
+                    {"name": "go", "duration": 1, "remove": ["cut"]},
+                    {"name": "come", "duration": 1, "add": ["cut"], "temperature": {"cut": back}, "loads": gravity(&["cut"])},
+                ],
+            });
+            let run = finish(&case);
+            let most = run.states.iter().map(|state| state.energy.strain).fold(0.0, f64::max);
+            for state in &run.states {
+                close("energy error", state.energy.error(), 0.0, 1e-11 * most.max(1.0));
+            }
+        }
+    }
+}
+
+/// Ground that heaves by more than a tenth where it is relieved takes nodes of what has gone with it: the absent body is not named.
+#[test]
+fn what_is_absent_is_not_strained() {
+    let mut case = unloading(2, "linear", json!("static"));
+    for body in ["ground", "cut"] {
+        case["bodies"][body]["material"]["E"] = json!(50);
+    }
+    let (mut warnings, model) = (Warnings::default(), Arc::new(model(&case)));
+    fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
+    let strained: Vec<&String> = warnings.list.iter().filter(|warning| warning.contains("whose squares")).collect();
+    assert!(strained.len() == 1 && strained[0].contains("body `ground`"), "{:?}", warnings.list);
 }
 
 /// A place that has become too narrow for what comes is told, with element and place.
