@@ -18,6 +18,7 @@ cfg_if::cfg_if! {
         pub mod fronts;
         pub mod gradients;
         pub mod history;
+        pub mod instability;
         pub mod store;
         pub mod law;
         pub mod newton_log;
@@ -40,6 +41,7 @@ cfg_if::cfg_if! {
         pub(crate) mod fronts;
         pub(crate) mod gradients;
         pub(crate) mod history;
+        pub(crate) mod instability;
         pub(crate) mod store;
         pub(crate) mod law;
         pub(crate) mod newton_log;

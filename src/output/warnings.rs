@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::audit::Audit;
 use super::csv;
+use super::instability::Instability;
 use crate::contact::force::ContactState;
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
@@ -52,6 +53,8 @@ pub struct Warnings {
     open: BTreeMap<usize, (String, Option<f64>)>,
     /// Contacts that have closed once
     closed: BTreeSet<usize>,
+    /// Unstable equilibria that were accepted
+    unstable: Instability,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -91,6 +94,7 @@ impl Observer for Warnings {
         self.error_in_time(attempt);
         self.error_of_touch(attempt);
         self.lost_pivots(attempt);
+        self.unstable.record(attempt, state.time);
         self.passed(attempt, state);
         let way = self.audit.record(model, attempt.step, attempt.old, state);
         self.linear_bodies(model, state, way, attempt.ends_step(state));
@@ -130,6 +134,7 @@ impl Observer for Warnings {
             });
             self.list.push(format!("contact `{name}` has never closed: {near}"));
         }
+        self.list.extend(self.unstable.message());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()

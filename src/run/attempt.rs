@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::control::{Candidate, Midway, Outcome, Outputs, Phase, RESULTS, WatchedSlip};
+use super::control::{Candidate, Midway, Outcome, Outputs, Phase, RESULTS, WatchedSlip, negative_after};
 use super::error::Error;
 use super::observer::Verdict;
 use super::simulation::Simulation;
@@ -23,16 +23,20 @@ use crate::time::quasi_dynamic::{Gone, QuasiDynamic};
 use crate::time::step_size::{Judgement, bounded, fastest_slip, judge, on_ladder};
 use crate::time::touching::Touching;
 
+/// Number of times that an increment is halved to keep to stable equilibria.
+const HALVINGS: usize = 8;
+
 impl Simulation {
     /// Tries an implicit or static increment.
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
-        let Self { model, step, state: old, work, .. } = self;
+        let Self { model, step, state: old, work, control, .. } = self;
         let wanted = bounded(step, old.time, dt, None);
         let dt = bounded(step, old.time, dt, model.requests.next_time(old.time));
         let (iterations, solved) = advance(model, step, old, dt, work);
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
         let half = step.shorter(dt, 1);
+        let loses_stability = negative_after(step, &iterations, control.negative) > control.negative;
         let outcome = match solved {
             Ok(mut new) => {
                 let mut judgement = judge(model, step, [old, &new], hardest_pass(&iterations), number > 1);
@@ -51,6 +55,12 @@ impl Simulation {
                     _ if ruptures => {
                         let phase = half.map_or_else(|| self.rupture(), |dt| again(dt, Touching::default()));
                         Outcome::Rejected(Verdict::Rupture, phase)
+                    }
+                    // A long increment can pass from stable equilibria to an unstable branch beside them; a short one rather
+                    // follows the stable branch. A branch that becomes unstable itself does so however short increments are.
+                    Judgement { accepted: true, .. } if loses_stability && number <= HALVINGS && half.is_some() => {
+                        let dt = half.unwrap_or(dt);
+                        Outcome::Rejected(Verdict::Unstable, again(dt, Touching::default()))
                     }
                     Judgement { accepted: true, next, .. } => match course(step, [old, &new]) {
                         Some(UntilStatus::Passed(dt)) => {

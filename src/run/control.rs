@@ -43,6 +43,8 @@ pub(super) struct Control {
     pub moving: Option<(Arc<State>, f64)>,
     /// time of the last row of the results [T]
     pub last_row: f64,
+    /// negative eigenvalues of the tangent at the accepted state, where they were counted
+    pub negative: usize,
 }
 
 impl Control {
@@ -294,6 +296,13 @@ impl Candidate {
     pub fn iterations(&self) -> &[IterationRecord] {
         &self.iterations
     }
+}
+
+/// Negative eigenvalues of the tangent at the end of a static increment, by the last tangent that was factorized, which is that of
+/// the state before the last corrections; as `before` where they cannot be counted.
+pub(super) fn negative_after(step: &Step, iterations: &[IterationRecord], before: usize) -> usize {
+    let last = iterations.iter().rev().map(|iteration| iteration.newton).find(|newton| newton.factorized);
+    last.filter(|_| !step.scheme.is_dynamic()).and_then(|newton| newton.negative_pivots).unwrap_or(before)
 }
 
 /// Counts and times of a run.

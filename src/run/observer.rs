@@ -148,6 +148,8 @@ pub enum Verdict {
     Touch,
     /// A contact began to slip fast; explicit increments follow.
     Rupture,
+    /// Its tangent has more negative eigenvalues than before: it has passed from stable equilibria to unstable ones.
+    Unstable,
 }
 
 impl Verdict {
@@ -160,6 +162,7 @@ impl Verdict {
             Self::Error => "error",
             Self::Touch => "touch",
             Self::Rupture => "rupture",
+            Self::Unstable => "unstable",
         }
     }
 }
@@ -231,6 +234,7 @@ impl Attempt<'_> {
                      contact force"
                 )
             }
+            Verdict::Unstable => "solved, but the equilibrium is unstable, and that before was not".into(),
             Verdict::Rupture => {
                 let rate = step.rupture.as_ref().map_or(0.0, |rupture| rupture.slip_rate);
                 format!("solved, but a contact slips faster than rupture.slip_rate = {}", number(rate))
@@ -277,6 +281,7 @@ impl Verdict {
             Self::Passed => "reaction overshot",
             Self::Error => "time error",
             Self::Touch => "contact closure",
+            Self::Unstable => "unstable equilibrium",
             Self::Rupture => "rupture",
         }
     }

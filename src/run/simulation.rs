@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::control::{
-    Candidate, Control, Increment, Midway, Outcome, Phase, RunReport, WallSeconds, WatchedSlip, is_of,
+    Candidate, Control, Increment, Midway, Outcome, Phase, RunReport, WallSeconds, WatchedSlip, is_of, negative_after,
 };
 use super::error::Error;
 use super::observer::{Attempt, Row};
@@ -75,7 +75,15 @@ impl Simulation {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
             step_changed: false,
             stopped: false,
-            control: Control { step: 0, phase, coupling, ended: Vec::new(), moving: None, last_row: state.time },
+            control: Control {
+                step: 0,
+                phase,
+                coupling,
+                ended: Vec::new(),
+                moving: None,
+                last_row: state.time,
+                negative: 0,
+            },
             state: Arc::new(state),
             explicit: None,
             midway: None,
@@ -207,6 +215,7 @@ impl Simulation {
         self.report.note(&outcome);
         self.control.coupling = coupling;
         if let Some(state) = accepted {
+            self.control.negative = negative_after(&self.step, &iterations, self.control.negative);
             let gone = std::mem::replace(&mut self.state, state);
             self.spare = explicit.as_ref().and_then(|_| Arc::into_inner(gone));
             self.explicit = explicit;

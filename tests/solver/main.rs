@@ -27,6 +27,7 @@ mod recovery;
 mod sections;
 mod simulation;
 mod spinning;
+mod stability;
 mod stages;
 mod symmetry;
 mod terms;

@@ -1,0 +1,65 @@
+//! Equilibria that lose their stability: long increments keep to the stable branch, and what is unstable is reported.
+
+use crate::common::{Finished, close, finish};
+use fecontact::output::warnings::Warnings;
+use fecontact::run::observer::Observer;
+use fecontact::run::simulation::Simulation;
+use serde_json::{Value, json};
+
+/// A beam of 20 × 0.5 whose middle is `raised`, both ends clamped, pushed together by `by`.
+fn beam(raised: f64, by: f64, dt: Value) -> Value {
+    let half = |x: [f64; 2], y: [f64; 2], sides: Value| {
+        json!({"body": "beam", "kind": "Q8", "elements": [15, 1], "sides": sides,
+               "corners": [[x[0], y[0]], [x[1], y[1]], [x[1], y[1] + 0.5], [x[0], y[0] + 0.5]]})
+    };
+    json!({
+        "mesh": {"blocks": [half([0.0, 10.0], [0.0, raised], json!([null, null, null, "left"])),
+                            half([10.0, 20.0], [raised, 0.0], json!([null, "right", null, null]))]},
+        "bodies": {"beam": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
+        "steps": [{"name": "crush", "duration": 1, "dt": dt,
+                   "supports": [{"on": "left", "ux": 0, "uy": 0}, {"on": "right", "ux": -by, "uy": 0}]}],
+    })
+}
+
+/// Runs a case with its warnings.
+fn told(case: &Value) -> (Finished, Vec<String>) {
+    let run = finish(case);
+    let mut warnings = Warnings::default();
+    let mut simulation = Simulation::new(run.model.clone());
+    while let Some(candidate) = simulation.try_increment().expect("an increment") {
+        warnings.record(&run.model, &simulation.attempt_of(&candidate)).expect("warnings");
+        simulation.apply(candidate).expect("applied");
+    }
+    warnings.finish().expect("warnings");
+    (run, warnings.list)
+}
+
+fn is_unstable(warnings: &[String]) -> bool {
+    warnings.iter().any(|warning| warning.contains("equilibria are unstable"))
+}
+
+/// Pushed together by a tenth, the beam has buckled: 0.1181 by increments of 1e-4 at first (Euler: 4π² E I/((1 − ν²) L²) = 0.113, plus
+/// what a deep bend adds). Long increments and error control come to the same branch, where they came to 1.07 and 5.96.
+#[test]
+fn long_increments_keep_to_the_stable_branch() {
+    for dt in [json!({"initial": 0.1}), json!({"initial": 0.05, "error": 1e-3})] {
+        let (run, warnings) = told(&beam(0.05, 2.0, dt));
+        close("end force", run.reaction("right", run.last())[0], -0.1181, 1e-2);
+        assert!(!is_unstable(&warnings), "{warnings:?}");
+    }
+}
+
+/// Without an imperfection the straight beam stays straight, which is unstable beyond Euler's load: it is reported from there on, at an
+/// end displacement near N/(E' A) L, N = 4π² E' I/L². Below it there is nothing to report.
+#[test]
+fn the_straight_branch_is_reported_from_eulers_load_on() {
+    let strain = 4.0 * std::f64::consts::PI.powi(2) / 12.0 * (0.5f64 / 20.0).powi(2);
+    let at = |times: f64| told(&beam(0.0, times * strain * 20.0, json!({"initial": 0.1, "max": 0.1}))).1;
+    assert!(!is_unstable(&at(0.9)));
+    let warnings = at(2.0);
+    let warning = warnings.iter().find(|warning| warning.contains("equilibria are unstable")).expect("a warning");
+    let since = warning.split("t = ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a time");
+    let since: f64 = since.parse().expect("a number");
+    close("since", since, 0.5, 0.03);
+    assert!(warning.contains("up to 1 negative eigenvalue"), "{warning}");
+}
