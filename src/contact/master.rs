@@ -148,6 +148,11 @@ impl Shape {
 }
 
 impl Plane {
+    /// Foot of the perpendicular from a position.
+    pub fn foot(&self, at: Vector2<f64>) -> Vector2<f64> {
+        at - self.normal * (at - self.point).dot(&self.normal)
+    }
+
     fn project(&self, [reference, displacement]: [Vector2<f64>; 2]) -> Projection {
         let (n, s) = (self.normal, tangent_of(self.normal));
         let foot = MasterPoint { segment: 0, xi: displacement.dot(&s) };
@@ -184,6 +189,11 @@ impl Polyline {
             Some(*sum)
         }));
         Self { arcs: arcs.collect(), corners }
+    }
+
+    /// Corners, in their order.
+    pub fn corners(&self) -> &[Vector2<f64>] {
+        &self.corners
     }
 
     fn is_closed(&self) -> bool {

@@ -10,9 +10,11 @@
 //! A freely moving rigid body has a point mass at the reference node, its centre of mass; its moment of inertia I is
 //! represented by a mass I/r² at the turning node: m a = F, I θ̈ = M.
 //!
-//! r is a length of the order of the model size, so that all dofs are lengths and their conjugates forces. The second dof of
-//! the turning node is unused and 0. Supports, reactions, energies, time schemes and checkpoints therefore need no special
-//! treatment of rigid bodies.
+//! r is the distance of the farthest point of the body's own outline from its reference, so that r θ is how far a rotation moves
+//! that point: all dofs are displacements and their conjugates forces, and what is said of a displacement, such as an allowed
+//! error or the coefficient of a dashpot, is said of it. What a body does not touch has no part in r. The second dof of the
+//! turning node is unused and 0. Supports, reactions, energies, time schemes and checkpoints therefore need no special treatment
+//! of rigid bodies.
 
 use nalgebra::{Rotation2, Vector2};
 
@@ -27,7 +29,7 @@ pub struct RigidBody {
     pub reference: usize,
     /// Node that carries its rotation
     pub turning: usize,
-    /// r: displacement of the turning node per angle [L]
+    /// r: the farthest point of its outline from the reference; displacement of the turning node per angle [L]
     pub radius: f64,
     /// Moment of inertia about the reference point, 0 if none is given [M L²]
     pub inertia: f64,

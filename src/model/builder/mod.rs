@@ -251,7 +251,7 @@ impl Builder {
     pub fn build(mut self) -> Checked<Model> {
         self.check_names()?;
         checks::check_section(&self.mesh)?;
-        rigid::add_bodies(&self.rigid_bodies, &mut self.mesh)?;
+        rigid::add_bodies(&self.rigid_bodies, &self.contacts, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
         let mut model = Model {

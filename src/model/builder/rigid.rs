@@ -6,11 +6,12 @@ use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::contact::Contact;
+use super::contact::{self, Contact};
 use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
 use super::groups::{Place, group, nodes_at};
 use super::load::Change;
 use super::load_step::{LoadStep, Support};
+use crate::contact::master::Shape;
 use crate::mesh::rigid::RigidBody;
 use crate::mesh::ties::Ties;
 use crate::mesh::{Group, Mesh};
@@ -263,8 +264,8 @@ pub struct RigidBodyInput {
     pub inertia: Option<f64>,
 }
 
-/// Adds rigid bodies to a mesh.
-pub fn add_bodies(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
+/// Adds rigid bodies, whose outlines are masters of the contacts, to a mesh.
+pub fn add_bodies(given: &[(String, RigidBodyInput)], contacts: &[Contact], mesh: &mut Mesh) -> Checked<()> {
     for (name, RigidBodyInput { reference, inertia }) in given {
         let place = format!("rigid_bodies.{name}");
         check_place(&format!("{place}.reference"), *reference)?;
@@ -272,8 +273,9 @@ pub fn add_bodies(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checke
         let message = "is a group of the mesh as well, and supports would not know which: rename it";
         refuse_if(mesh.groups.contains_key(name), place, message)?;
         let point = Vector2::from(*reference);
-        let farthest = mesh.nodes.iter().map(|node| (node - point).norm()).fold(0.0, f64::max);
-        let radius = if farthest > 0.0 { farthest } else { 1.0 };
+        let own = contacts.iter().filter(|contact| contact.rigid_body.as_ref() == Some(name));
+        let farthest = own.filter_map(|contact| reach(contact, point, mesh)).fold(0.0, f64::max);
+        let radius = if farthest.is_normal() { farthest } else { 1.0 };
         let (node, tag) = (mesh.nodes.len(), mesh.node_tags.iter().max().map_or(0, |tag| tag.saturating_add(1)));
         mesh.nodes.extend([point; 2]);
         mesh.node_tags.extend([tag, tag.saturating_add(1)]);
@@ -287,6 +289,21 @@ pub fn add_bodies(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checke
         });
     }
     Ok(())
+}
+
+/// Distance of the farthest point of a rigid master from a point: of its outline, and of the feet of the slave's nodes on a plane,
+/// which has no end. `None` where the contact has no such shape, which is refused in its turn [L].
+fn reach(contact: &Contact, from: Vector2<f64>, mesh: &Mesh) -> Option<f64> {
+    let shape = contact::shape(&contact.master, mesh, "").ok()?;
+    let slave = mesh.groups.get(&contact.slave).map(|group| mesh.nodes_of(group)).unwrap_or_default();
+    Some(match shape {
+        Shape::Circle(circle) => (circle.centre - from).norm() + circle.radius,
+        Shape::Polyline(polyline) => polyline.corners().iter().map(|corner| (corner - from).norm()).fold(0.0, f64::max),
+        Shape::Plane(plane) => {
+            let foot = |&node: &usize| plane.foot(mesh.nodes[node]);
+            slave.iter().map(|node| (foot(node) - from).norm()).fold(0.0, f64::max)
+        }
+    })
 }
 
 /// Returns the moving rigid body of the rigid master of a contact, if it has one.
