@@ -1,7 +1,7 @@
 //! Unstable equilibria that a run has accepted.
 //!
 //! A static equilibrium is stable if its tangent has no negative eigenvalue. They are counted by the last tangent of an increment
-//! that was factorized, where all of it is symmetric; nothing is known where it is not.
+//! that was factorized, where all of it is symmetric and no pivot vanishes; nothing is known elsewhere.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,8 @@ impl Instability {
             return;
         }
         let last = attempt.iterations.iter().rev().map(|iteration| iteration.newton).find(|newton| newton.factorized);
-        let Some(negative) = last.and_then(|newton| newton.negative_pivots) else { return };
+        let known = last.filter(|newton| newton.perturbed_pivots == 0);
+        let Some(negative) = known.and_then(|newton| newton.negative_pivots) else { return };
         self.remains = negative > 0;
         self.most = self.most.max(negative);
         if self.remains {

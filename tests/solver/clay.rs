@@ -102,7 +102,7 @@ fn saturated_ground_rests() {
 /// Moduli are those under the mean of the initial stress, and of the fluid: waves, penalties and steps go by them.
 #[test]
 fn moduli_come_from_the_initial_stress() {
-    let mesh = Blocks::default().rectangle("ground", [1, 1], [0.0, -10.0], [1.0, 0.0]).json();
+    let mesh = Blocks::default().rectangle("ground", [1, 2], [0.0, -10.0], [1.0, 0.0]).json();
     let case = |fluid: bool| {
         let mut case = json!({
             "mesh": mesh,
