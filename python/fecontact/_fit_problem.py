@@ -29,6 +29,8 @@ class Problem:
         self.records, self.space, self.threads = records, space, threads
         # What the law said of the first parameters that it does not accept.
         self.refusal: CaseError | Stopped | None = None
+        # Why the law first had no answer.
+        self.stopped: Stopped | None = None
         self.scales = [np.ones(record.measured.size) if record.sigma is None else record.sigma for record in records]
 
     def residuals(self, points: Array) -> Array:
@@ -47,6 +49,8 @@ class Problem:
         except (CaseError, Stopped) as error:
             if isinstance(error, CaseError):
                 self.refusal = self.refusal or error
+            else:
+                self.stopped = self.stopped or error
             sets = next(value.size for value in parameters.values() if isinstance(value, np.ndarray))
             if sets == 1:
                 return np.full((1, record.measured.size), np.nan)

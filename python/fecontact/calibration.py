@@ -74,7 +74,7 @@ def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: 
         costs = np.sum(rough.residuals(problem.space.within(spread)) ** 2, axis=-1)
     screened = [spread[k] for k in np.argsort(costs) if np.isfinite(costs[k])]
     carried = [end.shares for end in _ends(rough, screened[: BEGUN * starts], BEGINNING)]
-    problem.refusal = rough.refusal
+    problem.refusal, problem.stopped = rough.refusal, rough.stopped
     if start:
         first = _first(problem, start, problem.space.within(np.stack([*carried, np.full(len(spread[0]), 0.5)]))[0])
         carried = [first, *carried]
@@ -385,7 +385,8 @@ def fit(
     if not ends and problem.refusal is not None:
         raise no_room(ranges, str(problem.refusal)) or problem.refusal
     if not ends:
-        raise ValueError("free: the law has no answer to these records anywhere in the ranges: narrow them")
+        why = "" if problem.stopped is None else f" first, {problem.stopped};"
+        raise ValueError(f"free: the law has no answer to these records anywhere in the ranges:{why} narrow the ranges, or mend the records")
     return Fit(problem, ends)
 
 

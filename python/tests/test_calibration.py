@@ -370,6 +370,23 @@ def test_what_cannot_be_fitted(changes: dict[str, Any], message: str) -> None:
         fc.fit(**{"data": noisy(0), **changes})
 
 
+def test_a_record_that_is_unloaded() -> None:
+    """One sample without pressure: μ of the closed form, q = μ p, comes out."""
+    time, pressure = np.arange(6.0), np.array([1.0, 1.0, 1.0, 0.0, 1.0, 1.0])
+    record = Interface(time, 1e-3 * time, pressure, 0.6 * pressure * (time > 0))
+    fitted = fc.fit(record, "coulomb", free={"mu": (0.3, 0.9)}, alpha_t=1e4)
+    assert fitted.parameters["mu"] == pytest.approx(0.6, rel=1e-9)
+
+
+def test_a_law_without_an_answer_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stops(*_: Any, **__: Any) -> Any:
+        raise fc.Stopped("the law stopped after time 3: it is a test")
+
+    monkeypatch.setattr(Interface, "predicted", stops)
+    with pytest.raises(ValueError, match="no answer to these records anywhere in the ranges: .* the law stopped after time 3"):
+        fc.fit(noisy(0))
+
+
 def test_ranges_that_overlap() -> None:
     """Trials that the law does not accept, mu_d above mu_s, are passed over: with exact derivatives, and with differences."""
     time = np.linspace(0.0, 1.0, 200)

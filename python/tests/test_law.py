@@ -141,6 +141,30 @@ def test_bad_drives(call: Any, message: str) -> None:
         call()
 
 
+ALONE = {
+    "coulomb": {"mu": 0.6},
+    "adhesion": {"strength": 0.3},
+    "slip_weakening": {"mu_s": 0.6, "mu_d": 0.5, "D_c": 1e-2},
+    "rate_and_state": {"f_0": 0.6, "a": 0.01, "b": 0.015, "D_c": 1e-3, "V_0": 1e-3},
+    "super_subloading": {"mu_s": 0.6, "mu_k": 0.5, "r": 1e3, "kappa": 10, "xi": 0.001},
+}
+
+
+@pytest.mark.parametrize("name", ALONE)
+@pytest.mark.parametrize("pressure", [[1.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 0.5, 0.0], [0.0, 0.0, 1.0], [1.0, -1.0, 1.0]])
+def test_a_sample_without_pressure(name: str, pressure: list[float]) -> None:
+    """It carries nothing, and what comes after is what a thousand times as many samples of the same path give."""
+    law, time = fc.law(name, alpha_t=1e3, **ALONE[name]), np.arange(3.0)
+    coarse = law.drive(time, 1e-3 * time, pressure)
+    often = np.linspace(0.0, 2.0, 2001)
+    fine = law.drive(often, 1e-3 * often, np.interp(often, time, pressure))
+    assert (coarse.traction[np.array(pressure) <= 0.0] == 0.0).all()
+    np.testing.assert_allclose(coarse.traction, fine.traction[::1000], rtol=1e-5, atol=1e-9)
+    np.testing.assert_allclose(coarse.mu, fine.mu[::1000], rtol=1e-5)
+    if name == "coulomb" and pressure == [1.0, 0.0, 1.0]:
+        np.testing.assert_allclose(coarse.traction, [0.0, 0.0, 0.6], atol=1e-15)
+
+
 def coulomb(old: Any, slip: Any, pressure: Any, dt: Any, *, mu: float, alpha_t: float) -> dict[str, Any]:
     """Coulomb friction as the built-in law has it, dissipation included."""
     trial = old["traction"] + alpha_t * slip

@@ -214,31 +214,47 @@ impl Phase {
         })
     }
 
-    /// Times at which steps must end: table knots, turning points, closure, separation and the end of the phase.
+    /// Times at which steps must end: table knots, turning points, closure, separation and the end of the phase. Knots are prescribed to the
+    /// last bit, and what is located next to one is that knot; but where surfaces part at a knot, a step ends just before it as well, where
+    /// they still slide.
     fn find_stops(&self, knots: Vec<f64>) -> Result<Vec<f64>, Undefined> {
         let samples = self.samples(&knots);
-        let mut found = knots;
+        let mut located = Vec::new();
         for (quantity, course) in [("slip", &self.slip), ("pressure", &self.pressure)] {
             let value = |time| course.value(time, self.span);
             let samples = sampled(&samples, value).map_err(|time| Undefined { quantity, time })?;
             if matches!(course.drive, Drive::Expression(_)) {
-                found.extend(turning_points(&samples, value));
+                located.extend(turning_points(&samples, value));
             }
             if quantity == "pressure" {
-                found.extend(touches(&samples, value));
+                located.extend(touches(&samples, value));
             }
         }
-        found.sort_by(f64::total_cmp);
+        located.sort_by(f64::total_cmp);
         let Span { start, end } = self.span;
-        let mut stops: Vec<f64> = Vec::new();
-        for time in found.into_iter().map(|time| self.regular(time)) {
-            let last = stops.last().copied().unwrap_or(start);
-            if time > last + self.resolution && time < end - self.resolution {
-                stops.push(time);
+        let within = |time: &f64| *time > start + self.resolution && *time < end - self.resolution;
+        let prescribed: Vec<f64> =
+            std::iter::once(start).chain(knots.into_iter().filter(within)).chain([end]).collect();
+        let mut stops = prescribed[1..prescribed.len() - 1].to_vec();
+        for time in located {
+            let place = match self.near(&prescribed, time) {
+                Some(knot) if knot > time && self.pressure(time) > 0.0 && self.pressure(knot) <= 0.0 => Some(time),
+                Some(_) => None,
+                None => Some(self.regular(time)).filter(|time| self.near(&stops, *time).is_none()),
+            };
+            if let Some(time) = place {
+                stops.insert(stops.partition_point(|stop| *stop < time), time);
             }
         }
         stops.push(end);
         Ok(stops)
+    }
+
+    /// The time among ascending ones that coincides with one, if there is any.
+    fn near(&self, times: &[f64], time: f64) -> Option<f64> {
+        let next = times.partition_point(|other| *other < time);
+        let around = &times[next.saturating_sub(1)..times.len().min(next + 1)];
+        around.iter().copied().find(|other| (other - time).abs() <= self.resolution)
     }
 
     /// Regular end of a step that coincides with a time, if there is one.

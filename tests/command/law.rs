@@ -356,6 +356,29 @@ fn a_table_is_a_path_of_straight_lines() {
     assert_eq!(fine.column("time").len(), 1 + 5 + 2 + 1 + 13);
 }
 
+/// A row without pressure is answered at its own time, to the last bit. Just before it the surfaces still slide: q = α_t u meets
+/// μ p = μ (1 − t) at t = 0.375, and α_t = 1000, u = t/1000 leave (1 − 0.375 + 0.6 · 0.625)/1000 = 0.001 of plastic slip at t = 1.
+#[test]
+fn a_row_without_pressure_keeps_its_time() {
+    let coulomb = json!({"law": "coulomb", "mu": 0.6, "alpha_t": 1000});
+    for dt in [None, Some(0.1)] {
+        let mut test = json!({"friction": coulomb, "table": [[0, 0, 1], [1, 0.001, 0], [2, 0.002, 1]]});
+        if let Some(dt) = dt {
+            test["dt"] = json!(dt);
+        }
+        let done = Done::of(&test);
+        let row = done.column("time").iter().position(|time| *time == 1.0).expect("a row at t = 1");
+        assert_eq!([done.column("pressure")[row], done.column("traction")[row]], [0.0, 0.0]);
+        close("plastic slip where they part", done.column("plastic_slip")[row], 1e-3, 1e-12);
+        close("traction at the end", done.last("traction"), 0.6, 1e-12);
+    }
+    // 3 · 0.1 is not 0.3 in floating point: a row is not moved to the multiple of dt beside it.
+    let rows = [[0.0, 0.0, 1.0], [0.3, 0.001, 0.0], [0.6, 0.002, 1.0]];
+    let done = Done::of(&json!({"friction": coulomb, "dt": 0.1, "table": rows}));
+    let row = done.column("time").iter().position(|time| *time == 0.3).expect("a row at t = 0.3");
+    assert_eq!(done.column("pressure")[row], 0.0);
+}
+
 /// All laws are driven; friction that is switched off shows.
 #[test]
 fn every_law_can_be_driven() {
