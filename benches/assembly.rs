@@ -29,7 +29,7 @@ fn assembly(criterion: &mut Criterion) {
     let step = &model.steps[0];
     let mut work = Workspace::new(&model, Box::<Multifrontal>::default());
     let start = begin(&model, step, &model.initial_state(), &mut work).expect("the step begins");
-    let state = advance(&model, step, &start, 1.0, &mut work).1.expect("the increment converges");
+    let state = advance(&model, step, &start, 1.0, &mut work).state.expect("the increment converges");
     measure(criterion, "neo_hookean", &model, Trial::new(&state, step, 2.0, 1.0), &state.displacement);
 
     for law in YIELDING {

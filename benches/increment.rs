@@ -24,7 +24,7 @@ fn reach(model: &Model, work: &mut Workspace, counts: &[usize]) -> State {
     for (step, &count) in model.steps.iter().zip(counts) {
         state = begin(model, step, &state, work).expect("the step begins");
         for _ in 0..count {
-            state = advance(model, step, &state, 1.0, work).1.expect("the increment converges");
+            state = advance(model, step, &state, 1.0, work).state.expect("the increment converges");
         }
     }
     state
@@ -39,10 +39,10 @@ fn increments(criterion: &mut Criterion) {
     {
         let state = reach(&model, &mut work, counts);
         let step = &model.steps[counts.len() - 1];
-        let (iterations, _) = advance(&model, step, &state, 1.0, &mut work);
+        let iterations = advance(&model, step, &state, 1.0, &mut work).iterations;
         let label = format!("{name} ({} linear solves)", iterations.len());
         criterion
-            .bench_function(&label, |bench| bench.iter(|| advance(&model, step, &state, 1.0, &mut work).1.is_ok()));
+            .bench_function(&label, |bench| bench.iter(|| advance(&model, step, &state, 1.0, &mut work).state.is_ok()));
     }
 }
 

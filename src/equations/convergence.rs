@@ -22,6 +22,7 @@ use crate::contact::response::PairResponse;
 use crate::linear::SparseMatrix;
 use crate::mesh::configuration::Configuration;
 use crate::model::boundary::Absorber;
+use crate::model::coupled::{CoupledPart, CoupledParts};
 use crate::model::state::State;
 use crate::model::{Body, Damping, Model, Step};
 
@@ -32,8 +33,8 @@ const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Oscillations of small amplitude far from the start exceed this, and must not be taken for round-off.
 const RATES: f64 = 0.25;
 
-/// Upper bound of displacements relevant for round-off, in multiples of the size and motion of the model: a larger iterate has
-/// diverged and must not count as inaccurate.
+/// Upper bound of displacements relevant for round-off, in multiples of the size and motion of what acts on the node: a larger
+/// iterate has diverged and must not count as inaccurate.
 const LOST: f64 = 10.0;
 
 /// Part of the model whose equilibrium is checked separately.
@@ -66,7 +67,8 @@ pub(super) struct ConvergenceCriterion {
     dampings: Vec<Damping>,
     /// Longest edge of each contact [L]
     edges: Vec<f64>,
-    diagonal: f64,
+    /// Parts of the model that act on each other
+    coupled: CoupledParts,
     /// Norm of each contact's nodal forces at the last evaluation [F]
     contact_forces: Vec<f64>,
     /// Σ (α_n ℓ)² (1, h²) of the closed contact points at each node at the last evaluation
@@ -113,7 +115,7 @@ impl ConvergenceCriterion {
             stiffness,
             dampings: model.bodies.iter().map(|body| body.damping).collect(),
             edges: model.contacts.iter().map(|pair| longest_edge(pair, &model.mesh.undeformed())).collect(),
-            diagonal: model.mesh.diagonal(),
+            coupled: CoupledParts::of(model),
             contact_forces: vec![0.0; model.contacts.len()],
             contact_stiffness: vec![[0.0; 2]; count],
             own: vec![0.0; 2 * count],
@@ -237,15 +239,19 @@ impl ConvergenceCriterion {
         &self.contact_forces
     }
 
-    /// Largest displacement relevant for round-off; no solution lies beyond it [L].
-    fn farthest(&self, old: &State) -> f64 {
-        LOST * (self.diagonal + old.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs())))
+    /// Largest displacement of each coupled part that is relevant for round-off; no solution lies beyond it [L].
+    fn farthest(&self, old: &State) -> Vec<f64> {
+        let moved = |part: &CoupledPart| {
+            let u = part.nodes.iter().flat_map(|nodes| &old.displacement[2 * nodes.start..2 * nodes.end]);
+            u.fold(0.0, |most: f64, u| most.max(u.abs()))
+        };
+        self.coupled.parts.iter().map(|part| LOST * (part.size + moved(part))).collect()
     }
 
     /// |u|² of some nodes, as far as relevant [L²].
     pub(super) fn ways(&self, old: &State, u: &[f64], nodes: &[usize]) -> Vec<f64> {
         let farthest = self.farthest(old);
-        nodes.iter().map(|&node| square(u, node).min(farthest * farthest)).collect()
+        nodes.iter().map(|&node| square(u, node).min(farthest[self.coupled.of_node[node]].powi(2))).collect()
     }
 
     /// Contribution of the contacts last noted to ρ², at nodes with these [`ways`](Self::ways) [F²].
@@ -268,18 +274,20 @@ impl ConvergenceCriterion {
     ) -> Vec<f64> {
         let Trial { old, step, dt, .. } = trial;
         let stiffness = &self.stiffness;
-        let farthest = self.farthest(old);
+        let of_part = self.farthest(old);
+        let farthest = |node: usize| of_part[self.coupled.of_node[node]];
         let nodes = 0..model.mesh.nodes.len();
         let mut squares: Vec<f64> = nodes
             .map(|node| {
                 let [strained, moved, _] = stiffness[node];
                 let [apart, slid] = self.contact_stiffness[node];
-                let way = square(u, node).min(farthest * farthest);
+                let way = square(u, node).min(farthest(node).powi(2));
                 strained + apart + (moved + slid) * way + square(magnitudes, node)
             })
             .collect();
         for spring in &step.loads.springs {
-            squares[spring.dof / 2] += (spring.stiffness * u[spring.dof].abs().min(farthest)).powi(2);
+            let node = spring.dof / 2;
+            squares[node] += (spring.stiffness * u[spring.dof].abs().min(farthest(node))).powi(2);
         }
         let way: Vec<f64> =
             old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();

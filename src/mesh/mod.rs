@@ -44,6 +44,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
+use crate::mesh::boxes::Box2;
 use crate::mesh::configuration::{Configuration, vector};
 
 pub use error::MeshError;
@@ -187,10 +188,10 @@ impl Mesh {
         [corner(|a, b| a.inf(&b)), corner(|a, b| a.sup(&b))]
     }
 
-    /// Diagonal of the bounding box of all nodes, the size of the model [L].
-    pub fn diagonal(&self) -> f64 {
-        let [low, high] = self.bounding_box();
-        (high - low).norm()
+    /// Diagonal of the bounding box of some nodes [L].
+    #[doc(hidden)]
+    pub fn size_of(&self, nodes: impl IntoIterator<Item = usize>) -> f64 {
+        Box2::around(nodes.into_iter().map(|node| self.nodes[node])).map_or(0.0, |around| around.size().norm())
     }
 
     fn nearest_name(&self, name: &str) -> Option<String> {

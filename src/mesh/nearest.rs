@@ -2,8 +2,12 @@
 
 use nalgebra::Vector2;
 
-/// Relative difference of distances, as a fraction of the model's size, below which two nodes are equally near.
+/// Difference of distances, as a fraction of the size of the elements beside the nearest node, below which two nodes are equally
+/// near.
 const EQUALLY_NEAR: f64 = 1e-9;
+
+/// Round-off of a position, relative to its distance from the origin.
+const OF_POSITION: f64 = 8.0 * f64::EPSILON;
 
 /// Reason why a point does not identify one node; nodes by number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,16 +41,15 @@ pub fn nearest<'e>(
     }
     let distance = |node: usize| (nodes[node] - Vector2::from(point)).norm();
     let node = (0..nodes.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))).ok_or(NotOne::NoNodes)?;
-    let corner = |pick: fn(Vector2<f64>, Vector2<f64>) -> Vector2<f64>| nodes.iter().copied().reduce(pick);
-    let diagonal =
-        corner(|a, b| a.sup(&b)).zip(corner(|a, b| a.inf(&b))).map_or(0.0, |(high, low)| (high - low).norm());
-    let (near, round_off) = (distance(node), EQUALLY_NEAR * diagonal);
+    let beside = elements.filter(|element| element.contains(&node));
+    let sides = beside.flat_map(|element| element.iter().map(|other| (nodes[*other] - nodes[node]).norm()));
+    let (near, size) = (distance(node), sides.fold(0.0, f64::max));
+    // A node beside no element is found where it is, to the round-off of its position.
+    let round_off = (EQUALLY_NEAR * size).max(OF_POSITION * nodes[node].amax());
     if let Some(other) = (0..nodes.len()).find(|other| *other != node && distance(*other) <= near + round_off) {
         return Err(NotOne::Several([node, other]));
     }
-    let beside = elements.filter(|element| element.contains(&node));
-    let sides = beside.flat_map(|element| element.iter().map(|other| (nodes[*other] - nodes[node]).norm()));
-    match near <= sides.fold(round_off, f64::max) {
+    match near <= size.max(round_off) {
         true => Ok(node),
         false => Err(NotOne::Far { node, distance: near }),
     }

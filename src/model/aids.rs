@@ -1,7 +1,8 @@
 //! Switches of the convergence aids.
 
 /// Convergence aids of the iterations of an increment, all on by default; experiments switch one off to measure its
-/// effect. They change the number of iterations, not the solution: no accepted residual contains them.
+/// effect. They change the number of iterations, not the equations solved: no accepted residual contains them. Increments without
+/// error control grow where few tangents were needed, and are cut where there was no solution: their lengths depend on aids.
 ///
 /// The failure that an aid prevents, and its source, are described in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,6 +14,7 @@ pub(crate) mod written;
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
         pub mod aids;
+        pub mod coupled;
         pub mod element;
         pub mod imposed;
         pub mod linkage;
@@ -26,6 +27,7 @@ cfg_if::cfg_if! {
         pub mod warnings;
     } else {
         pub(crate) mod aids;
+        pub(crate) mod coupled;
         pub(crate) mod element;
         pub(crate) mod imposed;
         pub(crate) mod linkage;
@@ -240,12 +242,14 @@ impl Model {
             .expect("elements are checked when the model is built")
     }
 
-    /// (λ + 2G) w of the stiffest element, the ratio of force to displacement; 0 without elements [F/L].
+    /// (λ + 2G) w of an element, the ratio of force to displacement [F/L].
+    pub fn element_stiffness(&self, element: usize) -> f64 {
+        self.body_of(element).material.description().p_wave_modulus * self.solids[element].mean_weight()
+    }
+
+    /// That of the stiffest element; 0 without elements [F/L].
     pub fn stiffness(&self) -> f64 {
-        let of = |(solid, &body): (&SolidElement, &usize)| {
-            self.bodies[body].material.description().p_wave_modulus * solid.mean_weight()
-        };
-        self.solids.iter().zip(&self.body_of_element).map(of).fold(0.0, f64::max)
+        (0..self.solids.len()).map(|element| self.element_stiffness(element)).fold(0.0, f64::max)
     }
 
     /// The initial state before the first increment.

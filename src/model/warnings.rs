@@ -28,12 +28,11 @@ const OF_EDGE: f64 = 1e-12;
 impl Model {
     /// Warnings before the run starts.
     pub fn warnings(&self) -> Vec<String> {
-        let farthest = farthest(&self.mesh);
         let of_contact = |pair: &ContactPair| {
             // A contact that starts closed has no gaps, and self-contact usually starts open.
             let warnings = match pair.initial.is_some() || pair.is_own() {
                 true => Vec::new(),
-                false => Gaps::of(self, pair, farthest).warnings(),
+                false => Gaps::of(self, pair).warnings(),
             };
             let further = faces_away(self, pair).into_iter().chain(friction_of_total_pressure(self, pair));
             let further =
@@ -56,9 +55,8 @@ impl Model {
     /// Whether the surfaces of a contact overlap before anything has moved, and push each other apart at once.
     #[doc(hidden)]
     pub fn overlaps(&self) -> bool {
-        let farthest = farthest(&self.mesh);
         let may = |pair: &&ContactPair| pair.initial.is_none() && !pair.is_own() && !pair.tied;
-        self.contacts.iter().filter(may).any(|pair| Gaps::of(self, pair, farthest).low.0 < 0.0)
+        self.contacts.iter().filter(may).any(|pair| Gaps::of(self, pair).low.0 < 0.0)
     }
 
     /// Methods chosen by the program, for contacts that do not specify one.
@@ -313,12 +311,11 @@ const MANY: [f64; 2] = [1e6, 1e7];
 /// Lower bound of the number of increments: from the longest one of implicit steps, and from the travel time of a wave along
 /// the shortest side for explicit ones.
 fn many_increments(model: &Model) -> Option<String> {
-    let fastest = model
-        .bodies
-        .iter()
-        .map(|body| body.material.description().p_wave_modulus / body.material.description().density)
-        .fold(0.0, f64::max);
-    let crossed = shortest_side(&model.mesh) / fastest.sqrt();
+    let crossed = |(e, element)| {
+        let material = model.body_of(e).material.description();
+        shortest_side(&model.mesh, element) / (material.p_wave_modulus / material.density).sqrt()
+    };
+    let crossed = model.mesh.elements.iter().enumerate().map(crossed).fold(f64::INFINITY, f64::min);
     let of_steps = |explicit: bool| -> f64 {
         let steps = model.steps.iter().filter(|step| matches!(step.scheme, Scheme::Explicit { .. }) == explicit);
         let longest = |step: &Step| if explicit { step.increments.max.min(crossed) } else { step.increments.max };
@@ -352,24 +349,23 @@ fn idle_radiation(model: &Model) -> Option<String> {
 /// Required accuracy of positions relative to the shortest edge: displacements of interest are thousands of times larger.
 const KNOWN: f64 = 1e-8;
 
-/// Shortest side of all elements [L].
-fn shortest_side(mesh: &Mesh) -> f64 {
-    let sides = mesh.elements.iter().flat_map(|element| {
-        let corners = &element.nodes[..element.kind.corners()];
-        corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| (mesh.nodes[b] - mesh.nodes[a]).norm())
-    });
-    sides.fold(f64::INFINITY, f64::min)
+/// Shortest side of an element [L].
+fn shortest_side(mesh: &Mesh, element: &Element) -> f64 {
+    let corners = &element.nodes[..element.kind.corners()];
+    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+    sides.map(|(&a, &b)| (mesh.nodes[b] - mesh.nodes[a]).norm()).fold(f64::INFINITY, f64::min)
 }
 
-/// Largest coordinate of all nodes [L].
-pub fn farthest(mesh: &Mesh) -> f64 {
-    mesh.nodes.iter().fold(0.0, |most: f64, node| most.max(node.amax()))
+/// Largest coordinate of some nodes [L].
+fn farthest(mesh: &Mesh, nodes: impl IntoIterator<Item = usize>) -> f64 {
+    nodes.into_iter().fold(0.0, |most: f64, node| most.max(mesh.nodes[node].amax()))
 }
 
 /// Warns if the round-off ε |X| of positions is large relative to an element, which affects its shape, gaps and overlaps.
 fn coarse_positions(mesh: &Mesh) -> Option<String> {
-    let farthest = farthest(mesh);
-    let shortest = shortest_side(mesh);
+    let sizes = |element: &Element| (farthest(mesh, element.nodes.iter().copied()), shortest_side(mesh, element));
+    let coarsest = mesh.elements.iter().map(sizes).max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
+    let (farthest, shortest) = coarsest?;
     let known = f64::EPSILON * farthest;
     (known > KNOWN * shortest).then(|| {
         format!(
@@ -381,9 +377,9 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// Describes the gaps of a contact that does not start closed, in a mesh that extends to [`farthest`].
-pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) -> String {
-    let gaps = Gaps::of(model, pair, farthest);
+/// Describes the gaps of a contact that does not start closed, in words.
+pub fn gaps(model: &Model, pair: &ContactPair, shrink_fit: bool) -> String {
+    let gaps = Gaps::of(model, pair);
     let fit = gaps.fit.map(|(overlap, at)| {
         let place = format!("at ({}, {})", number(at.x), number(at.y));
         format!(
@@ -412,13 +408,13 @@ struct Gaps {
 }
 
 impl Gaps {
-    fn of(model: &Model, pair: &ContactPair, farthest: f64) -> Self {
+    fn of(model: &Model, pair: &ContactPair) -> Self {
         let x = model.mesh.undeformed();
         let reach = match &pair.master {
             Master::Rigid(Rigid { shape: Shape::Circle(circle), .. }) => circle.radius + circle.centre.norm(),
             _ => 0.0,
         };
-        let size = farthest.max(reach);
+        let size = farthest(&model.mesh, pair.nodes()).max(reach);
         let rounded = |point: &SlavePoint, length: f64| {
             let noise = (OF_POSITIONS * size).max(OF_EDGE * point.edge_length(&x).unwrap_or(0.0));
             if length.abs() <= noise { 0.0 } else { length }

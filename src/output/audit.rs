@@ -30,6 +30,7 @@ use crate::contact::point::ContactState;
 use crate::equations::contacts::Springs;
 use crate::mesh::configuration::vector;
 use crate::model::balance;
+use crate::model::coupled::{CoupledPart, CoupledParts};
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -64,9 +65,9 @@ pub struct Audit {
     noise: f64,
     /// Energy in the contact penalties
     pub give: Give,
-    /// Size and stiffness of the model, once asked for: they take a look at every element
+    /// Parts of the model, once asked for: they take a look at every element
     #[serde(skip)]
-    scales: Option<Scales>,
+    scales: Option<Vec<Scales>>,
     /// Initial stress of the bodies that are there from the start, once asked for
     #[serde(skip)]
     stresses: Option<Vec<Stress>>,
@@ -90,13 +91,31 @@ struct Stress {
     forces: Vec<(usize, Vector2<f64>)>,
 }
 
-/// What the round-off of the forces on a model goes by.
-#[derive(Clone, Copy, Debug)]
+/// What the round-off of the forces on a part of a model goes by; the parts do not act on each other.
+#[derive(Clone, Debug)]
 struct Scales {
-    /// Diagonal of the mesh [L]
-    diagonal: f64,
+    part: CoupledPart,
     /// Largest stiffness of an element [F/L]
     stiffness: f64,
+    /// Numbers of its contacts
+    contacts: Vec<usize>,
+}
+
+impl Scales {
+    /// Those of all parts of a model.
+    fn of(model: &Model) -> Vec<Self> {
+        let CoupledParts { parts, of_node } = CoupledParts::of(model);
+        let scales = |part| Self { part, stiffness: 0.0, contacts: Vec::new() };
+        let mut all: Vec<Self> = parts.into_iter().map(scales).collect();
+        for (e, element) in model.mesh.elements.iter().enumerate() {
+            let own = &mut all[of_node[element.nodes[0]]];
+            own.stiffness = own.stiffness.max(model.element_stiffness(e));
+        }
+        for (k, pair) in model.contacts.iter().enumerate() {
+            pair.slave_nodes().take(1).for_each(|node| all[of_node[node]].contacts.push(k));
+        }
+        all
+    }
 }
 
 /// Energy error of a step.
@@ -180,11 +199,18 @@ impl Audit {
         }
         let stresses = self.stresses.get_or_insert_with(|| stresses(model));
         self.give.record(model, new, stresses);
-        let [reach, way] = largest([&old.displacement, &new.displacement]);
-        let scales = || Scales { diagonal: model.mesh.diagonal(), stiffness: model.stiffness() };
-        let scales = *self.scales.get_or_insert_with(scales);
-        self.noise += round_off(model, scales, new, reach) * way;
-        way
+        let mut farthest = 0.0f64;
+        for scales in self.scales.get_or_insert_with(|| Scales::of(model)) {
+            let (mut reach, mut way) = (0.0f64, 0.0f64);
+            for nodes in &scales.part.nodes {
+                let dofs = 2 * nodes.start..2 * nodes.end;
+                let own = largest([&old.displacement[dofs.clone()], &new.displacement[dofs]]);
+                (reach, way) = (reach.max(own[0]), way.max(own[1]));
+            }
+            self.noise += round_off(model, scales, new, reach) * way;
+            farthest = farthest.max(way);
+        }
+        farthest
     }
 
     /// Warnings at the end of a run: that the energies do not balance, or contacts give way.
@@ -371,15 +397,12 @@ fn largest([old, new]: [&[f64]; 2]) -> [f64; 2] {
     [reach, way].map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
-/// Round-off of the forces on a model whose displacements reach so far [F].
-fn round_off(model: &Model, Scales { diagonal, stiffness }: Scales, state: &State, reach: f64) -> f64 {
-    let reach = diagonal.max(reach);
-    let contacts = model
-        .contacts
-        .iter()
-        .zip(&state.contacts)
-        .flat_map(|(pair, states)| states.iter().map(move |contact| pair.alpha_n * contact.length));
-    f64::EPSILON * contacts.fold(stiffness, f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
+/// Round-off of the forces on a part whose displacements reach so far [F].
+fn round_off(model: &Model, Scales { part, stiffness, contacts }: &Scales, state: &State, reach: f64) -> f64 {
+    let of = |&k: &usize| state.contacts[k].iter().map(move |contact| model.contacts[k].alpha_n * contact.length);
+    let count: usize = part.nodes.iter().map(ExactSizeIterator::len).sum();
+    let stiffest = contacts.iter().flat_map(of).fold(*stiffness, f64::max);
+    f64::EPSILON * stiffest * part.size.max(reach) * (count as f64).sqrt()
 }
 
 /// Remedy for an energy error in a step.

@@ -317,14 +317,22 @@ pub const NEWTON: [Quantity; 15] = [
     q("iteration", NONE, "number of the linear solve; 0 in the row of an attempt rejected before its first"),
     q("time", TIME, "t at the end of the increment"),
     q("residual", NONE, "out-of-balance forces, relative"),
-    q("correction", NONE, "change of the displacements, relative"),
+    q(
+        "correction",
+        LENGTH,
+        "largest change of a displacement; of a rigid body's rotation times the distance of its farthest point",
+    ),
     q("open", NONE, "open contact points"),
     q("stick", NONE, "sticking ones"),
     q("slip", NONE, "slipping ones"),
     q("linear_residual", NONE, "relative residual of the linear solve"),
     q("factorized", NONE, "1 where the matrix was factorized anew"),
     q("stabilization", NONE, "fraction of the stabilizing forces"),
-    q("flips", NONE, "points that changed between open, stick and slip"),
+    q(
+        "flips",
+        NONE,
+        "points that went back to the status (open, stick, slip) of two iterates before, from another between",
+    ),
     q("pass", NONE, "number of the augmentation (augmented Lagrangian)"),
 ];
 

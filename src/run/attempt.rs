@@ -18,7 +18,7 @@ use crate::solve::IterationRecord;
 use crate::solve::failure::{IncrementFailure, limit, suspicion};
 use crate::time::beginning::{after_change, begin, go_on};
 use crate::time::explicit::Explicit;
-use crate::time::increment::advance;
+use crate::time::increment::{Advanced, advance};
 use crate::time::quasi_dynamic::{Gone, QuasiDynamic};
 use crate::time::step_size::{Judgement, bounded, fastest_slip, judge, on_ladder};
 use crate::time::touching::Touching;
@@ -32,7 +32,7 @@ impl Simulation {
         let Self { model, step, state: old, work, control, .. } = self;
         let wanted = bounded(step, old.time, dt, None);
         let dt = bounded(step, old.time, dt, model.requests.next_time(old.time));
-        let (iterations, solved) = advance(model, step, old, dt, work);
+        let Advanced { iterations, state: solved, foreseen, passes } = advance(model, step, old, dt, work);
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
         let half = step.shorter(dt, 1);
@@ -42,14 +42,14 @@ impl Simulation {
                 let mut judgement = judge(model, step, [old, &new], hardest_pass(&iterations), number > 1);
                 let why = if judgement.accepted { Verdict::Touch } else { Verdict::Error };
                 if judgement.accepted && !step.scheme.is_dynamic() {
-                    let judged = touching.judge(model, step, old, &mut new, &work.foreseen, judgement);
+                    let judged = touching.judge(model, step, old, &mut new, foreseen.as_deref(), judgement);
                     (judgement, doubt) = (judged.0, Some(judged.1));
                 } else {
                     touching.give_up();
                 }
                 local_error = judgement.error;
                 judgement = judgement.after_output(number, dt, wanted);
-                judgement.next = on_ladder(step, judgement.next, work);
+                judgement.next = on_ladder(step, judgement.next);
                 let ruptures = step.rupture.as_ref().is_some_and(|r| fastest_slip(model, old, &new) > r.slip_rate);
                 match judgement {
                     _ if ruptures => {
@@ -79,7 +79,6 @@ impl Simulation {
             Err(cause) => self.unsolved(cause, dt, number, touching),
         };
         let increments = usize::from(accepted.is_some());
-        let passes = std::mem::take(&mut self.work.passes);
         let candidate = self.without_iterations(number, dt, accepted, increments, outcome);
         Candidate { iterations, local_error, doubt, passes, ..candidate }
     }

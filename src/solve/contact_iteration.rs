@@ -2,7 +2,8 @@
 //!
 //! A contact opens, closes, sticks and slips from one iterate to the next, and the tangent of each status contains no
 //! information about the others. A convergence aid makes a presumption about a point when a *tangent* is evaluated; the
-//! residual that decides on acceptance contains none, so no result depends on an aid.
+//! residual that decides on acceptance contains none, so every accepted state solves the same equations. Which increments are made
+//! follows from the motion under error control; otherwise from the number of tangents, too, and from what could not be solved.
 //!
 //! | aid | presumption |
 //! |---|---|

@@ -43,7 +43,7 @@ use super::contact_iteration::{Acted, Flips};
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
 use super::newton::{self, NewtonFailure};
-use super::{IterationRecord, Pass, Workspace};
+use super::{IterationRecord, Pass, Solved, Workspace};
 use crate::contact::force::ContactState;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports;
@@ -56,23 +56,21 @@ use crate::model::state::{LastIncrement, State};
 
 /// Finds the equilibrium at the time required by the scheme, from the start value of a new increment unless another is
 /// given.
-pub fn equilibrium(
-    model: &Model,
-    trial: Trial,
-    start: Option<Vec<f64>>,
-    work: &mut Workspace,
-) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
+pub fn equilibrium(model: &Model, trial: Trial, start: Option<Vec<f64>>, work: &mut Workspace) -> Solved {
     let begins = start.is_none();
     let spent = work.assembler.seconds.assembly + work.assembler.seconds.contact;
     let clock = std::time::Instant::now();
     let (start, extrapolated) = start.map_or_else(|| start_value(model, trial), |start| (start, false));
     let mut watch = Watch::new(begins, extrapolated);
+    if begins && !model.aids.start {
+        watch.foresee(model, trial, work);
+    }
     let condensed = on_contacts(model, trial, &start, &mut watch, work);
     let result = condensed.unwrap_or_else(|| on_all(model, trial, start, &mut watch, work));
     let assembled = work.assembler.seconds.assembly + work.assembler.seconds.contact - spent;
     work.linear_seconds += clock.elapsed().as_secs_f64() - assembled;
-    let result = explained(model, trial, watch.floating.take(), result, &work.system.tangent);
-    (watch.records, result)
+    let displacement = explained(model, trial, watch.floating.take(), result, &work.system.tangent);
+    Solved { iterations: watch.records, displacement, foreseen: watch.foreseen, passes: Vec::new() }
 }
 
 /// Solves by Newton's method on all equations.
@@ -83,7 +81,7 @@ fn on_all(
     watch: &mut Watch,
     work: &mut Workspace,
 ) -> Result<Vec<f64>, NewtonFailure<TrialFailure>> {
-    let Workspace { assembler, iteration, solver, system, foreseen, .. } = work;
+    let Workspace { assembler, iteration, solver, system, .. } = work;
     if watch.begins {
         iteration.start_increment();
     }
@@ -97,7 +95,7 @@ fn on_all(
             if request == Request::Tangent && watch.begins && watch.tangents == 0 && is_unaided(trial) {
                 watch.floating = null_motion(model, trial.step, u, &system.tangent);
             }
-            watch.note(request, assembler, system.forces, in_trial(trial, iteration.acted), foreseen);
+            watch.note(request, assembler, system.forces, in_trial(trial, iteration.acted));
             Ok(())
         },
         |u, residual, way| supports::work(model, trial.step, u, residual, way),
@@ -151,7 +149,7 @@ fn round(
     watch: &mut Watch,
     work: &mut Workspace,
 ) -> Option<Result<(), NewtonFailure<TrialFailure>>> {
-    let Workspace { assembler, iteration, system, foreseen, interface, .. } = work;
+    let Workspace { assembler, iteration, system, interface, .. } = work;
     let CondensedNewton { nodes, solver, condensed, .. } = interface.as_mut()?;
     let mut round = Round::begin(nodes, &rung.bodies, trial, u, assembler, system).ok()?;
     let mut all = u.to_vec();
@@ -167,7 +165,7 @@ fn round(
                 Ok(())
             })?;
             let acted = Acted { condense: 1, ..in_trial(trial, iteration.acted) };
-            watch.note(request, assembler, system.forces, acted, foreseen);
+            watch.note(request, assembler, system.forces, acted);
             Ok::<(), TrialFailure>(())
         },
         |_, residual, way| supports::dot(residual, way),
@@ -203,6 +201,8 @@ struct Watch {
     seen: Vec<IterationRecord>,
     flips: Flips,
     floating: Option<String>,
+    /// Contact states if the motion before the increment had gone on
+    foreseen: Option<Vec<Vec<ContactState>>>,
     /// Aids that acted in the tangent since the last correction
     acted: Acted,
     records: Vec<IterationRecord>,
@@ -211,22 +211,24 @@ struct Watch {
 impl Watch {
     fn new(begins: bool, extrapolated: bool) -> Self {
         let (flips, acted) = (Flips::default(), Acted::default());
-        Self { begins, extrapolated, tangents: 0, seen: Vec::new(), flips, floating: None, acted, records: Vec::new() }
+        let (floating, foreseen, seen, records) = (None, None, Vec::new(), Vec::new());
+        Self { begins, extrapolated, tangents: 0, seen, flips, floating, foreseen, acted, records }
+    }
+
+    /// Evaluates what is foreseen at the extrapolated motion, from which the iterations do not start.
+    fn foresee(&mut self, model: &Model, trial: Trial, work: &mut Workspace) {
+        let Some(u) = extrapolated(model, trial) else { return };
+        let Workspace { assembler, system, .. } = work;
+        self.foreseen = assembler.residual(trial, &u, system).ok().map(|()| assembler.evaluation.contacts.clone());
     }
 
     /// Records the state of the equations after their evaluation.
-    fn note(
-        &mut self,
-        request: Request,
-        assembler: &Assembler,
-        forces: f64,
-        acted: Acted,
-        foreseen: &mut Vec<Vec<ContactState>>,
-    ) {
-        // The start value extrapolates the last increment; without it, the first linear solve predicts the motion.
+    fn note(&mut self, request: Request, assembler: &Assembler, forces: f64, acted: Acted) {
+        // The start value extrapolates the last increment; where there is none, the first linear solve predicts the motion.
         let foresight = if self.extrapolated { 0 } else { 1 };
-        if self.begins && self.records.is_empty() && request == Request::Residual && self.tangents == foresight {
-            foreseen.clone_from(&assembler.evaluation.contacts);
+        let predicts = self.begins && self.records.is_empty() && self.tangents == foresight;
+        if predicts && request == Request::Residual && self.foreseen.is_none() {
+            self.foreseen = Some(assembler.evaluation.contacts.clone());
         }
         if request == Request::Tangent {
             self.acted = acted;
@@ -307,24 +309,26 @@ fn in_trial(trial: Trial, acted: Acted) -> Acted {
 
 /// Start value of an increment, and whether it differs from the committed displacement.
 pub fn start_value(model: &Model, trial: Trial) -> (Vec<f64>, bool) {
+    let ahead = if model.aids.start { extrapolated(model, trial) } else { None };
+    ahead.map_or_else(|| (trial.old.displacement.clone(), false), |ahead| (ahead, true))
+}
+
+/// Displacement if the motion goes on; `None` if there was none, or it has met a contact.
+fn extrapolated(model: &Model, trial: Trial) -> Option<Vec<f64>> {
     let Trial { old, step, dt, .. } = trial;
     let State { displacement, velocity, acceleration, .. } = old;
-    let rest = || (displacement.clone(), false);
-    if !model.aids.start {
-        return rest();
-    }
     let last = goes_on(old);
     if !(step.scheme.is_dynamic() && step.increments.error.is_some()) {
-        let Some(last) = last else { return rest() };
+        let last = last?;
         let share = dt / last.dt;
-        return (displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect(), true);
+        return Some(displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect());
     }
     let way = |dof: usize| match last {
         _ if !model.massless[dof / 2] => dt * (velocity[dof] + 0.5 * dt * acceleration[dof]),
         Some(last) => dt / last.dt * last.displacement[dof],
         None => 0.0,
     };
-    ((0..displacement.len()).map(|dof| displacement[dof] + way(dof)).collect(), true)
+    Some((0..displacement.len()).map(|dof| displacement[dof] + way(dof)).collect())
 }
 
 /// Last increment of the step, if the next one is expected to be similar.
@@ -346,30 +350,26 @@ fn has_one_answer(model: &Model) -> bool {
 }
 
 /// Equilibrium of a new increment; a static one that has none from its own start value is restarted with softer penalties.
-fn from_start_values(
-    model: &Model,
-    trial: Trial,
-    work: &mut Workspace,
-) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
-    let (mut iterations, result) = equilibrium(model, trial, None, work);
-    let unsolved = match &result {
+fn from_start_values(model: &Model, trial: Trial, work: &mut Workspace) -> Solved {
+    let mut solved = equilibrium(model, trial, None, work);
+    let unsolved = match &solved.displacement {
         Err(IncrementFailure::Newton(failure)) => failure.is_without_end(),
         _ => false,
     };
     if !(model.aids.softening && unsolved && trial.step.scheme == Scheme::Static && has_one_answer(model)) {
-        return (iterations, result);
+        return solved;
     }
     let (mut start, _) = start_value(model, trial);
     work.iteration.start_increment();
     for stiffening in SOFTER {
-        let (more, softer) = equilibrium(model, Trial { stiffening, ..trial }, Some(start), work);
-        iterations.extend(more);
-        let Ok(found) = softer else { return (iterations, result) };
+        let softer = equilibrium(model, Trial { stiffening, ..trial }, Some(start), work);
+        solved.iterations.extend(softer.iterations);
+        let Ok(found) = softer.displacement else { return solved };
         start = found;
     }
-    let (more, result) = equilibrium(model, trial, Some(start), work);
-    iterations.extend(more);
-    (iterations, result)
+    let last = equilibrium(model, trial, Some(start), work);
+    solved.iterations.extend(last.iterations);
+    Solved { displacement: last.displacement, ..solved }
 }
 
 /// Maximum number of augmentations before an increment of the augmented Lagrangian method is rejected.
@@ -390,19 +390,14 @@ const STIFFEST: f64 = 1e4;
 /// `aid_stiffening` is 1 in iterations of a raised one).
 ///
 /// Source of the rule and its factors: Bertsekas (1982), Constrained Optimization and Lagrange Multiplier Methods, 2.2.
-pub fn augment(
-    model: &Model,
-    trial: Trial,
-    work: &mut Workspace,
-) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
-    let (mut iterations, mut result) = from_start_values(model, trial, work);
+pub fn augment(model: &Model, trial: Trial, work: &mut Workspace) -> Solved {
+    let mut solved = from_start_values(model, trial, work);
     let (mut stiffening, mut before) = (1.0, f64::INFINITY);
     let mut begun: Option<State> = None;
-    work.passes.clear();
     for pass in 1.. {
-        let Ok(u) = &result else { break };
+        let Ok(u) = &solved.displacement else { break };
         let coupling = work.assembler.coupling();
-        work.passes.push(Pass { displacement: u.clone(), stiffening, coupling });
+        solved.passes.push(Pass { displacement: u.clone(), stiffening, coupling });
         let found = &work.assembler.evaluation.contacts;
         let excess = model.contacts.iter().zip(found).map(|(pair, found)| pair.excess(found));
         let [penetration, slip] = excess.fold([0.0f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);
@@ -410,7 +405,7 @@ pub fn augment(
             break;
         }
         if pass == MOST_PASSES {
-            result = Err(match penetration > 1.0 {
+            solved.displacement = Err(match penetration > 1.0 {
                 true => IncrementFailure::Penetration { passes: pass },
                 false => IncrementFailure::ElasticSlip { passes: pass },
             });
@@ -422,11 +417,12 @@ pub fn augment(
         before = penetration;
         let old = begun.get_or_insert_with(|| trial.old.clone());
         multiply(model, found, old);
-        let (more, again) = equilibrium(model, Trial { old, stiffening, ..trial }, Some(u.clone()), work);
-        iterations.extend(more.into_iter().map(|iteration| IterationRecord { pass: pass + 1, ..iteration }));
-        result = again;
+        let again = equilibrium(model, Trial { old, stiffening, ..trial }, Some(u.clone()), work);
+        let more = again.iterations.into_iter().map(|iteration| IterationRecord { pass: pass + 1, ..iteration });
+        solved.iterations.extend(more);
+        solved.displacement = again.displacement;
     }
-    (iterations, result)
+    solved
 }
 
 /// Gives the state at the start of an increment the multipliers from what a pass has `found`.

@@ -12,16 +12,17 @@ pub mod newton;
 use std::sync::Arc;
 
 use crate::contact::force::ContactState;
-use crate::equations::condensed::is_linear;
 use crate::equations::{Assembler, ContactCounts, Coupling};
 use crate::linear::LinearSolver;
 use crate::linear::system::System;
-use crate::model::{Model, Step};
+use crate::model::Model;
 use condensed_newton::CondensedNewton;
 use contact_iteration::{Acted, ContactIteration};
+use failure::IncrementFailure;
 use newton::Iteration;
 
-/// Data reused from one increment to the next to save work, without effect on any result.
+/// Buffers reused from one increment to the next to save work. What an increment has found is in what is returned of it; nothing
+/// that decides on a result is read from here.
 pub struct Workspace {
     /// assembler of the equations
     pub assembler: Assembler,
@@ -32,12 +33,21 @@ pub struct Workspace {
     pub(crate) system: System,
     /// Linear bodies condensed on the contact nodes, if that pays
     interface: Option<CondensedNewton>,
-    /// Contact states predicted by continuing the motion before the last attempt
-    pub foreseen: Vec<Vec<ContactState>>,
-    /// Passes of the last increment solved
-    pub passes: Vec<Pass>,
     /// Seconds spent in linear solves
     pub linear_seconds: f64,
+}
+
+/// What the solution of an increment came to.
+#[derive(Debug)]
+pub struct Solved {
+    /// Linear solves, of a failed attempt as well
+    pub iterations: Vec<IterationRecord>,
+    /// u at the time at which the scheme requires equilibrium [L]
+    pub displacement: Result<Vec<f64>, IncrementFailure>,
+    /// Contact states if the motion before the increment had gone on; `None` if none could be evaluated
+    pub foreseen: Option<Vec<Vec<ContactState>>>,
+    /// Its passes
+    pub passes: Vec<Pass>,
 }
 
 /// Solution of one pass of an increment: the augmented Lagrangian method makes several of them, the penalty method one.
@@ -62,8 +72,6 @@ impl Workspace {
             solver,
             system,
             interface: CondensedNewton::new(model),
-            foreseen: Vec::new(),
-            passes: Vec::new(),
             linear_seconds: 0.0,
         }
     }
@@ -71,11 +79,6 @@ impl Workspace {
     /// States of the contact points where the equations were evaluated last.
     pub fn contacts(&self) -> &[Vec<ContactState>] {
         &self.assembler.evaluation.contacts
-    }
-
-    /// Whether linear bodies are condensed on the contact nodes in a step.
-    pub fn condenses(&self, step: &Step) -> bool {
-        self.interface.is_some() && is_linear(self.assembler.model(), step)
     }
 }
 

@@ -324,5 +324,5 @@ fn by_itself(Seeker { model, trial, work, mut u, .. }: Seeker) -> Result<Vec<f64
         u.clone_from(&trial.old.displacement);
     }
     work.iteration.start_increment();
-    equilibrium(model, trial, Some(u), work).1
+    equilibrium(model, trial, Some(u), work).displacement
 }

@@ -62,7 +62,7 @@ pub struct Settings {
 pub struct Iteration {
     /// ‖r‖/‖f‖ of the worst part after the correction; NaN if the corrected state could not be evaluated [-]
     pub residual: f64,
-    /// Largest entry of the correction [L]
+    /// Largest entry of the correction: of a displacement, or of r θ of a rigid body [L]
     pub correction: f64,
     /// ‖K Δu + r‖/‖r‖ of the linear solve [-]
     pub linear_residual: f64,

@@ -1,6 +1,7 @@
 //! One increment: old state → new state.
 
 use super::accept::{accept, take_stock};
+use crate::contact::force::ContactState;
 use crate::equations::inertia::kinetic_energy;
 use crate::equations::{Evaluation, Trial, links};
 use crate::model::state::{LastIncrement, State};
@@ -8,24 +9,29 @@ use crate::model::{Model, Step};
 use crate::solve::equilibrium::augment;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
-use crate::solve::{IterationRecord, Workspace};
+use crate::solve::{IterationRecord, Pass, Solved, Workspace};
+
+/// What one increment came to.
+#[derive(Debug)]
+pub struct Advanced {
+    /// Linear solves, of a failed attempt as well
+    pub iterations: Vec<IterationRecord>,
+    /// The new state
+    pub state: Result<State, IncrementFailure>,
+    /// Contact states if the motion before the increment had gone on
+    pub foreseen: Option<Vec<Vec<ContactState>>>,
+    /// Passes of its solution
+    pub passes: Vec<Pass>,
+}
 
 /// Solves one increment of length `dt` from the state `old`; pure except for the buffers of the workspace.
-///
-/// The iteration record is returned for a failed attempt as well.
-pub fn advance(
-    model: &Model,
-    step: &Step,
-    old: &State,
-    dt: f64,
-    work: &mut Workspace,
-) -> (Vec<IterationRecord>, Result<State, IncrementFailure>) {
+pub fn advance(model: &Model, step: &Step, old: &State, dt: f64, work: &mut Workspace) -> Advanced {
     // The last increment of a step ends exactly at its end, without round-off.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let increment = Trial::new(old, step, time, time - old.time);
-    let (iterations, equilibrium) = augment(model, increment.ahead(), work);
-    let new = equilibrium.and_then(|u| arrive(model, increment, u, work));
-    (iterations, new)
+    let Solved { iterations, displacement, foreseen, passes } = augment(model, increment.ahead(), work);
+    let state = displacement.and_then(|u| arrive(model, increment, u, work));
+    Advanced { iterations, state, foreseen, passes }
 }
 
 /// The new state from the equilibrium `u` at the time of the scheme, where the equations were evaluated last.

@@ -20,7 +20,7 @@
 //!   sticking therefore has no events.
 //! - An increment after a repeated one does not grow. Accepted halves thus approach the event without passing it, and
 //!   every attempt either advances or halves the increment.
-//! - Where linear bodies are condensed on contacts, lengths are those of a ladder (below).
+//! - Lengths are those of a ladder (below), whichever way the equations are solved. An increment that took many tangents does not grow.
 //! - The shortest increment is accepted whatever its error; a warning reports an error above ε.
 //!
 //! Nothing much larger than ε can pass undetected: e is a fixed fraction, a quarter or more unless β is near 1/6, of the
@@ -30,8 +30,8 @@
 //!
 //! # Ladder
 //!
-//! The ladder is a set of increment lengths that recur: where linear bodies are condensed on contacts, the elimination for one
-//! length serves all increments of that length.
+//! The ladder is a set of increment lengths that recur, in every dynamic step under error control: where linear bodies are condensed
+//! on contacts, the elimination for one length serves all increments of that length.
 //!
 //! ```text
 //! Δt = Δt₀ 2^(k/4),  k whole;   Δt₀: the initial increment of the step
@@ -43,7 +43,6 @@ use crate::contact::force::ContactState;
 use crate::laws::friction::Regime;
 use crate::model::state::State;
 use crate::model::{Increments, Model, Step};
-use crate::solve::Workspace;
 
 /// Number of tangents, in every augmentation, up to which an increment counts as easy and the next one may be longer.
 const EASY: usize = 4;
@@ -250,10 +249,10 @@ const RUNGS: [f64; 4] = [1.0, 1.189_207_115_002_721, std::f64::consts::SQRT_2, 1
 /// Relative round-off allowed in comparing with a rung.
 const LADDER_ROUND_OFF: f64 = 1e-12;
 
-/// Δt of the next attempt in a dynamic step, from the length that its error or its iterations require.
-pub fn on_ladder(step: &Step, dt: f64, work: &Workspace) -> f64 {
-    let Increments { initial, min, .. } = step.increments;
-    let climbs = step.scheme.is_dynamic() && work.condenses(step);
+/// Δt of the next attempt, from the length that the error of a dynamic step or its iterations require.
+pub fn on_ladder(step: &Step, dt: f64) -> f64 {
+    let Increments { initial, min, error, .. } = step.increments;
+    let climbs = step.scheme.is_dynamic() && error.is_some();
     if climbs { rung(initial, dt).max(min) } else { dt }
 }
 

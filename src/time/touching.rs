@@ -40,18 +40,18 @@ pub struct Touching {
 }
 
 impl Touching {
-    /// Judges a solved increment that is otherwise accepted; `foreseen` are the contact states for continued previous motion.
-    /// The judgement contains the uncertain fraction of a contact's force.
+    /// Judges a solved increment that is otherwise accepted; `foreseen` are the contact states for continued previous motion, those
+    /// at the end of the increment where none were. The judgement contains the uncertain fraction of a contact's force.
     pub fn judge(
         &mut self,
         model: &Model,
         step: &Step,
         old: &State,
         new: &mut State,
-        foreseen: &[Vec<ContactState>],
+        foreseen: Option<&[Vec<ContactState>]>,
         judged: Judgement,
     ) -> (Judgement, f64) {
-        let (doubt, share, meets) = self.doubt(model, [old, new], foreseen);
+        let (doubt, share, meets) = self.doubt(model, [old, new], foreseen.unwrap_or(&new.contacts));
         if doubt > DOUBT && can_shorten(step, old, new) {
             self.whole.get_or_insert((new.time, new.dt));
             // A rejected attempt shows that the prediction was inaccurate.

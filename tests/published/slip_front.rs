@@ -522,7 +522,7 @@ fn increments_of_one_list_give_one_history_condensed_or_not() {
         let (step, mut states) = (&model.steps[0], Vec::new());
         let mut state = begin(&model, step, &model.initial_state(), &mut work).expect("it begins");
         for &dt in list {
-            state = advance(&model, step, &state, dt, &mut work).1.expect("it is solved");
+            state = advance(&model, step, &state, dt, &mut work).state.expect("it is solved");
             states.push(state.clone());
         }
         states

@@ -49,7 +49,7 @@ fn workspace(model: &Arc<Model>) -> Workspace {
 fn advance_all(model: &Model, step: usize, mut state: State, increments: &[f64], work: &mut Workspace) -> Vec<State> {
     let mut states = Vec::new();
     for &dt in increments {
-        state = advance(model, &model.steps[step], &state, dt, work).1.expect("an increment that succeeded before");
+        state = advance(model, &model.steps[step], &state, dt, work).state.expect("an increment that succeeded before");
         states.push(state.clone());
     }
     states
@@ -98,7 +98,7 @@ fn an_increment_is_a_pure_function_of_the_state() {
     let run = finish(&dragged("gauss_to_segment", 0.05, 25));
     let (old, new, step) = (&run.states[13], &run.states[14], &run.model.steps[1]);
     let mut work = workspace(&run.model);
-    let once = |work: &mut Workspace| advance(&run.model, step, old, new.dt, work).1.unwrap();
+    let once = |work: &mut Workspace| advance(&run.model, step, old, new.dt, work).state.unwrap();
     let first = once(&mut work);
     assert!(first == once(&mut work), "a used workspace");
     assert!(first == once(&mut workspace(&run.model)), "a new workspace");

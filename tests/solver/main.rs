@@ -9,6 +9,7 @@ mod grids;
 mod blocks;
 mod boundary;
 mod builder;
+mod bystander;
 mod clay;
 mod condensed;
 mod constant;

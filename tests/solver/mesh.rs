@@ -59,7 +59,7 @@ fn every_kind_of_element_is_read() {
         assert!(mesh.elements.iter().all(|element| element.kind == kind));
         assert_eq!(mesh.groups.keys().collect::<Vec<_>>(), ["body", "bottom", "corner", "physical_7"]);
         assert_eq!(mesh.group("corner").unwrap(), &Group::Nodes(vec![0]));
-        assert!((mesh.diagonal() - 5.0f64.sqrt()).abs() < 1e-12);
+        assert!((mesh.size_of(0..mesh.nodes.len()) - 5.0f64.sqrt()).abs() < 1e-12);
         assert!((area(&mesh) - 2.0).abs() < 1e-12, "{file}");
         assert_edges_have_the_body_on_their_left(&mesh);
     }
@@ -148,7 +148,7 @@ fn unused_nodes_are_dropped_unless_a_point_group_names_them() {
 fn a_mesh_may_be_nothing_but_points() {
     let mesh = build(json!({"nodes": [[1, 2], [3, 4]], "points": {"mass": [1, 1]}})).unwrap();
     assert_eq!((mesh.nodes.len(), mesh.elements.len()), (1, 0));
-    assert_eq!(mesh.diagonal(), 0.0);
+    assert_eq!(mesh.size_of([]), 0.0);
 
     let point = two_squares()
         .replace(&section_of(&two_squares(), "Elements"), "$Elements\n1 1 1 1\n0 1 15 1\n1 1\n$EndElements\n")

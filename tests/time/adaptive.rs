@@ -71,7 +71,7 @@ fn the_estimate_is_the_local_error() {
         for phase in [0.7, 2.0] {
             for dt in [0.02, 0.005] {
                 let old = swinging(&model, phase, shift * dt);
-                let new = advance(&model, &model.steps[0], &old, dt, &mut work).1.unwrap();
+                let new = advance(&model, &model.steps[0], &old, dt, &mut work).state.unwrap();
                 let estimate = judge(&model, &model.steps[0], [&old, &new], 1, false).error.unwrap();
                 let error = (new.displacement[2] - (phase + OMEGA * dt).cos()).abs();
                 close(&format!("{scheme}, phase {phase}: estimate/error"), estimate / error, 1.0, 1.5 * OMEGA * dt);
@@ -274,6 +274,8 @@ fn a_block_slides_to_rest() {
     for error in [1e-4, 1e-5, 1e-6, 1e-7] {
         let run = slider.run(&trapezoidal(), error);
         let furthest = run.states.iter().max_by(|a, b| a.displacement[0].total_cmp(&b.displacement[0])).unwrap();
+        // Undamped stick comes back to the furthest point again and again.
+        let rests = run.states.iter().find(|state| state.time > 0.0 && state.velocity[0] <= 0.0).unwrap();
         let longest = run.states.iter().fold(0.0, |longest: f64, state| longest.max(state.dt));
         let shortest = run.states.iter().fold(1.0, |shortest: f64, state| shortest.min(state.dt));
         println!(
@@ -282,7 +284,7 @@ fn a_block_slides_to_rest() {
             run.report.increments,
             run.report.rejected,
             furthest.displacement[0] - exact(&phases, rest),
-            furthest.time - rest,
+            rests.time - rest,
             deviation(&run, &phases),
         );
         assert!(deviation(&run, &phases) < global(error));
@@ -294,7 +296,7 @@ fn a_block_slides_to_rest() {
         let located = STRENGTH * EVENT_LOCATION * error;
         run.states.iter().for_each(|state| close("energy", state.energy.error(), start, located));
         // From rest on the deceleration 2 moves the block by as much as it is located to.
-        close("time of rest", furthest.time, rest, EVENT_LOCATION.sqrt() * error.sqrt());
+        close("time of rest", rests.time, rest, EVENT_LOCATION.sqrt() * error.sqrt());
         assert!(longest > 0.25 && run.report.increments < 1000 && run.report.rejected < run.report.increments / 2);
     }
 }

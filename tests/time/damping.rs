@@ -377,9 +377,9 @@ fn a_dropped_attempt_leaves_no_trace_in_the_memory() {
         let mut state = begin(&model, &model.steps[0], &model.initial_state(), &mut work).unwrap();
         for _ in 0..5 {
             if detours {
-                advance(&model, &model.steps[0], &state, 1.7, &mut work).1.unwrap();
+                advance(&model, &model.steps[0], &state, 1.7, &mut work).state.unwrap();
             }
-            state = advance(&model, &model.steps[0], &state, 1.0, &mut work).1.unwrap();
+            state = advance(&model, &model.steps[0], &state, 1.0, &mut work).state.unwrap();
         }
         state
     };

@@ -13,5 +13,6 @@ mod quasi_dynamic;
 mod radiation;
 mod stability;
 mod stability_map;
+mod switched_off;
 mod switching;
 mod time_integration;

@@ -16,18 +16,18 @@ use crate::model::boundary::Profile;
 use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, default_over, regime, tangential_over};
 use crate::model::method::{Chosen, Method};
 use crate::model::text::{count, number, vector};
-use crate::model::warnings::{farthest, gaps};
+use crate::model::warnings::gaps;
 use crate::output::warnings::several_answers;
 
 /// Lists every contact, with the position of its surfaces at the start.
 pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
-    let (mut lines, farthest) = (Vec::new(), farthest(&model.mesh));
+    let mut lines = Vec::new();
     for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
         lines.push(pair.name.clone());
         lines.extend(contact(case, model, pair, chosen.as_ref()).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
             Some(initial) => initial_tractions(initial, pair),
-            None => gaps(model, pair, farthest, case.contacts[&pair.name].shrink_fit),
+            None => gaps(model, pair, case.contacts[&pair.name].shrink_fit),
         };
         lines.push(format!("  {start}"));
     }

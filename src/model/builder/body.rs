@@ -272,7 +272,11 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
                 "is {level}, and the body reaches up to y = {reached}: ground lies below its surface, so give the level of its \
                  top or above"
             );
-            refuse_if(top > surface + ROUNDED * mesh.diagonal(), format!("{place}.geostatic.surface"), message)
+            refuse_if(
+                top > surface + ROUNDED * mesh.size_of(nodes.iter().copied()),
+                format!("{place}.geostatic.surface"),
+                message,
+            )
         }
         InitialStress::Components { xx, yy, xy, zz } => {
             let message = "is missing: give the out-of-plane stress as well, 0 if there is none";

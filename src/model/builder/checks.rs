@@ -42,8 +42,10 @@ pub fn check_section(mesh: &Mesh) -> Checked<()> {
             check_size("section.plane_stress", "thickness", thickness)
         }
         Section::Axisymmetric => {
-            let inside = axis(mesh).map_or(0.0, |near| -near);
-            let Some(node) = (0..mesh.nodes.len()).find(|&node| mesh.nodes[node].x < inside) else { return Ok(()) };
+            let near = axis(mesh);
+            let Some(node) = (0..mesh.nodes.len()).find(|&node| mesh.nodes[node].x < -near[node]) else {
+                return Ok(());
+            };
             let (tag, at) = (mesh.node_tags[node], mesh.nodes[node]);
             let message = format!(
                 "is axisymmetric about x = 0, and node {tag} lies at x = {}: x is the radius, so move the mesh to x >= 0 and \

@@ -119,7 +119,7 @@ setters! { settings: IncrementSettings;
 /// Automatic switch of a step to explicit integration and back. An increment in which a contact point slips faster than
 /// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, integrated explicitly.
 /// The step returns to its own scheme when no point has slipped that fast, on average over the time that a shear wave
-/// takes across the model. Frictionless contacts do not count. To be detected, an event must slip more than `slip_rate`
+/// takes across the bodies that touch. Frictionless contacts do not count. To be detected, an event must slip more than `slip_rate`
 /// times `dt.max`. Remaining waves are removed on return to a static step, and their energy counts as damping
 /// dissipation
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -187,19 +187,21 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
     Ok(())
 }
 
-/// Round-off of gaps relative to the size of the model; gaps are differences of positions and displacements.
+/// Round-off of gaps relative to the size of the surfaces; gaps are differences of positions and displacements.
 const OF_SIZE: f64 = 8.0 * f64::EPSILON;
 
 /// A penetration, and an elastic slip, must be one that displacements can tell.
 fn check_allowed(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
-    let least = OF_SIZE * mesh.diagonal();
     for contact in contacts {
+        let groups = [Some(contact.slave.as_str()), contact.master_group()].into_iter().flatten();
+        let nodes = groups.filter_map(|name| mesh.groups.get(name)).flat_map(|group| mesh.nodes_of(group));
+        let least = OF_SIZE * mesh.size_of(nodes);
         let keys = [("normal.penetration", contact.normal.penetration), ("stick", contact.stick)];
         for (key, allowed) in keys.into_iter().filter_map(|(key, allowed)| Some((key, allowed?))) {
             let place = format!("contacts.{}.{key}", contact.name);
             check_positive(&place, allowed, " (leave it out for the plain penalty)")?;
             let message =
-                format!("is {allowed:e}: gaps of this model have round-off of {least:.1e}; allow more than that");
+                format!("is {allowed:e}: gaps of this contact have round-off of {least:.1e}; allow more than that");
             refuse_if(allowed < least, place, message)?;
         }
     }

@@ -18,6 +18,7 @@ use super::supports::{SupportsInForce, freed};
 use crate::contact::pair::ContactPair;
 use crate::mesh::rigid::RigidBody;
 use crate::model::boundary::{Amplitude, Drive, Span};
+use crate::model::coupled::CoupledParts;
 use crate::model::scheme::Scheme;
 use crate::model::step::{Entry, ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
@@ -239,6 +240,19 @@ fn softest(model: &Model, rigid: &RigidBody) -> f64 {
     if softest.is_finite() { softest } else { 0.0 }
 }
 
+/// Longest time in which a shear wave crosses bodies that act on each other by a contact, at the speed of the slowest [T].
+fn crossing(model: &Model) -> f64 {
+    let CoupledParts { parts, of_node } = CoupledParts::of(model);
+    let speed = |body: &Body| (body.material.description().shear_modulus / body.material.description().density).sqrt();
+    let touching: BTreeSet<usize> =
+        model.contacts.iter().flat_map(|pair| pair.nodes().map(|node| of_node[node])).collect();
+    let crossing = |part: usize| {
+        let own = model.bodies.iter().filter(|body| body.nodes.iter().any(|&node| of_node[node] == part));
+        parts[part].size / own.map(speed).fold(f64::INFINITY, f64::min)
+    };
+    touching.into_iter().map(crossing).fold(0.0, f64::max)
+}
+
 /// Returns the criteria of the switch to explicit integration.
 pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: &Model) -> Checked<Option<Rupture>> {
     let Some(RuptureSettings { slip_rate, safety }) = given else { return Ok(None) };
@@ -252,10 +266,7 @@ pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: 
     refuse_if(model.bodies.is_empty(), place, cause)?;
     let scheme = Scheme::Explicit { safety };
     scheme.check().map_err(|error| ModelError::new(place, error))?;
-    let slowest =
-        |body: &Body| (body.material.description().shear_modulus / body.material.description().density).sqrt();
-    let slowest = model.bodies.iter().map(slowest).fold(f64::INFINITY, f64::min);
-    let calm = (model.mesh.diagonal() / slowest).max(step.increments.min);
+    let calm = crossing(model).max(step.increments.min);
     let increments = Increments { error: None, ..step.increments };
     let explicit = Step { scheme, increments, stabilization: Vec::new(), ..step.clone() };
     Ok(Some(Rupture { slip_rate, calm, explicit }))

@@ -189,13 +189,13 @@ impl SupportsInForce {
         let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
         refuse_if(self.dofs.values().any(|support| turns(&support)), format!("{place}.supports"), message)?;
         let rigid = model.mesh.rigid_bodies.iter().map(|body| body.reference);
-        let (x, axis) = (&model.mesh.nodes, axis(&model.mesh));
-        let on_axis = (0..x.len()).filter(|&node| axis.is_some_and(|near| x[node].x <= near));
+        let axis = axis(&model.mesh);
+        let on_axis = (0..axis.len()).filter(|&node| on_axis(&model.mesh, &axis, node));
         for node in on_axis.chain(model.plates.iter().flatten().copied()).chain(rigid) {
             let dof = 2 * model.ties.original(node);
             let held = Prescribed::displacement(dof, Drive::Constant(0.0), span);
             let given = self.dofs.entry(dof).or_insert(held);
-            let rests = |drive: &Drive, own: Span| rests(drive, x[node], own, axis.unwrap_or_default());
+            let rests = |drive: &Drive, own: Span| rests(drive, model.mesh.nodes[node], own, axis[node]);
             if matches!(&given.motion, Motion::Displacement(drive, own) if rests(drive, *own)) {
                 continue;
             }
@@ -500,12 +500,25 @@ fn check_angles(straight: usize, held: &[InclinedSupport], all: &[Inclined]) -> 
     Ok(())
 }
 
-/// Distance from the axis, relative to the model size, within which a node is on the axis.
-const ON_AXIS: f64 = 1e-12;
+/// Distance from the axis, relative to the size of an adjacent element, within which a node is on the axis.
+const ON_AXIS: f64 = 1e-9;
 
-/// Radius up to which a node of axisymmetric bodies is on the axis; `None` in other sections.
-pub fn axis(mesh: &Mesh) -> Option<f64> {
-    mesh.section.is_axisymmetric().then(|| ON_AXIS * mesh.diagonal())
+/// Radius up to which each node of axisymmetric bodies is on the axis; none in other sections [L].
+pub fn axis(mesh: &Mesh) -> Vec<f64> {
+    if !mesh.section.is_axisymmetric() {
+        return Vec::new();
+    }
+    let mut near = vec![0.0f64; mesh.nodes.len()];
+    for element in &mesh.elements {
+        let size = mesh.size_of(element.nodes.iter().copied());
+        element.nodes.iter().for_each(|&node| near[node] = near[node].max(ON_AXIS * size));
+    }
+    near
+}
+
+/// Whether a node is on the axis, given the radii of [`axis`].
+fn on_axis(mesh: &Mesh, axis: &[f64], node: usize) -> bool {
+    axis.get(node).is_some_and(|near| mesh.nodes[node].x <= *near)
 }
 
 /// Outward unit normals of the body, node by node; the sides of a periodic model share those of their nodes.
@@ -520,7 +533,7 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
     let axis = axis(&model.mesh);
     let mut at_node: BTreeMap<(usize, usize), Vec<Vector2<f64>>> = BTreeMap::new();
     for edge in edges {
-        for (node, area) in areas(model, edge, axis) {
+        for (node, area) in areas(model, edge, &axis) {
             // Nodes of a platen have separate normals.
             let on_plate = model.plates.iter().any(|plate| plate.binary_search(&node).is_ok());
             let original = model.ties.original(node);
@@ -532,12 +545,12 @@ pub fn normals(model: &Model, on: &Place, place: &str) -> Checked<impl Iterator<
 }
 
 /// ∫ N_a n dS of an edge, node by node; at nodes on the axis in the plane section.
-fn areas(model: &Model, edge: &Edge, axis: Option<f64>) -> Vec<(usize, Vector2<f64>)> {
+fn areas(model: &Model, edge: &Edge, axis: &[f64]) -> Vec<(usize, Vector2<f64>)> {
     let [x, y] = pressure_weights(&model.mesh, std::slice::from_ref(edge));
     edge.nodes
         .iter()
         .map(|&node| {
-            let on_axis = axis.is_some_and(|near| model.mesh.nodes[node].x <= near);
+            let on_axis = on_axis(&model.mesh, axis, node);
             let weight = |at: Vector2<f64>| if on_axis { model.mesh.section.weight(at) } else { 1.0 };
             let sum = |shares: &[NodalWeight]| -> f64 {
                 let own = shares.iter().filter(|share| share.node == node);

@@ -1,0 +1,95 @@
+//! What a model does not touch has no say in it: neither a body far away, however stiff and large, nor a wider bed.
+
+use crate::common::{Finished, close, finish};
+use serde_json::{Value, json};
+
+/// A rigid disk on a bed of rubber, pressed in and then drawn along under a force, free to sink and to roll.
+fn rolled(stabilize: Option<f64>) -> Value {
+    let mut drag = json!({"name": "drag", "duration": 1, "dt": {"initial": 0.1}, "loads": [{"on": "disk", "force": {"y": -2.0}}],
+        "supports": [{"on": "disk", "ux": 0.6, "uy": null, "angle": null}]});
+    if let Some(share) = stabilize {
+        drag["stabilize"] = json!(share);
+    }
+    json!({
+        "mesh": {"blocks": [{"body": "rubber", "corners": [[-4, -2], [4, -2], [4, 0], [-4, 0]], "elements": [16, 4],
+            "sides": ["base", null, "top", null]}]},
+        "bodies": {"rubber": {"material": {"model": "neo_hookean", "E": 10, "nu": 0.4, "density": 0.01}}},
+        "rigid_bodies": {"disk": {"reference": [0, 2], "inertia": 1.5}},
+        "point_masses": {"disk": {"mass": 1.0}},
+        "contacts": {"c": {"slave": "top", "master": {"circle": {"centre": [0, 2], "radius": 2}}, "rigid_body": "disk", "friction":
+            {"law": "super_subloading", "mu_s": 0.5, "mu_k": 0.3, "r": 50, "kappa": 5, "xi": 0}}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.1},
+             "supports": [{"on": "base", "ux": 0, "uy": 0}, {"on": "disk", "ux": 0, "uy": -0.2, "angle": 0}]},
+            drag,
+        ],
+    })
+}
+
+/// The disk falls on the bed and spins up under a moment; the error of r θ decides on the increments.
+fn spun() -> Value {
+    let mut case = rolled(None);
+    case["point_masses"]["disk"]["velocity"] = json!([0.5, -1.0]);
+    case["steps"] = json!([{"name": "fly", "duration": 0.3, "scheme": {"generalized_alpha": {}},
+        "dt": {"initial": 0.001, "error": 1e-4, "max": 0.02}, "supports": [{"on": "base", "ux": 0, "uy": 0}],
+        "loads": [{"on": "disk", "moment": "200*t"}]}]);
+    case
+}
+
+/// The case with a held body a thousand times as far away as the model is large.
+fn beside(mut case: Value, young: f64) -> Value {
+    let [near, far] = [8e3, 8.1e3];
+    let block = json!({"body": "idle", "corners": [[near, 0], [far, 0], [far, 1], [near, 1]], "elements": [2, 1],
+        "sides": ["held", null, null, null]});
+    case["mesh"]["blocks"].as_array_mut().expect("blocks").push(block);
+    case["bodies"]["idle"] = json!({"material": {"model": "linear", "E": young, "nu": 0.3, "density": 0.01}});
+    let supports = case["steps"][0]["supports"].as_array_mut().expect("supports");
+    supports.push(json!({"on": "held", "ux": 0, "uy": 0}));
+    case
+}
+
+/// Angle of the disk, and how far it has sunk.
+fn course(run: &Finished) -> Vec<[f64; 3]> {
+    let body = run.model.mesh.rigid_body("disk").expect("it is there");
+    let of = |u: &[f64]| [u[2 * body.turning] / body.radius, u[2 * body.reference + 1]];
+    let row = |state: &fecontact::model::state::State| {
+        let [angle, sunk] = of(&state.displacement);
+        [state.time, angle, sunk]
+    };
+    run.states.iter().map(row).collect()
+}
+
+#[test]
+fn a_body_far_away_changes_nothing() {
+    for case in [rolled(None), rolled(Some(1e-3)), spun()] {
+        let alone = course(&finish(&case));
+        for young in [10.0, 2e11] {
+            let with = course(&finish(&beside(case.clone(), young)));
+            assert_eq!(alone.len(), with.len(), "the same increments");
+            for (a, b) in alone.iter().zip(&with) {
+                (0..3).for_each(|i| close("the disk", b[i], a[i], 1e-9 * a[i].abs().max(1e-3)));
+            }
+        }
+    }
+}
+
+/// The disk is drawn by 0.6 over a bed that goes on to both sides, or ends where it has no part in the contact any more.
+#[test]
+fn a_wider_bed_changes_nothing_that_stabilize_does() {
+    let angles = [8.0, 80.0].map(|width: f64| {
+        [None, Some(1e-3)].map(|stabilize| {
+            let mut case = rolled(stabilize);
+            let rest = json!({"body": "rubber", "corners": [[4, -2], [width - 4.0, -2], [width - 4.0, 0], [4, 0]], "elements": [8, 4],
+                "grading": [width / 8.0, 1], "sides": ["base", null, null, null]});
+            if width > 8.0 {
+                case["mesh"]["blocks"].as_array_mut().expect("blocks").push(rest);
+            }
+            course(&finish(&case)).last().expect("states")[1]
+        })
+    });
+    // It rolls by 0.6 on a radius of about 2; the dashpots are gone at the end of the step.
+    for [free, aided] in angles {
+        close("the angle", free, -0.6 / 2.0, 0.01);
+        close("the angle with dashpots", aided, free, 1e-3);
+    }
+}
