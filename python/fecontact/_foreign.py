@@ -6,46 +6,25 @@ everything else by ``meshio``.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _deck
+from ._found import Found, there
 from ._plain import refused
-from .errors import CaseError
 
 #: Nodes of plane cells and of lines.
 PLANE, LINE = (3, 4, 6, 8, 9), (2, 3)
 
 #: Sizes beyond which nodes do not lie in one plane, as a share of the mesh.
 FLAT = 1e-9
-
-
-@dataclass
-class Found:
-    """What a file says, nodes counted from 0: cells of any kind, by their numbers in the sets."""
-
-    file: str
-    nodes: NDArray[np.float64]
-    cells: list[tuple[int, ...]] = field(default_factory=list)
-    dimensions: list[int] = field(default_factory=list)
-    #: sets of cells, by name
-    sets: dict[str, list[int]] = field(default_factory=dict)
-    #: sides of cells, given by the nodes at their ends
-    sides: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
-    points: dict[str, list[int]] = field(default_factory=dict)
-
-    def add(self, nodes: Sequence[int], dimension: int) -> int:
-        """A cell, whose number it returns."""
-        self.cells.append(tuple(int(node) for node in nodes))
-        self.dimensions.append(dimension)
-        return len(self.cells) - 1
 
 
 def read(path: str, bodies: Sequence[str] | str | None) -> dict[str, Any]:
@@ -56,15 +35,15 @@ def read(path: str, bodies: Sequence[str] | str | None) -> dict[str, Any]:
     """
     end = Path(path).suffix.lower()
     if end == ".inp":
-        return _parts(_abaqus(path), bodies)
+        return _parts(_deck.read(path), bodies)
     if end in (".e", ".exo", ".ex2", ".exii"):
         return _parts(_exodus(path), bodies)
-    found, array = _other(path, bodies if isinstance(bodies, str) else None)
-    return _parts(found, None if array else bodies)
+    return _parts(*_other(path, bodies))
 
 
 def _parts(found: Found, bodies: Sequence[str] | str | None) -> dict[str, Any]:
     """Bodies, edges and points."""
+    _numbers(found)
     nodes = _plane(found)
     edges = _edges(found)
     members = _bodies(found, [bodies] if isinstance(bodies, str) else bodies)
@@ -78,19 +57,33 @@ def _parts(found: Found, bodies: Sequence[str] | str | None) -> dict[str, Any]:
             found.points.setdefault(name, []).extend(alone)
     ends = {frozenset(edge[:2]): edge for edge in edges.values()}
     for name, sides in found.sides.items():
-        lines.setdefault(name, []).extend(ends.get(frozenset(side), side) for side in sides)
+        own_sides = [ends.get(frozenset(side), side) for side in sides]
+        if {frozenset(side) for side in lines.setdefault(name, own_sides)} != {frozenset(side) for side in own_sides}:
+            raise refused(found.file, name, "is a set of lines, and a surface of other edges: give them different names")
     groups = {name: {node for cell in cells for node in cell} for name, cells in lines.items()}
     groups |= {name: {node for cell in cells for node in found.cells[cell]} for name, cells in members.items()}
     points = {}
     for name, list_ in found.points.items():
         if groups.get(name) != set(list_):
-            points[f"{name}_nodes" if name in groups else name] = np.array(sorted(set(list_)), dtype=np.int64)
+            own_name = f"{name}_nodes" if name in groups else name
+            if own_name in groups or own_name != name and own_name in found.points:
+                raise refused(found.file, name, f"is a set of other nodes than the group `{name}`, and `{own_name}` is there: rename one")
+            points[own_name] = np.array(sorted(set(list_)), dtype=np.int64)
     return {
         "nodes": nodes,
         "elements": {name: _by_width(found.cells[cell] for cell in cells) for name, cells in members.items()},
         "edges": {name: _by_width(dict.fromkeys(cells)) for name, cells in lines.items()},
         "points": points,
     }
+
+
+def _numbers(found: Found) -> None:
+    """Cells and sets name nodes that are there."""
+    for what, lists in (("a cell", found.cells), ("a set", found.points.values())):
+        for nodes in lists:
+            beyond = next((node for node in nodes if not 0 <= node < len(found.nodes)), None)
+            if beyond is not None:
+                raise refused(found.file, "", f"{what} has the node {beyond + 1}, and the file has {len(found.nodes)} nodes")
 
 
 def _plane(found: Found) -> NDArray[np.float64]:
@@ -161,186 +154,22 @@ def _by_width(cells: Iterable[tuple[int, ...]]) -> list[NDArray[np.int64]]:
     return [np.array(rows, dtype=np.int64) for rows in by.values()]
 
 
-# ---- Abaqus, CalculiX ----
-
-#: Elements of the plane and of lines; the number of their nodes comes last.
-ELEMENTS = re.compile(r"(?:CPE|CPS|CPEG|CAX|M3D|S|STRI)(3|4|6|8|9)|(?:T2D|T3D|R2D|RAX)(2|3)|B[23]([123])")
-
-#: Letters behind the number, for reduced integration, hybrid, incompatible, modified, thermal and porous elements.
-VARIANT = re.compile(r"[RHIMTPS5]*$")
-
-
-def _abaqus(path: str) -> Found:
-    """Nodes, elements, sets and surfaces of a deck; names as they are first written, whatever the case of their letters."""
-    deck = _Deck(path)
-    deck.read(Path(path))
-    number = {tag: k for k, tag in enumerate(deck.nodes)}
-    positions = [(*at, 0.0, 0.0)[:3] for at in deck.nodes.values()]
-    found = Found(path, np.array(positions, dtype=float).reshape(-1, 3))
-    cells: dict[int, int] = {}
-    for tag, (kind, nodes) in deck.elements.items():
-        missing = [node for node in nodes if node not in number]
-        if missing:
-            raise refused(path, "", f"element {tag} has node {missing[0]}, which the file does not have")
-        dimension, _ = _element(path, kind)
-        cells[tag] = found.add([number[node] for node in nodes], dimension)
-    found.sets = {name: [cells[tag] for tag in deck.known(tags, cells, name)] for name, tags in deck.named("ELSET").items()}
-    found.points = {name: [number[tag] for tag in deck.known(tags, number, name)] for name, tags in deck.named("NSET").items()}
-    for name, faces in deck.surfaces.items():
-        for of, side in faces:
-            if side is None:
-                tags = deck.members("NSET", of)
-                found.points.setdefault(name, []).extend(number[tag] for tag in deck.known(tags, number, name))
-                continue
-            for tag in deck.known(deck.members("ELSET", of), cells, name):
-                cell = found.cells[cells[tag]]
-                corners = 3 if len(cell) in (3, 6) else 4
-                if found.dimensions[cells[tag]] != 2 or not 1 <= side <= corners:
-                    raise refused(path, f"*SURFACE {name}", f"element {tag} has no side S{side} in the plane")
-                found.sides.setdefault(name, []).append((cell[side - 1], cell[side % corners]))
-    return found
-
-
-def _element(path: str, kind: str) -> tuple[int, int]:
-    """Dimension and number of nodes of an element type."""
-    match = ELEMENTS.match(kind)
-    if not match or not VARIANT.match(kind, match.end()):
-        raise refused(path, f"*ELEMENT, TYPE={kind}", "is no plane element, nor a line: CPE, CPS and CAX with 3, 4, 6 or 8 nodes are read")
-    plane, line, beam = match.groups()
-    if plane:
-        return 2, int(plane)
-    return 1, int(line) if line else {1: 2, 2: 3, 3: 2}[int(beam)]
-
-
-class _Deck:
-    """The keywords of a deck that are mesh."""
-
-    def __init__(self, path: str) -> None:
-        self.path = path
-        self.nodes: dict[int, list[float]] = {}
-        self.elements: dict[int, tuple[str, list[int]]] = {}
-        self.sets: dict[str, dict[str, list[int]]] = {"NSET": {}, "ELSET": {}}
-        self.surfaces: dict[str, list[tuple[str, int | None]]] = {}
-        self.parts = 0
-        #: sets that Abaqus/CAE makes for its own use
-        self.internal: set[str] = set()
-
-    def read(self, path: Path) -> None:
-        """A file, with those that it includes."""
-        options: dict[str, str] = {}
-        rows: list[list[str]] = []
-        keyword = ""
-        for line in [*Path(_there(os.fspath(path))).read_text(errors="replace").splitlines(), "*END"]:
-            text = line.strip()
-            if not text or text.startswith("**"):
-                continue
-            if not text.startswith("*"):
-                rows.append([cell.strip() for cell in text.rstrip(",").split(",")])
-                continue
-            self.take(path, keyword, options, rows)
-            keyword, *given = [cell.strip() for cell in text[1:].split(",")]
-            pairs = [cell.partition("=") for cell in given]
-            options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-            keyword, rows = " ".join(keyword.upper().split()), []
-
-    def take(self, path: Path, keyword: str, options: dict[str, str], rows: list[list[str]]) -> None:
-        """One keyword with its lines."""
-        try:
-            if keyword == "INCLUDE":
-                self.read(path.parent / options["INPUT"])
-            elif keyword == "NODE":
-                for tag, *at in rows:
-                    self.nodes[int(tag)] = [float(x or 0) for x in at]
-                self.put("NSET", options.get("NSET"), [int(row[0]) for row in rows])
-            elif keyword == "ELEMENT":
-                self.put("ELSET", options.get("ELSET"), self.take_elements(options["TYPE"].upper(), rows))
-            elif keyword in ("NSET", "ELSET"):
-                self.put(keyword, options[keyword], self.listed(keyword, "GENERATE" in options, rows))
-                if "INTERNAL" in options:
-                    self.internal.add(options[keyword].upper())
-            elif keyword == "SURFACE":
-                self.take_surface(options, rows)
-            elif keyword == "PART":
-                self.parts += 1
-            if self.parts > 1 or keyword == "INSTANCE" and rows:
-                text = "has several parts, or moves one: write it without parts and assemblies (a flat deck)"
-                raise refused(self.path, "", text)
-        except CaseError:
-            raise
-        except (KeyError, ValueError, IndexError) as error:
-            raise refused(self.path, f"*{keyword}", f"cannot be understood: {error!s}") from None
-
-    def take_elements(self, kind: str, rows: list[list[str]]) -> list[int]:
-        """Elements of a type, one or more lines each."""
-        _, count = _element(self.path, kind)
-        numbers = [int(cell) for row in rows for cell in row]
-        if len(numbers) % (count + 1):
-            raise refused(self.path, f"*ELEMENT, TYPE={kind}", f"has lines that are not a number and {count} nodes")
-        tags = []
-        for k in range(0, len(numbers), count + 1):
-            tag, *nodes = numbers[k : k + count + 1]
-            if tag in self.elements:
-                raise refused(self.path, f"*ELEMENT, TYPE={kind}", f"element {tag} stands in the file twice")
-            self.elements[tag] = (kind, nodes)
-            tags.append(tag)
-        return tags
-
-    def listed(self, kind: str, generate: bool, rows: list[list[str]]) -> list[int]:
-        """The members that the lines of a set list: numbers, ranges, or names of other sets."""
-        if generate:
-            ranges = [[*map(int, row), 1][:3] for row in rows]
-            return [tag for first, last, step in ranges for tag in range(first, last + 1, step)]
-        return [tag for row in rows for cell in row for tag in self.members(kind, cell)]
-
-    def take_surface(self, options: dict[str, str], rows: list[list[str]]) -> None:
-        """Sides of elements (S1 … S4), or nodes."""
-        by_nodes = options.get("TYPE", "ELEMENT").upper() == "NODE"
-        faces = self.surfaces.setdefault(options["NAME"], [])
-        for row in rows:
-            label = "" if by_nodes else (row[1:] or [""])[0].upper()
-            if not by_nodes and not re.fullmatch(r"S[1-4]", label):
-                place = f"*SURFACE {options['NAME']}"
-                raise refused(self.path, place, f"`{', '.join(row)}` names no side S1 to S4 of its elements")
-            faces.append((row[0], None if by_nodes else int(label[1:])))
-
-    def put(self, kind: str, name: str | None, tags: list[int]) -> None:
-        """Put members into a set, if it has a name."""
-        if name:
-            known = self.name(kind, name) or name
-            self.sets[kind].setdefault(known, []).extend(tags)
-
-    def name(self, kind: str, name: str) -> str | None:
-        """A set as it is written first."""
-        return next((known for known in self.sets[kind] if known.upper() == name.upper()), None)
-
-    def members(self, kind: str, cell: str) -> list[int]:
-        """A number, or the members of a set; of an instance, behind its name and a dot."""
-        cell = cell.strip('"')
-        if cell.isdigit():
-            return [int(cell)]
-        known = self.name(kind, cell) or self.name(kind, cell.rpartition(".")[2])
-        if known is None:
-            raise refused(self.path, f"*{kind}", f"there is no set `{cell}` before it is used")
-        return list(self.sets[kind][known])
-
-    def named(self, kind: str) -> dict[str, list[int]]:
-        """The sets that a user has named."""
-        return {name: tags for name, tags in self.sets[kind].items() if name.upper() not in self.internal}
-
-    def known(self, tags: list[int], numbers: dict[int, int], name: str) -> list[int]:
-        """The members, which must be there."""
-        missing = [tag for tag in tags if tag not in numbers]
-        if missing:
-            raise refused(self.path, name, f"has {missing[0]}, which the file does not have")
-        return tags
-
-
 # ---- Exodus ----
 
 
 def _exodus(path: str) -> Found:
     """Blocks, side sets and node sets, by their names or as ``block_1``, ``sideset_1``, ``nodeset_1`` with their numbers."""
-    with _needs("netCDF4").Dataset(_there(path)) as data:
+    netcdf = _needs("netCDF4")
+    there(path)
+    try:
+        return _exodus_found(path, netcdf)
+    except (AttributeError, IndexError, KeyError, OSError, ValueError) as error:
+        raise refused(path, "", f"is no complete Exodus file: {type(error).__name__}: {error}") from None
+
+
+def _exodus_found(path: str, netcdf: ModuleType) -> Found:
+    """What the variables of the file say."""
+    with netcdf.Dataset(path) as data:
         data.set_auto_mask(False)
         variables = data.variables
         axes = [variables[f"coord{axis}"][:] for axis in "xyz" if f"coord{axis}" in variables]
@@ -373,6 +202,8 @@ def _exodus(path: str) -> Found:
             if f"elem_ss{k}" not in variables:
                 continue
             for cell, side in zip(variables[f"elem_ss{k}"][:] - 1, variables[f"side_ss{k}"][:], strict=True):
+                if not 0 <= cell < len(found.cells):
+                    raise refused(path, name, f"has the element {cell + 1}, which the file does not have")
                 nodes_of = found.cells[cell]
                 corners = 3 if len(nodes_of) in (3, 6) else 4
                 # The first two sides of a shell are its faces.
@@ -389,10 +220,14 @@ _EXODUS = [(2, re.compile("QUAD|SHELL|TRI")), (1, re.compile("BAR|BEAM|TRUSS|EDG
 # ---- by meshio ----
 
 
-def _other(path: str, array: str | None) -> tuple[Found, bool]:
-    """What ``meshio`` reads, and whether bodies are the values of an array of the cells."""
+#: Cells that are read, by their names in meshio, with their dimensions.
+_MESHIO = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2, "quad": 2, "quad8": 2, "quad9": 2}
+
+
+def _other(path: str, bodies: Sequence[str] | str | None) -> tuple[Found, Sequence[str] | str | None]:
+    """What ``meshio`` reads, and the sets that are bodies; those named after the values of an array of the cells included."""
     meshio = _needs("meshio")
-    _there(path)
+    there(path)
     try:
         mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # noqa: BLE001
@@ -400,7 +235,14 @@ def _other(path: str, array: str | None) -> tuple[Found, bool]:
     found = Found(path, np.asarray(mesh.points))
     blocks = []
     for block in mesh.cells:
+        simple = block.type == "polygon" and np.shape(block.data)[1] in (3, 4)
+        if block.dim < 3 and block.type not in _MESHIO and not simple:
+            raise refused(path, "", f"has cells of the type `{block.type}`, which are not read, only {', '.join(_MESHIO)}")
+        if not _is_whole(np.ravel(block.data)):
+            raise refused(path, "", f"has cells of the type `{block.type}` whose nodes are no whole numbers")
         blocks.append([found.add(cell, block.dim) for cell in block.data])
+    if Path(path).suffix.lower() == ".vtu":
+        _complete(found)
     for name, sets in (mesh.cell_sets or {}).items():
         found.sets[name] = [blocks[k][cell] for k, own in enumerate(sets) if own is not None for cell in np.asarray(own, dtype=int)]
     found.points = {name: [int(node) for node in own] for name, own in (mesh.point_sets or {}).items()}
@@ -414,28 +256,64 @@ def _other(path: str, array: str | None) -> tuple[Found, bool]:
     for node, tag in enumerate(mesh.point_data.get("point_tags", [])):
         for name in families.get(tag, ()):
             found.points.setdefault(name, []).append(node)
-    arrays = {name: data for name, data in mesh.cell_data.items() if all(_is_whole(values) for values in data)}
-    arrays.pop("cell_tags", None)
-    return found, _by_array(found, arrays, blocks, array)
+    arrays = {name: data for name, data in mesh.cell_data.items() if name != "cell_tags"}
+    return found, _by_array(found, arrays, blocks, bodies)
+
+
+def _complete(found: Found) -> None:
+    """Meshio leaves out cells of a VTU file that it does not know, and values beyond the last cell."""
+    content = Path(found.file).read_bytes()
+    number = sum(int(count) for count in re.findall(rb'NumberOfCells\s*=\s*"\s*(\d+)', content))
+    if number != len(found.cells):
+        raise refused(found.file, "", f"has {number} cells, of which {len(found.cells)} can be read: triangles, quadrilaterals and lines")
+    try:
+        pieces = ElementTree.fromstring(content).iter("Piece")
+    except ElementTree.ParseError:
+        # With binary data behind the text; what a program has written has one length.
+        return
+    for piece in pieces:
+        for array in piece.iterfind("CellData/DataArray[@format='ascii']"):
+            values = len((array.text or "").split()) / int(array.get("NumberOfComponents", "1") or 1)
+            if values != int(piece.get("NumberOfCells", "0")):
+                name = f"the array `{array.get('Name')}` of the cells"
+                raise refused(found.file, "", f"{name} has {values:g} values for {piece.get('NumberOfCells')} cells")
 
 
 def _is_whole(values: Any) -> bool:
-    return np.issubdtype(np.asarray(values).dtype, np.integer) and np.ndim(values) == 1
+    """Whether an array has one whole number a cell, in whatever type they are stored."""
+    array = np.asarray(values)
+    return array.ndim == 1 and (np.issubdtype(array.dtype, np.integer) or array.dtype.kind == "f" and bool(np.all(array % 1 == 0)))
 
 
-def _by_array(found: Found, arrays: dict[str, Any], blocks: list[list[int]], wanted: str | None) -> bool:
-    """Sets by the values of an array, where the file has no sets, or the array is asked for."""
-    if wanted not in arrays and (found.sets or not arrays):
-        return False
-    if wanted is None and len(arrays) > 1 or wanted is not None and wanted not in arrays:
-        names = ", ".join(f"`{name}`" for name in arrays)
+def _is_bodies(values: Sequence[Any]) -> bool:
+    """Whether an array that nobody has named tells bodies: whole numbers, and where they are stored as decimals, several of them."""
+    whole = all(_is_whole(block) for block in values)
+    return whole and (all(np.asarray(block).dtype.kind in "iu" for block in values) or len(np.unique(np.concatenate(values))) > 1)
+
+
+def _by_array(
+    found: Found, arrays: dict[str, Any], blocks: list[list[int]], bodies: Sequence[str] | str | None
+) -> Sequence[str] | str | None:
+    """Sets by the values of an array, where the file has no sets, or the array is asked for; the sets that are bodies then."""
+    asked = bodies if isinstance(bodies, str) else None
+    possible = {name: values for name, values in arrays.items() if _is_bodies(values)}
+    names = ", ".join(f"`{name}`" for name in possible) or "none"
+    if asked in arrays and asked is not None:
+        if not all(_is_whole(values) for values in arrays[asked]):
+            text = f"the array `{asked}` has not one whole number a cell: name the array of the bodies; there are {names}"
+            raise refused(found.file, "bodies", text)
+        name = asked
+    elif found.sets or not possible:
+        return bodies
+    elif len(possible) > 1 or asked is not None:
         raise refused(found.file, "bodies", f"name the array of the cells whose values are the bodies; there are {names}")
-    name = wanted if wanted is not None else next(iter(arrays))
+    else:
+        name = next(iter(possible))
     found.sets = {}
     for own, values in zip(blocks, arrays[name], strict=True):
         for cell, value in zip(own, values, strict=True):
-            found.sets.setdefault(f"{name}_{value}", []).append(cell)
-    return True
+            found.sets.setdefault(f"{name}_{int(value)}", []).append(cell)
+    return None if asked is not None else bodies
 
 
 def _needs(module: str) -> ModuleType:
@@ -444,9 +322,3 @@ def _needs(module: str) -> ModuleType:
         return __import__(module)
     except ImportError as error:
         raise ImportError(f"this format needs {module}: pip install 'fecontact[meshio]'") from error
-
-
-def _there(path: str) -> str:
-    if not os.path.isfile(path):
-        raise refused(path, "", "there is no such mesh file; check the path")
-    return path

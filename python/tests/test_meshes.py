@@ -142,6 +142,14 @@ def test_an_exodus_file_keeps_blocks_side_sets_and_node_sets(tmp_path: pathlib.P
         data["side_ss1"][:] = 1
     with pytest.raises(fc.CaseError, match="joint: side 1 of element 1 is no edge in the plane"):
         fc.Mesh.read(file)
+    # An element that is not there, and no file of this kind.
+    with netcdf.Dataset(file, "a") as data:
+        data["elem_ss1"][:] = 0
+    with pytest.raises(fc.CaseError, match="joint: has the element 0, which the file does not have"):
+        fc.Mesh.read(file)
+    file.write_text("no mesh")
+    with pytest.raises(fc.CaseError, match="is no complete Exodus file"):
+        fc.Mesh.read(file)
 
 
 def meshio_squares(meshio: Any, **more: Any) -> Any:
@@ -185,6 +193,59 @@ def test_bodies_are_the_values_of_an_array_of_the_cells(tmp_path: pathlib.Path) 
     bare = meshio_squares(meshio)
     meshio.write(file, bare)
     assert fc.Mesh.read(file).groups == {"body": "elements"}
+
+
+def vtu(cells: dict[str, str], kind: str = "Int32", material: str = "1 2 2") -> str:
+    """A file of text: a quadrilateral and two triangles, with an array of the cells."""
+    given = {"connectivity": "0 1 2 3 4 5 6 4 6 7", "offsets": "4 7 10", "types": "9 5 5", **cells}
+    points = " ".join(f"{x} {y} 0" for x, y in NODES)
+    kinds = {name: "Float64" if "." in values else "Int32" for name, values in given.items()}
+    arrays = "".join(f'<DataArray type="{kinds[name]}" Name="{name}" format="ascii">{values}</DataArray>' for name, values in given.items())
+    return (
+        '<VTKFile type="UnstructuredGrid" version="0.1"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="3"><Points>'
+        f'<DataArray type="Float64" NumberOfComponents="3" format="ascii">{points}</DataArray></Points><Cells>{arrays}</Cells><CellData>'
+        f'<DataArray type="{kind}" Name="material" format="ascii">{material}</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>'
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (vtu({"connectivity": "0 1 2 3.5 4 5 6 4 6 7"}), "cells of the type `quad` whose nodes are no whole numbers"),
+        (vtu({"connectivity": "0 1 2 3 4 5 6 4 6 70"}), "a cell has the node 71, and the file has 8 nodes"),
+        (vtu({"connectivity": "0 1 2 -1 4 5 6 4 6 7"}), "a cell has the node 0, and the file has 8 nodes"),
+        (vtu({"types": "6 5 5"}), "has 3 cells, of which 2 can be read"),
+        (vtu({"types": "7 5 5", "connectivity": "0 1 4 2 3 4 5 6 4 6 7", "offsets": "5 8 11"}), "cells of the type `polygon`, which are not read"),
+        (vtu({}, material="1 2 2 7"), "the array `material` of the cells has 4 values for 3 cells"),
+        (vtu({}, material="1 2"), "cannot be read by meshio"),
+    ],
+)
+def test_cells_and_arrays_that_do_not_fit_are_refused(tmp_path: pathlib.Path, content: str, words: str) -> None:
+    pytest.importorskip("meshio")
+    (tmp_path / "bad.vtu").write_text(content)
+    with pytest.raises(fc.CaseError) as error:
+        fc.Mesh.read(tmp_path / "bad.vtu")
+    assert words in str(error.value), error.value
+
+
+def test_bodies_are_whole_numbers_in_whatever_type_they_are_stored(tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("meshio")
+    file = tmp_path / "squares.vtu"
+    file.write_text(vtu({}, "Float64", "1.0 2.0 2.0"))
+    assert set(fc.Mesh.read(file).groups) == {"material_1", "material_2"} == set(fc.Mesh.read(file, bodies="material").groups)
+    # A constant tells no bodies, unless it is asked for.
+    file.write_text(vtu({}, "Float64", "20.0 20.0 20.0"))
+    assert set(fc.Mesh.read(file).groups) == {"body"}
+    assert set(fc.Mesh.read(file, bodies="material").groups) == {"material_20"}
+    for values in ("1.5 2.0 2.0", "1.0 nan 2.0"):
+        file.write_text(vtu({}, "Float64", values))
+        assert set(fc.Mesh.read(file).groups) == {"body"}
+        with pytest.raises(fc.CaseError, match="the array `material` has not one whole number a cell"):
+            fc.Mesh.read(file, bodies="material")
+    # Sets that are named are those that are bodies.
+    file.write_text(vtu({}))
+    with pytest.raises(fc.CaseError, match="1 plane cells are in none of the sets that are named"):
+        fc.Mesh.read(file, bodies=["material_2"])
 
 
 def test_meshes_that_are_not_plane_are_refused(tmp_path: pathlib.Path) -> None:
