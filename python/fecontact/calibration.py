@@ -320,7 +320,8 @@ class Fit:
             name: {"value": f"{row['value']:.5g}", "95 % interval": f"{row['low']:.5g} to {row['high']:.5g}" if row["high"] < np.inf else "not determined"}
             for name, row in self.table.iterrows()
         }
-        return "\n".join([pd.DataFrame(rows).T.to_string(), *self.words])
+        left_out = [record._left_out for record in self._problem.records if isinstance(record, Run) and record._left_out]
+        return "\n".join([pd.DataFrame(rows).T.to_string(), *self.words, *left_out])
 
 
 def fit(
