@@ -742,6 +742,25 @@ fn what_cannot_be_answered_is_told() {
     assert!(law.description().concern.is_none());
 }
 
+/// An angle of dilation that is not given is that of friction.
+#[test]
+fn a_cone_flows_as_it_yields_unless_its_dilation_is_given() {
+    let sheared = Vector5::new(1.01, 0.02, 0.0, 0.97, 1.0);
+    let pressed = |more: Value| {
+        let mut given = json!({"model": "drucker_prager", "c": 0.1, "phi": 25});
+        more.as_object().expect("keys").iter().for_each(|(key, value)| given[key] = value.clone());
+        let law = with_elasticity(given);
+        let (answer, _) = stretched(&*law, &sheared, &start(&*law)).expect("an answer");
+        answer.stress
+    };
+    for matching in ["plane_strain", "compression"] {
+        let associated = pressed(json!({"matching": matching, "psi": 25}));
+        assert_eq!(pressed(json!({"matching": matching})), associated);
+    }
+    let dilates_less = pressed(json!({"matching": "compression", "psi": 20}));
+    assert_ne!(pressed(json!({"matching": "compression"})), dilates_less);
+}
+
 /// Constants out of range are refused with their name.
 #[test]
 fn bad_constants_are_refused() {

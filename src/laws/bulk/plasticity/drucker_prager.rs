@@ -26,8 +26,8 @@ pub struct DruckerPragerParameters {
     pub c: f64,
     /// φ: angle of friction, 0 ≤ φ < 90 [degrees]
     pub phi: f64,
-    /// ψ: angle of dilation, 0 ≤ ψ ≤ φ [degrees]
-    pub psi: f64,
+    /// ψ: angle of dilation, 0 ≤ ψ ≤ φ; φ unless given [degrees]
+    pub psi: Option<f64>,
     /// Which tests c and φ are those of
     pub matching: Matching,
     /// Largest mean stress tr τ/3, tension positive; that of the tip of the cone, c cot φ, unless given [F/L²]
@@ -41,7 +41,7 @@ pub struct DruckerPragerParameters {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Matching {
-    /// The same collapse in plane strain, of associated flow: it needs psi = phi
+    /// The same collapse in plane strain, of associated flow: leave psi out, which is phi then
     PlaneStrain,
     /// The same strength in triaxial compression; in plane strain it is too strong, much so for φ > 25°
     Compression,
@@ -50,7 +50,7 @@ pub enum Matching {
 impl DruckerPragerParameters {
     /// Associated, of a body without mass.
     pub fn new(young: f64, poisson: f64, [c, phi]: [f64; 2], matching: Matching) -> Self {
-        Self { young, poisson, density: 0.0, c, phi, psi: phi, matching, tension: None, viscosity: 0.0 }
+        Self { young, poisson, density: 0.0, c, phi, psi: None, matching, tension: None, viscosity: 0.0 }
     }
 }
 
@@ -94,11 +94,12 @@ impl DruckerPrager {
     pub fn new(given: &DruckerPragerParameters) -> Result<Elastoplastic<Self>, InvalidParameter> {
         let DruckerPragerParameters { young, poisson, density, c, phi, psi, matching, tension, viscosity } = *given;
         let elastic = ElasticConstants { young, poisson, density }.lame()?;
-        check_strength(c, phi, psi)?;
+        let psi = psi.unwrap_or(phi);
         let in_plane = matching == Matching::PlaneStrain;
-        let associated = "in plane strain it must be phi: the matching holds for associated flow; take \"matching\": \
-                          \"compression\", or mohr_coulomb";
+        let associated = "in plane strain it must be phi: the matching holds for associated flow; leave it out, or take \
+                          \"matching\": \"compression\", or mohr_coulomb";
         require("psi", psi, !in_plane || psi == phi, associated)?;
+        check_strength(c, phi, psi)?;
         if let Some(tension) = tension {
             require_not_negative("tension", tension)?;
         }
