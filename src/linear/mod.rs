@@ -66,6 +66,12 @@ pub trait LinearSolver: Send {
         None
     }
 
+    /// Least number of negative eigenvalues that the last factors prove: all of them in symmetric parts, and one more if the determinant
+    /// of the rest is negative; `None` where the sign of the determinant is not known.
+    fn least_negative(&self) -> Option<usize> {
+        self.negative_pivots()
+    }
+
     /// Number of pivots of the last factorization that vanished and were replaced; a result of [`solve`](Self::solve) then
     /// needs refinement, and may not satisfy the equations even so.
     fn perturbed_pivots(&self) -> usize {
@@ -85,6 +91,8 @@ pub struct Solution {
     pub perturbed_pivots: usize,
     /// Negative eigenvalues of A, if all of it was factorized as symmetric
     pub negative_pivots: Option<usize>,
+    /// Least number of negative eigenvalues of A ([`LinearSolver::least_negative`]), if anything is known of them
+    pub least_negative: Option<usize>,
     /// Whether [`SparseLu`] was used because refinement stalled
     pub fallback: bool,
 }
@@ -124,8 +132,8 @@ pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) ->
         if other.factorize(matrix).is_ok() {
             let second = refined(&mut other, matrix, b, REFINEMENTS);
             if second.backward_error < solution.backward_error || solution.backward_error.is_nan() {
-                let Solution { perturbed_pivots, negative_pivots, .. } = solution;
-                solution = Solution { perturbed_pivots, negative_pivots, fallback: true, ..second };
+                let Solution { perturbed_pivots, negative_pivots, least_negative, .. } = solution;
+                solution = Solution { perturbed_pivots, negative_pivots, least_negative, fallback: true, ..second };
             }
         }
     }
@@ -165,9 +173,9 @@ fn refined(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64], most
         (x, residual, backward_error) = (refined, new_residual, new_error);
     }
     let perturbed_pivots = solver.perturbed_pivots();
-    let negative_pivots = solver.negative_pivots();
+    let (negative_pivots, least_negative) = (solver.negative_pivots(), solver.least_negative());
     let residual = relative(&residual, b);
-    Solution { x, residual, backward_error, perturbed_pivots, negative_pivots, fallback: false }
+    Solution { x, residual, backward_error, perturbed_pivots, negative_pivots, least_negative, fallback: false }
 }
 
 /// Returns the solution of a stable solver unrefined.
@@ -175,7 +183,8 @@ fn stable(matrix: &SparseMatrix, x: Vec<f64>, b: &[f64]) -> Solution {
     let residual = relative(&matrix.residual(&x, b), b);
     // A non-finite residual has no backward error, so that another solver is used.
     let backward_error = if residual.is_finite() { 0.0 } else { f64::NAN };
-    Solution { x, residual, backward_error, perturbed_pivots: 0, negative_pivots: None, fallback: false }
+    let (perturbed_pivots, negative_pivots, least_negative) = (0, None, None);
+    Solution { x, residual, backward_error, perturbed_pivots, negative_pivots, least_negative, fallback: false }
 }
 
 /// ‖r‖/‖b‖, 0 for b = 0

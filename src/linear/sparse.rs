@@ -138,6 +138,8 @@ pub struct SparseMatrix {
     pub values: Vec<f64>,
     /// Whether each dof is held: see [`SparseMatrix::hold`]
     pub held: Vec<bool>,
+    /// Whether an odd number of nodes have their two equations in reverse order ([`SparseMatrix::turn_rows`])
+    pub reversed: bool,
 }
 
 impl SparseMatrix {
@@ -145,7 +147,7 @@ impl SparseMatrix {
     pub fn zero(pattern: Arc<Pattern>) -> Self {
         let values = vec![0.0; pattern.values()];
         let held = vec![false; 2 * pattern.nodes()];
-        Self { pattern, values, held }
+        Self { pattern, values, held, reversed: false }
     }
 
     /// Number of rows and columns.
@@ -157,12 +159,14 @@ impl SparseMatrix {
     pub fn clear(&mut self) {
         self.values.fill(0.0);
         self.held.fill(false);
+        self.reversed = false;
     }
 
     /// Take the values of a matrix on the same pattern; nothing is held.
     pub fn copy_values(&mut self, other: &SparseMatrix) {
         self.values.copy_from_slice(&other.values);
         self.held.fill(false);
+        self.reversed = false;
     }
 
     /// Adds `value` to the diagonal entry of one dof: A_ii += value.
@@ -259,6 +263,9 @@ impl SparseMatrix {
     pub fn turn_rows(&mut self, dof: usize, own: [f64; 2], across: [f64; 2]) {
         let (node, d) = (dof / 2, dof % 2);
         self.held[2 * node..2 * node + 2].fill(false);
+        let unit =
+            if d == 0 { own[0] * across[1] - own[1] * across[0] } else { across[0] * own[1] - across[1] * own[0] };
+        self.reversed ^= unit < 0.0;
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
             let Some(block) = self.pattern.block(node, column) else { continue };

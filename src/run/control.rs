@@ -303,7 +303,7 @@ impl Candidate {
 pub(super) fn negative_after(step: &Step, iterations: &[IterationRecord], before: usize) -> usize {
     let last = iterations.iter().rev().map(|iteration| iteration.newton).find(|newton| newton.factorized);
     let known = last.filter(|newton| !step.scheme.is_dynamic() && newton.perturbed_pivots == 0);
-    known.and_then(|newton| newton.negative_pivots).unwrap_or(before)
+    known.and_then(|newton| newton.least_negative).unwrap_or(before)
 }
 
 /// Counts and times of a run.

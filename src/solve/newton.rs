@@ -72,6 +72,9 @@ pub struct Iteration {
     pub perturbed_pivots: usize,
     /// Negative eigenvalues of K, where all of it was factorized as symmetric
     pub negative_pivots: Option<usize>,
+    /// Least number of negative eigenvalues of K, if anything is known of them: those of its symmetric parts, and one more if the
+    /// determinant of the rest is negative
+    pub least_negative: Option<usize>,
     /// Whether the factors of K were too inaccurate, and another solver was used
     pub fallback: bool,
     /// Whether a line search was made along the correction
@@ -236,6 +239,7 @@ impl Plan {
             factorized: self.factorized,
             perturbed_pivots: solution.perturbed_pivots,
             negative_pivots: solution.negative_pivots,
+            least_negative: solution.least_negative,
             fallback: solution.fallback,
             searched: self.searched,
         }

@@ -63,3 +63,55 @@ fn the_straight_branch_is_reported_from_eulers_load_on() {
     close("since", since, 0.5, 0.03);
     assert!(warning.contains("up to 1 negative eigenvalue"), "{warning}");
 }
+
+/// A body far away that slides on another says nothing of the beam, whose own eigenvalues are counted as before, although the tangent as
+/// a whole is not symmetric: the stable branch, where it was 1.07; and the straight beam is reported beside it.
+#[test]
+fn what_slides_elsewhere_hides_no_instability() {
+    let beside = |mut case: Value| {
+        let block = |body: &str, x: [f64; 2], y: f64, sides: [&str; 2]| {
+            json!({"body": body, "kind": "Q4", "elements": [3, 1], "sides": [sides[0], null, sides[1], null],
+                   "corners": [[x[0], y], [x[1], y], [x[1], y + 1.0], [x[0], y + 1.0]]})
+        };
+        let others = [
+            block("bed", [100.0, 104.0], 0.0, ["foot", "ground"]),
+            block("slider", [101.0, 103.0], 1.0, ["sole", "head"]),
+        ];
+        case["mesh"]["blocks"].as_array_mut().expect("blocks").extend(others);
+        let material = case["bodies"]["beam"].clone();
+        (case["bodies"]["bed"], case["bodies"]["slider"]) = (material.clone(), material);
+        case["contacts"] =
+            json!({"far": {"slave": "sole", "master": "ground", "friction": {"law": "coulomb", "mu": 0.3}}});
+        let held = [json!({"on": "foot", "ux": 0, "uy": 0}), json!({"on": "head", "ux": 0.05, "uy": -0.02})];
+        case["steps"][0]["supports"].as_array_mut().expect("supports").extend(held);
+        case
+    };
+    let (run, warnings) = told(&beside(beam(0.05, 2.0, json!({"initial": 0.1}))));
+    close("end force", run.reaction("right", run.last())[0], -0.1181, 1e-2);
+    assert!(!is_unstable(&warnings), "{warnings:?}");
+    assert!(is_unstable(&told(&beside(beam(0.0, 0.1, json!({"initial": 0.1, "max": 0.1})))).1));
+}
+
+/// A straight column, clamped at one end, at the other held across only and pressed by a pressure, which follows the surface: the tangent
+/// is not symmetric there, and the sign of its determinant tells. The force across that comes by the rotation of the end is borne by the
+/// support, so that the load is that of a dead force, N = 20.19 E' I/L² (tan x = x, x² = 20.19).
+#[test]
+fn the_sign_of_the_determinant_tells_where_the_tangent_is_not_symmetric() {
+    let critical = 20.19 * 100.0 / (1.0 - 0.09) / 12.0 * (0.5f64 / 20.0).powi(2);
+    let at = |times: f64| {
+        let mut case = beam(0.0, 0.0, json!({"initial": 0.1, "max": 0.1}));
+        case["steps"][0]["supports"] = json!([{"on": "left", "ux": 0, "uy": 0}, {"on": "right", "uy": 0}]);
+        case["steps"][0]["loads"] = json!([{"on": "right", "pressure": format!("{}*t", times * critical)}]);
+        told(&case).1
+    };
+    assert!(!is_unstable(&at(0.9)));
+    let warnings = at(1.8);
+    let warning = warnings.iter().find(|warning| warning.contains("equilibria are unstable")).expect("a warning");
+    let since: f64 = warning
+        .split("t = ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next())
+        .and_then(|t| t.parse().ok())
+        .expect("a time");
+    close("since", since, 1.0 / 1.8, 0.03);
+}

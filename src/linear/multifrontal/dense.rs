@@ -79,6 +79,12 @@ impl Panel<'_> {
         replaced
     }
 
+    /// Whether det F₁₁ is negative: every row exchange and every negative pivot reverses its sign.
+    pub fn is_odd(&self) -> bool {
+        let reverses = |(j, &other): (usize, &u32)| (other as usize != j) != (self.lower[j * self.size() + j] < 0.0);
+        self.exchanges.iter().enumerate().filter(|pivot| reverses(*pivot)).count() % 2 == 1
+    }
+
     /// −L₂₁ U₁₂, written over `contribution`.
     pub fn contribution(&self, contribution: &mut [f64]) {
         let (below, pivots) = (self.below, self.pivots);

@@ -88,6 +88,11 @@ impl Factors {
         self.found.iter().map(|found| found.negative).sum()
     }
 
+    /// Whether the determinant of the part that was factorized as L U is negative: that of what symmetric fronts leave.
+    pub fn is_odd(&self) -> bool {
+        self.found.iter().fold(false, |odd, found| odd != found.odd)
+    }
+
     /// Factorize a matrix, scaled to 1, on the pattern of `symbolic`, which is that of the last one unless it was settled. The
     /// storage is used again, and so are fronts whose values have not changed.
     pub fn compute(&mut self, symbolic: &Symbolic, matrix: &SparseMatrix, scaling: &Scaling) {
@@ -264,7 +269,7 @@ impl Numeric<'_> {
             }
         } else {
             let mut panel = Panel { lower, upper, pivots, below: front.below(), exchanges };
-            part.found[0] = Found { replaced: panel.factorize(), negative: 0 };
+            part.found[0] = Found { replaced: panel.factorize(), negative: 0, odd: panel.is_odd() };
             if !below.is_empty() {
                 panel.contribution(below);
             }

@@ -42,6 +42,8 @@ pub struct Multifrontal {
     factors: Factors,
     /// Dofs with an equation of their own
     held: Vec<Held>,
+    /// Whether the equations of the matrix reverse the sign of its determinant
+    reversed: bool,
     /// Right-hand sides in the order of elimination
     ordered: Vec<f64>,
 }
@@ -162,6 +164,7 @@ impl LinearSolver for Multifrontal {
             self.scaling.compute(matrix);
             self.factors.compute(symbolic, matrix, &self.scaling);
             self.held = Held::of(matrix);
+            self.reversed = matrix.reversed;
         }
         Ok(())
     }
@@ -177,5 +180,11 @@ impl LinearSolver for Multifrontal {
     fn negative_pivots(&self) -> Option<usize> {
         let symbolic = self.symbolic.as_ref()?;
         symbolic.fronts.iter().all(|front| front.symmetric).then(|| self.factors.negative())
+    }
+
+    fn least_negative(&self) -> Option<usize> {
+        let fronts = &self.symbolic.as_ref()?.fronts;
+        let odd = fronts.iter().filter(|front| !front.symmetric).count() > 0 && self.factors.is_odd() != self.reversed;
+        (self.factors.replaced() == 0).then(|| self.factors.negative() + usize::from(odd))
     }
 }

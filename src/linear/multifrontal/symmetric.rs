@@ -46,11 +46,13 @@ pub struct SymmetricPanel<'a> {
     pub room: &'a mut Vec<f64>,
 }
 
-/// Pivots of a front that vanished and were replaced, and negative eigenvalues of D.
+/// Pivots of a front that vanished and were replaced, negative eigenvalues of D, and whether P U of an unsymmetric one has a negative
+/// determinant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Found {
     pub replaced: usize,
     pub negative: usize,
+    pub odd: bool,
 }
 
 impl SymmetricPanel<'_> {
