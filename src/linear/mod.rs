@@ -132,8 +132,9 @@ pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) ->
         if other.factorize(matrix).is_ok() {
             let second = refined(&mut other, matrix, b, REFINEMENTS);
             if second.backward_error < solution.backward_error || solution.backward_error.is_nan() {
-                let Solution { perturbed_pivots, negative_pivots, least_negative, .. } = solution;
-                solution = Solution { perturbed_pivots, negative_pivots, least_negative, fallback: true, ..second };
+                // Factors so far off tell no sign of a determinant.
+                let Solution { perturbed_pivots, negative_pivots, .. } = solution;
+                solution = Solution { perturbed_pivots, negative_pivots, fallback: true, ..second };
             }
         }
     }

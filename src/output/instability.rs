@@ -1,8 +1,8 @@
 //! Unstable equilibria that a run has accepted.
 //!
-//! A static equilibrium is stable if its tangent has no negative eigenvalue. They are counted by the last tangent of an increment
-//! that was factorized, unless a pivot vanishes: all of them where the tangent is symmetric, else those of its symmetric parts, and
-//! one more if the determinant of the rest is negative. Nothing is known where linear bodies are condensed on contacts.
+//! A static equilibrium is stable if its tangent has no negative eigenvalue. They are counted, unless a pivot vanishes: all of them
+//! where the tangent is symmetric, else those of its symmetric parts, and one more if the determinant of the rest is negative. Nothing
+//! is known where linear bodies are condensed on contacts.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,9 +27,8 @@ impl Instability {
         if attempt.step.scheme.is_dynamic() {
             return;
         }
-        let last = attempt.iterations.iter().rev().map(|iteration| iteration.newton).find(|newton| newton.factorized);
-        let known = last.filter(|newton| newton.perturbed_pivots == 0);
-        let Some(negative) = known.and_then(|newton| newton.least_negative) else { return };
+        let last = attempt.iterations.last();
+        let Some(negative) = last.and_then(|iteration| iteration.newton.least_negative) else { return };
         self.remains = negative > 0;
         self.most = self.most.max(negative);
         if self.remains {

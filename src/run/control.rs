@@ -298,12 +298,11 @@ impl Candidate {
     }
 }
 
-/// Negative eigenvalues of the tangent at the end of a static increment, by the last tangent that was factorized, which is that of
-/// the state before the last corrections; as `before` where they cannot be counted, as where pivots had to be replaced.
+/// Negative eigenvalues of the tangent at the end of a static increment; as `before` where they cannot be counted, as where pivots had
+/// to be replaced.
 pub(super) fn negative_after(step: &Step, iterations: &[IterationRecord], before: usize) -> usize {
-    let last = iterations.iter().rev().map(|iteration| iteration.newton).find(|newton| newton.factorized);
-    let known = last.filter(|newton| !step.scheme.is_dynamic() && newton.perturbed_pivots == 0);
-    known.and_then(|newton| newton.least_negative).unwrap_or(before)
+    let last = iterations.last().filter(|_| !step.scheme.is_dynamic());
+    last.and_then(|iteration| iteration.newton.least_negative).unwrap_or(before)
 }
 
 /// Counts and times of a run.

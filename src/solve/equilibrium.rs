@@ -422,7 +422,28 @@ pub fn augment(model: &Model, trial: Trial, work: &mut Workspace) -> Solved {
         solved.iterations.extend(more);
         solved.displacement = again.displacement;
     }
+    if let (Ok(u), Some(last)) = (&solved.displacement, solved.iterations.last_mut()) {
+        let (old, newton) = (begun.as_ref().unwrap_or(trial.old), &mut last.newton);
+        newton.least_negative = count_negative(Trial { old, stiffening, ..trial }, u, newton.least_negative, work);
+    }
     solved
+}
+
+/// Least number of negative eigenvalues of the tangent at a static equilibrium. The last tangent of the iterations, whose number is
+/// given, is that of a state before it, and may contain presumptions about contact points. Where it has none, nor is the equilibrium
+/// supposed to have any; elsewhere its own tangent is factorized.
+fn count_negative(trial: Trial, u: &[f64], last: Option<usize>, work: &mut Workspace) -> Option<usize> {
+    if trial.step.scheme.is_dynamic() || last.is_none_or(|negative| negative == 0) {
+        return last;
+    }
+    let Workspace { assembler, solver, system, .. } = work;
+    let coupling = assembler.coupling();
+    let evaluated = assembler.tangent(trial, u, false, system);
+    let factorized = evaluated.is_ok() && solver.factorize(&system.tangent).is_ok();
+    let counted = if factorized { solver.least_negative() } else { None };
+    // What is accepted, and the order of elimination of what follows, are as if nothing had been counted.
+    assembler.couple(&coupling);
+    assembler.residual(trial, u, system).ok().and(counted)
 }
 
 /// Gives the state at the start of an increment the multipliers from what a pass has `found`.

@@ -72,8 +72,8 @@ pub struct Iteration {
     pub perturbed_pivots: usize,
     /// Negative eigenvalues of K, where all of it was factorized as symmetric
     pub negative_pivots: Option<usize>,
-    /// Least number of negative eigenvalues of K, if anything is known of them: those of its symmetric parts, and one more if the
-    /// determinant of the rest is negative
+    /// Least number of negative eigenvalues of K, if anything is known of them ([`linear::LinearSolver::least_negative`]); in the last
+    /// iteration of a static increment that of the equilibrium itself, if K has any
     pub least_negative: Option<usize>,
     /// Whether the factors of K were too inaccurate, and another solver was used
     pub fallback: bool,
