@@ -93,3 +93,44 @@ fn a_wider_bed_changes_nothing_that_stabilize_does() {
         close("the angle with dashpots", aided, free, 1e-3);
     }
 }
+
+/// A block that is drawn over a bed; the bed's surface goes on, after a gap, on a held body of another stiffness and density, which the block
+/// never meets: the default penalties, the impedance of radiation and all that moves are as without it.
+#[test]
+fn a_held_body_that_the_slave_does_not_meet_changes_nothing() {
+    let ended = |idle: Option<f64>| {
+        let block = |body: &str, x: [f64; 2], y: [f64; 2], sides: [&str; 2]| {
+            json!({"body": body, "corners": [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]], "elements": [3, 1],
+                "sides": [sides[0], null, sides[1], null]})
+        };
+        let mut case = json!({
+            "mesh": {"blocks": [block("bed", [0.0, 4.0], [-1.0, 0.0], ["foot", "ground"]),
+                block("slider", [1.1, 2.6], [0.0, 0.5], ["sole", "head"])]},
+            "contacts": {"c": {"slave": "sole", "master": "ground", "radiation_damping": true, "friction":
+                {"law": "super_subloading", "mu_s": 0.5, "mu_k": 0.3, "r": 50, "kappa": 5, "xi": 0}}},
+            "steps": [{"name": "drag", "duration": 1, "dt": {"initial": 0.1}, "supports": [{"on": "foot", "ux": 0, "uy": 0},
+                {"on": "head", "ux": "0.02*t", "uy": -0.005}]}],
+        });
+        let material = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.3, "density": young}});
+        case["bodies"] = json!({"bed": material(100.0), "slider": material(50.0)});
+        if let Some(young) = idle {
+            let further = block("further", [4.5, 9.0], [-1.0, 0.0], ["held", "ground"]);
+            case["mesh"]["blocks"].as_array_mut().expect("blocks").push(further);
+            case["bodies"]["further"] = material(young);
+            let supports = case["steps"][0]["supports"].as_array_mut().expect("supports");
+            supports.push(json!({"on": "held", "ux": 0, "uy": 0}));
+        }
+        let run = finish(&case);
+        let (pair, bed) = (&run.model.contacts[0], 16 * 2);
+        ([pair.alpha_n, pair.laws[0].description.stiffness, pair.radiation], run.last().displacement[..bed].to_vec())
+    };
+    let (stiffnesses, alone) = ended(None);
+    // The softer side: λ + 2G of the slider over the depth of its element.
+    close("alpha_n", stiffnesses[0], 300.0 * 50.0 * 0.7 / (1.3 * 0.4) / 0.5, 1e-9);
+    for young in [1.0, 1e4] {
+        let (with, displacement) = ended(Some(young));
+        assert_eq!(with, stiffnesses, "stiffnesses and impedance beside a body of E = {young}");
+        let far = alone.iter().zip(&displacement).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(far < 1e-12, "displacements differ by {far:e}");
+    }
+}

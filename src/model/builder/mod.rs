@@ -49,6 +49,7 @@ mod body;
 mod checks;
 mod contact;
 mod error;
+mod facing;
 mod friction;
 mod groups;
 mod initial;
