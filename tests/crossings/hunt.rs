@@ -221,6 +221,7 @@ const AWAITED: &[(&str, &[&str], &str)] = &[
     ("begun with", &["flange:added"], "a body that was there may come"),
     ("further", &["flange:added"], "a body that was there may come"),
     ("bystander", &["tool:free", "stabilize:yes"], "dashpots of a turning tool have the length of the whole model"),
+    ("wide", &["tool:moves", "stabilize:yes"], "dashpots of a turning tool have the length of its outline"),
     ("linear energies", &["heat:number"], "a temperature that jumps in a step with stages is not counted"),
     ("linear energies", &["heat:table"], "a temperature that jumps in a step with stages is not counted"),
     ("linear energies", &["heat:by_place"], "a temperature that jumps in a step with stages is not counted"),

@@ -24,7 +24,8 @@ pub(super) fn wide(base: &Base) -> Outcome {
     let draft = base.draft;
     let ends = draft.is("master", "polyline") || draft.is("master", "outline");
     let beside = draft.is("master", "deformable") && !draft.is("scheme", "quasi_dynamic");
-    if !ends && !beside || draft.has("error_control") {
+    // Its weight is among the forces to which residuals are compared.
+    if !ends && !beside || draft.has("error_control") || draft.has("gravity") {
         return Outcome::Idle;
     }
     let wide: &[f64] = if ends { &[10.0, 1e4, 1e150, 5e307] } else { &[10.0, 1e3] };
@@ -34,7 +35,7 @@ pub(super) fn wide(base: &Base) -> Outcome {
     if matches!(record.ended, Ended::Refused(_)) && wide > Some(1e6) || !base.has_ended_well() {
         return Outcome::Idle;
     }
-    // A point that has flown off faces what goes on, where it faced something else or nothing: there it has another gap, or one at all.
+    // A point that has parted may face what goes on, where it faced something else or nothing: it has another gap, or one at all.
     let last = base.record.rows.last().map_or(&[][..], |(_, row)| row);
     let gap_of = |column: &str| {
         let (field, point) = column.split_once(" of point ")?;
@@ -45,8 +46,8 @@ pub(super) fn wide(base: &Base) -> Outcome {
     base.as_before(&record, SAME_BY_BODY, &is_afar)
 }
 
-/// Gap of a point to which a surface that goes on beyond the end of another may be as near; the two are 0.5 apart.
-const AFAR: f64 = 0.25;
+/// Gap of a point that has parted.
+const AFAR: f64 = 0.01;
 
 /// A free body flies on with the momentum that its springs have left it.
 pub(super) fn flight(base: &Base) -> Outcome {
