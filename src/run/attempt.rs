@@ -10,6 +10,7 @@ use super::control::{Candidate, Midway, Outcome, Outputs, Phase, RESULTS, Watche
 use super::error::Error;
 use super::observer::Verdict;
 use super::simulation::Simulation;
+use crate::equations::condensed::is_linear;
 use crate::model::Step;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
@@ -36,7 +37,9 @@ impl Simulation {
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
         let half = step.shorter(dt, 1);
-        let loses_stability = negative_after(step, &iterations, control.negative) > control.negative;
+        // Linear bodies lose their stability by their contacts only, and may be condensed on them, where nothing is counted.
+        let loses_stability =
+            !is_linear(model, step) && negative_after(step, &iterations, control.negative) > control.negative;
         let outcome = match solved {
             Ok(mut new) => {
                 let mut judgement = judge(model, step, [old, &new], hardest_pass(&iterations), number > 1);

@@ -189,6 +189,7 @@ const ONCE_BROKEN: &[(u64, &str, &str)] = &[
          stress:components",
     ),
     (33, "bystander", "master:plane press:plate tool:free"),
+    (236, "wide", "block_law:hencky ground_law:saint_venant_kirchhoff pores:cavitating"),
     (
         1565,
         "later",
