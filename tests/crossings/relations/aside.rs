@@ -42,9 +42,15 @@ pub(super) fn wide(base: &Base) -> Outcome {
         let name = format!("{}.gap of point {point}", field.split_once('.')?.0);
         last.iter().find(|entry| *entry.column == *name).map(|entry| entry.value)
     };
+    if beside && last.iter().any(|entry| gap_of(&entry.column).is_some_and(|gap| gap > GONE)) {
+        return Outcome::Idle;
+    }
     let is_afar = |column: &str| beside && gap_of(column).is_some_and(|gap| gap == 0.0 || gap > AFAR);
     base.as_before(&record, SAME_BY_BODY, &is_afar)
 }
+
+/// Gap of a point of a block that has flown off, and may meet what goes on.
+const GONE: f64 = 1.0;
 
 /// Gap of a point that has parted.
 const AFAR: f64 = 0.01;
