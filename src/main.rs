@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use fecontact::cli::{self, Failure, Input, Options, defect};
+use fecontact::cli::{self, Failure, Input, Options, Study, defect};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
@@ -47,7 +47,7 @@ enum Command {
     Converge {
         /// The case file (JSON)
         case: PathBuf,
-        /// Column of the history, or one over another (COLUMN/COLUMN), and what is taken of it: COLUMN:max, COLUMN:min, COLUMN:end or
+        /// Column of the history or the probes, or one over another (COLUMN/COLUMN), and what is taken of it: COLUMN:max, COLUMN:min, COLUMN:end or
         /// COLUMN:mean (over time), in a step alone COLUMN:max@STEP; may be given several times
         #[arg(long, required = true)]
         measure: Vec<String>,
@@ -57,6 +57,9 @@ enum Command {
         /// Folder of the results, with a folder for each run [default: out/<case name>]
         #[arg(long)]
         out: Option<PathBuf>,
+        /// Threads [default: all cores]
+        #[arg(long)]
+        threads: Option<usize>,
     },
     /// Drive a friction law on its own along a path of slip, pressure and time
     Law {
@@ -107,7 +110,9 @@ fn run() -> Result<(), Failure> {
     match command {
         Command::Run { case, out, threads, quiet, resume } => cli::run(&case, Options { out, threads, quiet, resume }),
         Command::Check { case, resolved } => cli::check(&case, resolved),
-        Command::Converge { case, measure, levels, out } => cli::converge(&case, &measure, levels, out),
+        Command::Converge { case, measure: measures, levels, out, threads } => {
+            cli::converge(&case, Study { measures, levels, out, threads })
+        }
         Command::Law { test, out } => cli::law(&test, out),
         Command::Plot { .. } => Err(cli::plot()),
         Command::Report { folders, out } => cli::report(&folders, out),

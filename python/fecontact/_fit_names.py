@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import difflib
+import json
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from ._native import schema
 from ._records import MACHINE
-from .law import built_in
 
 Ranges = Mapping[str, tuple[float, float]]
 
@@ -28,7 +29,9 @@ def check_names(law: str, names: Iterable[str]) -> None:
 
 
 def _known(law: str) -> list[str]:
-    return [*built_in()[law], *MACHINE] if law in built_in() and law != "registered" else []
+    laws = json.loads(schema("law"))["$defs"]["FrictionParameters"]["oneOf"]
+    own = [list(one["properties"]) for one in laws if one["properties"]["law"].get("const") == law]
+    return [name for name in own[0] if name != "law"] + list(MACHINE) if own and law != "registered" else []
 
 
 def no_room(ranges: Ranges, why: str) -> ValueError | None:

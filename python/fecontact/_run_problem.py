@@ -16,18 +16,14 @@ from .errors import CaseError, Stopped
 
 # Range of a value that has none given, either way.
 FACTOR = 10.0
-# Digits of a value that are left by its logarithm.
-DIGITS = 14
 
 
 class Places(Space):
     """Values at places of a case."""
 
     def parameters(self, points: Array) -> dict[str, Any]:
-        """Values by place at points (sets, free), to as many digits as logarithms keep: at the start they are those of the case again, as where
-        one may not be less than another."""
-        given = {place: value for place, value in super().parameters(points).items() if place != "law"}
-        return {place: np.vectorize(lambda number: float(f"{number:.{DIGITS}g}"))(value) for place, value in given.items()}
+        """Values by place at points (sets, free)."""
+        return {place: value for place, value in super().parameters(points).items() if place != "law"}
 
 
 class RunProblem(Problem):

@@ -27,15 +27,9 @@ class DisplacementField:
     Args:
         time: when.
         x, y: undeformed points, shape (n,).
-        ux, uy: their displacements, shape (n,); NaN in both where none was measured: such points are left out, and counted.
+        ux, uy: their displacements, shape (n,); NaN where there is none.
         sigma: standard deviation of their noise: a number or shape (n,).
         body: the body that they belong to, where two touch.
-
-    Attributes:
-        left_out: number of points without a displacement.
-
-    Raises:
-        ValueError: a displacement is infinite, or one of a point is NaN and the other is not, or all are NaN.
     """
 
     def __init__(
@@ -51,28 +45,19 @@ class DisplacementField:
     ) -> None:
         self.time = float(array_of("time", time).reshape(()))
         self.points = np.stack([np.ravel(array_of(name, given)) for name, given in (("x", x), ("y", y))], axis=1)
-        try:
-            given = [np.ravel(np.asarray(values, dtype=float)) for values in (ux, uy)]
-        except (TypeError, ValueError):
-            raise ValueError("ux, uy: must be numbers") from None
+        given = [np.ravel(np.asarray(values, dtype=float)) for values in (ux, uy)]
         if any(values.size != len(self.points) for values in given):
             raise ValueError(f"ux, uy: have {given[0].size} and {given[1].size} values: give one for each of the {len(self.points)} points")
         self.displacements = np.stack(given, axis=1)
-        none = np.isnan(self.displacements)
-        if len(infinite := np.flatnonzero(np.isinf(self.displacements).any(axis=1))):
-            raise ValueError(f"ux, uy: are infinite at point {infinite[0]}: give NaN in both where none was measured")
-        if len(half := np.flatnonzero(none.any(axis=1) & ~none.all(axis=1))):
-            raise ValueError(f"ux, uy: one is NaN at point {half[0]}, the other is not: give both, or NaN in both where none was measured")
-        if none.all():
-            raise ValueError(f"ux, uy: are NaN at all {len(self.points)} points: nothing was measured")
-        self.left_out = int(none.all(axis=1).sum())
+        if not np.isfinite(self.displacements).any():
+            raise ValueError("ux, uy: have no finite value")
         self.sigma = None if sigma is None else np.broadcast_to(np.ravel(array_of("sigma", sigma)), len(self.points))
         self.body = body
 
     def probes(self, name: str) -> dict[str, dict[str, Any]]:
         """Probes at the points that have a displacement."""
         of_body = {} if self.body is None else {"body": self.body}
-        seen = np.isfinite(self.displacements[:, 0])
+        seen = np.isfinite(self.displacements).any(axis=1)
         return {f"{name}_{k}": {"at": self.points[k].tolist(), **of_body} for k in np.flatnonzero(seen)}
 
     def columns(self, name: str) -> list[tuple[str, float, float | None]]:
@@ -84,16 +69,6 @@ class DisplacementField:
             for part, value in zip(("ux", "uy"), pair)
             if np.isfinite(value)
         ]
-
-    def __repr__(self) -> str:
-        without = f", {_left_out([self])}" if self.left_out else ""
-        return f"<DisplacementField of {len(self.points)} points at time {self.time:.6g}{without}>"
-
-
-def _left_out(fields: Sequence[DisplacementField]) -> str:
-    """How many points of fields have no displacement, if any."""
-    count, points = sum(field.left_out for field in fields), sum(len(field.points) for field in fields)
-    return f"{count} of {points} points without displacement (NaN) are left out" if count else ""
 
 
 class Run:
@@ -140,7 +115,6 @@ class Run:
             self._times[column] = time
             values.append(np.broadcast_to(array_of(f"measured: {column}: values", pair[1], time.size), time.size))
             noises.append(self._noise_of(column, sigma, time.size))
-        self._left_out = _left_out(fields)
         self._kinds = sorted(columns) + ["displacements"] * bool(fields)
         known = [sigma is not None] * bool(columns) + [field.sigma is not None for field in fields]
         probes: dict[str, Any] = {}
@@ -268,8 +242,7 @@ class Run:
 
     def __repr__(self) -> str:
         times = np.concatenate(list(self._times.values()))
-        without = f", {self._left_out}" if self._left_out else ""
-        return f"<Run of {self.case!r}: {self.kind} at {times.size} times and places, {times.min():.6g} to {times.max():.6g}{without}>"
+        return f"<Run of {self.case!r}: {self.kind} at {times.size} times and places, {times.min():.6g} to {times.max():.6g}>"
 
 
 def _tables(result: Result) -> pd.DataFrame:

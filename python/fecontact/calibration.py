@@ -25,7 +25,7 @@ from ._fit_names import check_names, check_room, no_room
 from ._fit_problem import End, plain_of, search
 from ._fit_problem import Problem as _Problem
 from ._fit_space import Array, Space
-from ._fit_words import COMPUTED, Evidence, words
+from ._fit_words import Evidence, words
 from ._plain import a_name, count, names, number
 from ._records import MACHINE, Holds, Interface, Record, SpringSlider
 from ._run_problem import RunProblem, run_problem
@@ -214,8 +214,6 @@ class Fit:
         self.runs = problem.runs if isinstance(problem, RunProblem) else 0
         if self.runs and not best.converged:
             self.words.append(f"the search was not at its end after {MOST_RUNS} trials: go on from here with start, or narrow the ranges")
-        if self.runs and problem.refusal is not None and misfit > COMPUTED and _descends(problem.jacobian(best.point)[:, ~at_border], best.residuals):
-            self.words.append(f"the search ends beside cases that are refused, where a better fit may be ({problem.refusal}): free what refuses them, or change it")
 
     @property
     def standardized(self) -> list[Array]:
@@ -322,8 +320,7 @@ class Fit:
             name: {"value": f"{row['value']:.5g}", "95 % interval": f"{row['low']:.5g} to {row['high']:.5g}" if row["high"] < np.inf else "not determined"}
             for name, row in self.table.iterrows()
         }
-        left_out = [record._left_out for record in self._problem.records if isinstance(record, Run) and record._left_out]
-        return "\n".join([pd.DataFrame(rows).T.to_string(), *self.words, *left_out])
+        return "\n".join([pd.DataFrame(rows).T.to_string(), *self.words])
 
 
 def fit(
@@ -489,14 +486,6 @@ def _share(residuals: Array, measured: Array) -> float:
     """Root mean square of residuals, as a fraction of the largest measured value."""
     size, largest = float(np.sqrt(np.mean(residuals**2))), float(np.abs(measured).max())
     return size / largest if largest > size else float(size > 0.0)
-
-
-def _descends(jacobian: Array, residuals: Array) -> bool:
-    """Whether a Gauss–Newton step leaves less than 98 % of the squares: at a minimum it leaves all."""
-    if not jacobian.shape[1]:
-        return False
-    step = np.linalg.lstsq(jacobian, -residuals, rcond=None)[0]
-    return float(np.sum((residuals + jacobian @ step) ** 2)) < 0.98 * float(np.sum(residuals**2))
 
 
 def _memory(residuals: NDArray[np.float64]) -> float:

@@ -64,7 +64,7 @@ def converge(
 
     Args:
         case: the case; its own mesh is the coarsest.
-        measure: a column of the history, or one over another, and what is taken of it: ``"base.tangential_force:max"``, ``:min``, ``:end``,
+        measure: a column of the history or the probes, or one over another, and what is taken of it: ``"base.tangential_force:max"``, ``:min``, ``:end``,
             or ``:mean`` (over time), in a step alone ``"base.tangential_force/base.normal_force:max@drag"``.
         levels: number of runs, 3 or more; the last three count.
         out: folder of the results, with a folder ``level_k`` for each run, and ``level_k_longer_increments``; default: a temporary one.

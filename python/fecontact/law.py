@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,9 +14,6 @@ from ._plain import a_name, count, names, number, numbers, plain, refused
 from ._steady import steady
 
 Array = NDArray[np.float64]
-
-#: Names of the laws that this process has registered.
-_REGISTERED: set[str] = set()
 
 
 class Drive(Mapping[str, Array]):
@@ -71,7 +67,7 @@ class Law:
         self._sets = []
         for index in np.ndindex(self.shape):
             one = {name: np.broadcast_to(array, self.shape)[index] for name, array in arrays.items()}
-            self._sets.append(json.dumps(plain(_written({**parameters, **one}), file="law")))
+            self._sets.append(json.dumps(plain({**parameters, **one}, file="law")))
 
     def check(self) -> None:
         """Check the parameters of all sets.
@@ -240,8 +236,7 @@ def law(law: str | Mapping[str, Any], **parameters: Any) -> Law:
     from the ``friction`` of a contact; ``alpha_t`` is required, since there is no mesh for a default.
 
     Args:
-        law: its name, that of a registered law (:func:`friction_law`) included, or all its parameters; see ``fecontact.model`` for the
-            available laws.
+        law: its name, or all its parameters; see ``fecontact.model`` for the available laws.
         **parameters: numbers, or arrays that are broadcast by the rules of numpy, with one set of parameters per entry.
 
     Raises:
@@ -258,8 +253,7 @@ def law(law: str | Mapping[str, Any], **parameters: Any) -> Law:
 def friction_law(
     name: str, variables: Mapping[str, float] | None = None
 ) -> Callable[[Callable[..., Mapping[str, Any]]], Callable[..., Mapping[str, Any]]]:
-    """Register a law written in Python, for trying ideas: ``model.Registered(name=..., parameters={...})`` uses it in cases, and
-    ``fc.law("my_coulomb", mu=0.3, alpha_t=1e5)`` alone.
+    """Register a law written in Python, for trying ideas: ``model.Registered(name=...)`` uses it in cases and in :func:`law`.
 
     It is slow: Python is called for every slice of points at every iterate. Workers in other processes must register it too.
     The function receives arrays of the n closed points, shape (n,), and the parameters as keywords::
@@ -281,11 +275,8 @@ def friction_law(
     consistent tangents [F/L³], [-], the plastic part of the slip [L], all variables and optionally, in place of the
     trapezoidal rule, the dissipation of the increment [F/L]: each an array of shape (n,), or a number for all points.
 
-    At a start dt is 0, and so is slip: in the first row of a law alone, and before the first increment of a dynamic step. The answer is
-    the state at the start; what divides by dt must not do so there.
-
     Args:
-        name: name of the law in cases, and in :func:`law` where it is not that of a law of the program.
+        name: name of the law in cases.
         variables: internal variables, any number of them, with their values at first contact. They appear in results by
             their names, which begin with a letter, consist of letters, digits and ``_``, and differ from those of other results
             (``slip``, ``pressure``, ``q``); ``mu`` is shown in results as μ.
@@ -300,27 +291,9 @@ def friction_law(
 
     def register(function: Callable[..., Mapping[str, Any]]) -> Callable[..., Mapping[str, Any]]:
         _native.register_law(a_name(name, "name", "law"), function, remembered)
-        _REGISTERED.add(name)
         return function
 
     return register
-
-
-@cache
-def built_in() -> dict[str, list[str]]:
-    """The laws of the program with the names of their parameters."""
-    laws = json.loads(_native.schema("law"))["$defs"]["FrictionParameters"]["oneOf"]
-    return {one["properties"]["law"]["const"]: [name for name in one["properties"] if name != "law"] for one in laws}
-
-
-def _written(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters as a contact has them: those of a registered law stand below its name."""
-    name = parameters.get("law")
-    if not isinstance(name, str) or name not in _REGISTERED or name in built_in():
-        return dict(parameters)
-    own = {key: value for key, value in parameters.items() if key not in ("law", "alpha_t", "parameters")}
-    stiffness = {key: parameters[key] for key in ("alpha_t",) if key in parameters}
-    return {"law": "registered", "name": name, **stiffness, "parameters": {**parameters.get("parameters", {}), **own}}
 
 
 def _array(name: str, given: Any) -> NDArray[Any]:

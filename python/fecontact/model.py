@@ -213,9 +213,9 @@ class DruckerPrager(dict[str, Any]):
         nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
         c: c: cohesion, c ≥ 0, above 0 where phi is 0 [F/L²]
         phi: φ: angle of friction, 0 ≤ φ < 90 [degrees]
+        psi: ψ: angle of dilation, 0 ≤ ψ ≤ φ [degrees]
         matching: Which tests c and φ are those of
         density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
-        psi: ψ: angle of dilation, 0 ≤ ψ ≤ φ; φ unless given [degrees]
         tension: Largest mean stress tr τ/3, tension positive; that of the tip of the cone, c cot φ, unless
             given [F/L²]
         viscosity: τ_v: relaxation time of the viscosity by Duvaut and Lions, τ_v ≥ 0; 0 for none [T]
@@ -228,13 +228,13 @@ class DruckerPrager(dict[str, Any]):
         nu: float,
         c: float,
         phi: float,
+        psi: float,
         matching: Matching,
         density: float | Given = NOT_GIVEN,
-        psi: float | None | Given = NOT_GIVEN,
         tension: float | None | Given = NOT_GIVEN,
         viscosity: float | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__({"model": "drucker_prager", **_given({"E": E, "nu": nu, "c": c, "phi": phi, "matching": matching, "density": density, "psi": psi, "tension": tension, "viscosity": viscosity})})
+        super().__init__({"model": "drucker_prager", **_given({"E": E, "nu": nu, "c": c, "phi": phi, "psi": psi, "matching": matching, "density": density, "tension": tension, "viscosity": viscosity})})
 
 
 class Softening(dict[str, Any]):

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fecontact::case::CaseError;
 use fecontact::case::job::Refused;
+use fecontact::model::text::readable;
 use pyo3::prelude::*;
 
 /// An exception of `fecontact.errors`.
@@ -21,7 +22,7 @@ pub fn case_error(py: Python, error: &CaseError) -> PyErr {
 /// `CaseError` about a place of something given in Python.
 pub fn complaint(py: Python, file: &str, place: &str, message: impl ToString) -> PyErr {
     let (file, place) = (Path::new(file).to_owned(), place.to_string());
-    case_error(py, &CaseError { file, place, message: message.to_string() })
+    case_error(py, &CaseError { file, place, message: readable(&message.to_string()) })
 }
 
 /// What a job is refused for.
@@ -36,7 +37,7 @@ pub fn refused(py: Python, refused: &Refused) -> PyErr {
 
 /// `Stopped`, of what leaves no folder behind.
 pub fn stopped(py: Python, message: &str) -> PyErr {
-    exception(py, "Stopped", (message,))
+    exception(py, "Stopped", (readable(message),))
 }
 
 /// `Defect`: the program itself is wrong.

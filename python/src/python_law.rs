@@ -126,10 +126,7 @@ impl PythonLaw {
         let said =
             said.cast_into::<PyMapping>().map_err(|_| PyTypeError::new_err("it must return a dict of arrays"))?;
         self.check_names(&said)?;
-        // What divides by dt has no answer where no time has passed.
-        let at_once = closed.iter().any(|&i| sliding[i].dt == 0.0);
-        let hint = if at_once { "; dt is 0 here, and so is slip: the answer is the state at the start" } else { "" };
-        let column = |name: &str| values(&said, name, closed.len(), hint);
+        let column = |name: &str| values(&said, name, closed.len());
         let [traction, by_slip, by_pressure, plastic] =
             ["traction", "dtraction_dslip", "dtraction_dpressure", "plastic_increment"].map(column);
         let (traction, by_slip, by_pressure, plastic) = (traction?, by_slip?, by_pressure?, plastic?);
@@ -177,9 +174,8 @@ fn not_an_end(py: Python, error: PyErr, why: &str) -> PyErr {
     told
 }
 
-/// What was returned under a name: an array of finite numbers, one a point, or one number for all. `hint` says what may be wrong where
-/// they are not finite.
-fn values(said: &Bound<PyMapping>, name: &str, points: usize, hint: &str) -> PyResult<Vec<f64>> {
+/// What was returned under a name: an array of finite numbers, one a point, or one number for all.
+fn values(said: &Bound<PyMapping>, name: &str, points: usize) -> PyResult<Vec<f64>> {
     let py = said.py();
     let missing = |_| PyValueError::new_err(format!("it did not return `{name}`"));
     let given = said.get_item(name).map_err(missing)?;
@@ -203,9 +199,7 @@ fn values(said: &Bound<PyMapping>, name: &str, points: usize, hint: &str) -> PyR
         }
     };
     match values.iter().find(|value| !value.is_finite()) {
-        Some(value) => {
-            Err(PyValueError::new_err(format!("it returned `{name}` = {value}: must be finite numbers{hint}")))
-        }
+        Some(value) => Err(PyValueError::new_err(format!("it returned `{name}` = {value}: must be finite numbers"))),
         None => Ok(values),
     }
 }

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use fecontact::case::job::{Callbacks, Failed, Job, Outcome, Refused};
 use fecontact::equations::ContactCounts;
 use fecontact::model::Model;
+use fecontact::model::text::readable;
 use fecontact::output::report as page;
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
@@ -61,7 +62,7 @@ pub fn run<'py>(
     let opened = pool.short(py, || {
         let job = open(case, &out, resume, report, &*warn)?;
         let fresh = !job.opened.resumes();
-        let warnings = if fresh { job.model.warnings() } else { Vec::new() };
+        let warnings = if fresh { fecontact::case::warnings(&job.opened.case, &job.model) } else { Vec::new() };
         Ok::<_, Refused>((job, warnings))
     })?;
     let (mut job, warnings) = opened.map_err(|error| refused(py, &error))?;
@@ -91,7 +92,7 @@ pub fn run<'py>(
         (Ok(()), None) => ("completed", None, raised),
         (Ok(()), Some(why)) => ("stopped", Some(why), raised),
         (Err(Failed::Stopped(Error::Interrupted)), _) => ("interrupted", Some(Error::Interrupted.to_string()), raised),
-        (Err(Failed::Stopped(error)), _) => ("stopped", Some(error.to_string()), raised),
+        (Err(Failed::Stopped(error)), _) => ("stopped", Some(readable(&error.to_string())), raised),
         (Err(Failed::Defect(what)), _) => ("defect", Some(fecontact::case::job::defect::message(&what)), raised),
     })
 }

@@ -82,37 +82,6 @@ def test_elastic_and_cohesive_samples_follow_closed_forms() -> None:
     np.testing.assert_allclose(q, np.array([50, 50, -50]) / (1 - volume), rtol=1e-7)
 
 
-CONE = {"model": "drucker_prager", "E": 5e4, "nu": 0.3, "c": 10.0, "phi": 25.0, "matching": "plane_strain"}
-
-
-def test_a_cone_matched_to_plane_strain_is_fitted_by_its_angle() -> None:
-    """ψ = φ follows. At the limit √J₂ = q/√3 = ξ c + η (σ_c + q/3), strengths being those of τ = J σ."""
-    strain = np.linspace(0.0, 0.02, 11)
-    record = triaxial(strain, {**CONE, "phi": 30.0}, cell_pressure=100.0)
-    tan = np.tan(np.radians(30.0))
-    eta, xi = np.array([3 * tan, 3.0]) / np.sqrt(9 + 12 * tan**2)
-    limit = (xi * CONE["c"] + eta * 100.0) / (1 / np.sqrt(3) - eta / 3)
-    assert made(record, {**CONE, "phi": 30.0}, {"deviator": 1.0}, None)["deviator"][-1] == pytest.approx(limit, rel=0.02)
-    for start in ({}, {"phi": 32.0}):
-        found = fc.fit([record], CONE, free=["phi"], start=start)
-        assert found.parameters["phi"] == pytest.approx(30.0, rel=1e-6) and "psi" not in found.material
-    # Given as well, it can only stay as it is: the start is refused beside, and so is every angle but one.
-    with pytest.raises(fc.CaseError, match="in plane strain it must be phi: the matching holds for associated flow; leave it out"):
-        fc.fit([record], {**CONE, "psi": 25.0}, free=["phi"])
-
-
-def test_a_fit_that_ends_beside_cases_that_are_refused_says_so() -> None:
-    """ψ ≤ φ: from φ = ψ = 25° there is a way up, and none down."""
-    strain = np.linspace(0.0, 0.02, 11)
-    law = {**SAND, "phi": 25.0, "psi": 25.0}
-    softer, stronger = (triaxial(strain, {**law, "phi": phi, "psi": psi}, cell_pressure=100.0) for phi, psi in ((22, 22), (30, 25)))
-    found = fc.fit([stronger], law, free=["phi"])
-    assert found.parameters["phi"] == pytest.approx(30.0, rel=1e-6) and not any("refused" in word for word in found.words)
-    found = fc.fit([softer], law, free=["phi"])
-    told = [word for word in found.words if "refused" in word]
-    assert len(told) == 1 and '"psi" is 25, but it must be between 0 and phi' in told[0], found.words
-
-
 @pytest.mark.parametrize("model", ["mohr_coulomb", "drucker_prager"])
 def test_sand_fails_at_its_strength_and_dilates(model: str) -> None:
     """q = (N − 1) σ_r + 2 c √N/J, as the law takes the Kirchhoff stress, and dε_v/dε_a = −2 sin ψ/(1 − sin ψ) of logarithmic strains; the cone of

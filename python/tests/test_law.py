@@ -196,59 +196,6 @@ def test_a_law_in_python_is_the_built_in_one() -> None:
         np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-12, atol=1e-13, err_msg=name)
 
 
-def test_a_registered_law_is_known_by_its_name() -> None:
-    fc.friction_law("python_coulomb")(coulomb)
-    time, slip, pressure = wave(50)
-    mu = [0.2, 0.3]
-    ours = fc.law("python_coulomb", mu=mu, alpha_t=1e3)
-    assert repr(ours) == "<Law python_coulomb, 2 sets of parameters (2,)>"
-    theirs = fc.law("coulomb", mu=mu, alpha_t=1e3).drive(time, slip, pressure)
-    np.testing.assert_allclose(ours.drive(time, slip, pressure).traction, theirs.traction, rtol=1e-12, atol=1e-13)
-    as_in_a_case = fc.law("python_coulomb", parameters={"mu": 0.3}, alpha_t=1e3).drive(time, slip, pressure)
-    np.testing.assert_array_equal(as_in_a_case.traction, ours.drive(time, slip, pressure).traction[1])
-    with pytest.raises(fc.CaseError, match="`nobodys` is not known here"):
-        fc.law("nobodys", mu=0.3)
-
-    # A law of the program keeps its name.
-    fc.friction_law("adhesion")(coulomb)
-    assert fc.law("adhesion", strength=0.1, alpha_t=1e3).sensitivities() == ["strength", "alpha_t"]
-
-    # It is fitted by its name as well.
-    measured = fc.law("coulomb", mu=0.25, alpha_t=1e3).drive(time, slip, pressure).traction
-    found = fc.fit(fc.calibration.Interface(time, slip, pressure, measured), "python_coulomb", free={"mu": (0.1, 0.5)}, alpha_t=1e3)
-    assert found.parameters["mu"] == pytest.approx(0.25, rel=1e-6)
-
-
-def test_a_law_in_python_is_asked_for_its_start_with_dt_0(document: dict[str, Any]) -> None:
-    """Zero slip in no time: in the first row of a law alone and before a dynamic step; nowhere in static steps."""
-    asked: list[tuple[float, float]] = []
-
-    @fc.friction_law("asking")
-    def asking(old: Any, slip: Any, pressure: Any, dt: Any, *, alpha_t: float) -> dict[str, Any]:
-        asked.extend(zip(slip.tolist(), dt.tolist()))
-        stick = old["traction"] + alpha_t * slip
-        return {"traction": stick, "dtraction_dslip": alpha_t, "dtraction_dpressure": 0.0, "plastic_increment": 0.0}
-
-    drive = fc.law("asking", alpha_t=2.0).drive([0, 1, 2], [0.0, 0.5, 1.0], 1.0)
-    assert [slip for slip, dt in asked if dt == 0] == [0, 0] and drive.traction.tolist() == [0, 1, 2]
-    asked.clear()
-    document["contacts"]["base"]["friction"] = fc.model.Registered(name="asking", alpha_t=2e3)
-    fc.Case(document).run(progress=False)
-    assert asked and min(dt for _, dt in asked) > 0
-    asked.clear()
-    document["steps"][1]["scheme"] = {"newmark": {}}
-    fc.Case(document).run(progress=False)
-    assert [slip for slip, dt in asked if dt == 0] and all(slip == 0 for slip, dt in asked if dt == 0)
-
-    @fc.friction_law("dividing")
-    def dividing(old: Any, slip: Any, pressure: Any, dt: Any, *, alpha_t: float) -> dict[str, Any]:
-        with np.errstate(all="ignore"):
-            return {"traction": slip / dt, "dtraction_dslip": 1 / dt, "dtraction_dpressure": 0.0, "plastic_increment": slip}
-
-    with pytest.raises(ValueError, match="it returned `traction` = NaN: must be finite numbers; dt is 0 here"):
-        fc.law("dividing", alpha_t=1.0)
-
-
 def test_a_law_in_python_in_a_case(document: dict[str, Any]) -> None:
     fc.friction_law("python_coulomb")(coulomb)
     base = document["contacts"]["base"]

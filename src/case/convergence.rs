@@ -22,10 +22,10 @@ use std::str::FromStr;
 use serde::Serialize;
 
 use crate::model::Model;
-use crate::output::history;
 use crate::output::report::table::Columns;
+use crate::output::{history, probes};
 
-/// A number of a run: a column of its history, or one over another, in all rows or in those of a step, and what is taken of it.
+/// A number of a run: a column of its history or of its probes, or one over another, in all rows or in those of a step, and what is taken of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Measure {
     /// COLUMN or COLUMN/COLUMN
@@ -43,8 +43,8 @@ enum Of {
     Mean,
 }
 
-const FORM: &str = "give COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean, with a column of history.csv or one over another (COLUMN/COLUMN), \
-                    and @STEP behind it for a step alone";
+const FORM: &str = "give COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean, with a column of history.csv or probes.csv, or one over another \
+                    (COLUMN/COLUMN), and @STEP behind it for a step alone";
 
 impl FromStr for Measure {
     type Err = String;
@@ -80,12 +80,13 @@ impl Measure {
         readings.find(|(column, over)| is_column(column) && over.is_none_or(&is_column))
     }
 
-    /// Checks that the history of a model has the columns, and the model the step.
+    /// Checks that the history or the probes of a model have the columns, and the model the step.
     ///
     /// # Errors
     /// Returns a message if not, or if a column is not of numbers.
     pub fn check(&self, model: &Model) -> Result<(), String> {
-        let header = history::columns(model);
+        let mut header = history::columns(model);
+        header.extend(if model.requests.probes.is_empty() { Vec::new() } else { probes::columns(model) });
         let (column, over) = self
             .columns(|name| header.iter().any(|other| other == name))
             .ok_or_else(|| format!("the history has no column `{}`; there are {}", self.value, header.join(", ")))?;
@@ -102,19 +103,21 @@ impl Measure {
     /// Takes the number from the results in a folder; the mean is that over time.
     ///
     /// # Errors
-    /// Returns a message if the history cannot be read, or has no such column or no number there.
+    /// Returns a message if a table cannot be read, or there is no such column or no number there.
     pub fn of(&self, folder: &Path) -> Result<f64, String> {
         let path = folder.join("history.csv");
-        let (table, fault) = Columns::read(&path).map_err(|fault| fault.to_string())?;
-        if let Some(fault) = fault {
-            return Err(fault.to_string());
-        }
+        let table = read(&path)?;
+        let path_of_probes = folder.join("probes.csv");
+        let probes = if path_of_probes.exists() { Some(read(&path_of_probes)?) } else { None };
         let told = |message: String| format!("{}: {message}", path.display());
-        let (column, over) = self.columns(|name| table.get(name).is_ok()).unwrap_or((&self.value, None));
+        // Both tables have the same rows.
+        let of_probes = |name: &str| probes.as_ref().filter(|probes| probes.rows() == table.rows())?.get(name).ok();
+        let has = |name: &str| table.get(name).is_ok() || of_probes(name).is_some();
+        let (column, over) = self.columns(has).unwrap_or((&self.value, None));
         if let Some(words) = [Some(column), over].into_iter().flatten().find(|name| table.words(name).is_some()) {
             return Err(told(format!("the column `{words}` is not of numbers")));
         }
-        let numbers = |name: &str| table.get(name).map_err(|fault| fault.to_string());
+        let numbers = |name: &str| table.get(name).or_else(|fault| of_probes(name).ok_or(fault.to_string()));
         let (values, times, steps) = (numbers(column)?, numbers("time")?, numbers("step")?);
         let divisors = over.map(numbers).transpose()?;
         let names = table.words("step").unwrap_or_default();
@@ -132,6 +135,11 @@ impl Measure {
         let place = self.step.as_ref().map_or(String::new(), |step| format!(" in the step `{step}`"));
         value.ok_or_else(|| told(format!("`{}` is no number{place}", self.value)))
     }
+}
+
+fn read(path: &Path) -> Result<Columns, String> {
+    let (table, fault) = Columns::read(path).map_err(|fault| fault.to_string())?;
+    fault.map_or(Ok(table), |fault| Err(fault.to_string()))
 }
 
 /// Mean over time from the first to the last row, linear between them.

@@ -7,13 +7,14 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::check_units;
 use super::error::CaseError;
 use super::schema::schema_of;
+use super::units;
 use crate::laws::friction::{
     Confinement, ContactLaw, Dilatancy, FrictionLaw, FrictionParameters, FrictionState, Offsets, observables,
 };
 use crate::laws::parameter::InvalidParameter;
+use crate::mesh::section::Section;
 use crate::model::boundary::{Drive, Span};
 use crate::model::builder::{Checked, ModelError, check_line, check_positive, refuse_if};
 use crate::run::law::{LawTest, PathDrive, Phase, Undefined};
@@ -25,7 +26,8 @@ pub struct LawTestInput {
     /// Title of the test, in one line
     #[serde(default)]
     pub title: String,
-    /// Labels of the units used, for the page: length, force, time, stress; any consistent set will do
+    /// Labels of the units used, for the page: `length`, `force`, `time`, `stress`; any consistent set will do. `stress` may be left
+    /// out, and is refused where it contradicts
     #[serde(default)]
     pub units: BTreeMap<String, String>,
     /// Friction law, with its alpha_t
@@ -101,6 +103,9 @@ const SHORTEST_STEP: f64 = 16.0 * f64::EPSILON;
 /// Relative difference below which values are equal.
 const SAME: f64 = 1e-9;
 
+/// Fraction by which an initial traction may exceed the strength: numbers are written with a few digits.
+const WRITTEN: f64 = 1e-6;
+
 /// Returns the JSON Schema of a law test.
 pub fn schema() -> Value {
     schema_of::<LawTestInput>()
@@ -132,7 +137,7 @@ pub fn build(input: &LawTestInput, path: &Path) -> Result<LawTest, CaseError> {
 
 fn test(input: &LawTestInput) -> Checked<LawTest> {
     check_line("title", &input.title)?;
-    check_units(&input.units)?;
+    units::check(&input.units, Section::PlaneStrain)?;
     let law = law(&input.friction)?;
     let confinement = confinement(&input.normal)?;
     let path = match (&input.path, &input.table) {
@@ -206,7 +211,7 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
          pressure or the structure",
         observables::value(law, "mu", &at_rest)
     );
-    refuse_if(traction.abs() > strength * (1.0 + SAME), "initial.traction", message)?;
+    refuse_if(traction.abs() > strength * (1.0 + WRITTEN), "initial.traction", message)?;
     Ok(law.initial_state(pressure, traction))
 }
 

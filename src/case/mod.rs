@@ -9,13 +9,14 @@ mod gradients;
 pub mod job;
 pub mod law_test;
 pub mod loading;
+mod measure;
 mod read;
 mod refined;
 mod report;
 mod resolved;
 mod schema;
+pub mod units;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -23,7 +24,7 @@ use serde_json::Value;
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, MeshError, gmsh};
 use crate::model::Model;
-use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_line, check_positive, refuse_if};
+use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_positive, refuse_if};
 pub use again::Opened;
 pub use error::CaseError;
 use file::{Case, MeshSource, blocks};
@@ -79,7 +80,7 @@ fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
 /// Returns the builder of a case on its mesh.
 fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
     let section = if case.section == Section::PlaneStrain { mesh.section } else { case.section };
-    check_units(&case.units)?;
+    units::check(&case.units, section)?;
     let given = case.clone();
     let contact = |(name, contact)| Contact { name, ..contact };
     let gauge = |(name, gauge)| Gauge { name, ..gauge };
@@ -102,8 +103,9 @@ fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
     })
 }
 
-fn check_units(units: &BTreeMap<String, String>) -> Checked<()> {
-    units.iter().try_for_each(|(of, label)| check_line(&format!("units.{of}"), label))
+/// Warnings about a case before it is run: those of its model, and labels of units that nothing checks.
+pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
+    model.warnings().into_iter().chain(units::concerns(&case.units, model.mesh.section)).collect()
 }
 
 fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {

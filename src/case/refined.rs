@@ -12,8 +12,9 @@ use serde_json::Value;
 use super::file::{Amount, BlockInput, BlocksInput, Case, GradingInput, MeshSource, MiddleInput, evaluated};
 use super::{CaseError, Written, build, build_on, mesh};
 use crate::mesh::{Block, Blocks, Grading, Group, MOST_ELEMENTS, Mesh};
-use crate::model::builder::{Checked, IncrementSettings, Load, LoadStep, ModelError, Place, refuse_if};
+use crate::model::builder::{Checked, IncrementSettings, Load, LoadStep, ModelError, Place, nodes_at, refuse_if};
 use crate::model::scheme::Scheme;
+use crate::model::text::vector;
 use crate::model::{Increments, Model, Step};
 
 /// Most halvings of a mesh: 65 536 elements for one along a side are more than any mesh may have.
@@ -39,7 +40,7 @@ impl Halvings {
 ///
 /// # Errors
 /// Returns [`CaseError`] if the case is invalid or begins with another one, if nodes of its mesh stand for a side, or if it names nodes by
-/// their tags or loads every node of a body or a side, which another mesh makes another problem.
+/// their tags or by a place where it has none, or loads every node of a body or a side, which another mesh makes another problem.
 pub fn refined(written: &Written, halvings: Halvings) -> Result<Written, CaseError> {
     let Written { path, case, .. } = written;
     let refined_mesh = || {
@@ -108,6 +109,51 @@ fn tagged(value: &Value, place: &str) -> Option<String> {
     }
 }
 
+/// Difference of two places that is round-off, as a fraction of the elements there [-].
+const SAME: f64 = 1e-6;
+
+/// Refuses places to which another node is the nearest on the finer mesh: its nodes have those of the mesh among them.
+fn check_near(Written { path, document, .. }: &Written, own: &Mesh, finer: &Case) -> Checked<()> {
+    let places = near(document, "");
+    if places.is_empty() {
+        return Ok(());
+    }
+    let finer = mesh(finer, path)?;
+    for (place, [x, y]) in places {
+        let node = nodes_at(own, &Place::Near([x, y]), &place)?[0];
+        let beside = own.elements.iter().filter(|element| element.nodes.contains(&node));
+        let size = beside.map(|element| own.size_of(element.nodes.iter().copied())).fold(0.0, f64::max);
+        let of_finer = nodes_at(&finer, &Place::Near([x, y]), &place).ok().map(|found| finer.nodes[found[0]]);
+        let stays = of_finer.is_some_and(|at| (at - own.nodes[node]).norm() <= SAME * size);
+        let message = format!(
+            "is nearest to the node at {}, and with halved elements to another: give the place of that node, or measure at \
+             ({x}, {y}) by a probe (`probes`)",
+            vector(own.nodes[node])
+        );
+        refuse_if(!stays, place, message)?;
+    }
+    Ok(())
+}
+
+/// Nodes that a value of a case names by places, with where they stand.
+fn near(value: &Value, place: &str) -> Vec<(String, [f64; 2])> {
+    let inside = |key: &String| if place.is_empty() { key.clone() } else { format!("{place}.{key}") };
+    match value {
+        Value::Object(keys) if keys.len() == 1 && keys.contains_key("near") => {
+            let point = serde_json::from_value(keys["near"].clone()).ok();
+            point.map(|point| (place.to_owned(), point)).into_iter().collect()
+        }
+        Value::Object(keys) => {
+            let keys = keys.iter().filter(|(key, _)| !(place.is_empty() && *key == "mesh"));
+            keys.flat_map(|(key, value)| near(value, &inside(key))).collect()
+        }
+        Value::Array(list) => {
+            list.iter().enumerate().flat_map(|(k, value)| near(value, &format!("{place}[{k}]"))).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
 /// The case on another mesh, with increments that are halved so many times.
 fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) -> Result<Written, CaseError> {
     let Written { path, case, .. } = written;
@@ -115,6 +161,9 @@ fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) 
         check_nodes(written, &model.mesh).map_err(|complaint| complaint.in_file(path))?;
     }
     let mut case = Case { mesh, ..case.clone() };
+    if halvings.mesh > 0 {
+        check_near(written, &model.mesh, &case).map_err(|complaint| complaint.in_file(path))?;
+    }
     for (given, step) in case.steps.iter_mut().zip(&model.steps) {
         refine_increments(given, step, 2.0_f64.powi(halvings.increments as i32));
     }

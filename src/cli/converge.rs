@@ -10,17 +10,31 @@ use super::say::print;
 use super::threads::use_threads;
 use crate::case::convergence::{Convergence, FEWEST, Measure, fraction_of_increments, judge};
 use crate::case::job::{Callbacks, Job, Outcome};
-use crate::case::{Halvings, Opened, Written, build, refined};
+use crate::case::{Halvings, Opened, Written, build, refined, warnings};
 use crate::model::text::number;
 use crate::output::summary::Summary;
 use crate::run::error::Error;
+
+/// Options of `fecontact converge`.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// numbers that are judged
+    pub measures: Vec<String>,
+    /// number of runs
+    pub levels: usize,
+    /// folder of the results
+    pub out: Option<PathBuf>,
+    /// number of threads
+    pub threads: Option<usize>,
+}
 
 /// Implements `fecontact converge`: every level is run into a folder of its own.
 ///
 /// # Errors
 /// Returns [`Failure`] if the case or a measure is invalid, a run stopped, or a number does not converge.
-pub fn converge(path: &Path, measures: &[String], levels: usize, out: Option<PathBuf>) -> Result<(), Failure> {
-    use_threads(None)?;
+pub fn converge(path: &Path, study: Study) -> Result<(), Failure> {
+    let Study { measures, levels, out, threads } = study;
+    use_threads(threads)?;
     let refused = |message: String| Failure::BadInput(format!("--measure: {message}"));
     let read = measures.iter().map(|measure| measure.parse::<Measure>().map_err(refused));
     let read = read.collect::<Result<Vec<_>, _>>()?;
@@ -33,9 +47,13 @@ pub fn converge(path: &Path, measures: &[String], levels: usize, out: Option<Pat
     read.iter().try_for_each(|measure| measure.check(&model)).map_err(refused)?;
     let measured = |name: &str, refined: Written| -> Result<Vec<f64>, Failure> {
         let (folder, name) = (place.join(name), name.replace('_', " "));
-        let Summary { elements, report, .. } = run(refined, &folder, name.clone(), interrupt.clone())?;
+        let there = |failure| match failure {
+            Failure::Stopped(why) => Failure::Stopped(format!("{name}: {why}")),
+            failure => failure,
+        };
+        let Summary { elements, report, .. } = run(refined, &folder, name.clone(), interrupt.clone()).map_err(there)?;
         print(&format!("{name}: {elements} elements, {} increments\n", report.increments))?;
-        read.iter().map(|measure| measure.of(&folder).map_err(refused)).collect()
+        read.iter().map(|measure| measure.of(&folder).map_err(|why| there(Failure::Stopped(why)))).collect()
     };
     let mut values = vec![Vec::new(); read.len()];
     let last = u32::try_from(levels - 1).unwrap_or(u32::MAX);
@@ -76,7 +94,7 @@ fn told(Convergence { values, extrapolated, bar, verdict, .. }: &Convergence, fr
 fn run(written: Written, folder: &Path, name: String, interrupt: Interrupt) -> Result<Summary, Failure> {
     let mut job = Job::open(Opened::begin(written)?, folder)?;
     let warn = move |warning: &str| say!("warning: {name}: {warning}");
-    job.model.warnings().iter().for_each(|warning| warn(warning));
+    warnings(&job.opened.case, &job.model).iter().for_each(|warning| warn(warning));
     let outcome = job.run(Callbacks {
         warn: Arc::new(warn),
         ends: Arc::new(move || interrupt.came().then_some(Error::Interrupted)),

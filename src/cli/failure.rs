@@ -2,6 +2,7 @@
 
 use crate::case::CaseError;
 use crate::case::job::{Failed, Refused, defect};
+use crate::model::text::readable;
 use crate::output::report::ReportError;
 use crate::run::error::Error;
 
@@ -20,8 +21,8 @@ impl Failure {
     /// Returns the exit code, and the text for stderr.
     pub fn code_and_message(&self) -> (u8, String) {
         match self {
-            Self::Stopped(message) => (1, format!("stopped: {message}")),
-            Self::BadInput(message) => (2, format!("error: {message}")),
+            Self::Stopped(message) => (1, readable(&format!("stopped: {message}"))),
+            Self::BadInput(message) => (2, readable(&format!("error: {message}"))),
             Self::Defect(message) => (70, defect::message(message)),
         }
     }

@@ -14,14 +14,15 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-pub use self::converge::converge;
+pub use self::converge::{Study, converge};
 pub use self::failure::Failure;
 use self::place::{claim, default_folder};
 pub use self::run::{Options, run};
 pub use self::say::{print, say};
 use self::threads::use_threads;
 pub use crate::case::job::defect;
-use crate::case::{self, Opened, Written, law_test};
+use crate::case::{self, Opened, Written, law_test, units};
+use crate::mesh::section::Section;
 use crate::output::law::LawTable;
 use crate::output::summary::{self, About, Ending, LawSummary};
 use crate::output::{quantities, report};
@@ -70,7 +71,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     let about = About {
         case: path.display().to_string(),
         title: input.title,
-        units: input.units,
+        units: units::filled(&input.units, Section::PlaneStrain),
         friction: [("law".into(), input.friction)].into(),
         ..About::default()
     };
@@ -78,7 +79,8 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
         LawSummary { ending: Ending::running(&folder.files), about: about.clone(), report: LawReport::default() };
     summary::write(&begun, &folder.path)?;
     let mut table = LawTable::create(&folder.path, &test.law)?;
-    let (report, result) = test.run(|row| table.write(row));
+    let (mut report, result) = test.run(|row| table.write(row));
+    report.warnings.extend(units::concerns(&input.units, Section::PlaneStrain));
     let result = result.and(table.finish());
     folder.make_room_after(&result);
     let summary = LawSummary { ending: Ending::new(result.as_ref().err(), &folder.files), about, report };

@@ -13,7 +13,7 @@ use super::place::default_folder;
 use super::progress::{Progress, Voice};
 use super::threads::use_threads;
 use crate::case::job::{Callbacks, Job, Outcome};
-use crate::case::{Opened, Written};
+use crate::case::{Opened, Written, warnings};
 use crate::model::Model;
 use crate::model::scheme::time_text;
 use crate::model::state::Energy;
@@ -94,7 +94,7 @@ impl Messages {
                 voice.say(&format!("resuming at t = {} after {} increments", time_text(state.time), state.increment));
             }
             None => {
-                model.warnings().iter().for_each(|warning| voice.warn(warning));
+                warnings(&opened.case, model).iter().for_each(|warning| voice.warn(warning));
                 model.choices().iter().for_each(|choice| voice.say(choice));
             }
         }

@@ -197,10 +197,10 @@ impl ContactPair {
         self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
     }
 
-    /// Open, stick or slip; a frictionless point is not counted as slipping.
+    /// Open, stick or slip. Without friction nothing sticks: a closed point slips, at rest as well.
     pub fn regime(&self, slave: &SlavePoint, state: &ContactState) -> Regime {
         match state.regime() {
-            Regime::Slip if self.law(slave).description.is_frictionless => Regime::Stick,
+            Regime::Stick if self.law(slave).description.is_frictionless => Regime::Slip,
             regime => regime,
         }
     }

@@ -5,3 +5,4 @@ pub mod bulk;
 mod dual;
 pub mod friction;
 pub mod parameter;
+pub(crate) mod text;

@@ -24,13 +24,13 @@ fn locks(model: &Model, body: &Body) -> Option<String> {
     // An element alone has a few ways to strain, which its nodes can follow.
     let flow = flow.filter(|_| !model.mesh.section.is_plate() && body.elements.len() > 1)?;
     let flow = match flow {
-        Flow::DilatingBelow(pressure) if least_pressure(model, body) >= pressure => Flow::Isochoric,
+        Flow::DilatingBelow(pressure) if least_pressure(model, body) >= pressure => Flow::Contracting,
         Flow::DilatingBelow(_) => Flow::Dilating,
         flow => flow,
     };
     let is_unfit = |e: &&usize| match (model.mesh.elements[**e].kind, model.solids[**e].formulation(), flow) {
         (ElementKind::T6, ..) | (_, Formulation::Reduced, _) => false,
-        (_, Formulation::FBar, flow) => flow != Flow::Isochoric,
+        (_, Formulation::FBar, flow) => flow == Flow::Dilating,
         _ => true,
     };
     let unfit: Vec<usize> = body.elements.iter().filter(is_unfit).copied().collect();
@@ -50,7 +50,7 @@ fn locks(model: &Model, body: &Body) -> Option<String> {
             "body `{name}`: it dilates where it yields, which f_bar cures in part only: limit loads come out some 10 % too high; take Q8 with \
              \"element\": \"reduced\", or T6"
         ),
-        (_, Flow::Isochoric) => format!(
+        (_, Flow::Isochoric | Flow::Contracting) => format!(
             "body `{name}`: its elements ({kinds}) lock where it yields, and limit loads come out up to a third too high: take Q4 with \
              \"element\": \"f_bar\", Q8 with \"element\": \"reduced\", or T6"
         ),

@@ -18,6 +18,11 @@ fn readings(model: &Model) -> impl Iterator<Item = String> {
     names(&PROBE).chain(model.mesh.section.is_axisymmetric().then(|| HOOP.name.into()))
 }
 
+/// Names of the columns of a model's probes.
+pub fn columns(model: &Model) -> Vec<String> {
+    ProbeRows::new(model).1
+}
+
 /// Observer that writes `probes.csv`.
 pub type Probes = Sheet<ProbeRows>;
 

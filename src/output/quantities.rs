@@ -43,8 +43,13 @@ pub const STRESS: Unit = unit("stress", [1, -2, 0]);
 pub const VELOCITY: Unit = unit("velocity", [0, 1, -1]);
 /// T
 pub const TIME: Unit = unit("time", [0, 0, 1]);
+/// F
+pub const FORCE: Unit = unit("force", [1, 0, 0]);
+/// F T²/L, of inputs
+pub const MASS: Unit = unit("mass", [1, -1, 2]);
+/// F T²/L⁴, of inputs
+pub const DENSITY: Unit = unit("density", [1, -4, 2]);
 const ANGLE: Unit = unit("angle", [0, 0, 0]);
-const FORCE: Unit = unit("force", [1, 0, 0]);
 const ACCELERATION: Unit = unit("acceleration", [0, 1, -2]);
 const ENERGY: Unit = unit("energy", [1, 1, 0]);
 const POWER: Unit = unit("power", [1, 1, -1]);
@@ -53,7 +58,39 @@ const MOMENTUM: Unit = unit("momentum", [1, 0, 1]);
 const SPIN: Unit = unit("angular_momentum", [1, 1, 1]);
 const STIFFNESS: Unit = unit("stiffness_per_area", [1, -3, 0]);
 
+/// All units of results.
+pub const LABELLED: [Unit; 13] = [
+    LENGTH,
+    FORCE,
+    TIME,
+    STRESS,
+    VELOCITY,
+    ACCELERATION,
+    ENERGY,
+    POWER,
+    WORK_PER_AREA,
+    MOMENTUM,
+    SPIN,
+    STIFFNESS,
+    ANGLE,
+];
+
 impl Unit {
+    /// Powers of force, length and time.
+    pub fn powers(self) -> [i32; 3] {
+        self.powers.map(i32::from)
+    }
+
+    /// Whether it is dimensionless.
+    pub fn is_plain(self) -> bool {
+        self.powers == [0; 3]
+    }
+
+    /// Whether it is that of a sum over the thickness, as forces, energies and masses are.
+    pub fn is_sum(self) -> bool {
+        [FORCE, ENERGY, POWER, MOMENTUM, SPIN, MASS].contains(&self)
+    }
+
     /// Formats the unit from those of force, length and time: `F/L²`; empty for a dimensionless number.
     pub fn made_of(self, [force, length, time]: [&str; 3]) -> String {
         let raised = |power: i8| match power.abs() {
@@ -132,7 +169,7 @@ pub const CONTACT: [Quantity; 8] = [
     q("normal_force", FORCE, "N = ∫ p ds"),
     q("tangential_force", FORCE, "Q = ∫ q ds, with radiation damping ∫ (q + η v) ds"),
     q("contact_length", LENGTH, "closed length"),
-    q("slip_fraction", NONE, "slipping fraction of the closed length"),
+    q("slip_fraction", NONE, "slipping fraction of the closed length; 1 without friction"),
     q("mean_slip", LENGTH, "mean of the plastic slip"),
     q("max_penetration", LENGTH, "deepest penetration of a closed point"),
     q("max_elastic_slip", LENGTH, "largest |q|/α_t"),
@@ -223,7 +260,7 @@ const RATIO: Quantity = q("R", NONE, "|q|/(μ p): traction over its peak; 0 with
 const MU: Quantity = q("mu", NONE, "μ: peak friction coefficient available now; 0 without friction");
 const STRUCTURE: Quantity = q("structure", NONE, "1/R*: degree of structure; 1 where a law has none");
 const STATE: Quantity =
-    q("state", NONE, "0 open, 1 sticking (or closed without friction), 2 slipping, as the law says");
+    q("state", NONE, "0 open, 1 sticking, 2 slipping, as the law says (or closed without friction)");
 const DISSIPATION: Quantity = q("dissipation", WORK_PER_AREA, "work of friction so far, per area");
 
 /// Quantities at the points of every contact in frames; rates are means since the previous increment.

@@ -13,6 +13,7 @@ use super::friction_history::FrictionHistory;
 use super::gradients::Account;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
+use crate::model::text::readable;
 use crate::run::control::RunReport;
 use crate::run::error::Error;
 use crate::run::law::LawReport;
@@ -72,7 +73,7 @@ impl Ending {
             Some(Error::Interrupted) => "interrupted",
             Some(_) => "stopped",
         };
-        Self { status, reason: stopped.map(ToString::to_string), ..Self::running(files) }
+        Self { status, reason: stopped.map(|error| readable(&error.to_string())), ..Self::running(files) }
     }
 
     /// Status of a run or test that ended in a defect of the program.

@@ -23,6 +23,7 @@ use crate::mesh::configuration::{Configuration, vector};
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::step::Until;
+use crate::model::text::{self, apart, readable};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
@@ -148,6 +149,7 @@ impl Warnings {
     }
 
     fn report(&mut self) {
+        self.list[self.reported..].iter_mut().for_each(|warning| *warning = readable(warning));
         self.warn.iter().for_each(|warn| self.list[self.reported..].iter().for_each(|warning| warn(warning)));
         self.reported = self.list.len();
     }
@@ -288,10 +290,9 @@ impl Warnings {
         let quasi_dynamic = model.steps.iter().any(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }));
         let remedy = if quasi_dynamic { "quasi_dynamic steps have no other bodies" } else { "take neo_hookean" };
         let message = format!(
-            "body `{}` at ({:.6}, {:.6}), t = {}: strains and rotations of {:.1} %, whose squares a linear body neglects: {remedy}",
+            "body `{}` at {}, t = {}: strains and rotations of {:.1} %, whose squares a linear body neglects: {remedy}",
             model.bodies[number].name,
-            at.x,
-            at.y,
+            text::vector(at),
             time_text(state.time),
             100.0 * gradient
         );
@@ -309,10 +310,10 @@ impl Warnings {
     fn passed(&mut self, attempt: &Attempt, state: &State) {
         let Step { name, until: Some(until), .. } = attempt.step else { return };
         if state.time < attempt.step.span.end && attempt.ends_step(state) && !until.is_met(state) {
-            let [before, after] = [attempt.old, state].map(|state| until.force(&state.reaction));
+            let [before, after] = apart([attempt.old, state].map(|state| until.force(&state.reaction)));
             let Until { part, on, value, .. } = until;
             self.list.push(format!(
-                "step `{name}`, t = {}: {} of `{on}` jumps from {before:.6e} to {after:.6e}, past {value}, where the step ends",
+                "step `{name}`, t = {}: {} of `{on}` jumps from {before} to {after}, past {value}, where the step ends",
                 time_text(state.time),
                 part.name()
             ));
@@ -342,7 +343,8 @@ impl Warnings {
         let step = attempt.step;
         let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
         if error > allowed && self.inexact.insert(step.name.clone()) {
-            let found = format!("its error {error:.3e} exceeds {allowed:.3e}");
+            let [error, allowed] = apart([error, allowed]);
+            let found = format!("its error {error} exceeds {allowed}");
             self.list.push(shortest(attempt, &found));
         }
     }
@@ -361,7 +363,7 @@ impl Warnings {
 
 /// Describes place and time.
 fn place(pair: &ContactPair, at: Vector2<f64>, time: f64) -> String {
-    format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, time_text(time))
+    format!("contact `{}` at {}, t = {}", pair.name, text::vector(at), time_text(time))
 }
 
 /// Describes an increment that could not be shortened.
@@ -459,8 +461,9 @@ enum Kind {
 
 /// Warning about a pressure above the bound of uniqueness.
 pub fn several_answers(pressure: f64, limit: f64) -> String {
+    let [pressure, limit] = apart([pressure, limit]);
     format!(
-        "the pressure {pressure:.6e} exceeds {limit:.6e}, above which the response is not unique: slip weakening may \
+        "the pressure {pressure} exceeds {limit}, above which the response is not unique: slip weakening may \
          exceed the contact stiffness, and the traction jumps; raise alpha_t"
     )
 }

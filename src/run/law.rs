@@ -36,6 +36,7 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use crate::laws::friction::{Confinement, ContactLaw, FrictionLaw, FrictionResponse, FrictionState, Sliding};
+use crate::laws::text::apart;
 use crate::model::boundary::{Drive, Span};
 use crate::run::error::Error;
 
@@ -105,8 +106,9 @@ impl LawTest {
         if let Some(limit) =
             self.law.description.uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
         {
+            let [pressure, limit] = apart([pressure, limit]);
             report.warnings.push(format!(
-                "the pressure {pressure:.6e} at t = {time} exceeds {limit:.6e}, above which the response is not \
+                "the pressure {pressure} at t = {time} exceeds {limit}, above which the response is not \
                  unique: slip weakening may exceed the contact stiffness, and the traction jumps; raise alpha_t"
             ));
         }

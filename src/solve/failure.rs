@@ -16,7 +16,7 @@ use crate::equations::supports::free;
 use crate::linear::{LinearFailure, norm};
 use crate::model::element::Formulation;
 use crate::model::state::State;
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 use crate::model::{Body, Model, Step};
 
 /// Reason why an increment failed; a smaller one may succeed.
@@ -60,7 +60,7 @@ pub enum IncrementFailure {
     #[error("the bodies cannot be condensed on the contacts: {0}; constrain every body by a support or a spring")]
     Interface(LinearFailure),
     /// The differential equations of an interface could not be integrated.
-    #[error("contact `{contact}` at ({x:.6}, {y:.6}): {why}")]
+    #[error("contact `{contact}` at {}: {why}", vector([*x, *y]))]
     Slip {
         /// contact pair
         contact: String,

@@ -266,6 +266,64 @@ fn numbers_are_taken_of_columns_ratios_and_steps() {
     }
 }
 
+/// A probe is where it is on every mesh: the bar of the finest holds Lamé's displacement between the nodes,
+/// u = (1 + ν) p a²/(E (b² − a²)) ((1 − 2ν) r + b²/r). The node nearest to such a place is another on every mesh, which is refused; a place of
+/// a node of the case is one of all. Any number of threads says the same.
+#[test]
+fn a_probe_stays_where_it_is() {
+    let folder = TempDir::new().expect("a folder");
+    let (a, b, p, young, nu): (f64, f64, f64, f64, f64) = (1.0, 2.0, 0.7, 200.0, 0.3);
+    let r: f64 = 1.37;
+    let exact = (1.0 + nu) * p * a * a / (young * (b * b - a * a)) * ((1.0 - 2.0 * nu) * r + b * b / r);
+    let (mut case, _) = tube(4);
+    case["probes"] = json!({"wall": {"at": [r, 0.2]}});
+    case["watch"] = json!([{"near": [2, 0.5]}]);
+    let write = |name: &str, case: &Value| fs::write(folder.path().join(name), case.to_string()).expect("a case");
+    write("tube.json", &case);
+    let study = ["converge", "tube.json", "--measure", "wall.ux:end", "--measure", "near_2_0.5.ux:end@load"];
+    let said = ["1", "3"].map(|threads| {
+        let output = fecontact(&[&study[..], &["--threads", threads]].concat(), folder.path());
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+        fs::remove_dir_all(folder.path().join("out")).expect("results");
+        said
+    });
+    assert_eq!(said[0], said[1]);
+    let line = said[0].lines().find_map(|line| line.strip_prefix("wall.ux:end: ")).expect("the values");
+    let values: Vec<f64> = line.split(", ").map(|value| value.parse().expect("a number")).collect();
+    let bar = judge(&values).expect("three numbers").bar.expect("a bar");
+    assert!((values[2] - exact).abs() < bar && bar < 1e-3 * exact, "{values:?} ± {bar:e}, {exact}");
+    let refused = |case: &Value, place: &str| {
+        write("off.json", case);
+        let output = fecontact(&["converge", "off.json", "--measure", "wall.ux:end"], folder.path());
+        let said = String::from_utf8_lossy(&output.stderr);
+        let told = format!("off.json: {place}: is nearest to the node at (");
+        assert!(output.status.code() == Some(2) && said.contains(&told) && said.contains("by a probe"), "{said}");
+    };
+    let mut off = case.clone();
+    off["watch"] = json!(["bore", {"near": [1.27, 0.5]}]);
+    refused(&off, "watch[1]");
+    case["steps"][0]["supports"][0]["on"] = json!({"near": [1.27, 0]});
+    refused(&case, "steps[0].supports[0].on");
+}
+
+/// A number that a run does not have is told with the run and its table.
+#[test]
+fn a_number_that_a_run_does_not_have_is_told() {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("tube.json"), tube(2).0.to_string()).expect("a case");
+    // Nothing moves fast in statics: 0/0.
+    let output = fecontact(&["converge", "tube.json", "--measure", "kinetic/kinetic:end"], folder.path());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("stopped: level 0: ") && said.contains("history.csv: `kinetic/kinetic` is no number"),
+        "{said}"
+    );
+    let output = fecontact(&["converge", "tube.json", "--measure", "bore.ux:end", "--threads", "0"], folder.path());
+    assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 /// What cannot be refined or measured is refused with a reason.
 #[test]
 fn bad_studies_are_refused() {

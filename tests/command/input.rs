@@ -405,6 +405,21 @@ fn fluids_that_would_pull_are_found_before_the_run() {
     outcome("check", &[fluid(json!("0.2 - 0.5*t")), ("/steps/0/until", until)]);
 }
 
+/// A run that stops beside an absurd number says so in a few digits, on stderr and in the summary.
+#[test]
+fn no_number_has_hundreds_of_digits() {
+    let folder = TempDir::new().expect("a folder");
+    let until = json!({"on": "block_top", "fy": -1e300});
+    write(folder.path(), "case.json", with(&[("/steps/0/until", until)]).to_string());
+    let output = fecontact(folder.path(), &["run", "case.json"]);
+    let summary = fs::read_to_string(folder.path().join("out/case/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    for said in [stderr(&output), summary["reason"].to_string()] {
+        assert!(said.contains("reached -1e300: it is ") && !said.contains("00000000"), "{said}");
+    }
+}
+
 /// Standard output of `check` of the good case with edits.
 fn checked(edits: &[(&str, Value)]) -> String {
     let folder = TempDir::new().expect("a folder");

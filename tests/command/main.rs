@@ -22,4 +22,5 @@ mod results;
 mod schema;
 mod surface;
 mod survive;
+mod units;
 mod warnings;

@@ -652,7 +652,7 @@ fn points_are_written_and_warned_of() {
 
     assert_eq!(warnings.list.len(), 1, "{:?}", warnings.list);
     let warning = &warnings.list[0];
-    assert!(warning.contains("`base` at (0.3") && warning.contains("exceeds 1.000000e2"), "{warning}");
+    assert!(warning.contains("`base` at (0.3") && warning.contains("exceeds 100,"), "{warning}");
 }
 
 /// Time, traction, pressure, displacement along x and the force that holds it there but for inertia, of one point over a

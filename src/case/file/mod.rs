@@ -29,7 +29,9 @@ pub struct Case {
     /// Title of the case, in one line
     #[serde(default)]
     pub title: String,
-    /// Labels of the units used, for readers; any consistent set will do
+    /// Labels of the units used, for readers: `length`, `force`, `time`; any consistent set will do. Those of `stress`, `energy` and
+    /// whatever else follows may be left out: they are composed ("kN/m²"), and one that contradicts is refused. In plane strain,
+    /// the label of a force may be one per length of thickness ("kN/m")
     #[serde(default)]
     pub units: BTreeMap<String, String>,
     /// Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given in place:

@@ -16,7 +16,7 @@ use thiserror::Error;
 
 use super::again::is_same;
 use super::report::understood;
-use super::{CaseError, Opened};
+use super::{CaseError, Opened, units, warnings};
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint, Unusable};
 use crate::output::events;
@@ -166,7 +166,7 @@ impl Job {
         let about = about(&self.opened, &self.model);
         let Self { opened, model, folder, saved, damage, .. } = self;
         let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
-        let first = summary(Ending::running(&folder.files), RunReport::default(), model.warnings());
+        let first = summary(Ending::running(&folder.files), RunReport::default(), warnings(&opened.case, model));
         let mut work = Work::default();
         let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, callbacks));
         let result = match (result, opened.resumes(), &work.simulation) {
@@ -202,7 +202,7 @@ fn about(Opened { case, path, document, .. }: &Opened, model: &Model) -> About {
         case: path.display().to_string(),
         title: case.title.clone(),
         section: Some(model.mesh.section.to_string()),
-        units: case.units.clone(),
+        units: units::filled(&case.units, model.mesh.section),
         friction: case
             .contacts
             .iter()
@@ -260,7 +260,7 @@ impl Work {
         if !resumes {
             summary::write(first, &folder.path)?;
         }
-        let warnings = Warnings::reporting(model.warnings(), warn.clone());
+        let warnings = Warnings::reporting(warnings(&opened.case, model), warn.clone());
         let frames = opened.case.output.frames(opened.case.steps.len() - opened.taken_over);
         let mut outputs = Outputs::open(&folder.path, model, opened, frames, saved.as_ref(), warnings, warn)?;
         let mut observers = outputs.observers();

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use crate::case::again::Opened;
 use crate::case::file::Case;
+use crate::case::units;
 use crate::model::Model;
 use crate::output::fields::{Fields, Frames};
 use crate::output::folder::{GRADIENTS, INTERFACE};
@@ -82,10 +83,11 @@ impl Outputs {
     ) -> Result<Self, Error> {
         let start = saved.map_or_else(|| model.initial_state(), |saved| saved.simulation().state().clone());
         let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
+        let labels = units::filled(&case.units, model.mesh.section);
         let (has_contacts, has_fields) = (!model.contacts.is_empty(), case.output.fields);
-        let store = || InterfaceStore::reopen(folder, model, &start, &case.units);
+        let store = || InterfaceStore::reopen(folder, model, &start, &labels);
         let asked = Asked {
-            units: &case.units,
+            units: &labels,
             of_displacements: case.output.displacement_gradients,
             goes_on: goes_on("gradients"),
         };
@@ -111,7 +113,7 @@ impl Outputs {
             outputs.newton_log = Some(NewtonLog::create(folder, model)?);
         }
         if outputs.interface.is_none() && has_contacts {
-            outputs.interface = Some(InterfaceStore::create(folder, model, &start, &case.units)?);
+            outputs.interface = Some(InterfaceStore::create(folder, model, &start, &labels)?);
         }
         if outputs.probes.is_none() && !model.requests.probes.is_empty() {
             outputs.probes = Some(Probes::create(folder, model)?);

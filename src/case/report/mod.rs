@@ -22,7 +22,7 @@ use crate::output::fronts::ArrivalInput;
 
 /// Returns a readable report of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
-    let mut warnings = model.warnings();
+    let mut warnings = super::warnings(case, model);
     warnings.extend(model.contacts.iter().filter_map(pressed_too_hard));
     let mut text = String::new();
     if !model.title.is_empty() {

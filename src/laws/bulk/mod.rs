@@ -267,6 +267,8 @@ pub struct InadmissibleStress(pub String);
 pub enum Flow {
     /// It stays
     Isochoric,
+    /// It shrinks with the shear until it stays
+    Contracting,
     /// It grows with the shear
     Dilating,
     /// It grows with the shear where the pressure at the start is less than this [F/L²]; elsewhere the body contracts until its volume stays

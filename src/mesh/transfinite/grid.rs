@@ -5,6 +5,7 @@
 use nalgebra::{Rotation2, Vector2};
 
 use super::{Block, BlockKind};
+use crate::laws::text::apart;
 use crate::mesh::nearest::{NotOne, nearest};
 
 /// Relative tolerance for equal radii at the ends of an arc, and for arcs shorter than a half circle.
@@ -223,8 +224,9 @@ impl Sides {
             let (one, other) = (a.norm(), b.norm());
             if (one - other).abs() > ROUND * one.max(other) {
                 let [first, second] = ENDS[k];
+                let [one, other] = apart([one, other]);
                 return Err(format!(
-                    "arcs[{k}]: corner {first} is {one:.3e} from the centre, and corner {second} {other:.3e}: give the centre of a \
+                    "arcs[{k}]: corner {first} is {one} from the centre, and corner {second} {other}: give the centre of a \
                      circle through both"
                 ));
             }

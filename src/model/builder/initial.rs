@@ -17,9 +17,12 @@ use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::scheme::Scheme;
-use crate::model::text::{number, vector};
+use crate::model::text::{apart, number, vector};
 
-/// Tolerance by which an initial traction may exceed the strength μ p: numbers are given with a few digits.
+/// Fraction by which an initial traction may exceed the strength μ p: numbers are written with a few digits.
+const WRITTEN: f64 = 1e-6;
+
+/// Round-off of tractions that follow from stresses, relative to the largest.
 const ROUNDED: f64 = 1e-9;
 
 /// Returns the initial velocity of every dof, from those of bodies and of point masses [L/T].
@@ -120,13 +123,13 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
         let law = pair.law(point);
         let pressure = effective(*total, pair.pore_pressure(k, &undeformed))[0];
         let limit = law.description.starting_limit(pressure);
-        if traction.abs() > limit * (1.0 + ROUNDED) {
+        if traction.abs() > limit * (1.0 + WRITTEN) {
             let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
+            let [is, limit] = apart([traction.abs(), limit]);
             let message = format!(
-                "is {} at {}: it exceeds the initial strength, mu p = {} with mu = {mu} and p = {}",
-                number(*traction),
+                "is {}{is} at {}: it exceeds the initial strength, mu p = {limit} with mu = {mu} and p = {}",
+                sign(*traction),
                 vector(position(point, &model.mesh)),
-                number(limit),
                 number(pressure)
             );
             return Err(ModelError::new(format!("{place}.traction"), message));
@@ -134,6 +137,10 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
     }
     let closed = pair.start_closed(initial, &undeformed);
     closed.map_err(|point| without_projection(pair, point, model, place))
+}
+
+fn sign(value: f64) -> &'static str {
+    if value < 0.0 { "-" } else { "" }
 }
 
 /// Refuses initial tractions above the strength where the first step is static: what the interface cannot carry accelerates the bodies.
@@ -147,13 +154,13 @@ pub fn check_excess(model: &Model) -> Checked<()> {
             let Some([cohesion, mu]) = pair.law(point).description.released_above else { continue };
             let pressure = effective(*total, pair.pore_pressure(k, &undeformed))[0];
             let strength = cohesion + mu * pressure;
-            if traction.abs() > strength * (1.0 + ROUNDED) {
+            if traction.abs() > strength * (1.0 + WRITTEN) {
+                let [is, strength] = apart([traction.abs(), strength]);
                 let message = format!(
-                    "is {} at {}: it exceeds the initial strength, {} under the pressure {}, which a static step cannot follow; lower it, \
+                    "is {}{is} at {}: it exceeds the initial strength, {strength} under the pressure {}, which a static step cannot follow; lower it, \
                      or begin with a dynamic or explicit step, or one with `rupture`",
-                    number(*traction),
+                    sign(*traction),
                     vector(position(point, &model.mesh)),
-                    number(strength),
                     number(pressure)
                 );
                 return Err(ModelError::new(format!("contacts.{}.initial.traction", pair.name), message));

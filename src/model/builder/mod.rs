@@ -71,6 +71,7 @@ pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_positive, refuse_if};
 pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};
 pub use groups::Place;
+pub(crate) use groups::nodes_at;
 pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
 pub use loads::LoadsInForce;

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::text::{at_least, number};
 
 /// Constants of [`CamClay`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -153,7 +154,7 @@ impl Start {
         match self {
             Self::Pressure(p_c) => Flow::DilatingBelow(0.5 * p_c / structure),
             Self::Ratio(ratio) if ratio > 2.0 => Flow::Dilating,
-            Self::Ratio(_) => Flow::Isochoric,
+            Self::Ratio(_) => Flow::Contracting,
         }
     }
 }
@@ -467,8 +468,9 @@ impl ReturnMap for CamClay {
         match p > 0.0 {
             true => Ok(()),
             false => Err(InadmissibleStress(format!(
-                "has a mean pressure of {p:.6}, and Cam-clay has its stiffness and strength from pressure: give an initial stress \
-                 that compresses it, at a free surface by a surcharge"
+                "has a mean pressure of {}, and Cam-clay has its stiffness and strength from pressure: give an initial stress that \
+                 compresses it, at a free surface by a surcharge",
+                number(p)
             ))),
         }
     }
@@ -523,8 +525,9 @@ impl ReturnMap for CamClay {
     fn beyond(&self, stress: &CauchyStress) -> String {
         let [p, q] = invariants(&Vector4::from(stress.components()));
         let needed = p + q * q / (self.critical * self.critical * p);
+        let [p, q, needed] = [number(p), number(q), at_least(needed)];
         format!(
-            "p = {p:.6} and q = {q:.6} need a p_c of {needed:.6} at least; raise p_c, give OCR in its place, or choose K0 nearer to 1"
+            "p = {p} and q = {q} need a p_c of {needed} at least; raise p_c, give OCR in its place, or choose K0 nearer to 1"
         )
     }
 

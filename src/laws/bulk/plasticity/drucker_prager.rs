@@ -6,6 +6,7 @@ use super::elasticity::isotropic;
 use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, THIRD, deviator, double_dot, in_axes};
 use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative};
+use crate::laws::text::{apart, number};
 
 /// Constants of [`DruckerPrager`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,8 +27,8 @@ pub struct DruckerPragerParameters {
     pub c: f64,
     /// φ: angle of friction, 0 ≤ φ < 90 [degrees]
     pub phi: f64,
-    /// ψ: angle of dilation, 0 ≤ ψ ≤ φ; φ unless given [degrees]
-    pub psi: Option<f64>,
+    /// ψ: angle of dilation, 0 ≤ ψ ≤ φ [degrees]
+    pub psi: f64,
     /// Which tests c and φ are those of
     pub matching: Matching,
     /// Largest mean stress tr τ/3, tension positive; that of the tip of the cone, c cot φ, unless given [F/L²]
@@ -41,7 +42,7 @@ pub struct DruckerPragerParameters {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Matching {
-    /// The same collapse in plane strain, of associated flow: leave psi out, which is phi then
+    /// The same collapse in plane strain, of associated flow: it needs psi = phi
     PlaneStrain,
     /// The same strength in triaxial compression; in plane strain it is too strong, much so for φ > 25°
     Compression,
@@ -50,7 +51,7 @@ pub enum Matching {
 impl DruckerPragerParameters {
     /// Associated, of a body without mass.
     pub fn new(young: f64, poisson: f64, [c, phi]: [f64; 2], matching: Matching) -> Self {
-        Self { young, poisson, density: 0.0, c, phi, psi: None, matching, tension: None, viscosity: 0.0 }
+        Self { young, poisson, density: 0.0, c, phi, psi: phi, matching, tension: None, viscosity: 0.0 }
     }
 }
 
@@ -94,12 +95,11 @@ impl DruckerPrager {
     pub fn new(given: &DruckerPragerParameters) -> Result<Elastoplastic<Self>, InvalidParameter> {
         let DruckerPragerParameters { young, poisson, density, c, phi, psi, matching, tension, viscosity } = *given;
         let elastic = ElasticConstants { young, poisson, density }.lame()?;
-        let psi = psi.unwrap_or(phi);
-        let in_plane = matching == Matching::PlaneStrain;
-        let associated = "in plane strain it must be phi: the matching holds for associated flow; leave it out, or take \
-                          \"matching\": \"compression\", or mohr_coulomb";
-        require("psi", psi, !in_plane || psi == phi, associated)?;
         check_strength(c, phi, psi)?;
+        let in_plane = matching == Matching::PlaneStrain;
+        let associated = "in plane strain it must be phi: the matching holds for associated flow; take \"matching\": \
+                          \"compression\", or mohr_coulomb";
+        require("psi", psi, !in_plane || psi == phi, associated)?;
         if let Some(tension) = tension {
             require_not_negative("tension", tension)?;
         }
@@ -207,11 +207,11 @@ impl ReturnMap for DruckerPrager {
         let CauchyStress { xx, yy, zz, xy } = *stress;
         let (s, trace) = deviator(&Vector4::new(xx, yy, zz, xy));
         let root = (0.5 * double_dot(&s, &s)).sqrt();
+        let [is, carried] = apart([root, self.radius(trace / 3.0)]);
         format!(
-            "√J₂ is {root:.6} at the mean stress {:.6}, where the cone carries {:.6}; raise c or phi, or choose stresses that differ \
+            "√J₂ is {is} at the mean stress {}, where the cone carries {carried}; raise c or phi, or choose stresses that differ \
              less (K0 nearer to 1)",
-            trace / 3.0,
-            self.radius(trace / 3.0)
+            number(trace / 3.0)
         )
     }
 }

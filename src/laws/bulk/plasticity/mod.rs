@@ -33,6 +33,7 @@ use super::{
     PlaneStress, Spatial, Straining, positive_jacobian,
 };
 use crate::laws::parameter::{InvalidParameter, require_not_negative};
+use crate::laws::text::number;
 use axes::Axes;
 pub use cam_clay::{CamClay, CamClayParameters};
 pub use drucker_prager::{DruckerPrager, DruckerPragerParameters, Matching};
@@ -300,8 +301,8 @@ const LARGEST: f64 = 0.2;
 /// Share of the stiffness by which a stress may be beyond the yield surface by round-off.
 const ROUND_OFF: f64 = 1e-14;
 
-/// Share of the strength by which an initial stress may be beyond the yield surface: numbers are written with a few digits.
-const WRITTEN: f64 = 1e-9;
+/// Share of the stress by which an initial stress may be beyond the yield surface: numbers are written with a few digits.
+const WRITTEN: f64 = 1e-6;
 
 impl<L: ReturnMap> Elastoplastic<L> {
     /// A law at large deformations, with a density [M/L³] and the relaxation time of its viscosity, 0 for none [T].
@@ -526,7 +527,7 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
         match f <= WRITTEN * tensor.amax() {
             true => Ok(()),
             false => {
-                let why = format!("is beyond the yield surface, f = {f:.6e} > 0: {}", self.law.beyond(stress));
+                let why = format!("is beyond the yield surface, f = {} > 0: {}", number(f), self.law.beyond(stress));
                 Err(InadmissibleStress(why))
             }
         }

@@ -8,6 +8,7 @@ use super::drucker_prager::{FLOOR, check_strength};
 use super::{Elastoplastic, ROUND_OFF, ReturnMap, Returned, in_axes};
 use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::text::{at_least, number};
 
 /// Constants of [`MohrCoulomb`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -542,13 +543,13 @@ impl ReturnMap for MohrCoulomb {
         let sorted = principal(&Vector4::new(xx, yy, zz, xy));
         let sin = self.virgin.phi.sin;
         format!(
-            "its principal stresses reach from {:.6} to {:.6}; with phi = {} degrees and c = {} a ratio of pressures such as K0 is at \
-             least (1 - sin phi)/(1 + sin phi) = {:.4}, somewhat less for the cohesion; raise K0, c or phi",
-            sorted[2],
-            sorted[0],
+            "its principal stresses reach from {} to {}; with phi = {} degrees and c = {} a ratio of pressures such as K0 is at \
+             least (1 - sin phi)/(1 + sin phi) = {}, somewhat less for the cohesion; raise K0, c or phi",
+            number(sorted[2]),
+            number(sorted[0]),
             (self.virgin.phi.value.to_degrees() * 1e9).round() / 1e9,
             self.virgin.c,
-            (1.0 - sin) / (1.0 + sin)
+            at_least((1.0 - sin) / (1.0 + sin))
         )
     }
 }

@@ -7,6 +7,7 @@ use super::skeleton::{Skeleton, State, Tensor, values};
 use super::{Elasticity, Elastoplastic, ReturnMap, Returned, SHOWN, deviator, double_dot, in_axes, share_within};
 use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::text::{at_least, number};
 
 /// Constants of [`SysCamClay`]: those of [`CamClay`], rates of loss, and the initial skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -375,8 +376,9 @@ impl ReturnMap for SysCamClay {
         let mut history = [0.0; 2 + OWN.len()];
         self.begin(&tensor, &mut history);
         let ([p, q], needed) = (invariants(&tensor), self.structure * self.size(&tensor, &history));
+        let [p, q, needed] = [number(p), number(q), at_least(needed)];
         format!(
-            "p = {p:.6} and q = {q:.6} need a p_c of {needed:.6} at least; raise p_c or structure, give OCR in place of p_c, or choose K0 nearer \
+            "p = {p} and q = {q} need a p_c of {needed} at least; raise p_c or structure, give OCR in place of p_c, or choose K0 nearer \
              to 1"
         )
     }

@@ -6,6 +6,7 @@ use super::elasticity::isotropic;
 use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, THIRD, deviator, double_dot};
 use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::text::apart;
 
 /// Constants of [`VonMises`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -326,10 +327,7 @@ impl ReturnMap for VonMises {
     }
 
     fn beyond(&self, stress: &CauchyStress) -> String {
-        format!(
-            "its von Mises stress is {:.6}, and sigma_y is {:.6}; lower it, or raise sigma_y",
-            stress.von_mises(),
-            self.strength
-        )
+        let [is, strength] = apart([stress.von_mises(), self.strength]);
+        format!("its von Mises stress is {is}, and sigma_y is {strength}; lower it, or raise sigma_y")
     }
 }
