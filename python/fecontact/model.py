@@ -1771,7 +1771,9 @@ class CaseKeys(TypedDict, total=False):
     steps: Sequence[Step]
     # Title of the case, in one line
     title: str
-    # Labels of the units used, for readers; any consistent set will do
+    # Labels of the units used, for readers: `length`, `force`, `time`; any consistent set will do. Those of
+    # `stress`, `energy` and whatever else follows may be left out: they are composed ("kN/m²"), and one that
+    # contradicts is refused. In plane strain, the label of a force may be one per length of thickness ("kN/m")
     units: Mapping[str, str]
     # Groups, or single nodes {"near": [x, y]} or {"node": tag}, whose mean displacement and reaction are written to
     # the history, under the name of the group, `near_X_Y` or `node_TAG`

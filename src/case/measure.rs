@@ -242,7 +242,7 @@ fn named(name: &str) -> Measure {
     let lower = name.to_lowercase();
     // Long names may begin with a capital; short ones are what they are: mN and MN.
     let is_other = |other: &&str| name == **other || (other.len() > 3 && lower == **other);
-    if let Some((_, value, powers)) = OTHERS.iter().find(|(names, ..)| names.iter().any(|other| is_other(&other))) {
+    if let Some((_, value, powers)) = OTHERS.iter().find(|(names, ..)| names.iter().any(is_other)) {
         return Measure { value: *value, powers: *powers, ..Measure::one() };
     }
     let prefixed = PREFIXED.iter().find_map(|(unit, value, powers)| {
