@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use crate::features::{Draft, Feature, SLOTS, Slot, excluded, features, hash, names, plain};
+use crate::features::{Draft, Feature, SLOTS, Slot, excluded, features, hash, plain};
 use crate::law;
 use crate::model::{self, Ways};
 use crate::record::{Difference, Ended};
@@ -216,27 +216,6 @@ fn what_once_broke_holds() {
     }
 }
 
-/// What is known to be broken and waits to be mended: a relation, and features that break it. `AWAITED=1` tries these as well.
-const AWAITED: &[(&str, &[&str], &str)] = &[
-    ("derivatives", &["flange:added"], "the stress-free place of a body that comes is no state of it"),
-    ("begun with", &["flange:added"], "a body that was there may come"),
-    ("further", &["flange:added"], "a body that was there may come"),
-    ("bystander", &["tool:free", "stabilize:yes"], "dashpots of a turning tool have the length of the whole model"),
-    ("wide", &["tool:moves", "stabilize:yes"], "dashpots of a turning tool have the length of its outline"),
-    ("linear energies", &["heat:number"], "a temperature that jumps in a step with stages is not counted"),
-    ("linear energies", &["heat:table"], "a temperature that jumps in a step with stages is not counted"),
-    ("linear energies", &["heat:by_place"], "a temperature that jumps in a step with stages is not counted"),
-    ("runs", &["tip:yes", "sliding:small"], "a node that both sides share has no edge to face"),
-    ("told thrice", &[], "directions whose values are expressions are not compared"),
-];
-
-/// Whether a relation, or the run itself, is known to be broken by features of a draft.
-fn is_awaited(relation: &str, draft: &Draft) -> bool {
-    let has = |word: &&str| draft.features().iter().any(|feature| names(word, *feature));
-    std::env::var_os("AWAITED").is_none()
-        && AWAITED.iter().any(|(name, features, _)| *name == relation && features.iter().all(has))
-}
-
 /// Try seeds, as many at once as there are cores.
 fn hunt(first: u64, count: u64) -> Tally {
     law::registered();
@@ -271,7 +250,7 @@ fn drawn(seed: u64) -> Option<Draft> {
 }
 
 fn try_seed(seed: u64, tally: &Mutex<Tally>) {
-    let Some(draft) = drawn(seed).filter(|draft| !is_awaited("runs", draft)) else { return };
+    let Some(draft) = drawn(seed) else { return };
     let clock = Instant::now();
     let base = match catch_unwind(|| Base::new(&draft)) {
         Ok(base) => base,
@@ -286,7 +265,7 @@ fn try_seed(seed: u64, tally: &Mutex<Tally>) {
             Some(only) => only == relation.name,
             None => hash(seed, relation.name).is_multiple_of(relation.rarity),
         };
-        for relation in RELATIONS.iter().filter(own).filter(|relation| !is_awaited(relation.name, &draft)) {
+        for relation in RELATIONS.iter().filter(own) {
             let clock = Instant::now();
             let outcome = checked(relation, &base);
             seconds.push((relation.name, clock.elapsed().as_secs_f64()));

@@ -48,6 +48,8 @@ pub struct Record {
     pub increments: usize,
     /// attempts at increments that were given up
     pub given_up: usize,
+    /// what it was warned of on the way and at the end
+    pub warnings: Vec<String>,
     /// whether points of the first contact closed, and slipped
     pub closed: bool,
     pub slipped: bool,
@@ -82,6 +84,7 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
         rows: Vec::new(),
         increments: 0,
         given_up: 0,
+        warnings: Vec::new(),
         closed: false,
         slipped: false,
     };
@@ -132,7 +135,8 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
     let RunReport { increments, cutbacks, rejected, .. } = simulation.report();
     let [before, given_up] = outputs.before;
     let given_up = given_up + cutbacks + rejected;
-    Record { ended, tables, closed, slipped, rows, increments: before + increments, given_up }
+    let warnings = outputs.warnings.list;
+    Record { ended, tables, closed, slipped, rows, increments: before + increments, given_up, warnings }
 }
 
 fn built(document: &Value) -> Result<Arc<Model>, String> {

@@ -32,6 +32,9 @@ impl Writer<'_> {
         if self.ways.wide.is_some() && !self.is_rigid() {
             bodies.insert(OUTSKIRTS.into(), json!({"material": self.material("linear", 1500.0, 0.3)}));
         }
+        if self.ways.strut.is_some() {
+            bodies.insert(STRUT.into(), json!({"material": self.material("neo_hookean", 500.0, 0.3)}));
+        }
         if self.ways.bystander {
             let [first, last] = ASIDE;
             let density = self.density();

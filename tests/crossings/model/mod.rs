@@ -4,6 +4,9 @@ mod bodies;
 mod contacts;
 mod steps;
 
+use std::path::Path;
+
+use fecontact::case::{Halvings, Written, refined};
 use serde_json::{Map, Value, json};
 
 use crate::features::{Draft, hash};
@@ -24,6 +27,12 @@ pub struct Ways {
     pub wide: Option<f64>,
     /// supports along both axes are told along a third direction as well
     pub told_thrice: bool,
+    /// the axis of rings is held by an expression as well
+    pub axis_told: bool,
+    /// a strut stands aside that is pushed together by so many times what makes it buckle
+    pub strut: Option<f64>,
+    /// elements and increments are halved so many times
+    pub halved: Option<u32>,
     /// and one of its bodies flies off when its springs are taken away
     pub flight: bool,
     /// the block in two bodies that share nodes
@@ -72,6 +81,9 @@ impl Ways {
             far: 1.0,
             wide: None,
             told_thrice: false,
+            axis_told: false,
+            strut: None,
+            halved: None,
             flight: false,
             block_in_two: false,
             renamed: false,
@@ -127,6 +139,11 @@ const TOOL: &str = "tool";
 /// A body that shares the nodes of the block's left side; with other names it comes before the block, not after it.
 const FLANGE: &str = "flange";
 
+/// A slender body that stands aside, clamped at both ends and pushed together: its length, and its height as a share of that.
+const STRUT: &str = "strut";
+const STRUT_LENGTH: f64 = 2.0;
+const SLENDERNESS: f64 = 0.025;
+
 /// A rigid body that stands in the block's way.
 const STOP: &str = "stop";
 
@@ -156,14 +173,24 @@ pub fn is_explicit(draft: &Draft) -> bool {
 
 /// The case.
 pub fn case(draft: &Draft, ways: &Ways) -> Value {
-    Writer {
+    let written = Writer {
         draft,
         ways,
         frame: &ways.frame,
         names: Names::of(ways),
         scheme: ways.scheme.unwrap_or(draft.of("scheme")),
     }
-    .case()
+    .case();
+    ways.halved.map_or_else(|| written.clone(), |times| halved(&written, times))
+}
+
+/// The case as `converge` runs it; what it refuses is a case that is refused.
+fn halved(written: &Value, times: u32) -> Value {
+    let path = Path::new("case.json");
+    let finer = Written::from_text(&written.to_string(), path)
+        .and_then(|written| refined(&written, Halvings::of_both(times)))
+        .map_err(|error| error.to_string());
+    finer.map_or_else(|error| json!({"refused": error}), |finer| finer.document)
 }
 
 struct Writer<'a> {
@@ -489,6 +516,11 @@ impl Writer<'_> {
                 let high = [low[0] + 1.0, low[1] + 0.5];
                 sheet.rectangle(&Rectangle { name, low, high, columns: 2, rows: 1, element, warp: 0.0 });
             }
+        }
+        if self.ways.strut.is_some() {
+            let (low, high) = ([24.0, 0.0], [24.0 + STRUT_LENGTH, SLENDERNESS * STRUT_LENGTH]);
+            let (name, element) = (STRUT, ["q8", "q9", "t6"][self.draft.count("strut", 0, 2)]);
+            sheet.rectangle(&Rectangle { name, low, high, columns: 16, rows: 1, element, warp: 0.0 });
         }
         if self.ways.shuffled {
             sheet.shuffle(self.draft.seed);

@@ -94,6 +94,14 @@ impl Writer<'_> {
             path.extend(free.then(|| on(What::Force, [0.0, force])));
             path.into_iter().filter(|_| self.has("tool"))
         };
+        // Euler: it buckles at a strain of 4π²/12 (height/length)².
+        let shorter = |times: f64| times * std::f64::consts::PI.powi(2) / 3.0 * SLENDERNESS.powi(2) * STRUT_LENGTH;
+        let pushed = self.ways.strut.map(shorter).map(|shorter| {
+            let strut = target(What::Support([true, true]), "block_right", [-shorter, 0.0]);
+            Target { on: format!("{STRUT}_right"), ..strut }
+        });
+        first.extend(pushed.clone());
+        second.extend(pushed.clone());
         first.extend(tool([0.0, 0.0], 0.0, 0.0));
         second.extend(tool([-0.4 * drag, -0.05 * down], 0.002, 0.5 * PRESSURE * self.area()));
         let mut stages = vec![Stage { name: "press", targets: first }, Stage { name: "drag", targets: second }];
@@ -106,7 +114,7 @@ impl Writer<'_> {
             };
             // A rate would go on where nothing is said of it.
             let rests = tool([-0.4 * drag, -0.05 * down], 0.002, 0.3 * PRESSURE * self.area());
-            stages.push(Stage { name: "back", targets: std::iter::once(back).chain(rests).collect() });
+            stages.push(Stage { name: "back", targets: std::iter::once(back).chain(rests).chain(pushed).collect() });
         }
         stages
     }
@@ -316,6 +324,13 @@ impl Writer<'_> {
                 let on = json!(format!("{OUTSKIRTS}_{side}"));
                 supports.extend(f.supports(&on, [Some(&zero), Some(&zero)]));
             }
+        }
+        if self.ways.axis_told && !self.is_rigid() {
+            supports.push(json!({"on": self.group("ground_left"), "ux": "0.1*x*t"}));
+        }
+        if self.ways.strut.is_some() {
+            let zero = |_: f64| json!(0.0);
+            supports.extend(f.supports(&json!(format!("{STRUT}_left")), [Some(&zero), Some(&zero)]));
         }
         if self.is("second_contact", "tool") {
             let zero = |_: f64| json!(0.0);

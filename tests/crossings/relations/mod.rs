@@ -1,8 +1,10 @@
 //! What must hold between two ways of writing the same problem, or between two problems that become the same.
 
 mod aside;
+mod buckled;
 mod derivatives;
 mod energy;
+mod halved;
 mod held;
 mod led;
 mod limits;
@@ -15,14 +17,16 @@ use crate::model::{self, Ways, is_dynamic, is_explicit, moves};
 use crate::record::{Difference, Ended, Entry, Lead, Record, compare, is_aside, run};
 
 use aside::{bystander, flight, wide};
+use buckled::buckled;
 use derivatives::derivatives;
 use energy::{energies, linear_energies, switched};
+use halved::halved;
 use held::{dilating, resultants};
 use led::{begun_with, dropped, further, resumed, threads};
 use limits::{sides_swapped, slow_dynamics, small_and_finite, stiff_and_augmented};
 use written::{
-    body_in_two, driven, inclined, later, mirrored, moved, renamed, shuffled, steps_in_two, told_in_time, told_thrice,
-    turned, turned_square, units,
+    axis_told, body_in_two, driven, inclined, later, mirrored, moved, renamed, shuffled, steps_in_two, told_in_time,
+    told_thrice, turned, turned_square, units,
 };
 
 /// A relation: its name, and what breaks it, if anything does. Nothing where it does not apply.
@@ -183,10 +187,13 @@ pub const RELATIONS: &[Relation] = &[
     Relation { name: "shuffled", rarity: 5, check: shuffled },
     Relation { name: "driven", rarity: 5, check: driven },
     Relation { name: "told thrice", rarity: 5, check: told_thrice },
+    Relation { name: "axis told", rarity: 2, check: axis_told },
     Relation { name: "told in time", rarity: 5, check: told_in_time },
     Relation { name: "steps in two", rarity: 3, check: steps_in_two },
     Relation { name: "later", rarity: 4, check: later },
     Relation { name: "body in two", rarity: 5, check: body_in_two },
+    Relation { name: "halved", rarity: 24, check: halved },
+    Relation { name: "buckled", rarity: 8, check: buckled },
     Relation { name: "derivatives", rarity: 5, check: derivatives },
     Relation { name: "energies", rarity: 3, check: energies },
     Relation { name: "linear energies", rarity: 3, check: linear_energies },

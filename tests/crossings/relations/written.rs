@@ -109,11 +109,26 @@ pub(super) fn told_thrice(base: &Base) -> Outcome {
     let idle = draft.has("until")
         || draft.is("scheme", "quasi_dynamic")
         || draft.is("press", "rotation")
+        // A node of a plate whose displacements are tied has none along other directions.
+        || draft.has("plate")
+        || draft.is("press", "plate")
         || draft.of("section").starts_with("rings");
     if idle {
         return Outcome::Idle;
     }
     base.same(Ways { told_thrice: true, drive: Some("expression"), ..base.ways.clone() }, SAME, NOTHING)
+}
+
+/// The axis of rings is held by itself; told by an expression that vanishes there it is held as well.
+pub(super) fn axis_told(base: &Base) -> Outcome {
+    let draft = base.draft;
+    if !draft.is("section", "rings_on_end")
+        || draft.is("scheme", "quasi_dynamic")
+        || base.ways.frame.place([0.0, 0.0])[0] != 0.0
+    {
+        return Outcome::Idle;
+    }
+    base.same(Ways { axis_told: true, ..base.ways.clone() }, SAME, NOTHING)
 }
 
 /// Friction whose numbers are expressions of the time that stay the same, but were others at the very start.
