@@ -66,6 +66,19 @@ impl Control {
             && exists
             && self.coupling.fits(model.mesh.nodes.len())
     }
+
+    /// Whether the bodies that are absent in the step of a state are those of this model: steps appended since may tell of others.
+    pub(super) fn has_bodies_of(&self, state: &State, model: &Model) -> bool {
+        let is_absent = |absent: &[bool], body: usize| absent.get(body).copied().unwrap_or(false);
+        let agrees = |step: &Step| {
+            let there = &state.step_start.absent;
+            (0..model.bodies.len()).all(|body| is_absent(there, body) == is_absent(&step.absent, body))
+        };
+        // Between steps the state is that of the step before; within one it may still be, while no increment is accepted.
+        let is_between = matches!(self.phase, Phase::Begin | Phase::Complete);
+        let last = if is_between { self.step.saturating_sub(1) } else { self.step };
+        model.steps.iter().take(last + 1).skip(self.step.saturating_sub(1)).any(agrees) || model.steps.is_empty()
+    }
 }
 
 /// Whether a state belongs to a model: the numbers of dofs, contact points and internal variables agree, and all projections

@@ -393,7 +393,8 @@ impl Saved {
         let (state, mut control, memory, midway, report) = run;
         let fits = |memory: &ExplicitMemory| memory.fits(model);
         let on_its_way = midway.as_ref().is_none_or(|midway| is_of(&midway.state, model) && memory.is_some());
-        if !(is_of(&state, model) && control.fits(model) && memory.as_ref().is_none_or(fits) && on_its_way) {
+        let is_of_it = is_of(&state, model) && control.fits(model) && control.has_bodies_of(&state, model);
+        if !(is_of_it && memory.as_ref().is_none_or(fits) && on_its_way) {
             return Err(NotResumable::OtherModel);
         }
         if matches!(control.phase, Phase::Complete) && control.step < model.steps.len() {

@@ -53,13 +53,17 @@ pub(super) fn threads(base: &Base) -> Outcome {
     to_the_bit(base, &pool.install(|| base.run(&base.ways)))
 }
 
+/// Whether a penalty or a method, that of a tie as well, is chosen for a case by the schemes of its steps: with fewer
+/// steps it may be another, and the command refuses to go on there.
+fn is_chosen_by_steps(draft: &Draft) -> bool {
+    let by_default = draft.is("normal", "default") || draft.is("method", "chosen") || draft.is("flange", "tied");
+    let other = ["then", "rupture"].iter().any(|slot| draft.has(slot)) || draft.is("scheme", "quasi_dynamic");
+    by_default && other
+}
+
 /// The steps after the first as a case that begins with the first.
 pub(super) fn begun_with(base: &Base) -> Outcome {
-    // The default penalty, or method, of the first step is another one where a later one has inertia, or is explicit; the command
-    // refuses to go on there.
-    let by_default = base.draft.is("normal", "default") || base.draft.is("method", "chosen");
-    let other = ["then", "rupture"].iter().any(|slot| base.draft.has(slot)) || base.draft.is("scheme", "quasi_dynamic");
-    if !base.has_ended_well() || base.draft.has("times") || by_default && other {
+    if !base.has_ended_well() || base.draft.has("times") || is_chosen_by_steps(base.draft) {
         return Outcome::Idle;
     }
     let record = run(&model::case(base.draft, &base.ways), &base.ways, Lead::Begun);
@@ -104,10 +108,7 @@ fn was_there(record: Record) -> Outcome {
 /// A finished run that goes on with one step more.
 pub(super) fn further(base: &Base) -> Outcome {
     let draft = base.draft;
-    // What is chosen for a case by the schemes of its steps is another choice where the last one has another.
-    let by_default = draft.is("normal", "default") || draft.is("method", "chosen");
-    let other = ["then", "rupture"].iter().any(|slot| draft.has(slot)) || draft.is("scheme", "quasi_dynamic");
-    if !base.has_ended_well() || draft.has("times") || by_default && other {
+    if !base.has_ended_well() || draft.has("times") || is_chosen_by_steps(draft) {
         return Outcome::Idle;
     }
     let record = run(&model::case(draft, &base.ways), &base.ways, Lead::Further);
