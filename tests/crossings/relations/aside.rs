@@ -28,6 +28,10 @@ pub(super) fn wide(base: &Base) -> Outcome {
     if !ends && !beside || draft.has("error_control") || draft.has("gravity") {
         return Outcome::Idle;
     }
+    // The dashpots of a tool hold its turning by the reach of its own outline.
+    if ends && draft.has("tool") && draft.has("stabilize") {
+        return Outcome::Idle;
+    }
     let wide: &[f64] = if ends { &[10.0, 1e4, 1e150, 5e307] } else { &[10.0, 1e3] };
     let wide = Some(wide[(hash(draft.seed, "wide") % wide.len() as u64) as usize]);
     let record = base.run(&Ways { wide, ..base.ways.clone() });
