@@ -107,6 +107,10 @@ impl<'a> Base<'a> {
         // The lengths of increments follow from estimates, and rates are differences over them.
         let tolerance = if self.draft.has("error_control") { tolerance.max(SAME_IN_MOTION) } else { tolerance };
         let tolerance = if self.draft.has("until") { tolerance.max(SAME_UNTIL) } else { tolerance };
+        // What multipliers leave of a pressure decides whether the law is beyond its threshold, where it jumps.
+        if difference.share > tolerance && augmented && self.draft.is("friction", "registered") {
+            return Outcome::Idle;
+        }
         if difference.share <= tolerance { Outcome::Holds } else { self.judged(difference, skip) }
     }
 
