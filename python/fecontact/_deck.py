@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -40,6 +40,8 @@ class Block:
     title: str
     words: list[str]
     rows: list[str] = field(default_factory=list)
+    #: whether it stands in a part, whose sets are others than those of the assembly
+    in_part: bool = False
 
     @property
     def keyword(self) -> str:
@@ -154,45 +156,41 @@ class _Deck:
         self.nodes: dict[int, list[float]] = {}
         #: type, nodes
         self.elements: dict[int, tuple[str, list[int]]] = {}
-        self.sets: dict[str, dict[str, list[int]]] = {"NSET": {}, "ELSET": {}}
-        #: where the sets stand: in the part, or in the assembly
-        self.levels: dict[tuple[str, str], str] = {}
+        #: by kind, and whether they are those of the part
+        self.sets: dict[tuple[str, bool], dict[str, list[int]]] = {(kind, part): {} for kind in ("NSET", "ELSET") for part in (True, False)}
         #: sets that Abaqus/CAE makes for its own use
-        self.internal: set[str] = set()
+        self.internal: set[tuple[str, bool, str]] = set()
         #: the one part and the one instance
         self.names: dict[str, str] = {}
         blocks: list[Block] = []
         _blocks(path, [], blocks)
-        levels = [""]
+        in_part = False
         for block in blocks:
-            levels.append(self.level(block, levels[-1]))
+            in_part = block.in_part = self.enters(block, in_part)
         # The numbers of nodes and elements first, as sets may stand before what they list.
         listed = [self.numbered(block) for block in blocks]
         self.surfaces: dict[str, Block] = {}
-        for block, tags, level in zip(blocks, listed, levels[1:], strict=True):
+        for block, tags in zip(blocks, listed, strict=True):
             if block.keyword in ("NODE", "ELEMENT"):
                 kind = "NSET" if block.keyword == "NODE" else "ELSET"
-                self.put(block, kind, block.options().get(kind), tags, level)
+                self.put(block, kind, block.options().get(kind), tags)
             elif block.keyword in ("NSET", "ELSET"):
-                self.put_set(block, level)
+                self.put_set(block)
             elif block.keyword == "SURFACE":
                 name = block.named(block.options(), "NAME")
                 if name.upper() in (known.upper() for known in self.surfaces):
                     raise block.refused("stands in the file twice: give the surfaces different names", f" {name}")
                 self.surfaces[name] = block
 
-    def level(self, block: Block, level: str) -> str:
-        """Where the blocks behind a block stand."""
+    def enters(self, block: Block, in_part: bool) -> bool:
+        """Whether a block and those behind it stand in the part, or its instance."""
         keyword = block.keyword
         if keyword in ("PART", "INSTANCE"):
             if keyword in self.names or any(cell for row in block.cells() for cell in row):
                 raise block.refused("the deck has several parts, or moves one: write it without parts and assemblies (a flat deck)")
             self.names[keyword] = block.named(block.options(), "NAME")
-        if keyword in ("PART", "INSTANCE"):
-            return "part"
-        if keyword in ("ASSEMBLY", "ENDINSTANCE"):
-            return "assembly"
-        return "" if keyword in ("ENDPART", "ENDASSEMBLY") else level
+            return True
+        return in_part and keyword not in ("ENDPART", "ENDINSTANCE")
 
     def numbered(self, block: Block) -> list[int]:
         """The numbers of the nodes or elements of a block, which are kept."""
@@ -238,19 +236,19 @@ class _Deck:
             tags.append(tag)
         return tags
 
-    def put_set(self, block: Block, level: str) -> None:
+    def put_set(self, block: Block) -> None:
         """A set, whose members are numbers, ranges, or names of other sets."""
         kind, options = block.keyword, block.options()
         name = block.named(options, kind)
         if options.get("INSTANCE", "").upper() not in ("", self.names.get("INSTANCE", "").upper()):
             raise block.refused(f"there is no instance `{options['INSTANCE']}` before it is used", f" {name}")
         if "INTERNAL" in options:
-            self.internal.add(name.upper())
+            self.internal.add((kind, block.in_part, name.upper()))
         if "GENERATE" in options:
             tags = [tag for row in block.cells() for tag in self.range(block, row, f" {name}")]
         else:
             tags = [tag for row in block.cells() for cell in row for tag in self.members(block, kind, cell, f" {name}")]
-        self.put(block, kind, name, tags, level)
+        self.put(block, kind, name, tags)
 
     def range(self, block: Block, row: list[str], name: str) -> Sequence[int]:
         """The numbers from the first to the last by the step, which are all there."""
@@ -268,12 +266,12 @@ class _Deck:
             return list(self.known(block, [block.whole(cell)], name, kind))
         cell = cell.strip('"')
         instance, _, own = cell.rpartition(".")
-        known = self.name(kind, cell)
-        if known is None and instance and instance.upper() == self.names.get("INSTANCE", "").upper():
-            known = self.name(kind, own)
-        if known is None:
-            raise block.refused(f"there is no set `{cell}` before it is used", name)
-        return self.sets[kind][known]
+        of_part = [(own, True)] if instance and instance.upper() == self.names.get("INSTANCE", "").upper() else []
+        for name_there, part in [(cell, block.in_part), *of_part, (cell, not block.in_part)]:
+            known = _spelled(self.sets[kind, part], name_there)
+            if known in self.sets[kind, part]:
+                return self.sets[kind, part][known]
+        raise block.refused(f"there is no set `{cell}` before it is used", name)
 
     def known(self, block: Block, tags: Sequence[int], name: str, kind: str) -> Sequence[int]:
         """The members, which must be there."""
@@ -284,20 +282,21 @@ class _Deck:
             raise block.refused(f"has {missing}, which the file does not have", name)
         return tags
 
-    def put(self, block: Block, kind: str, name: str | None, tags: list[int], level: str) -> None:
+    def put(self, block: Block, kind: str, name: str | None, tags: Sequence[int]) -> None:
         """Put members into a set, if it has a name."""
-        if name is None:
-            return
-        known = self.name(kind, name) or name
-        if self.levels.setdefault((kind, known), level) != level and set(self.sets[kind][known]) != set(tags):
-            raise block.refused("is a set of the part and another one of the assembly: give them different names", f" {name}")
-        self.sets[kind].setdefault(known, []).extend(tags)
+        if name is not None:
+            sets = self.sets[kind, block.in_part]
+            sets.setdefault(_spelled(sets, name), []).extend(tags)
 
-    def name(self, kind: str, name: str) -> str | None:
-        """A set as it is written first."""
-        if name in self.sets[kind]:
-            return name
-        return next((known for known in self.sets[kind] if known.upper() == name.upper()), None)
+    def named(self, kind: str) -> dict[str, list[int]]:
+        """The sets that a user has named, of the part and of the assembly."""
+        named: dict[str, list[int]] = {}
+        for part in (True, False):
+            for name, tags in self.sets[kind, part].items():
+                if (kind, part, name.upper()) not in self.internal and set(named.setdefault(_spelled(named, name), tags)) != set(tags):
+                    text = "is a set of the part and another one of the assembly: give them different names"
+                    raise refused(self.path, f"*{kind} {name}", text)
+        return named
 
     def found(self) -> Found:
         """All of it, counted from 0."""
@@ -309,9 +308,8 @@ class _Deck:
             if missing:
                 raise refused(self.path, "", f"element {tag} has node {missing[0]}, which the file does not have")
             cells[tag] = found.add([number[node] for node in nodes], 1 if _is_line(kind) else 2)
-        own = {kind: {name: tags for name, tags in sets.items() if name.upper() not in self.internal} for kind, sets in self.sets.items()}
-        found.sets = {name: [cells[tag] for tag in tags] for name, tags in own["ELSET"].items()}
-        found.points = {name: [number[tag] for tag in tags] for name, tags in own["NSET"].items()}
+        found.sets = {name: [cells[tag] for tag in tags] for name, tags in self.named("ELSET").items()}
+        found.points = {name: [number[tag] for tag in tags] for name, tags in self.named("NSET").items()}
         for name, block in self.surfaces.items():
             kind = block.options().get("TYPE", "ELEMENT").upper()
             if kind == "ELEMENT":
@@ -341,6 +339,11 @@ class _Deck:
                 if _is_line(kind) or side > corners:
                     raise block.refused(f"element {tag} has no side {label} in the plane", name)
                 yield nodes[side - 1], nodes[side % corners]
+
+
+def _spelled(sets: Mapping[str, list[int]], name: str) -> str:
+    """The name of a set as it is written first, whatever the case of its letters."""
+    return name if name in sets else next((known for known in sets if known.upper() == name.upper()), name)
 
 
 def _count(match: re.Match[str]) -> int:

@@ -86,6 +86,26 @@ def test_numbers_names_and_lines_are_read_as_the_programs_write_them(tmp_path: p
     assert document["points"] == {"all": [0, 1, 2, 3, 4, 5], "a.b": [0, 5], "c": [0, 1, 5]}
 
 
+def test_a_deck_of_abaqus_cae_is_read(tmp_path: pathlib.Path) -> None:
+    """As it writes one part and one instance: internal sets of part and assembly have the same names, and mean others."""
+    (tmp_path / "deck.inp").write_text(
+        "*Heading\n** Job name: press Model name: Model-1\n*Preprint, echo=NO, model=NO, history=NO, contact=NO\n**\n** PARTS\n**\n"
+        f"*Part, name=Part-1\n{NODES}*Element, type=CPS4R\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n"
+        "*Nset, nset=_PickedSet2, internal, generate\n 1,  6,  1\n*Elset, elset=_PickedSet2, internal, generate\n 1,  2,  1\n"
+        "*Elset, elset=Block, generate\n 1,  2,  1\n** Section: Section-1\n*Solid Section, elset=_PickedSet2, material=Steel\n,\n*End Part\n"
+        "**\n*Assembly, name=Assembly\n**\n*Instance, name=Part-1-1, part=Part-1\n*End Instance\n**\n"
+        "*Nset, nset=_PickedSet2, internal, instance=Part-1-1\n 3,\n*Nset, nset=Corner, instance=Part-1-1\n 6,\n*Nset, nset=both\n"
+        "_PickedSet2, Corner\n*Elset, elset=_Top_S3, internal, instance=Part-1-1, generate\n 1,  2,  1\n"
+        "*Surface, type=ELEMENT, name=Top\n_Top_S3, S3\n*Surface, type=NODE, name=all\nPart-1-1._PickedSet2\n"
+        "*End Assembly\n*Material, name=Steel\n*Elastic\n210000., 0.3\n*Step, name=Step-1, nlgeom=YES\n*Static\n1., 1., 1e-05, 1.\n"
+        "*Boundary\nCorner, ENCASTRE\n*Restart, write, frequency=0\n*Output, field, variable=PRESELECT\n*End Step\n"
+    )
+    document = fc.Mesh.read(tmp_path / "deck.inp").document()
+    assert document["elements"] == {"Block": [[0, 1, 4, 3], [1, 2, 5, 4]]}
+    assert sorted(map(sorted, document["edges"]["Top"])) == [[3, 4], [4, 5]]
+    assert document["points"] == {"Corner": [5], "both": [2, 5], "all": [0, 1, 2, 3, 4, 5]}
+
+
 def model(dice: random.Random) -> dict[str, Any]:
     """Two bodies of triangles and quadrilaterals of order 1 or 2, with edges and points by name."""
     order, columns, rows = dice.choice([1, 2]), dice.randint(1, 4), dice.randint(1, 3)
