@@ -44,6 +44,8 @@ impl Forces {
 /// Imbalance of a body: the resultant, and its ratio to the acting forces.
 struct Imbalance {
     resultant: Vector2<f64>,
+    /// Norm of all nodal forces
+    forces: f64,
     share: f64,
     /// Ratio of the resultant to loads and contact forces
     of_loads: f64,
@@ -73,7 +75,7 @@ pub(super) fn concerns(model: &Model) -> Vec<String> {
 }
 
 fn message(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> String {
-    let rounded = |force: f64| if force.abs() < ROUND_OFF * found.resultant.norm() { 0.0 } else { force };
+    let rounded = |force: f64| if force.abs() < ROUND_OFF * found.forces { 0.0 } else { force };
     let [x, y, percent] = [rounded(found.resultant.x), rounded(found.resultant.y), 100.0 * found.share].map(number);
     let cure = match !later.is_worth_telling() {
         true => format!(
@@ -173,6 +175,7 @@ fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbala
         square += free.norm_squared();
     }
     let share = if square > 0.0 { (square / all).sqrt() } else { 0.0 };
-    let of_loads = if resultant.norm() > ROUND_OFF * all.sqrt() { resultant.norm() / loads } else { 0.0 };
-    Imbalance { resultant: -resultant, share, of_loads }
+    let forces = all.sqrt();
+    let of_loads = if resultant.norm() > ROUND_OFF * forces { resultant.norm() / loads } else { 0.0 };
+    Imbalance { resultant: -resultant, forces, share, of_loads }
 }

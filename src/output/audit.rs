@@ -291,16 +291,20 @@ fn stresses(model: &Model) -> Vec<Stress> {
     bodies.map(|body| Stress { body, forces: balance::of_stress(model, body) }).collect()
 }
 
-/// Elastic energy of bodies and contacts, of what has changed since the start [F·L].
+/// Elastic energy of bodies and contacts, of what has changed since the start [F·L]. Tractions whose change the bodies bear deform
+/// at least the elements behind them, (p − p₀)²/2 h/(λ + 2G): where less is stored, the start was out of balance at the surfaces
+/// alone, as edges are that stand for a curve, and the penalties only take that up.
 fn changed(model: &Model, state: &State, stresses: &[Stress]) -> f64 {
     let there = stresses.iter().filter(|stress| state.has(stress.body)).flat_map(|stress| &stress.forces);
     let first_order: f64 = there.map(|(node, force)| force.dot(&vector(&state.displacement, *node))).sum();
     let mut elastic = state.energy.strain - first_order + state.energy.contact_elastic;
+    let mut behind = 0.0;
     for (pair, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.initial.is_some()) {
-        let Springs { stored, changed, .. } = Springs::of(pair, states);
+        let Springs { stored, changed, numerical } = Springs::of(pair, states);
         elastic += changed.max(REST * stored) - stored;
+        behind += numerical[0] * pair.alpha_n * pair.compliance;
     }
-    elastic
+    elastic.max(behind)
 }
 
 impl Give {

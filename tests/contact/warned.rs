@@ -486,6 +486,44 @@ fn a_soft_tie_is_told_and_its_remedy_ends_that() {
     assert_eq!(warnings(&layers([10, 10], [18.0, 10.0], Some(advised))), Vec::<String>::new());
 }
 
+/// A ring of straight edges at rest under a uniform stress around a circle: the edges stand for an arc, so that the start is out of balance
+/// at the bore alone, which the penalty takes up whatever it is. Nothing deforms: by R p/E = 1e-3 under a pressure that is not there at the
+/// start, and here by less than 1e-3 of that. Only a penalty softer than the elements is told, and is not any more with the one advised.
+#[test]
+fn edges_at_rest_around_a_circle_are_no_penalty_that_gives_way() {
+    let ring = |edges: usize, alpha_n: Option<f64>| {
+        let quarter = |k: usize| {
+            let at = |radius: f64, k: usize| {
+                let (sin, cos) = (std::f64::consts::FRAC_PI_2 * k as f64).sin_cos();
+                [radius * cos, radius * sin]
+            };
+            json!({"body": "ring", "corners": [at(1.0, k), at(2.0, k), at(2.0, k + 1), at(1.0, k + 1)], "elements": [4, edges],
+                "arcs": [null, [0, 0], null, [0, 0]], "sides": [null, "skin", null, "bore"]})
+        };
+        json!({
+            "mesh": {"blocks": (0..4).map(quarter).collect::<Vec<_>>()},
+            "bodies": {"ring": {"material": {"model": "linear", "E": 1e4, "nu": 0.3},
+                "initial_stress": {"components": {"xx": -10, "yy": -10, "zz": -10}}}},
+            "contacts": {"c": {"slave": "bore", "master": {"circle": {"centre": [0, 0], "radius": 1}}, "initial": {"of_bodies": true},
+                "normal": {"alpha_n": alpha_n}, "friction": {"law": "coulomb", "mu": 0.3}}},
+            "steps": [{"name": "rest", "duration": 1, "dt": {"initial": 0.5}, "loads": [{"on": "skin", "pressure": "10"}]}],
+        })
+    };
+    let of_penalty = |case: &Value| -> Vec<String> {
+        warnings(case).into_iter().filter(|told| told.contains("of the elastic energy")).collect()
+    };
+    for edges in [4, 8, 16] {
+        let case = ring(edges, None);
+        assert_eq!(of_penalty(&case), Vec::<String>::new(), "{edges} edges a quarter");
+        let moved = common::finish(&case).last().displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        assert!(moved < 1e-6, "{edges} edges a quarter move by {moved:e}");
+    }
+    let told = of_penalty(&ring(8, Some(1e5)));
+    let advised = told[0].split_once("\"alpha_n\": ").expect("a number").1;
+    let advised: f64 = advised.split(',').next().and_then(|text| text.trim().parse().ok()).expect("a number");
+    assert_eq!(of_penalty(&ring(8, Some(advised))), Vec::<String>::new());
+}
+
 /// A side that another contact has as its slave is looked after.
 #[test]
 fn the_slave_of_another_contact_is_not_unseen() {
