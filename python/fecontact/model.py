@@ -1309,10 +1309,14 @@ class Increments(dict[str, Any]):
         error: Error control: the longest increments whose estimated error stays below this [L]. In dynamic
             steps it is the error of a displacement, and contact events (onset, arrest and reversal of slip) are
             located to ten times this; in static steps it is the error of the slip of a contact point, half the
-            difference of its plastic slip from that at the last rate
-        max: Longest increment [T]; default initial, with `error` and in quasi_dynamic steps a tenth of the step
-        min: Shortest increment [T]; default initial/1000, with `error` initial/10⁶, in quasi_dynamic steps the
-            shortest that round-off of the time allows
+            difference of its plastic slip from that at the last rate. With rate-and-state friction, this error
+            of its slip is also at most 1e-4 D_c in static steps that give no `error`, and in all implicit ones.
+            null: no control at all
+        max: Longest increment [T]; default initial, with a given `error` and in quasi_dynamic steps a tenth of
+            the step
+        min: Shortest increment [T]; default initial/1000, with `error` initial/10⁶. With rate-and-state
+            friction under error control and in quasi_dynamic steps it is the shortest that round-off of the
+            time allows, since slip may take any rate
     """
 
     def __init__(

@@ -12,8 +12,9 @@ use serde_json::Value;
 use super::file::{Amount, BlockInput, BlocksInput, Case, GradingInput, MeshSource, MiddleInput, evaluated};
 use super::{CaseError, Written, build, build_on, mesh};
 use crate::mesh::{Block, Blocks, Grading, Group, MOST_ELEMENTS, Mesh};
-use crate::model::builder::{Checked, IncrementSettings, Load, LoadStep, ModelError, Place, nodes_at, refuse_if};
+use crate::model::builder::{Checked, Load, LoadStep, ModelError, Place, nodes_at, refuse_if};
 use crate::model::scheme::Scheme;
+use crate::model::step::SHORTEST_INCREMENT;
 use crate::model::text::vector;
 use crate::model::{Increments, Model, Step};
 
@@ -233,11 +234,14 @@ fn refine_increments(given: &mut LoadStep, step: &Step, factor: f64) {
     if matches!(step.scheme, Scheme::Explicit { .. }) && given.dt.is_none() {
         return;
     }
-    let Increments { initial, min, max, error } = step.increments;
-    given.dt = Some(IncrementSettings {
+    let Increments { initial, min, max, error, slip } = step.increments;
+    let finer = |error: f64| error / (factor * factor);
+    let increments = Increments {
         initial: initial / factor,
-        min: Some(min / factor),
-        max: Some(max / factor),
-        error: error.map(|error| error / (factor * factor)),
-    });
+        min: (min / factor).max(min.min(SHORTEST_INCREMENT * step.span.end)),
+        max: max / factor,
+        error: error.map(finer),
+        slip: slip.map(finer),
+    };
+    given.dt = Some(increments.into());
 }

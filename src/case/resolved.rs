@@ -4,9 +4,9 @@ use serde_json::Value;
 
 use super::file::Case;
 use crate::laws::friction::FrictionParameters;
-use crate::model::builder::{Contact, DefaultAlphaT, Friction, IncrementSettings, default_alpha_t};
+use crate::model::Model;
+use crate::model::builder::{Contact, DefaultAlphaT, Friction, default_alpha_t};
 use crate::model::method::{Chosen, Method};
-use crate::model::{Increments, Model};
 
 /// Returns the case of a model as the text of a file, with the defaults chosen by the model: scheme and increments of every
 /// step, and of contacts the method and the stiffnesses. Those of a case that begins with another one are kept, since they must
@@ -15,9 +15,8 @@ pub fn resolved(case: &Case, model: &Model) -> String {
     let mut case = case.clone();
     let taken_over = model.steps.len().saturating_sub(case.steps.len());
     for (given, step) in case.steps.iter_mut().zip(&model.steps[taken_over..]) {
-        let Increments { initial, min, max, error } = step.increments;
         given.scheme = Some(step.scheme);
-        given.dt = Some(IncrementSettings { initial, min: Some(min), max: Some(max), error });
+        given.dt = Some(step.increments.into());
     }
     if case.begin_with.is_none() {
         for (pair, chosen) in model.contacts.iter().zip(&model.methods) {

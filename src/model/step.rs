@@ -22,6 +22,9 @@ use super::state::State;
 use super::support::{Direction, Motion, Prescribed};
 use crate::contact::pair::ContactPair;
 
+/// Shortest increment relative to the run time at its end, below which round-off would dominate.
+pub const SHORTEST_INCREMENT: f64 = 16.0 * f64::EPSILON;
+
 /// Size and error control of increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -34,6 +37,9 @@ pub struct Increments {
     pub max: f64,
     /// allowed local error per increment of a displacement or, in a static step, of the slip of a contact point [L]
     pub error: Option<f64>,
+    /// allowed error per increment of the slip of friction that is integrated to first order in time, as a fraction of its
+    /// D_c [-]
+    pub slip: Option<f64>,
 }
 
 impl Increments {
@@ -41,8 +47,14 @@ impl Increments {
     /// dashpots have vanished.
     #[doc(hidden)]
     pub fn at_most(self, longest: f64) -> Self {
-        let Self { initial, min, max, error } = self;
-        Self { initial: initial.min(longest), min: min.min(longest), max: max.min(longest), error }
+        let Self { initial, min, max, .. } = self;
+        Self { initial: initial.min(longest), min: min.min(longest), max: max.min(longest), ..self }
+    }
+
+    /// Whether an error decides how long they are.
+    #[doc(hidden)]
+    pub fn are_controlled(&self) -> bool {
+        self.error.is_some() || self.slip.is_some()
     }
 }
 

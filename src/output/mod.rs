@@ -10,6 +10,7 @@ cfg_if::cfg_if! {
         pub mod audit;
         pub mod bodies;
         pub mod checkpoint;
+        pub mod coarse;
         pub mod events;
         pub mod fields;
         pub mod files;
@@ -33,6 +34,7 @@ cfg_if::cfg_if! {
         pub(crate) mod audit;
         pub(crate) mod bodies;
         pub(crate) mod checkpoint;
+        pub(crate) mod coarse;
         pub(crate) mod events;
         pub(crate) mod fields;
         pub(crate) mod files;

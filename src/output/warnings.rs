@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::audit::Audit;
+use super::coarse::Coarse;
 use super::csv;
 use super::instability::Instability;
 use crate::contact::force::ContactState;
@@ -22,11 +23,12 @@ use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::mesh::configuration::{Configuration, vector};
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
-use crate::model::step::Until;
+use crate::model::step::{SHORTEST_INCREMENT, Until};
 use crate::model::text::{self, apart, readable};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
+use crate::time::step_size::LocalError;
 use crate::time::touching::DOUBT;
 
 /// Smallest reported penetration of a rigid master by a node that the contact does not check, as a fraction of the
@@ -56,6 +58,8 @@ pub struct Warnings {
     closed: BTreeSet<usize>,
     /// Unstable equilibria that were accepted
     unstable: Instability,
+    /// Friction in increments that are too long for it
+    coarse: Coarse,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -100,6 +104,7 @@ impl Observer for Warnings {
         let way = self.audit.record(model, attempt.step, attempt.old, state);
         self.linear_bodies(model, state, way, attempt.ends_step(state));
         let x = model.configuration(&state.displacement);
+        self.coarse.record(model, attempt, state, &x);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
@@ -136,6 +141,7 @@ impl Observer for Warnings {
             self.list.push(format!("contact `{name}` has never closed: {near}"));
         }
         self.list.extend(self.unstable.message());
+        self.list.extend(self.coarse.tell());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()
@@ -341,10 +347,10 @@ impl Warnings {
     /// Time errors of increments of the shortest length, which are accepted in any case.
     fn error_in_time(&mut self, attempt: &Attempt) {
         let step = attempt.step;
-        let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
-        if error > allowed && self.inexact.insert(step.name.clone()) {
-            let [error, allowed] = apart([error, allowed]);
-            let found = format!("its error {error} exceeds {allowed}");
+        let Some(error) = attempt.local_error.filter(LocalError::is_excessive) else { return };
+        if self.inexact.insert(step.name.clone()) {
+            let [estimate, allowed] = apart([error.estimate, error.allowed]);
+            let found = format!("its error {estimate} exceeds {allowed}");
             self.list.push(shortest(attempt, &found));
         }
     }
@@ -370,7 +376,16 @@ fn place(pair: &ContactPair, at: Vector2<f64>, time: f64) -> String {
 fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
     let start =
         format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, time_text(old.time));
-    format!("{start}, and {found}; lower dt.min")
+    let least = SHORTEST_INCREMENT * step.span.end;
+    let remedy = match (step.increments.min > least, step.scheme.is_dynamic()) {
+        (true, _) => "lower dt.min",
+        (false, true) => "round-off of the time allows none shorter",
+        // Without inertia or radiation the rate of unstable slip has no bound.
+        (false, false) => {
+            "round-off of the time allows none shorter: give the contact radiation_damping, or take a scheme with inertia"
+        }
+    };
+    format!("{start}, and {found}; {remedy}")
 }
 
 /// Estimates how far a body is strained and turned, at less cost than its deformation at the integration points: of all elements the largest

@@ -19,6 +19,7 @@ use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
 use crate::solve::{IterationRecord, Pass};
 use crate::time::explicit::Explicit;
+use crate::time::step_size::LocalError;
 use crate::time::touching::Touching;
 
 /// Number of results of an explicit step if the case does not specify it; in a step that is explicit only during fast slip,
@@ -213,7 +214,7 @@ pub struct Candidate {
     pub(super) dt: f64,
     pub(super) iterations: Vec<IterationRecord>,
     pub(super) accepted: Option<Arc<State>>,
-    pub(super) local_error: Option<f64>,
+    pub(super) local_error: Option<LocalError>,
     pub(super) doubt: Option<f64>,
     pub(super) passes: Vec<Pass>,
     /// number of accepted increments in it

@@ -49,6 +49,7 @@ use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::{IterationRecord, Pass};
+use crate::time::step_size::LocalError;
 
 /// An attempt at one increment, accepted or not.
 #[derive(Clone, Copy, Debug)]
@@ -76,8 +77,9 @@ pub struct Attempt<'a> {
     pub verdict: Verdict,
     /// cause of the failure, if no equilibrium was found
     pub cause: Option<&'a IncrementFailure>,
-    /// estimated local error of a displacement, in steps under error control [L]
-    pub local_error: Option<f64>,
+    /// estimated local error, in steps under error control
+    #[doc(hidden)]
+    pub local_error: Option<LocalError>,
     /// fraction of a contact's force that is uncertain because contact closed at an unknown time within the increment,
     /// in static steps [-]
     pub doubt: Option<f64>,
@@ -260,10 +262,11 @@ impl Attempt<'_> {
 
     /// Reason of a rejection because of the time error.
     fn inexact(&self) -> String {
-        let allowed = self.step.increments.error.unwrap_or_default();
         match self.local_error {
-            Some(error) if error > allowed => {
-                format!("solved, but the local error {} is above dt.error = {}", rounded(error), number(allowed))
+            Some(LocalError { estimate, allowed }) if estimate > allowed => {
+                let is_given = self.step.increments.error == Some(allowed);
+                let what = if is_given { "dt.error = " } else { "what is allowed of slip, " };
+                format!("solved, but the local error {} is above {what}{}", rounded(estimate), number(allowed))
             }
             _ => "solved, but a contact began to slip, stopped or reversed at a time that dt.error requires to be \
                   located"

@@ -8,6 +8,10 @@
 //! estimate ½ Δt |v₁ − v₀| with the mean rates v of plastic slip in this increment and the last: time-dependent laws are
 //! integrated to first order. As it falls with Δt², the next attempt takes Δt (ε/e)^½, with a safety factor.
 //!
+//! Friction whose state evolves with slip and time, such as rate-and-state friction, has this control by default, with ε a
+//! fraction of its D_c, in implicit steps as well: where slip is unstable, increments that are too long damp the instability
+//! away, without any other sign. Vibrations that such increments do not resolve are left to the damping of the scheme.
+//!
 //! With error control of a dynamic step, ε being the allowed error:
 //!
 //! - The estimated local error e of [`crate::model::scheme`] must not exceed ε in any free displacement. As e falls with Δt³,
@@ -73,8 +77,37 @@ pub struct Judgement {
     pub accepted: bool,
     /// Δt of the next attempt, before the bounds of the step [T]
     pub next: f64,
-    /// Estimated local error of a displacement, in steps under error control [L]
-    pub error: Option<f64>,
+    /// Estimated local error, in steps under error control
+    pub error: Option<LocalError>,
+}
+
+/// Estimated error of an increment, of a displacement or of slip, beside what is allowed of it [L].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalError {
+    /// estimate
+    pub estimate: f64,
+    /// allowed error
+    pub allowed: f64,
+}
+
+impl LocalError {
+    /// Of what is not controlled.
+    const NONE: Self = Self { estimate: 0.0, allowed: f64::INFINITY };
+
+    /// Whether it is above what is allowed.
+    pub fn is_excessive(&self) -> bool {
+        self.estimate > self.allowed
+    }
+
+    /// ε/e: by how much it could grow.
+    fn room(&self) -> f64 {
+        self.allowed / self.estimate
+    }
+
+    /// The one with less room.
+    fn worse(self, other: Self) -> Self {
+        if other.room() < self.room() { other } else { self }
+    }
 }
 
 impl Judgement {
@@ -94,7 +127,7 @@ pub fn bounded(step: &Step, time: f64, dt: f64, output: Option<f64>) -> f64 {
     let remaining = output.unwrap_or(step.span.end) - time;
     let dt = dt.min(step.increments.max);
     let left = (remaining / dt - ROUND_OFF).ceil().max(1.0);
-    let shared = if step.increments.error.is_some() || output.is_some() { 2.0 } else { 1.0 };
+    let shared = if step.increments.are_controlled() || output.is_some() { 2.0 } else { 1.0 };
     if left <= shared { remaining / left } else { dt }
 }
 
@@ -107,34 +140,40 @@ pub(super) fn can_shorten(step: &Step, old: &State, new: &State) -> bool {
 /// that an attempt at it was rejected before.
 pub fn judge(model: &Model, step: &Step, states: [&State; 2], tangents: usize, repeated: bool) -> Judgement {
     let (dt, easy) = (states[1].dt, tangents <= EASY);
-    match step.increments.error {
-        None => Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None },
-        Some(allowed) if step.scheme.is_dynamic() => judge_motion(model, step, states, allowed, easy && !repeated),
-        Some(allowed) => judge_slip(model, step, states, allowed, repeated),
+    match step.increments.are_controlled() {
+        false => Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None },
+        true if step.scheme.is_dynamic() => judge_motion(model, step, states, easy && !repeated),
+        true => judge_slip(model, step, states, repeated),
     }
 }
 
 /// Judges a static increment by the error of slip.
-fn judge_slip(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f64, repeated: bool) -> Judgement {
-    let error = slip_error(model, old, new);
-    let share = (SAFETY * (allowed / error).sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
-    let accepted = !can_shorten(step, old, new) || error <= allowed;
+fn judge_slip(model: &Model, step: &Step, [old, new]: [&State; 2], repeated: bool) -> Judgement {
+    let error = slip_error(model, step, [old, new]);
+    let share = (SAFETY * error.room().sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
+    let accepted = !can_shorten(step, old, new) || !error.is_excessive();
     let keeps = accepted && (repeated || share <= WORTHWHILE);
     let next = if keeps { new.dt } else { (share * new.dt).max(step.increments.min) };
     Judgement { accepted, next, error: Some(error) }
 }
 
-/// Judges a dynamic increment by the error of displacements and by its events.
-fn judge_motion(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f64, may_grow: bool) -> Judgement {
+/// Judges a dynamic increment by the error of displacements and its events, and by the error of slip.
+fn judge_motion(model: &Model, step: &Step, [old, new]: [&State; 2], may_grow: bool) -> Judgement {
     let (dt, shortest) = (new.dt, step.increments.min);
-    let error = local_error(model, step, old, new);
-    let share = (SAFETY * (allowed / error).cbrt()).clamp(LEAST_SHARE, GROWTH);
+    let motion = step.increments.error.map_or(LocalError::NONE, |allowed| {
+        let estimate = local_error(model, step, old, new);
+        LocalError { estimate, allowed }
+    });
+    let slip = slip_error(model, step, [old, new]);
+    let error = motion.worse(slip);
+    let share = (SAFETY * motion.room().cbrt().min(slip.room().sqrt())).clamp(LEAST_SHARE, GROWTH);
     let judged = |accepted: bool, next: f64| Judgement { accepted, next, error: Some(error) };
     let can_shorten = can_shorten(step, old, new);
-    if can_shorten && error > allowed {
+    if can_shorten && error.is_excessive() {
         return judged(false, (share * dt).max(shortest));
     }
-    if can_shorten && slip_at_events(model, old, new) > EVENT_LOCATION * allowed {
+    let location = step.increments.error.filter(|_| can_shorten).map(|allowed| EVENT_LOCATION * allowed);
+    if location.is_some_and(|location| slip_at_events(model, old, new) > location) {
         return judged(false, (0.5 * dt).max(shortest));
     }
     let grows = may_grow && share > WORTHWHILE;
@@ -168,19 +207,31 @@ fn local_error(model: &Model, step: &Step, old: &State, new: &State) -> f64 {
     constant * new.dt.powi(2) * change
 }
 
-/// ½ Δt |v₁ − v₀|, the largest of all points that are closed at both ends, with v = plastic slip/Δt of an increment [L].
-fn slip_error(model: &Model, old: &State, new: &State) -> f64 {
+/// ½ Δt |v₁ − v₀| of a point, with the rates of plastic slip v in an increment of length Δt and in the last one; 0 unless it is
+/// closed at both ends [L].
+pub fn error_of_slip([before, after]: [&ContactState; 2], [last, dt]: [f64; 2]) -> f64 {
     let rate = |state: &ContactState, dt: f64| if dt > 0.0 { state.friction.plastic_increment / dt } else { 0.0 };
-    let mut largest = 0.0f64;
+    let closed = before.friction.pressure > 0.0 && after.friction.pressure > 0.0;
+    if closed { 0.5 * dt * (rate(after, dt) - rate(before, last)).abs() } else { 0.0 }
+}
+
+/// The worst [`error_of_slip`] of all points. A given error is that of slip in static steps only, and otherwise of slip that
+/// is integrated to first order.
+fn slip_error(model: &Model, step: &Step, [old, new]: [&State; 2]) -> LocalError {
+    let Increments { error, slip, .. } = step.increments;
+    let mut worst = LocalError::NONE;
     for (pair, states) in model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts)) {
         for (slave, (before, after)) in pair.points.iter().zip(states.0.iter().zip(states.1)) {
-            let closed = before.friction.pressure > 0.0 && after.friction.pressure > 0.0;
-            if closed && !pair.law(slave).description.is_frictionless {
-                largest = largest.max(0.5 * new.dt * (rate(after, new.dt) - rate(before, old.dt)).abs());
+            let law = &pair.law(slave).description;
+            let given = error.filter(|_| !step.scheme.is_dynamic() || law.critical_slip.is_some());
+            let share = law.critical_slip.zip(slip).map(|(critical, share)| share * critical);
+            if let Some(allowed) = given.into_iter().chain(share).reduce(f64::min).filter(|_| !law.is_frictionless) {
+                let estimate = error_of_slip([before, after], [old.dt, new.dt]);
+                worst = worst.worse(LocalError { estimate, allowed });
             }
         }
     }
-    largest
+    worst
 }
 
 /// Largest slip in the increment of a point that participates in an event of its contact; 0 if there is none, and in the
@@ -251,8 +302,8 @@ const LADDER_ROUND_OFF: f64 = 1e-12;
 
 /// Δt of the next attempt, from the length that the error of a dynamic step or its iterations require.
 pub fn on_ladder(step: &Step, dt: f64) -> f64 {
-    let Increments { initial, min, error, .. } = step.increments;
-    let climbs = step.scheme.is_dynamic() && error.is_some();
+    let Increments { initial, min, .. } = step.increments;
+    let climbs = step.scheme.is_dynamic() && step.increments.are_controlled();
     if climbs { rung(initial, dt).max(min) } else { dt }
 }
 

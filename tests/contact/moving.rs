@@ -236,7 +236,9 @@ fn sliding_that_yields_work_is_told() {
             "steps": [
                 {"name": "press", "duration": 1, "dt": {"initial": 1},
                  "supports": [{"on": "block", "ux": 0}], "loads": [{"on": "block", "force": {"y": -LOAD}}]},
-                {"name": "drag", "duration": 1, "dt": {"initial": 0.02}, "supports": [{"on": "block", "ux": {"rate": 0.3}}]},
+                // Slip is unstable, without a bound on its rate: increments of given length go past.
+                {"name": "drag", "duration": 1, "dt": {"initial": 0.02, "error": null},
+                 "supports": [{"on": "block", "ux": {"rate": 0.3}}]},
             ],
         }));
         run(&Arc::new(model), &mut [&mut warnings]).1.expect("it runs");

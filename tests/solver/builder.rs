@@ -82,7 +82,7 @@ fn a_committed_dynamic_case_from_code_is_the_same_model() {
         ..SuperSubloadingParameters::new(0.5, 0.1, 3600.0)
     };
     let contact = Contact::new("interface", "block_bottom", "base_top", friction).alpha_n(3000.0);
-    let increments = IncrementSettings { initial: 0.01, min: Some(1e-8), max: Some(0.05), error: Some(5e-5) };
+    let increments = IncrementSettings::from(0.01).min(1e-8).max(0.05).error(5e-5);
     let push = LoadStep::new("push", 3.5)
         .scheme(Scheme::GeneralizedAlpha { rho_infinity: 0.8 })
         .dt(increments)

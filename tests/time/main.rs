@@ -11,6 +11,7 @@ mod following;
 mod impact;
 mod quasi_dynamic;
 mod radiation;
+mod slip_control;
 mod stability;
 mod stability_map;
 mod switched_off;

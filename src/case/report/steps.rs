@@ -6,6 +6,7 @@ use super::contact::plain;
 use crate::case::file::Case;
 use crate::model::boundary::Drive;
 use crate::model::builder::Place;
+use crate::model::builder::schedule::critical_slip;
 use crate::model::step::{Entry, Until};
 use crate::model::text::{count, number, vector};
 use crate::model::{Damping, Model, Step};
@@ -16,7 +17,7 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
-        let mut own = step_lines(step);
+        let mut own = step_lines(step, critical_slip(model, step.span));
         own.extend(
             input.remove.iter().map(|name| format!("body {name} goes: its forces on the rest fade over the step")),
         );
@@ -38,7 +39,8 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     lines
 }
 
-fn step_lines(step: &Step) -> Vec<String> {
+/// Lines about a step in which `critical` is the smallest D_c of friction that is integrated to first order in time.
+fn step_lines(step: &Step, critical: Option<f64>) -> Vec<String> {
     let increments = &step.increments;
     let scheme = match serde_json::to_value(step.scheme) {
         Ok(Value::Object(scheme)) => scheme.iter().map(|(name, numbers)| format!("{name} {numbers}")).collect(),
@@ -64,6 +66,16 @@ fn step_lines(step: &Step) -> Vec<String> {
             false => "the slip of any contact point".into(),
         };
         format!("error per increment at most {} in {of}", number(error))
+    }));
+    let critical = critical.filter(|_| !step.scheme.is_integrated_explicitly()).map(number);
+    lines.extend(critical.and_then(|critical| match (increments.slip, increments.error) {
+        (Some(share), _) => {
+            Some(format!("error per increment at most {} D_c in slip, D_c {critical} at least", number(share)))
+        }
+        (None, None) => {
+            Some(format!("no error control: slip per increment must be small against D_c, {critical} at least"))
+        }
+        (None, Some(_)) => None,
     }));
     lines.extend(step.rupture.as_ref().map(|rupture| {
         let [rate, calm] = [rupture.slip_rate, rupture.calm].map(number);

@@ -280,6 +280,9 @@ pub struct Description {
     pub full_structure: Option<f64>,
     /// Maximum of −d(q/p)/dδ: weakening of friction in fast slip δ, 0 without weakening [1/L]
     pub weakening: f64,
+    /// D_c: slip over which a state evolves that increments integrate to first order in time, so that the error of their slip
+    /// must be small against it; `None` if the state depends on slip alone, or increments integrate it exactly [L]
+    pub critical_slip: Option<f64>,
 }
 
 impl Description {

@@ -380,8 +380,8 @@ impl Load {
     }
 }
 
-/// Change of a support or a load by a step: a new value, or its end.
-#[derive(Clone, Debug, PartialEq)]
+/// Change of a support, a load or an error control by a step: a new value, or its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change<T> {
     /// New value
     To(T),
@@ -425,6 +425,12 @@ pub(super) fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
 ) -> Result<Option<Change<T>>, D::Error> {
     let given = Option::deserialize(deserializer)?;
     Ok(Some(given.map_or(Change::End, Change::To)))
+}
+
+impl From<f64> for Change<f64> {
+    fn from(value: f64) -> Self {
+        Self::To(value)
+    }
 }
 
 impl From<f64> for Change<Drive> {

@@ -8,15 +8,19 @@ use serde::{Deserialize, Serialize};
 
 use super::groups::Place;
 use super::load::{Change, Load, present};
-use crate::model::Damping;
 use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::ForceComponent;
 use crate::model::text::vector;
+use crate::model::{Damping, Increments};
 
 /// Default relative tolerance of the force that ends a step.
 #[doc(hidden)]
 pub const UNTIL_TOLERANCE: f64 = 1e-6;
+
+/// Allowed error of slip per increment in D_c, by default: the times of stick-slip events, over ten decades of the slip
+/// rate, are then right to a few thousandths.
+pub const OF_CRITICAL_SLIP: f64 = 1e-4;
 
 /// A step: a time span with its scheme and increments, supports and loads.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
@@ -87,21 +91,42 @@ pub struct LoadStep {
 pub struct IncrementSettings {
     /// First increment [T]
     pub initial: f64,
-    /// Shortest increment [T]; default initial/1000, with `error` initial/10⁶, in quasi_dynamic steps the shortest that
-    /// round-off of the time allows
+    /// Shortest increment [T]; default initial/1000, with `error` initial/10⁶. With rate-and-state friction under error
+    /// control and in quasi_dynamic steps it is the shortest that round-off of the time allows, since slip may take any
+    /// rate
     pub min: Option<f64>,
-    /// Longest increment [T]; default initial, with `error` and in quasi_dynamic steps a tenth of the step
+    /// Longest increment [T]; default initial, with a given `error` and in quasi_dynamic steps a tenth of the step
     pub max: Option<f64>,
     /// Error control: the longest increments whose estimated error stays below this [L]. In dynamic steps it is the
     /// error of a displacement, and contact events (onset, arrest and reversal of slip) are located to ten times this;
     /// in static steps it is the error of the slip of a contact point, half the difference of its plastic slip from
-    /// that at the last rate
-    pub error: Option<f64>,
+    /// that at the last rate. With rate-and-state friction, this error of its slip is also at most 1e-4 D_c in static steps
+    /// that give no `error`, and in all implicit ones. null: no control at all
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub error: Option<Change<f64>>,
+    /// Allowed error of the slip of rate-and-state friction in D_c, where `error` leaves it open [-]
+    #[serde(skip, default = "of_critical_slip")]
+    #[doc(hidden)]
+    pub slip: f64,
+}
+
+fn of_critical_slip() -> f64 {
+    OF_CRITICAL_SLIP
 }
 
 impl From<f64> for IncrementSettings {
     fn from(initial: f64) -> Self {
-        Self { initial, min: None, max: None, error: None }
+        Self { initial, min: None, max: None, error: None, slip: OF_CRITICAL_SLIP }
+    }
+}
+
+impl From<Increments> for IncrementSettings {
+    fn from(Increments { initial, min, max, error, slip }: Increments) -> Self {
+        let error = match (error, slip) {
+            (None, Some(_)) => None,
+            (error, _) => Some(error.map_or(Change::End, Change::To)),
+        };
+        Self { initial, min: Some(min), max: Some(max), error, slip: slip.unwrap_or(OF_CRITICAL_SLIP) }
     }
 }
 
@@ -112,8 +137,8 @@ setters! { settings: IncrementSettings;
     /// Sets the longest increment [T].
     max(max: f64) { settings.max = Some(max); }
 
-    /// Sets the error control: the estimated error per increment [L].
-    error(error: f64) { settings.error = Some(error); }
+    /// Sets the error control: the estimated error per increment; [`Change::End`] switches it off [L].
+    error(error: impl Into<Change<f64>>) { settings.error = Some(error.into()); }
 }
 
 /// Automatic switch of a step to explicit integration and back. An increment in which a contact point slips faster than

@@ -73,7 +73,9 @@ pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};
 pub use groups::Place;
 pub(crate) use groups::nodes_at;
 pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};
-pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings};
+pub use load_step::{
+    IncrementSettings, LoadStep, OF_CRITICAL_SLIP, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings,
+};
 pub use loads::LoadsInForce;
 pub(crate) use pair::evaluation;
 pub use pair::{default_alpha_t, default_over, tangential_over};

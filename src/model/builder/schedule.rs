@@ -11,6 +11,7 @@ use super::error::{Checked, ModelError, check_positive, refuse_if};
 use super::groups;
 use super::groups::nodes_at;
 use super::initial::launch;
+use super::load::Change;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UNTIL_TOLERANCE, UntilSettings};
 use super::loads::{LoadsInForce, check_defined};
 use super::stages::Stages;
@@ -20,7 +21,7 @@ use crate::mesh::rigid::RigidBody;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::coupled::CoupledParts;
 use crate::model::scheme::Scheme;
-use crate::model::step::{Entry, ForceComponent, Until};
+use crate::model::step::{Entry, ForceComponent, SHORTEST_INCREMENT, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
@@ -95,7 +96,8 @@ impl Schedule<'_> {
         let span = Span { start: self.start, end: self.start + given.duration };
         self.start = span.end;
         self.increments = given.dt.or(self.increments);
-        let increments = increments(&format!("{place}.dt"), self.increments, span, scheme)?;
+        let first_order = critical_slip(self.model, span);
+        let increments = increments(&format!("{place}.dt"), self.increments, span, scheme, first_order)?;
         if std::mem::replace(&mut self.may_end_early, given.until.is_some()) {
             self.supports_in_force.keep_positions();
         }
@@ -148,27 +150,54 @@ impl Schedule<'_> {
     }
 }
 
-/// Shortest increment relative to the run time at its end, below which round-off would dominate.
-const SHORTEST_INCREMENT: f64 = 16.0 * f64::EPSILON;
-
 /// Number of increments or result rows above which a run is refused as a typing error: it would take days for a single point.
 pub const MOST_INCREMENTS: f64 = 1e8;
 
-/// Returns the increments of a step, with defaults derived from the first one.
-pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, scheme: Scheme) -> Checked<Increments> {
+/// The smallest D_c of friction that is integrated to first order in time ([`Description::critical_slip`]) in a step; `None`
+/// without such friction [L].
+///
+/// [`Description::critical_slip`]: crate::laws::friction::Description::critical_slip
+pub fn critical_slip(model: &Model, span: Span) -> Option<f64> {
+    let mut smallest: Option<f64> = None;
+    for pair in model.contacts.iter().filter(|pair| !pair.tied) {
+        for (point, time) in pair.points.iter().flat_map(|point| [(point, span.start), (point, span.end)]) {
+            let own = pair.ask_law(point, [time, time], |law| law.description.critical_slip);
+            // Where parameters are invalid then, the increment that meets them stops.
+            smallest = own.ok().flatten().into_iter().chain(smallest).reduce(f64::min);
+        }
+    }
+    smallest
+}
+
+/// Returns the increments of a step, with defaults derived from the first one and from D_c of friction that is integrated to first
+/// order in time, if there is any.
+pub fn increments(
+    place: &str,
+    given: Option<IncrementSettings>,
+    span: Span,
+    scheme: Scheme,
+    critical_slip: Option<f64>,
+) -> Checked<Increments> {
     let duration = span.end - span.start;
     let given = given.unwrap_or(IncrementSettings::from(0.1 * duration));
     let least = SHORTEST_INCREMENT * span.end;
-    let quasi_dynamic = scheme.is_quasi_dynamic();
-    let (default_min, default_max) = match given.error {
-        None if quasi_dynamic => (least, given.initial.max(0.1 * duration)),
-        None => (1e-3 * given.initial, given.initial),
-        Some(_) => ((1e-6 * given.initial).max(least), given.initial.max(0.1 * duration)),
+    let has_estimate = scheme == Scheme::Static || scheme.error_constant().is_some();
+    let error = given.error.as_ref().and_then(Change::given).copied();
+    let is_open = given.error.is_none() || scheme != Scheme::Static && error.is_some();
+    let slip = critical_slip.filter(|_| is_open && !scheme.is_integrated_explicitly()).map(|_| given.slip);
+    let default_min = match (error.is_some() || slip.is_some(), critical_slip) {
+        (false, _) if scheme.is_quasi_dynamic() => least,
+        (true, Some(_)) => least,
+        (true, None) => (1e-6 * given.initial).max(least),
+        (false, _) => 1e-3 * given.initial,
     };
+    // A control that was not asked for shortens increments, and does not lengthen them.
+    let lengthens = scheme.is_quasi_dynamic() || error.is_some();
+    let default_max = if lengthens { given.initial.max(0.1 * duration) } else { given.initial };
     let (min, max) = (given.min.unwrap_or(default_min), given.max.unwrap_or(default_max));
-    let increments = Increments { initial: given.initial, min, max, error: given.error };
+    let increments = Increments { initial: given.initial, min, max, error, slip };
     check_positive(&format!("{place}.initial"), given.initial, "")?;
-    check_positive(&format!("{place}.error"), given.error.unwrap_or(1.0), "")?;
+    check_positive(&format!("{place}.error"), error.unwrap_or(1.0), "")?;
     check_bounds(place, [min, max], span, scheme)?;
     let message = format!("initial = {} must lie between min = {min} and max = {max}", given.initial);
     refuse_if(given.initial > max || given.initial < min, place, message)?;
@@ -178,11 +207,7 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
         Scheme::Wilson { .. } => "wilson has no error estimate: take newmark, hht or generalized_alpha",
         _ => "newmark with beta near 1/6 has no error estimate: take another beta",
     };
-    refuse_if(
-        given.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none(),
-        format!("{place}.error"),
-        message,
-    )?;
+    refuse_if(error.is_some() && !has_estimate, format!("{place}.error"), message)?;
     Ok(increments)
 }
 
@@ -267,7 +292,7 @@ pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: 
     let scheme = Scheme::Explicit { safety };
     scheme.check().map_err(|error| ModelError::new(place, error))?;
     let calm = crossing(model).max(step.increments.min);
-    let increments = Increments { error: None, ..step.increments };
+    let increments = Increments { error: None, slip: None, ..step.increments };
     let explicit = Step { scheme, increments, stabilization: Vec::new(), ..step.clone() };
     Ok(Some(Rupture { slip_rate, calm, explicit }))
 }

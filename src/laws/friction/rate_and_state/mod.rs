@@ -94,7 +94,8 @@ numbers!(
 /// ```
 /// and Δλ is the *smallest* root of G(Δλ) = |q_tr| − α_t Δλ − |q|(Δλ) with |q| from (2) at the end of the increment. G is
 /// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening with slip, G decreases monotonically;
-/// otherwise bounds of its slope isolate the first root. The method is of first order in Δt. Along
+/// otherwise bounds of its slope isolate the first root. The method is of first order in Δt: increments whose slip is not known to a
+/// small fraction of D_c damp an instability away, and are controlled by default ([`Description::critical_slip`]). Along
 /// [prescribed](FrictionLaw::controlled) paths, sub-steps of an increment, linear in slip and pressure, are extrapolated from
 /// such responses and halved until their error is below 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ.
 ///
@@ -270,6 +271,7 @@ impl FrictionLaw for RateAndState {
             variables: &["theta"],
             observables: Some(&["R", "mu", "theta"]),
             weakening: self.coefficients.b / self.coefficients.critical_slip,
+            critical_slip: Some(self.coefficients.critical_slip),
             ..Description::default()
         }
     }
