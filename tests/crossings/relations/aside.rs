@@ -46,15 +46,22 @@ pub(super) fn wide(base: &Base) -> Outcome {
         let name = format!("{}.gap of point {point}", field.split_once('.')?.0);
         last.iter().find(|entry| *entry.column == *name).map(|entry| entry.value)
     };
-    if beside && last.iter().any(|entry| gap_of(&entry.column).is_some_and(|gap| gap > GONE)) {
+    // Gaps are told of the end alone.
+    let gone = |entry: &Entry| {
+        let way = |(_, row): &(f64, Vec<Entry>)| {
+            row.iter().find(|other| other.column == entry.column).map_or(0.0, |other| (other.value - entry.value).abs())
+        };
+        entry.column.ends_with(".centre_x") && base.record.rows.iter().any(|row| way(row) > GONE)
+    };
+    if beside && last.iter().any(gone) {
         return Outcome::Idle;
     }
     let is_afar = |column: &str| beside && gap_of(column).is_some_and(|gap| gap == 0.0 || gap > AFAR);
     base.as_before(&record, SAME_BY_BODY, &is_afar)
 }
 
-/// Gap of a point of a block that has flown off, and may meet what goes on.
-const GONE: f64 = 1.0;
+/// Way of a body that may have met what goes on, 0.5 beyond the end of the ground.
+const GONE: f64 = 0.4;
 
 /// Gap of a point that has parted.
 const AFAR: f64 = 0.01;
