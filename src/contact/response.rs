@@ -91,7 +91,12 @@ impl PairResponse {
 
     /// Points that are closed or under fluid pressure.
     pub fn all_acting(&self) -> impl Iterator<Item = (&ContactState, Closed<'_>)> {
-        self.states.iter().enumerate().filter_map(|(k, state)| Some((state, self.acting(k)?)))
+        self.numbered().map(|(_, acting)| acting)
+    }
+
+    /// The same with their numbers.
+    pub fn numbered(&self) -> impl Iterator<Item = (usize, (&ContactState, Closed<'_>))> {
+        self.states.iter().enumerate().filter_map(|(k, state)| Some((k, (state, self.acting(k)?))))
     }
 }
 

@@ -17,6 +17,7 @@
 
 use super::trial::Trial;
 use super::{links, supports};
+use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
 use crate::linear::SparseMatrix;
@@ -65,8 +66,8 @@ pub(super) struct ConvergenceCriterion {
     stiffness: Vec<[f64; 3]>,
     /// damping of the bodies for which these hold
     dampings: Vec<Damping>,
-    /// Longest edge of each contact [L]
-    edges: Vec<f64>,
+    /// Lengths of the edges of each contact
+    edges: Vec<ContactEdges>,
     /// Parts of the model that act on each other
     coupled: CoupledParts,
     /// Norm of each contact's nodal forces at the last evaluation [F]
@@ -114,7 +115,7 @@ impl ConvergenceCriterion {
             parts: bodies.chain(surfaces).chain(lone).collect(),
             stiffness,
             dampings: model.bodies.iter().map(|body| body.damping).collect(),
-            edges: model.contacts.iter().map(|pair| longest_edge(pair, &model.mesh.undeformed())).collect(),
+            edges: model.contacts.iter().map(|pair| ContactEdges::of(pair, &model.mesh.undeformed())).collect(),
             coupled: CoupledParts::of(model),
             contact_forces: vec![0.0; model.contacts.len()],
             contact_stiffness: vec![[0.0; 2]; count],
@@ -144,7 +145,8 @@ impl ConvergenceCriterion {
         self.contact_stiffness.fill([0.0; 2]);
         for (k, (pair, responses)) in model.contacts.iter().zip(responses).enumerate() {
             let alpha_n = pair.normal_stiffness(trial.stiffening);
-            for (state, closed) in responses.all_acting() {
+            for (point, (state, closed)) in responses.numbered() {
+                let edge = self.edges[k].at(point, state);
                 let stiffness = if closed.is_open { 0.0 } else { alpha_n };
                 let squared = (stiffness * state.length).powi(2);
                 for (a, &node) in closed.nodes.iter().enumerate() {
@@ -153,7 +155,7 @@ impl ConvergenceCriterion {
                         continue;
                     }
                     let original = model.ties.original(node);
-                    self.contact_stiffness[original][0] += squared * self.edges[k].powi(2);
+                    self.contact_stiffness[original][0] += squared * edge.powi(2);
                     self.contact_stiffness[original][1] += squared;
                     (0..2).for_each(|i| self.own[2 * original + i] += closed.force[2 * a + i].abs());
                 }
@@ -340,9 +342,27 @@ fn square(values: &[f64], node: usize) -> f64 {
     values[2 * node].powi(2) + values[2 * node + 1].powi(2)
 }
 
-/// Longest edge of a contact's surfaces; 0 for a point on a rigid body [L].
-fn longest_edge(pair: &ContactPair, x: &Configuration) -> f64 {
-    let slave = pair.points.iter().filter_map(|point| point.edge_length(x));
-    let master = pair.master.segments().iter().map(|segment| x.between(segment.ends[0], segment.ends[1]).norm());
-    slave.chain(master).fold(0.0, f64::max)
+/// Lengths of the edges of a contact [L]
+#[derive(Clone, Debug)]
+struct ContactEdges {
+    /// of the longest edge at each slave point; 0 without edges
+    slave: Vec<f64>,
+    /// of each segment of the master; none of a rigid body
+    master: Vec<f64>,
+}
+
+impl ContactEdges {
+    fn of(pair: &ContactPair, x: &Configuration) -> Self {
+        let segments = pair.master.segments().iter();
+        Self {
+            slave: pair.points.iter().map(|point| point.edge_length(x).unwrap_or(0.0)).collect(),
+            master: segments.map(|segment| x.between(segment.ends[0], segment.ends[1]).norm()).collect(),
+        }
+    }
+
+    /// The longer of the edges that meet at a point: gaps are measured on them, and on no others.
+    fn at(&self, point: usize, state: &ContactState) -> f64 {
+        let faced = state.foot.and_then(|foot| self.master.get(foot.segment));
+        self.slave[point].max(faced.copied().unwrap_or(0.0))
+    }
 }

@@ -1566,12 +1566,12 @@ fn tolerances_out_of_reach_or_reason_are_refused() {
         &[("/newton", json!({"tolerance": 0.9}))],
         &["newton.tolerance: is 0.9: must be above 0 and at most 0.01"],
     );
-    // The diagonal of the box around all nodes is √(4² + 2²) [L].
-    let least = 8.0 * f64::EPSILON * 20f64.sqrt();
+    // The box around the nodes of the contact is 4 long and has no height [L].
+    let least = 8.0 * f64::EPSILON * 4.0;
     let normal = |penetration: f64| ("/contacts/base/normal", json!({"alpha_n": 1e5, "penetration": penetration}));
     refused_edits(
         &[normal(0.99 * least)],
-        &["contacts.base.normal.penetration: is 7.", &format!("gaps of this model have round-off of {least:.1e}")],
+        &["contacts.base.normal.penetration: is 7.", &format!("gaps of this contact have round-off of {least:.1e}")],
     );
     outcome("check", &[normal(1.01 * least)]);
 }
