@@ -24,8 +24,8 @@ pub(super) fn wide(base: &Base) -> Outcome {
     let draft = base.draft;
     let ends = draft.is("master", "polyline") || draft.is("master", "outline");
     let beside = draft.is("master", "deformable") && !draft.is("scheme", "quasi_dynamic");
-    // Its weight is among the forces to which residuals are compared.
-    if !ends && !beside || draft.has("error_control") || draft.has("gravity") {
+    // The error of an increment is that of all bodies.
+    if !ends && !beside || draft.has("error_control") {
         return Outcome::Idle;
     }
     // The dashpots of a tool hold its turning by the reach of its own outline.
