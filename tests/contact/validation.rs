@@ -196,14 +196,20 @@ fn master_nodes_deep_in_the_slave_are_told() {
     let told = |n: [usize; 2]| -> Vec<String> {
         let delta = 0.01;
         let mesh = Blocks::default().ring("inner", [n[0], 2], [0.5, 1.0 + delta]).ring("outer", [n[1], 2], [1.0, 1.5]);
-        let soft = json!({"kx": 1e-6, "ky": 1e-6});
+        // Held on the axes, as the facets alone would let one ring turn in the other: they stand at rest on top of each other, too.
+        let on = |place: [f64; 2], along: &str| {
+            let is = |node: &[f64; 2]| distance(node, &place) < 1e-12;
+            json!({"on": {"node": mesh.nodes.iter().position(is).expect("a node on the axis")}, along: 0})
+        };
+        let of_ring = |r: f64| [on([r, 0.0], "uy"), on([-r, 0.0], "uy"), on([0.0, r], "ux"), on([0.0, -r], "ux")];
+        let supports = [of_ring(0.5), of_ring(1.5)].concat();
         let model = common::model(&json!({
             "mesh": mesh.json(),
             "bodies": alike(&["inner", "outer"]),
             "contacts": {"fit": {"slave": "outer_inside", "master": "inner_outside", "shrink_fit": true,
                                  "normal": {"alpha_n": 1e5}, "friction": {"law": "frictionless"}}},
             "steps": [{"name": "fit", "duration": 1, "dt": {"initial": 0.5},
-                       "loads": [{"on": "inner_inside", "spring": soft}, {"on": "outer_outside", "spring": soft}]}],
+                       "supports": supports}],
         }));
         let (mut warnings, mut record) = (Warnings::default(), common::Record::default());
         let model = Arc::new(model);
