@@ -401,7 +401,7 @@ fn every_aid_saves_solves_or_a_failure() {
         ("touch", "slab_touch_once"),
         ("stick", "slab_gap"),
         ("stick_again", "ironing_q4"),
-        ("valley", "ridge"),
+        ("valley", "tube"),
         ("old_tangents", "valley"),
         ("downhill", "ridge"),
         ("stiffening", "greco augmented"),
