@@ -201,7 +201,9 @@ pub(super) fn later(base: &Base) -> Outcome {
     // The state of these laws lives from the start of the run: θ ages, and μ begins with the μ_s of then.
     let varies = draft.is("varying", "in_time") && draft.pick("which varies", &[0.0, 1.0]) == 1.0;
     let lives = draft.is("friction", "rate_and_state") || draft.is("friction", "super_subloading") && varies;
-    if lives || draft.is("friction", "prescribed") || draft.is("scheme", "quasi_dynamic") {
+    // Where nothing touches a tool that only dashpots keep from turning, it has no equilibrium without them.
+    let turns = draft.is("tool", "free") && draft.has("stabilize");
+    if lives || turns || draft.is("friction", "prescribed") || draft.is("scheme", "quasi_dynamic") {
         return Outcome::Idle;
     }
     let base = Base::new(&draft);
