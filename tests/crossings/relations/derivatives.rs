@@ -30,6 +30,12 @@ fn table(folder: &TempDir, file: &str) -> Columns {
     names.iter().enumerate().map(column).collect()
 }
 
+/// Where the increments of a run ended; its rows may be fewer.
+fn increments(folder: &TempDir) -> BTreeMap<u64, f64> {
+    let newton = table(folder, "newton.csv");
+    newton["increment"].iter().map(|number| number.to_bits()).zip(newton["time"].iter().copied()).collect()
+}
+
 fn run(case: &Value) -> Option<TempDir> {
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("case.json"), case.to_string()).expect("a file");
@@ -100,14 +106,14 @@ pub(super) fn derivatives(base: &Base) -> Outcome {
     if account["one_sided"] != json!(0) || !account["lost_at"].is_null() {
         return Outcome::Idle;
     }
-    let history = table(&own, "history.csv");
+    let (history, made) = (table(&own, "history.csv"), increments(&own));
     let found = table(&own, "gradients.csv");
     let beside = |share: f64| {
         let ends = [1.0 - share, 1.0 + share].map(|share| value * share);
         let with = |value: f64| {
             let mut other = case.clone();
             *other.pointer_mut(&at).expect("a place") = json!(value);
-            run(&other).map(|folder| table(&folder, "history.csv")).filter(|table| table["time"] == history["time"])
+            run(&other).filter(|folder| increments(folder) == made).map(|folder| table(&folder, "history.csv"))
         };
         let [Some(low), Some(high)] = ends.map(with) else { return None };
         Some((low, high, ends[1] - ends[0]))
@@ -116,6 +122,10 @@ pub(super) fn derivatives(base: &Base) -> Outcome {
     let worst = worst(&history, &found, &differences, value, &name);
     if worst.share <= SAME {
         return Outcome::Holds;
+    }
+    // Of several equilibria the neighbours have reached another.
+    if !surrounded(&history, &differences, value) {
+        return Outcome::Idle;
     }
     // Where differences of half the length are others, the run has no derivative that they tell.
     let Some(halves) = beside(0.5 * STEP) else { return Outcome::Idle };
@@ -136,6 +146,26 @@ fn differences_of((low, high, apart): &Beside) -> Columns {
     low.iter().map(column).collect()
 }
 
+/// Whether values lie between those of their neighbours, but for a tenth of how far these are apart, or of the change of what is
+/// proportional to θ.
+fn surrounded(history: &Columns, (low, high, apart): &Beside, value: f64) -> bool {
+    history.iter().filter(|(column, _)| is_main(column)).all(|(column, values)| {
+        let change = |(low, high): (&f64, &f64)| (high - low).abs();
+        let largest = low[column].iter().zip(&high[column]).map(change).fold(0.0, f64::max);
+        let most = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        let allowed = 0.1 * largest.max(most * (apart / value).abs());
+        let away = |((value, low), high): ((&f64, &f64), &f64)| (value - 0.5 * (low + high)).abs();
+        values.iter().zip(&low[column]).zip(&high[column]).map(away).all(|away| away <= allowed)
+    })
+}
+
+/// The largest value of columns of the same kind, forces or displacements.
+fn largest_of_kind(columns: &Columns, column: &str) -> f64 {
+    let is_place = |column: &str| column.ends_with("ux") || column.ends_with("uy");
+    let alike = columns.iter().filter(|(other, _)| is_main(other) && is_place(other) == is_place(column));
+    alike.flat_map(|(_, values)| values).fold(0.0, |most, value| most.max(value.abs()))
+}
+
 /// The derivative that is farthest from its difference.
 fn worst(history: &Columns, found: &Columns, beside: &Beside, value: f64, name: &str) -> Difference {
     let largest = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
@@ -143,7 +173,9 @@ fn worst(history: &Columns, found: &Columns, beside: &Beside, value: f64, name: 
     let mut worst = Difference::default();
     for (column, values) in history.iter().filter(|(column, _)| is_main(column)) {
         let expected = &differences[column];
-        let scale = largest(expected).max(0.1 * largest(values) / value.abs()).max(f64::MIN_POSITIVE);
+        // What nothing acts on has round-off of what acts elsewhere.
+        let rounded = 1e-3 * largest_of_kind(history, column);
+        let scale = largest(expected).max(0.1 * largest(values).max(rounded) / value.abs()).max(f64::MIN_POSITIVE);
         let derivative = format!("d({column})/d({name})");
         for (found, expected) in found[&derivative].iter().zip(expected) {
             let share = (found - expected).abs() / scale;

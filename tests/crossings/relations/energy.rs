@@ -26,6 +26,11 @@ pub(super) fn energies(base: &Base) -> Outcome {
     if draft.has("dilatancy") && draft.is("normal", "augmented") {
         return Outcome::Idle;
     }
+    // A law that jumps at a threshold of the pressure lets go at once of what it has strained; a rupture begins from rest under supports
+    // that move, and they strike what they hold.
+    if !moves(draft) && draft.is("friction", "registered") || draft.has("rupture") {
+        return Outcome::Idle;
+    }
     // A temperature that jumps where a step begins strains a body that yields along a way that no increment resolves.
     if moves(draft) && draft.is("heat", "by_place") {
         return Outcome::Idle;

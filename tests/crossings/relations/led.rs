@@ -93,10 +93,11 @@ pub(super) fn is_judged_by_energies(ended: &Ended) -> bool {
     matches!(ended, Ended::Stopped(why) if why.contains("energy balance violated"))
 }
 
-/// A body that was there all along cannot come.
+/// A body that was there all along cannot come; with it from the start, the run before may stop.
 fn was_there(record: Record) -> Outcome {
     match record.ended {
         Ended::Refused(_) => Outcome::Holds,
+        Ended::Stopped(_) => Outcome::Idle,
         ended => Outcome::Broken(Difference {
             share: f64::INFINITY,
             place: format!("a body that was there comes, and the run ended {ended:?}"),
