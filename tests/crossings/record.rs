@@ -135,7 +135,7 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
     let RunReport { increments, cutbacks, rejected, .. } = simulation.report();
     let [before, given_up] = outputs.before;
     let given_up = given_up + cutbacks + rejected;
-    let warnings = outputs.warnings.list;
+    let warnings = model.warnings().into_iter().chain(outputs.warnings.list).collect();
     Record { ended, tables, closed, slipped, rows, increments: before + increments, given_up, warnings }
 }
 
@@ -512,6 +512,13 @@ pub struct Difference {
     pub share: f64,
     pub place: String,
     pub values: [f64; 2],
+}
+
+impl Difference {
+    /// Of two runs that end in different ways.
+    pub fn of_end(now: &Ended, before: &Ended) -> Self {
+        Self { share: f64::INFINITY, place: format!("ended {now:?}, and was {before:?}"), values: [0.0; 2] }
+    }
 }
 
 impl std::fmt::Display for Difference {

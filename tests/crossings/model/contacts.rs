@@ -59,6 +59,9 @@ impl Writer<'_> {
             }
             _ => {}
         }
+        if let Some(fluid) = &self.ways.fluid {
+            contact["fluid_pressure"] = json!(frame.expression(Kind::Stress, fluid, self.ways.load));
+        }
         match draft.of("dilatancy") {
             "free" => contact["dilatancy"] = json!({"rate": self.pick("tan psi", &[0.05, 0.15])}),
             "structure" => contact["dilatancy"] = json!({"structure": self.pick("tan psi", &[0.05, 0.2])}),
@@ -88,7 +91,10 @@ impl Writer<'_> {
         }
         match draft.of("tractions") {
             "given" => {
-                contact["initial"] = json!({"pressure": self.write(Kind::Stress, 4.0 * self.ways.load), "traction": frame.expression(Kind::Stress, "0.3+0.1*X", frame.sign() * self.ways.load)});
+                let times = if self.ways.overstressed { 100.0 } else { 1.0 };
+                let traction = frame.expression(Kind::Stress, "0.3+0.1*X", times * frame.sign() * self.ways.load);
+                contact["initial"] =
+                    json!({"pressure": self.write(Kind::Stress, 4.0 * self.ways.load), "traction": traction});
                 if self.is("friction", "super_subloading") && !self.has("further_parameters") {
                     contact["initial"]["structure"] = json!(1.1);
                 }

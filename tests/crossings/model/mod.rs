@@ -31,6 +31,12 @@ pub struct Ways {
     pub axis_told: bool,
     /// a strut stands aside that is pushed together by so many times what makes it buckle
     pub strut: Option<f64>,
+    /// its middle is raised by so much of its length
+    pub raised: f64,
+    /// tractions given at the start are far above any strength
+    pub overstressed: bool,
+    /// a fluid between the surfaces, as an expression in the canonical X and T
+    pub fluid: Option<String>,
     /// elements and increments are halved so many times
     pub halved: Option<u32>,
     /// and one of its bodies flies off when its springs are taken away
@@ -83,6 +89,9 @@ impl Ways {
             told_thrice: false,
             axis_told: false,
             strut: None,
+            raised: 0.0,
+            overstressed: false,
+            fluid: None,
             halved: None,
             flight: false,
             block_in_two: false,
@@ -273,13 +282,8 @@ impl Writer<'_> {
         self.frame.write(kind, x)
     }
 
-    /// x of the block from and to.
     fn span(&self) -> [f64; 2] {
-        match (self.is("section", "rings_on_end"), self.is("surfaces", "matching")) {
-            (_, true) => [0.75, 1.875],
-            (true, false) => [0.0, 1.125],
-            (false, false) => [dyadic(0.83), dyadic(1.97)],
-        }
+        span(self.draft)
     }
 
     /// Area of the surface that is pressed.
@@ -510,9 +514,7 @@ impl Writer<'_> {
         }
         if self.ways.bystander {
             for (k, name) in ASIDE.into_iter().enumerate() {
-                let x = (16.0 + 4.0 * k as f64) * self.ways.far;
-                let low = if self.is("section", "rings_around") { [x, 0.0] } else { [x, 0.25] };
-                let element = if self.pick(name, &[0.0, 1.0]) == 0.0 { "q4" } else { "t6" };
+                let (low, element) = self.aside(k);
                 let high = [low[0] + 1.0, low[1] + 0.5];
                 sheet.rectangle(&Rectangle { name, low, high, columns: 2, rows: 1, element, warp: 0.0 });
             }
@@ -520,7 +522,11 @@ impl Writer<'_> {
         if self.ways.strut.is_some() {
             let (low, high) = ([24.0, 0.0], [24.0 + STRUT_LENGTH, SLENDERNESS * STRUT_LENGTH]);
             let (name, element) = (STRUT, ["q8", "q9", "t6"][self.draft.count("strut", 0, 2)]);
+            let first = sheet.nodes.len();
             sheet.rectangle(&Rectangle { name, low, high, columns: 16, rows: 1, element, warp: 0.0 });
+            for [x, y] in &mut sheet.nodes[first..] {
+                *y += self.ways.raised * (0.5 * STRUT_LENGTH - (*x - low[0] - 0.5 * STRUT_LENGTH).abs());
+            }
         }
         if self.ways.shuffled {
             sheet.shuffle(self.draft.seed);
@@ -549,6 +555,13 @@ impl Writer<'_> {
         }
     }
 
+    /// Lowest corner and elements of what stands aside.
+    fn aside(&self, k: usize) -> ([f64; 2], &'static str) {
+        let x = (16.0 + 4.0 * k as f64) * self.ways.far;
+        let low = if self.is("section", "rings_around") { [x, 0.0] } else { [x, 0.25] };
+        (low, if self.pick(ASIDE[k], &[0.0, 1.0]) == 0.0 { "q4" } else { "t6" })
+    }
+
     fn probes(&self) -> Value {
         let at = |p: [f64; 2]| self.frame.point(p.map(dyadic));
         let [low, high] = self.span();
@@ -557,6 +570,20 @@ impl Writer<'_> {
             probes["in_ground"] = json!({"from": at([0.61, -0.177]), "to": at([1.07, -0.311]), "number": 2});
         }
         probes
+    }
+}
+
+/// x of a corner of the block on its lower side.
+pub fn corner(draft: &Draft) -> f64 {
+    span(draft)[0]
+}
+
+/// x of the block from and to.
+fn span(draft: &Draft) -> [f64; 2] {
+    match (draft.is("section", "rings_on_end"), draft.is("surfaces", "matching")) {
+        (_, true) => [0.75, 1.875],
+        (true, false) => [0.0, 1.125],
+        (false, false) => [dyadic(0.83), dyadic(1.97)],
     }
 }
 

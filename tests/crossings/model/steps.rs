@@ -371,6 +371,11 @@ impl Writer<'_> {
             let (zero, [first, last]) = (|_: f64| json!(0.0), ASIDE);
             let bottom = |name: &str| json!(format!("{name}_bottom"));
             supports.extend(f.supports(&bottom(first), [Some(&zero), Some(&zero)]));
+            // The corner by a place that another node is nearly as near to.
+            let (corner, element) = self.aside(0);
+            let halfway = if is_quadratic(element) { 0.125 } else { 0.25 };
+            let near = json!({"near": f.point([corner[0] + halfway - 1e-5, corner[1]])});
+            supports.extend(f.supports(&near, [Some(&zero), Some(&zero)]));
             if self.flies() {
                 let k = 2.0 * per_length;
                 for side in ["left", "right"] {

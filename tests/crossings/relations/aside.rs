@@ -12,6 +12,9 @@ pub(super) fn bystander(base: &Base) -> Outcome {
     let far = [1.0, 1e3, 1e5][(hash(base.draft.seed, "far") % 3) as usize];
     let energies = |column: &str| !column.contains('.') && column != "dt" && column != "time" || is_aside(column);
     let record = base.run(&Ways { bystander: true, flight: true, far, ..base.ways.clone() });
+    if matches!(record.ended, Ended::Refused(_)) && base.has_ended_well() {
+        return Outcome::Broken(Difference::of_end(&record.ended, &base.record.ended));
+    }
     // When Newton's method gives up hangs on the norm of all forces, and the judgement at the end on the energies of all bodies.
     if record.increments != base.record.increments || is_judged_by_energies(&record.ended) {
         return Outcome::Idle;

@@ -64,3 +64,69 @@ pub(super) fn resultants(base: &Base) -> Outcome {
     let bent = if moves(draft) { 0.25 } else { 0.1 };
     if worst.share <= bent { Outcome::Holds } else { Outcome::Broken(worst) }
 }
+
+/// Without friction whatever is closed slips.
+pub(super) fn slips(base: &Base) -> Outcome {
+    let draft = base.draft;
+    if !draft.is("friction", "frictionless") || !base.has_ended_well() {
+        return Outcome::Idle;
+    }
+    let closed = |(_, row): &&(f64, Vec<Entry>)| {
+        row.iter().any(|entry| &*entry.column == "c.contact_length" && entry.value > 0.0)
+    };
+    let share = |(time, row): &(f64, Vec<Entry>)| {
+        row.iter().find(|entry| &*entry.column == "c.slip_fraction").map(|entry| (*time, entry.value))
+    };
+    let sticking = base.record.rows.iter().filter(closed).filter_map(share).find(|(_, share)| *share < 1.0 - SAME);
+    sticking.map_or(Outcome::Holds, |(time, share)| {
+        let place = format!("c.slip_fraction at t = {time}");
+        Outcome::Broken(Difference { share: 1.0 - share, place, values: [share, 1.0] })
+    })
+}
+
+/// Of a body that is absent nothing is told.
+pub(super) fn absent(base: &Base) -> Outcome {
+    let draft = base.draft;
+    if !draft.is("flange", "removed") || !base.has_ended_well() {
+        return Outcome::Idle;
+    }
+    let told_at = |warning: &String| -> Option<f64> {
+        let rest = warning.strip_prefix("body `flange`")?.split_once("t = ")?.1;
+        rest.split([':', ',']).next()?.parse().ok()
+    };
+    let told = base
+        .record
+        .warnings
+        .iter()
+        .find(|warning| told_at(warning).is_some_and(|time| time > model::duration(draft) * (1.0 + SAME)));
+    told.map_or(Outcome::Holds, |told| {
+        Outcome::Broken(Difference { share: f64::INFINITY, place: told.clone(), values: [0.0; 2] })
+    })
+}
+
+/// Increments of dynamic steps under error control are those of the ladder Δt₀ 2^(k/4), but where a stage ends.
+pub(super) fn ladder(base: &Base) -> Outcome {
+    let draft = base.draft;
+    let off = ["times", "interval", "until"].iter().any(|slot| draft.has(slot));
+    if !is_dynamic(draft.of("scheme")) || !draft.has("error_control") || off || !base.has_ended_well() {
+        return Outcome::Idle;
+    }
+    let stage = model::duration(draft);
+    let first = base.record.values("dt").next().unwrap_or(stage);
+    let mut last = 0.0;
+    for (time, row) in &base.record.rows {
+        let dt = row.iter().find(|entry| &*entry.column == "dt").map_or(f64::NAN, |entry| entry.value);
+        // What is left of a stage is shared by its last two increments.
+        let left = (time / stage - SAME).ceil() * stage - time;
+        let rung = 4.0 * (dt / first).log2();
+        if left > 1.5 * dt && (rung - rung.round()).abs() > RUNG {
+            let place = format!("dt at t = {time}, after {last}");
+            return Outcome::Broken(Difference { share: (rung - rung.round()).abs(), place, values: [dt, first] });
+        }
+        last = dt;
+    }
+    Outcome::Holds
+}
+
+/// Digits in which lengths of increments are written, as a share of a rung.
+const RUNG: f64 = 1e-5;

@@ -10,8 +10,7 @@ pub(super) fn to_the_bit(base: &Base, record: &Record) -> Outcome {
         record.tables.iter().map(|table| table.lines().map(str::to_owned).collect::<Vec<_>>()).collect::<Vec<_>>()
     };
     if record.ended != base.record.ended {
-        let place = format!("ended {:?}, and was {:?}", record.ended, base.record.ended);
-        return Outcome::Broken(Difference { share: f64::INFINITY, place, values: [0.0; 2] });
+        return Outcome::Broken(Difference::of_end(&record.ended, &base.record.ended));
     }
     let (was, is) = (text(&base.record), text(record));
     if std::env::var_os("SHOW").is_some() {

@@ -8,6 +8,7 @@ mod halved;
 mod held;
 mod led;
 mod limits;
+mod told;
 mod written;
 
 use crate::features::{Draft, hash};
@@ -21,9 +22,10 @@ use buckled::buckled;
 use derivatives::derivatives;
 use energy::{energies, linear_energies, switched};
 use halved::halved;
-use held::{dilating, resultants};
+use held::{absent, dilating, ladder, resultants, slips};
 use led::{begun_with, dropped, further, resumed, threads};
 use limits::{sides_swapped, slow_dynamics, small_and_finite, stiff_and_augmented};
+use told::{followed, overstressed, watered};
 use written::{
     axis_told, body_in_two, driven, inclined, later, mirrored, moved, renamed, shuffled, steps_in_two, told_in_time,
     told_thrice, turned, turned_square, units,
@@ -90,8 +92,7 @@ impl<'a> Base<'a> {
             if record.given_up > 0 && self.record.given_up > 0 {
                 return Outcome::Idle;
             }
-            let place = format!("ended {:?}, and was {:?}", record.ended, self.record.ended);
-            return self.judged(Difference { share: f64::INFINITY, place, values: [0.0; 2] }, skip);
+            return self.judged(Difference::of_end(&record.ended, &self.record.ended), skip);
         }
         // How long the next increment is hangs on whole numbers: the iterations of the one before, whether one was rejected, the foot
         // that stands for a point. Where round-off changes one of them (some 1 in 1000 models), the increments are others.
@@ -208,6 +209,12 @@ pub const RELATIONS: &[Relation] = &[
     Relation { name: "slow dynamics", rarity: 12, check: slow_dynamics },
     Relation { name: "stiff and augmented", rarity: 12, check: stiff_and_augmented },
     Relation { name: "sides swapped", rarity: 12, check: sides_swapped },
+    Relation { name: "ladder", rarity: 1, check: ladder },
+    Relation { name: "slips", rarity: 1, check: slips },
+    Relation { name: "absent", rarity: 1, check: absent },
+    Relation { name: "overstressed", rarity: 1, check: overstressed },
+    Relation { name: "watered", rarity: 8, check: watered },
+    Relation { name: "followed", rarity: 1, check: followed },
 ];
 
 const NOTHING: &dyn Fn(&str) -> bool = &|_| false;
