@@ -524,14 +524,34 @@ fn edges_at_rest_around_a_circle_are_no_penalty_that_gives_way() {
     assert_eq!(of_penalty(&ring(8, Some(advised))), Vec::<String>::new());
 }
 
-/// A side that another contact has as its slave is looked after.
+/// Work of surfaces that close within an increment is no loss of the equations: on the forces at its ends it is told as what it is, and
+/// shorter increments end that.
+#[test]
+fn energy_of_touch_is_told_as_such() {
+    let circle = json!({"circle": {"centre": [2.0, -2.0], "radius": 2.0}});
+    let told = |dt: f64| {
+        let mut case = moved(&circle, [0.0, -0.5]);
+        case["bodies"]["block"]["material"]["model"] = json!("neo_hookean");
+        case["steps"][0]["dt"] = json!({"initial": dt, "min": dt});
+        warnings(&case)
+    };
+    let has = |told: &[String], words: &str| told.iter().any(|told| told.contains(words));
+    let (coarse, fine) = (told(0.5), told(0.1));
+    assert!(has(&coarse, "surfaces close or part within increments"), "{coarse:?}");
+    assert!(!has(&coarse, "energy balance violated"), "{coarse:?}");
+    assert!(!has(&fine, "surfaces close or part") && !has(&fine, "energy balance violated"), "{fine:?}");
+}
+
+/// A side that another contact has as its slave is looked after, where that lets it in as well.
 #[test]
 fn the_slave_of_another_contact_is_not_unseen() {
     let circle = json!({"circle": {"centre": [5.5, 1.0], "radius": 1.0}});
     let mut case = moved(&circle, [0.8, 0.0]);
     case["contacts"]["side"] = case["contacts"]["base"].clone();
     case["contacts"]["side"]["slave"] = json!("right");
+    case["contacts"]["side"]["normal"] = json!({"alpha_n": 1e3});
     let told = warnings(&case);
+    assert!(told.iter().any(|told| told.contains("contact `side`") && told.contains("the penetration")), "{told:?}");
     assert!(!told.iter().any(|told| told.contains("outside the slave group")), "{told:?}");
 }
 

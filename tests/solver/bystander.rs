@@ -1,6 +1,6 @@
 //! What a model does not touch has no say in it: neither a body far away, however stiff and large, nor a wider bed.
 
-use crate::common::{Finished, close, finish};
+use crate::common::{Finished, close, finish, model};
 use serde_json::{Value, json};
 
 /// A rigid disk on a bed of rubber, pressed in and then drawn along under a force, free to sink and to roll.
@@ -71,6 +71,19 @@ fn a_body_far_away_changes_nothing() {
             }
         }
     }
+}
+
+/// A rupture is over when a shear wave has crossed what touches, 8 wide and with the disk 4 high, at √(G/ρ): a body far away, however slow
+/// its waves, does not prolong it.
+#[test]
+fn a_body_far_away_prolongs_no_rupture() {
+    let calm = |mut case: Value| {
+        case["steps"][1]["rupture"] = json!({"slip_rate": 1.0});
+        model(&case).steps[1].rupture.as_ref().expect("a rupture").calm
+    };
+    let crossed = 8f64.hypot(4.0) / (10.0 / 2.8 / 0.01f64).sqrt();
+    close("alone", calm(rolled(None)), crossed, 1e-9);
+    close("beside another", calm(beside(rolled(None), 1e-3)), crossed, 1e-9);
 }
 
 /// The disk is drawn by 0.6 over a bed that goes on to both sides, or ends where it has no part in the contact any more.
