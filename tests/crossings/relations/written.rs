@@ -1,5 +1,6 @@
 //! The same problem written in another way.
 
+use super::led::is_judged_by_energies;
 use super::*;
 
 /// A random field is one of the place: elsewhere it is another one.
@@ -211,6 +212,9 @@ pub(super) fn later(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     let mut record = base.run(&base.ways.clone().later(LATER, &draft));
+    if is_judged_by_energies(&record.ended) {
+        return Outcome::Idle;
+    }
     // The step before takes one increment, explicit ones as many as there is room for.
     let explicit = record.increments.saturating_sub(base.record.increments);
     record.increments -= if draft.is("scheme", "explicit") { explicit } else { 1.min(record.increments) };
