@@ -147,3 +147,30 @@ fn a_held_body_that_the_slave_does_not_meet_changes_nothing() {
         assert!(far < 1e-12, "displacements differ by {far:e}");
     }
 }
+
+/// A ring with a bore as narrow as a hair is a ring: a body far away does not make its bore part of the axis, which would be held.
+#[test]
+fn a_narrow_bore_is_no_axis() {
+    let widened = |far: bool| {
+        let block = |body: &str, x: [f64; 2], y: [f64; 2], sides: Value| json!({"body": body, "corners": [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]], "elements": [4, 1], "sides": sides});
+        let mut case = json!({
+            "section": "axisymmetric",
+            "mesh": {"blocks": [block("ring", [1e-6, 1.0], [0.0, 1.0], json!(["foot", "skin", null, null]))]},
+            "bodies": {"ring": {"material": {"model": "linear", "E": 100, "nu": 0.3}}},
+            "steps": [{"name": "pull", "duration": 1, "supports": [{"on": "foot", "uy": 0}], "loads": [{"on": "skin", "pressure": -1}]}],
+        });
+        if far {
+            let idle = block("idle", [1.0, 2.0], [1e7, 1e7 + 1.0], json!(["held", null, null, null]));
+            case["mesh"]["blocks"].as_array_mut().expect("blocks").push(idle);
+            case["bodies"]["idle"] = case["bodies"]["ring"].clone();
+            case["steps"][0]["supports"]
+                .as_array_mut()
+                .expect("supports")
+                .push(json!({"on": "held", "ux": 0, "uy": 0}));
+        }
+        finish(&case).last().displacement[0]
+    };
+    let alone = widened(false);
+    assert!(alone > 1e-9, "it widens by its strain of a hundredth, {alone:e}");
+    close("beside another", widened(true), alone, 1e-6 * alone);
+}
