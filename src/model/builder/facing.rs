@@ -1,8 +1,9 @@
-//! What of its master a slave faces.
+//! Bodies of a contact that face each other.
 //!
-//! The master of a contact may go on where the slave never comes, on bodies that are nothing to it: what a contact takes from the bodies
-//! of its master is taken from those that own the master's edges nearest to an edge of the slave in the mesh. In contact of a surface with
-//! itself every part may meet every other, and all count.
+//! Either side of a contact may go on where the other never comes, on bodies that are nothing to it: what a contact takes from the bodies
+//! of its slave is taken from those that own the slave's edges nearest to an edge of the master in the mesh, and what it takes from the
+//! bodies of the master from those whose edges are nearest to an edge of these. In contact of a surface with itself every part may meet
+//! every other, and all count, and so do all bodies of a slave before a rigid master.
 
 use nalgebra::Vector2;
 
@@ -10,26 +11,46 @@ use super::contact::Contact;
 use crate::mesh::Edge;
 use crate::model::Model;
 
-/// Difference of two distances, as a fraction of the slave's edge, below which both edges are nearest.
+/// Difference of two distances, as a fraction of the edge that they start from, below which both edges are nearest.
 const EQUALLY_NEAR: f64 = 1e-6;
 
-/// Edges of the master on the bodies that the slave faces.
-pub fn faced<'a>(contact: &Contact, slave: &[Edge], master: &'a [Edge], model: &Model) -> Vec<&'a Edge> {
-    let body = |edge: &Edge| model.body_of_element[edge.element];
-    let several = master.windows(2).any(|pair| body(&pair[0]) != body(&pair[1]));
-    let mut faced = vec![!several || contact.is_own(); model.bodies.len()];
-    if several {
-        let ends = |edge: &Edge| [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
-        let master: Vec<_> = master.iter().map(|edge| (body(edge), ends(edge))).collect();
-        for own in slave.iter().map(ends) {
-            let distances: Vec<f64> = master.iter().map(|(_, other)| distance(own, *other)).collect();
-            let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-            let near = nearest + EQUALLY_NEAR * (own[1] - own[0]).norm();
-            let all = master.iter().zip(&distances).filter(|(_, distance)| **distance <= near);
-            all.for_each(|((body, _), _)| faced[*body] = true);
+/// Edges of a contact on the bodies that face each other.
+pub struct Facing<'a> {
+    pub slave: Vec<&'a Edge>,
+    /// None of a rigid master
+    pub master: Vec<&'a Edge>,
+}
+
+impl<'a> Facing<'a> {
+    /// Those of the edges of both groups of a contact.
+    pub fn of(contact: &Contact, slave: &'a [Edge], master: &'a [Edge], model: &Model) -> Self {
+        let [slave, master] = [slave, master].map(|side| side.iter().collect::<Vec<_>>());
+        if contact.is_own() || master.is_empty() {
+            return Self { slave, master };
         }
+        let slave = nearest(&master, slave, model);
+        let master = nearest(&slave, master, model);
+        Self { slave, master }
     }
-    master.iter().filter(|edge| faced[body(edge)]).collect()
+}
+
+/// The other edges, of the bodies that own those nearest to the edges of one side.
+fn nearest<'a>(side: &[&Edge], other: Vec<&'a Edge>, model: &Model) -> Vec<&'a Edge> {
+    let body = |edge: &Edge| model.body_of_element[edge.element];
+    if other.windows(2).all(|pair| body(pair[0]) == body(pair[1])) {
+        return other;
+    }
+    let ends = |edge: &Edge| [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
+    let placed: Vec<_> = other.iter().map(|edge| (body(edge), ends(edge))).collect();
+    let mut faced = vec![false; model.bodies.len()];
+    for own in side.iter().map(|edge| ends(edge)) {
+        let distances: Vec<f64> = placed.iter().map(|(_, other)| distance(own, *other)).collect();
+        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        let near = least + EQUALLY_NEAR * (own[1] - own[0]).norm();
+        let all = placed.iter().zip(&distances).filter(|(_, distance)| **distance <= near);
+        all.for_each(|((body, _), _)| faced[*body] = true);
+    }
+    other.into_iter().filter(|edge| faced[body(edge)]).collect()
 }
 
 /// Distance of two straight edges [L].

@@ -27,8 +27,8 @@
 //! energy where surfaces part and meet: with (1) more than all that was supplied, with (2) less than a hundredth of it
 //! (`energy_from_nowhere_ends_with_a_remedy_that_helps`).
 //!
-//! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, the master's that of the bodies that
-//! the slave faces (`facing.rs`); h is the depth of the element behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges. Where α_n is given, α_t = α_n/2. Surfaces that are tied
+//! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, of the bodies that face each other
+//! (`facing.rs`); h is the depth of the element behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges on these. Where α_n is given, α_t = α_n/2. Surfaces that are tied
 //! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find
 //! out.
 //!
@@ -40,7 +40,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
-use super::facing::faced;
+use super::facing::Facing;
 use super::friction::{DefaultAlphaT, Laws};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
@@ -366,7 +366,7 @@ pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> 
     Ok(damping)
 }
 
-/// η by (2), averaged over the edges of the slave, and of the bodies of the master that it faces.
+/// η by (2), averaged over the edges of each side on the bodies that face each other.
 fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked<f64> {
     let message = "has no default for a slave group of points, behind which there is no body: give a number";
     refuse_if(contact.area.is_some(), at, message)?;
@@ -384,11 +384,12 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
         let all = edges.iter().map(|edge| impedance(edge)).collect::<Checked<Vec<f64>>>()?;
         Ok(all.iter().sum::<f64>() / all.len() as f64)
     };
-    let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
-    let of_slave = mean(&slave.iter().collect::<Vec<_>>())?;
-    let Some(master) = contact.master_group() else { return Ok(of_slave) };
-    let master = edges(&model.mesh, master, &format!("{place}.master"))?;
-    let of_master = mean(&faced(contact, slave, master, model))?;
+    let Facing { slave, master } = facing(place, contact, model)?;
+    let of_slave = mean(&slave)?;
+    if master.is_empty() {
+        return Ok(of_slave);
+    }
+    let of_master = mean(&master)?;
     Ok(of_slave * of_master / (of_slave + of_master))
 }
 
@@ -469,13 +470,18 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
     if contact.area.is_some() {
         return Ok(None);
     }
-    let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
+    let Facing { slave, master } = facing(place, contact, model)?;
     let modulus = |edge: &Edge| model.body_of(edge.element).material.description().p_wave_modulus;
-    let master = contact.master_group().map(|group| edges(&model.mesh, group, &format!("{place}.master")));
-    let master = faced(contact, slave, master.transpose()?.unwrap_or_default(), model);
     let softest = master.into_iter().map(modulus).fold(f64::INFINITY, f64::min);
     let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
-    Ok(Some(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64))
+    Ok(Some(slave.iter().map(|edge| stiffness(edge)).sum::<f64>() / slave.len() as f64))
+}
+
+/// Edges of a contact on the bodies that face each other.
+fn facing<'a>(place: &str, contact: &Contact, model: &'a Model) -> Checked<Facing<'a>> {
+    let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
+    let master = contact.master_group().map(|group| edges(&model.mesh, group, &format!("{place}.master")));
+    Ok(Facing::of(contact, slave, master.transpose()?.unwrap_or_default(), model))
 }
 
 /// Depth of the element at an edge [L].
@@ -531,13 +537,8 @@ fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
 /// ```
 pub fn modulus(contact: &Contact, model: &Model) -> f64 {
     let compliance = |edge: &Edge| 1.0 / plane(&*model.body_of(edge.element).material);
-    let Ok(Group::Edges(slave)) = model.mesh.group(&contact.slave) else { return 0.0 };
-    let master = match contact.master_group().map(|name| model.mesh.group(name)) {
-        Some(Ok(Group::Edges(master))) => faced(contact, slave, master, model),
-        _ => Vec::new(),
-    };
-    let [slave, master] =
-        [slave.iter().collect(), master].map(|side: Vec<&Edge>| side.into_iter().map(compliance).fold(0.0, f64::max));
+    let Ok(Facing { slave, master }) = facing("", contact, model) else { return 0.0 };
+    let [slave, master] = [slave, master].map(|side| side.into_iter().map(compliance).fold(0.0, f64::max));
     2.0 / (slave + master)
 }
 
