@@ -30,10 +30,11 @@ fn table(folder: &TempDir, file: &str) -> Columns {
     names.iter().enumerate().map(column).collect()
 }
 
-/// Where the increments of a run ended; its rows may be fewer.
-fn increments(folder: &TempDir) -> BTreeMap<u64, f64> {
+/// Where the increments of a run ended, and after how many passes; its rows may be fewer.
+fn increments(folder: &TempDir) -> BTreeMap<u64, [f64; 2]> {
     let newton = table(folder, "newton.csv");
-    newton["increment"].iter().map(|number| number.to_bits()).zip(newton["time"].iter().copied()).collect()
+    let ends = newton["time"].iter().zip(&newton["pass"]).map(|(&time, &pass)| [time, pass]);
+    newton["increment"].iter().map(|number| number.to_bits()).zip(ends).collect()
 }
 
 fn run(case: &Value) -> Option<TempDir> {
