@@ -17,6 +17,10 @@ pub(super) fn dilating(base: &Base) -> Outcome {
     if why.contains(": element ") || why.contains("augmentations") {
         return Outcome::Idle;
     }
+    // Where they close may lie between the shortest increments.
+    if !base.record.closed && base.run(&Ways { finer: 64.0, ..base.ways.clone() }).closed {
+        return Outcome::Holds;
+    }
     let without = Base::new(&plainer);
     if !base.record.closed && without.record.closed && without.has_ended_well() {
         let place = format!("ended {why}, and closes without dilatancy");
