@@ -536,7 +536,10 @@ fn unresolved(
     x: &Configuration,
 ) -> Option<String> {
     let weakening = law.weakening * contact.friction.pressure;
-    let edge = point.edge_length(x).filter(|_| contact.regime() == Regime::Slip && pair.modulus > 0.0)?;
+    // Where a law knows no stick, what creeps by less than D_c has no front.
+    let slips = contact.regime() == Regime::Slip
+        && law.critical_slip.is_none_or(|critical| contact.friction.plastic_slip.abs() >= critical);
+    let edge = point.edge_length(x).filter(|_| slips && pair.modulus > 0.0)?;
     let zone = PROCESS_ZONE * pair.modulus / weakening;
     (edge > zone).then(|| {
         format!(
