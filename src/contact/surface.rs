@@ -8,6 +8,7 @@ pub use super::point::{
     LengthShare, MasterPoint, SlavePoint, Weights, edge_point, gauss_points, lone_point, nodal_points,
     nodal_points_of_rings,
 };
+use crate::mesh::configuration::Configuration;
 use crate::mesh::few::Few;
 use crate::mesh::shape;
 
@@ -219,6 +220,37 @@ impl Surface {
     /// Makes the surface a self-contact master.
     pub fn against_itself(self, depth: f64) -> Self {
         Self { own_depth: Some(depth), ..self }
+    }
+
+    /// By how much chords lie outside the body of which they stand for the curved side, in the mean: h θ/12 for edges h that turn by θ,
+    /// less than 0 where the body is convex [L].
+    pub fn by_chords(&self, x: &Configuration) -> f64 {
+        let along = |segment: usize| {
+            let [a, b] = self.segments[segment].ends;
+            x.between(a, b)
+        };
+        let turn = |before: usize, after: usize| {
+            let [before, after] = [along(before), along(after)];
+            let smooth = before.dot(&after) > CORNER * before.norm() * after.norm();
+            smooth.then(|| before.perp(&after).atan2(before.dot(&after)))
+        };
+        // A single bend is none, but what bends on alike; the edge at an end bends as its neighbour does.
+        let bend = |k: usize| {
+            let before = self.previous(k).and_then(|previous| turn(previous, k))?;
+            let after = self.next(k).and_then(|next| turn(k, next))?;
+            Some(if before * after > 0.0 { before.signum() * before.abs().min(after.abs()) } else { 0.0 })
+        };
+        let (mut lengths, mut areas) = (0.0, 0.0);
+        for (k, segment) in self.segments.iter().enumerate() {
+            let length = along(k).norm();
+            lengths += length;
+            if segment.middle.is_none() {
+                let neighbours = [Some(k), self.previous(k), self.next(k)];
+                let angle = neighbours.into_iter().flatten().find_map(bend).unwrap_or(0.0);
+                areas += length * length * angle / 12.0;
+            }
+        }
+        areas / lengths
     }
 
     /// A node of the surface as the origin of relative positions; 0 without segments.

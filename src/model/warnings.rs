@@ -10,9 +10,8 @@ use super::text::{count, number, vector};
 use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::{ContactPair, Reverse};
-use crate::contact::surface::{CORNER, Segment, SlavePoint, Surface};
+use crate::contact::surface::{Segment, SlavePoint, Surface};
 use crate::laws::friction::{ContactLaw, Description};
-use crate::mesh::configuration::Configuration;
 use crate::mesh::shape::ElementKind;
 use crate::mesh::{Element, Mesh};
 use crate::model::method::{self, Chosen, Method};
@@ -80,10 +79,10 @@ fn concern_of_law(body: &Body) -> Option<String> {
 
 /// Output times that a step ending early may shift.
 fn uncertain_times(model: &Model) -> Option<String> {
-    let step = model.steps.iter().find(|step| step.until.is_some()).filter(|_| !model.requests.times.is_empty())?;
-    Some(format!(
+    let step = model.steps.iter().find(|step| step.until.is_some())?;
+    model.requests.times.iter().any(|time| *time > step.span.start).then(|| format!(
         "step `{}` may end early (until), and all that follows then comes earlier: output.times after its start may \
-         lie in other steps, or after the end of the run, and are not written then",
+         lie in other steps, or after the end of the run, and are not written then; output.every goes by increments",
         step.name
     ))
 }
@@ -119,11 +118,16 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
     if pair.tied || pair.holds_fluid() || !pair.laws.iter().any(goes_by_pressure) {
         return None;
     }
-    let nodes: BTreeSet<usize> = pair.nodes().collect();
-    let is_beside = |body: &&Body| body.pore_fluid.is_some() && body.nodes.iter().any(|node| nodes.contains(node));
-    let body = &model.bodies.iter().find(is_beside)?.name;
+    let beside = |nodes: BTreeSet<usize>| {
+        let is_beside = |body: &&Body| body.pore_fluid.is_some() && body.nodes.iter().any(|node| nodes.contains(node));
+        model.bodies.iter().find(is_beside).map(|body| &body.name)
+    };
+    let (body, swap) = match beside(pair.slave_nodes().collect()) {
+        Some(body) => (body, ""),
+        None => (beside(pair.nodes().collect())?, "make it the slave and "),
+    };
     Some(format!(
-        "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: take that part \
+        "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: {swap}take that part \
          from the pores of the slave (`\"fluid_pressure\": \"of_bodies\"`), or give it (`fluid_pressure`), or a strength by total stress (friction law `adhesion`)"
     ))
 }
@@ -131,7 +135,10 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
 /// Fluid pressure that is none beside the one at a neighbour [-]
 const NONE_BESIDE: f64 = 1e-6;
 
-/// Warns of a fluid that starts with a pressure at one point and comes to the points beside it only later: it counts as there before the
+/// Part of the largest fluid pressure at the start where it ends abruptly, as a source does [-]
+const ABRUPT: f64 = 0.5;
+
+/// Warns of a fluid that starts with a pressure at some points and comes to those beside them only later: it counts as there before the
 /// run, in addition to the initial pressure.
 fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
     pair.initial.as_ref().filter(|_| pair.fluid.is_some())?;
@@ -141,23 +148,24 @@ fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
         let nodes = point.length.iter().flat_map(|share| &share.tangent).map(|(node, _)| *node);
         nodes.collect::<BTreeSet<_>>().into_iter().for_each(|node| at_node.entry(node).or_default().push(k));
     }
-    let pressure = |k: usize, time: f64| pair.fluid_pressure(&pair.points[k], &x, time);
-    let is_alone = |k: usize| {
-        let least = NONE_BESIDE * pressure(k, 0.0);
+    let pressures =
+        |time: f64| pair.points.iter().map(|point| pair.fluid_pressure(point, &x, time)).collect::<Vec<_>>();
+    let [first, last] = [0.0, end].map(pressures);
+    let highest = first.iter().copied().fold(0.0, f64::max);
+    let is_none = |pressure: f64| pressure <= NONE_BESIDE * highest;
+    let nearest = |k: usize| {
+        let way = |other: usize| (pair.points[other].at(&x) - pair.points[k].at(&x)).norm();
         let nodes = pair.points[k].length.iter().flat_map(|share| &share.tangent);
-        let beside: BTreeSet<usize> =
-            nodes.filter_map(|(node, _)| at_node.get(node)).flatten().copied().filter(|other| *other != k).collect();
-        least > 0.0
-            && !beside.is_empty()
-            && beside.iter().all(|&other| pressure(other, 0.0) <= least)
-            && beside.iter().any(|&other| pressure(other, end) > least)
+        let beside = nodes.filter_map(|(node, _)| at_node.get(node)).flatten().copied();
+        beside.filter(|&other| !is_none(first[other])).min_by(|&a, &b| way(a).total_cmp(&way(b)))
     };
-    let alone = (0..pair.points.len()).find(|&k| is_alone(k))?;
+    let mut reached = (0..first.len()).filter(|&k| is_none(first[k]) && !is_none(last[k])).filter_map(nearest);
+    let edge = reached.find(|&edge| first[edge] > ABRUPT * highest)?;
     Some(format!(
         "its fluid_pressure is {} at {} at t = 0 and none beside it: that is there before anything moves, in addition to the initial pressure. \
          If the run raises it, let it be 0 at t = 0, such as P*erfc((abs(x) + 1e-9)/(2*sqrt(D*t + 1e-30)))",
-        number(pressure(alone, 0.0)),
-        vector(pair.points[alone].at(&x))
+        number(first[edge]),
+        vector(pair.points[edge].at(&x))
     ))
 }
 
@@ -224,7 +232,7 @@ fn facets_of_a_fit(model: &Model, pair: &ContactPair) -> Option<String> {
     let overlaps: Vec<f64> = pair.points.iter().map(|point| point.overlap).filter(|overlap| *overlap > 0.0).collect();
     let mean = overlaps.iter().sum::<f64>() / overlaps.len().max(1) as f64;
     let x = model.mesh.undeformed();
-    let added = [slave, master].map(|surface| by_chords(surface, &x)).iter().sum::<f64>();
+    let added = slave.by_chords(&x) + master.by_chords(&x);
     let share = added / (mean - added);
     (mean > 0.0 && share.abs() > OF_OVERLAP).then(|| {
         format!(
@@ -234,37 +242,6 @@ fn facets_of_a_fit(model: &Model, pair: &ContactPair) -> Option<String> {
             if share > 0.0 { "larger" } else { "smaller" }
         )
     })
-}
-
-/// By how much chords lie outside the body of which they stand for the curved side, in the mean: h θ/12 for edges h that turn by θ, less
-/// than 0 where the body is convex [L].
-fn by_chords(surface: &Surface, x: &Configuration) -> f64 {
-    let along = |segment: usize| {
-        let [a, b] = surface.segments[segment].ends;
-        x.between(a, b)
-    };
-    let turn = |before: usize, after: usize| {
-        let [before, after] = [along(before), along(after)];
-        let smooth = before.dot(&after) > CORNER * before.norm() * after.norm();
-        smooth.then(|| before.perp(&after).atan2(before.dot(&after)))
-    };
-    // A single bend is none, but what bends on alike; the edge at an end bends as its neighbour does.
-    let bend = |k: usize| {
-        let before = surface.previous(k).and_then(|previous| turn(previous, k))?;
-        let after = surface.next(k).and_then(|next| turn(k, next))?;
-        Some(if before * after > 0.0 { before.signum() * before.abs().min(after.abs()) } else { 0.0 })
-    };
-    let (mut lengths, mut areas) = (0.0, 0.0);
-    for (k, segment) in surface.segments.iter().enumerate() {
-        let length = along(k).norm();
-        lengths += length;
-        if segment.middle.is_none() {
-            let neighbours = [Some(k), surface.previous(k), surface.next(k)];
-            let angle = neighbours.into_iter().flatten().find_map(bend).unwrap_or(0.0);
-            areas += length * length * angle / 12.0;
-        }
-    }
-    areas / lengths
 }
 
 /// Corners of a bilinear element that are sharper than this are sheared too much beside a fault [rad]
@@ -398,6 +375,8 @@ pub fn gaps(model: &Model, pair: &ContactPair, shrink_fit: bool) -> String {
 struct Gaps {
     /// Whether points without a projection never come into contact (small sliding)
     small: bool,
+    /// Whether the master is bounded by lines, which have a direction
+    lines: bool,
     points: usize,
     facing: usize,
     /// Smallest gap, and its position [L]
@@ -422,6 +401,7 @@ impl Gaps {
         let states = pair.initial_states(&x);
         let mut gaps = Self {
             small: pair.small.is_some(),
+            lines: matches!(&pair.master, Master::Rigid(Rigid { shape: Shape::Polyline(_), .. })),
             points: states.len(),
             facing: 0,
             low: (f64::INFINITY, Vector2::zeros()),
@@ -456,19 +436,21 @@ impl Gaps {
         if facing == 0 {
             let none = "no point of the slave has a projection on the master; check the groups named and their \
                         positions";
-            return vec![none.into()];
+            let side = if self.lines { ", and that the solid is on the right of the lines" } else { "" };
+            return vec![format!("{none}{side}")];
         }
         let mut warnings = Vec::new();
         // In finite sliding they come into contact where they slide on the master, and do no harm elsewhere.
         if facing < points && self.small {
-            let never = "without a projection on the master, and never come into contact in small sliding";
+            let never = "without a projection on the master, and never come into contact in small sliding: if they may, take finite \
+                         sliding, else leave them out of the slave";
             warnings.push(format!("{} of the slave {never}", self.beside()));
         }
         if low < 0.0 {
             warnings.push(format!(
                 "surfaces overlap by up to {} at the start, at ({}, {}), and are in contact from the first increment \
-                 on; move them apart, bring the overlap in over the first step (shrink_fit), or, if they should only touch, \
-                 count gaps from where they are (\"initial\": {{\"pressure\": 0}})",
+                 on; move them apart, bring the overlap in over the first step (shrink_fit), or, if the whole slave \
+                 should touch at the start, count gaps from where they are (\"initial\": {{\"pressure\": 0}})",
                 number(-low),
                 number(at.x),
                 number(at.y)

@@ -18,6 +18,15 @@
 //! ```
 //! the energy measured from a stress that stays is first order in u, of any sign, and says nothing of how far bodies give way.
 //!
+//! # Edges that stand for curves
+//!
+//! Where a convex side lies in a concave one, straight edges of other lengths leave a mean gap a between them that the curves do not have
+//! ([`Surface::by_chords`]). Bodies under the forces f of the contact move to close it:
+//!
+//! ```text
+//! δu/u = |∫ p a dA| / 2W                                                       W: elastic energy when that was largest
+//! ```
+//!
 //! # Touch
 //!
 //! The work of a static increment is that of its mean force. Where surfaces close within it they act in a part of it alone, which the
@@ -25,7 +34,8 @@
 
 use nalgebra::Vector2;
 
-use crate::contact::pair::ContactPair;
+use crate::contact::master::Master;
+use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::point::ContactState;
 use crate::equations::contacts::Springs;
 use crate::mesh::configuration::vector;
@@ -39,6 +49,9 @@ use serde::{Deserialize, Serialize};
 
 /// Energy error that causes a warning, as a fraction of the energy supplied.
 const WORTH_TELLING: f64 = 0.01;
+
+/// Part of a step's error that arises in one increment where shorter ones may not help [-]
+const AT_ONCE: f64 = 0.5;
 
 /// Errors within this multiple of the work of round-off in the forces are ignored.
 const ROUND_OFF: f64 = 100.0;
@@ -71,6 +84,9 @@ pub struct Audit {
     /// Initial stress of the bodies that are there from the start, once asked for
     #[serde(skip)]
     stresses: Option<Vec<Stress>>,
+    /// By how much edges that stand for curves close the gap of each contact, once asked for [L]
+    #[serde(skip)]
+    chords: Option<Vec<f64>>,
 }
 
 /// Largest energy error.
@@ -124,12 +140,18 @@ struct StepError {
     step: String,
     /// Error that arose in its increments [F·L]
     error: f64,
+    /// The most that arose in one of them [F·L], and its end [T]
+    most: f64,
+    at: f64,
     remedy: String,
 }
 
+/// Remedy for the energy of static steps.
+const STATIC: &str = "take shorter increments (dt.initial, dt.max)";
+
 /// Remedy for the energy of a static first step in which surfaces begin to push each other apart.
 const OVERLAP: &str = "surfaces that overlap at the start set energy free: bring the overlap in over the step (shrink_fit), or move \
-                       them apart; if it is not theirs, take shorter increments (dt.max, dt.min)";
+                       them apart; if it is not theirs, take shorter increments (dt.initial, dt.max)";
 
 /// Fraction of the elastic energy of bodies and contacts that was stored in contact penalties when that energy was largest.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -158,6 +180,10 @@ struct Penalties {
     by_steps: bool,
     /// Whether its slave has mass in implicit steps, which a stiffer penalty would make ring
     rings: bool,
+    /// By how much edges that stand for curves close its gap, in the mean [L]
+    chords: f64,
+    /// Work of its pressure on that way [F·L]
+    by_chords: f64,
 }
 
 /// Energy error by touch that causes a warning, as a fraction of the work of the run.
@@ -168,6 +194,9 @@ const REST: f64 = 1e-6;
 
 /// Share of the elastic energy in penalties that is worth a warning [-]
 const GIVES_WAY: f64 = 0.01;
+
+/// Error of displacements by edges that stand for curves that causes a warning [-]
+const BY_CHORDS: f64 = 0.02;
 
 /// Share of the energy that the advised penalties leave in the contacts [-]
 const ADVISED: f64 = 0.004;
@@ -181,16 +210,23 @@ impl Audit {
             // Whatever the increments, surfaces that overlap at the start set free what nobody has supplied.
             let overlap = self.steps.is_empty() && old.time == 0.0 && !step.scheme.is_dynamic() && model.overlaps();
             let remedy = if overlap { OVERLAP } else { remedy(model, step) };
-            self.steps.push(StepError { step: step.name.clone(), error: 0.0, remedy: remedy.into() });
+            let name = step.name.clone();
+            self.steps.push(StepError { step: name, error: 0.0, most: 0.0, at: old.time, remedy: remedy.into() });
         }
-        self.steps.last_mut().into_iter().for_each(|last| last.error += error - self.error);
+        let arose = error - self.error;
+        if let Some(last) = self.steps.last_mut() {
+            last.error += arose;
+            if arose.abs() > last.most.abs() {
+                (last.most, last.at) = (arose, new.time);
+            }
+        }
         if step.scheme.is_dynamic() {
-            self.moving += error - self.error;
+            self.moving += arose;
             self.gained = self.gained.max(-self.moving);
         }
         let overlaps = self.steps.last().is_some_and(|step| step.remedy == OVERLAP);
         if matches!(step.scheme, Scheme::Static) && !overlaps && touches(old, new) {
-            self.touch += error - self.error;
+            self.touch += arose;
         }
         self.work += (new.energy.external_work - old.energy.external_work).abs();
         self.error = error;
@@ -198,7 +234,8 @@ impl Audit {
             self.worst = Worst { error, touch: self.touch, time: new.time };
         }
         let stresses = self.stresses.get_or_insert_with(|| stresses(model));
-        self.give.record(model, new, stresses);
+        let chords = self.chords.get_or_insert_with(|| model.contacts.iter().map(|pair| chords(model, pair)).collect());
+        self.give.record(model, new, stresses, chords);
         let mut farthest = 0.0f64;
         for scales in self.scales.get_or_insert_with(|| Scales::of(model)) {
             let (mut reach, mut way) = (0.0f64, 0.0f64);
@@ -241,7 +278,8 @@ impl Audit {
             return self.by_touch(touch, time);
         }
         let largest = self.steps.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
-        let StepError { step: name, remedy, .. } = largest?;
+        let step = largest?;
+        let (name, remedy) = (&step.step, step.remedy());
         let fate = if worst < 0.0 { "gain" } else { "loss" };
         let share = if self.supplied > 0.0 {
             let percent = 100.0 * worst.abs() / self.supplied;
@@ -260,6 +298,22 @@ impl Audit {
     }
 }
 
+impl StepError {
+    /// What ends the error: shorter increments do not where it arises at once, whatever their length.
+    fn remedy(&self) -> String {
+        let Self { error, most, at, remedy, .. } = self;
+        if remedy != STATIC || most / error < AT_ONCE {
+            return remedy.clone();
+        }
+        format!(
+            "{remedy}, unless what arose in the one to t = {}, {:.0} % of it, stays: where a load or support jumps, let it grow over several \
+             increments; where bodies snap through or break away, a step with inertia keeps the energy that a static one drops",
+            time_text(*at),
+            100.0 * most / error
+        )
+    }
+}
+
 impl Audit {
     /// Warning about an error that came by touch alone.
     fn by_touch(&self, touch: f64, time: f64) -> Option<String> {
@@ -268,7 +322,7 @@ impl Audit {
             format!(
                 "surfaces close or part within increments, whose work is known to {:.3e} by t = {}, {:.1} % of the work of the run: displacements \
                  and forces at the ends of increments do not suffer, but energies do; where these matter, take shorter increments as they \
-                 close (dt.max, dt.error)",
+                 close (dt.initial, dt.max)",
                 touch.abs(),
                 time_text(time),
                 100.0 * touch.abs() / work
@@ -291,6 +345,21 @@ fn stresses(model: &Model) -> Vec<Stress> {
     bodies.map(|body| Stress { body, forces: balance::of_stress(model, body) }).collect()
 }
 
+/// By how much straight edges that stand for a convex and a concave side close the gap between them by mortar, in the mean [L]. A contact that
+/// starts closed counts gaps from where its surfaces are, and of a shrink fit this is told before the run.
+fn chords(model: &Model, pair: &ContactPair) -> f64 {
+    let counts = pair.mortar.is_some() && !pair.tied && !pair.is_own() && pair.initial.is_none();
+    match (&pair.master, &pair.reverse) {
+        (Master::Mesh(master), Some(Reverse { slave: Master::Mesh(slave), .. }))
+            if counts && pair.points.iter().all(|point| point.overlap == 0.0) =>
+        {
+            let [slave, master] = [slave, master].map(|surface| surface.by_chords(&model.mesh.undeformed()));
+            if slave * master < 0.0 { slave + master } else { 0.0 }
+        }
+        _ => 0.0,
+    }
+}
+
 /// Elastic energy of bodies and contacts, of what has changed since the start [F·L]. Tractions whose change the bodies bear deform
 /// at least the elements behind them, (p − p₀)²/2 h/(λ + 2G): where less is stored, the start was out of balance at the surfaces
 /// alone, as edges are that stand for a curve, and the penalties only take that up.
@@ -308,7 +377,7 @@ fn changed(model: &Model, state: &State, stresses: &[Stress]) -> f64 {
 }
 
 impl Give {
-    fn record(&mut self, model: &Model, state: &State, stresses: &[Stress]) {
+    fn record(&mut self, model: &Model, state: &State, stresses: &[Stress], chords: &[f64]) {
         let elastic = changed(model, state, stresses);
         if elastic <= self.elastic {
             return;
@@ -319,7 +388,11 @@ impl Give {
             pair.points.iter().any(|point| point.position.iter().any(|&(node, _)| !model.massless[node]))
         };
         let moves = solved && model.steps.iter().any(|step| step.scheme.is_dynamic());
-        let of = |(pair, states): (&ContactPair, &Vec<ContactState>)| Penalties {
+        let force =
+            |states: &[ContactState]| states.iter().map(|state| state.friction.pressure * state.length).sum::<f64>();
+        let of = |((pair, states), &chords): ((&ContactPair, &Vec<ContactState>), &f64)| Penalties {
+            chords,
+            by_chords: chords * force(states),
             contact: pair.name.clone(),
             energy: Springs::of(pair, states).numerical,
             stiffness: [
@@ -332,7 +405,7 @@ impl Give {
             by_steps: solved,
             rings: moves && !pair.tied && has_mass(pair),
         };
-        self.penalties = model.contacts.iter().zip(&state.contacts).map(of).collect();
+        self.penalties = model.contacts.iter().zip(&state.contacts).zip(chords).map(of).collect();
         (self.elastic, self.time) = (elastic, state.time);
     }
 
@@ -342,10 +415,24 @@ impl Give {
         (self.elastic > 0.0).then(|| penalties / self.elastic)
     }
 
-    /// Warnings about contacts that give way, with what to give for less.
+    /// Warnings about contacts that give way, with what to give for less, and about edges that do not follow their curves.
     fn concerns(&self) -> Vec<String> {
         let bodies = self.penalties.iter().filter(|of| of.on_bodies);
-        bodies.flat_map(|of| [0, 1].into_iter().filter_map(|way| self.concern(of, way))).collect()
+        let give_way = bodies.flat_map(|of| [0, 1].into_iter().filter_map(|way| self.concern(of, way)));
+        give_way.chain(self.penalties.iter().filter_map(|of| self.concern_of_chords(of))).collect()
+    }
+
+    fn concern_of_chords(&self, Penalties { contact, chords, by_chords, .. }: &Penalties) -> Option<String> {
+        let share = by_chords.abs() / (2.0 * self.elastic);
+        let what = if *chords < 0.0 { "leave a gap" } else { "make an overlap" };
+        (share > BY_CHORDS).then(|| {
+            format!(
+                "contact `{contact}`: straight edges that stand for curves {what} of {:.3e} in the mean, so that displacements, or forces where \
+                 these are prescribed, are off by some {:.0} %; take quadratic elements, edges of equal length on both sides, or shorter ones",
+                chords.abs(),
+                100.0 * share
+            )
+        })
     }
 
     fn concern(
@@ -412,11 +499,9 @@ fn round_off(model: &Model, Scales { part, stiffness, contacts }: &Scales, state
 /// Remedy for an energy error in a step.
 fn remedy(model: &Model, step: &Step) -> &'static str {
     let keeps_all = match step.scheme {
-        Scheme::Static => return "take shorter increments (dt.max, dt.min)",
+        Scheme::Static => return STATIC,
         Scheme::QuasiDynamic { .. } => return "take fewer steps per row of results (quasi_dynamic.every)",
-        Scheme::Explicit { .. } => {
-            return "lower the safety of the explicit scheme, or give the bodies viscosity (damping.stiffness)";
-        }
+        Scheme::Explicit { .. } => return "lower the safety of the explicit scheme",
         Scheme::Wilson { .. } => {
             return "wilson overshoots sudden changes that the increments do not resolve, and damps the rest of such motions: take \
                     another scheme (generalized_alpha), or shorter increments (dt.max)";
@@ -434,16 +519,15 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
     }
     match (keeps_all, rings) {
         (true, true) => {
-            "impact excites oscillations that the increments do not resolve: make the contact `massless`, take a \
-             scheme that damps (hht), a smaller alpha_n, or shorter increments (dt.error)"
+            "impact excites oscillations that the increments do not resolve: make the contact `massless`, and take shorter increments \
+             (dt.error), or against a gain a scheme that damps (hht)"
         }
         (true, false) => {
-            "take a scheme that damps frequencies that the increments do not resolve (hht), or shorter increments \
-             (dt.error)"
+            "take shorter increments (dt.error), or against a gain a scheme that damps frequencies that they do not resolve (hht)"
         }
         (false, true) => {
             "frequencies that the increments do not resolve are damped, or excited by impact: make the contact `massless`, \
-             or take shorter increments (dt.error)"
+             and take shorter increments (dt.error)"
         }
         (false, false) => {
             "the scheme damps frequencies that the increments do not resolve: take shorter increments (dt.error)"

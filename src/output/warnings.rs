@@ -56,6 +56,8 @@ pub struct Warnings {
     open: BTreeMap<usize, (String, Option<f64>)>,
     /// Contacts that have closed once
     closed: BTreeSet<usize>,
+    /// Whether increments were explicit, of which only rows of the history are seen
+    explicit: bool,
     /// Unstable equilibria that were accepted
     unstable: Instability,
     /// Friction in increments that are too long for it
@@ -120,6 +122,7 @@ impl Observer for Warnings {
             }
             let fading = model.steps[0].span.share(state.time) < 1.0 && pair.points.iter().any(|p| p.overlap > 0.0);
             let explicit = matches!(attempt.step.scheme, Scheme::Explicit { .. });
+            self.explicit |= explicit;
             self.never_closed(number, pair, states);
             if !explicit || attempt.ends_step(state) {
                 self.deep_unseen(number, pair, state.time, &x);
@@ -138,7 +141,8 @@ impl Observer for Warnings {
             let near = gap.map_or("no slave point had a projection on the master".into(), |gap| {
                 format!("its smallest gap was {gap:.3e}")
             });
-            self.list.push(format!("contact `{name}` has never closed: {near}"));
+            let where_seen = if self.explicit { " at any row of the history (output.interval)" } else { "" };
+            self.list.push(format!("contact `{name}` has never closed{where_seen}: {near}"));
         }
         self.list.extend(self.unstable.message());
         self.list.extend(self.coarse.tell());
@@ -319,7 +323,8 @@ impl Warnings {
             let [before, after] = apart([attempt.old, state].map(|state| until.force(&state.reaction)));
             let Until { part, on, value, .. } = until;
             self.list.push(format!(
-                "step `{name}`, t = {}: {} of `{on}` jumps from {before} to {after}, past {value}, where the step ends",
+                "step `{name}`, t = {}: {} of `{on}` jumps from {before} to {after}, past {value}, where the step ends: \
+                 where a load or support jumps let it grow, where bodies snap through take a value beyond, or a step with inertia",
                 time_text(state.time),
                 part.name()
             ));
@@ -340,7 +345,7 @@ impl Warnings {
                 (pivots, false) => format!("{pivots} pivots of the tangent were nearly zero and were replaced"),
                 (pivots, true) => format!("{pivots} pivots of the tangent were nearly zero; a slower solver was used"),
             };
-            self.list.push(format!("{start}: {found}; the equations are solved, but a body may be barely constrained"));
+            self.list.push(format!("{start}: {found}; the equations are solved, but a body may be barely constrained: support it, or hold it by a spring"));
         }
     }
 

@@ -10,6 +10,7 @@ mod moving;
 mod periodic;
 mod points;
 mod random;
+mod remedies;
 mod rigid_bodies;
 mod rings;
 mod search;

@@ -1,0 +1,219 @@
+//! What a warning advises, followed: the warning goes, no other comes in its place, and the answer is nearer to the right one. And right runs
+//! beside it, in which there is nothing to tell.
+
+use std::sync::Arc;
+
+use fecontact::model::state::State;
+use fecontact::output::warnings::Warnings;
+use serde_json::{Value, json};
+
+use crate::common::{self, Finished};
+
+/// All warnings of a run that ends as it should, before and after it.
+fn told(case: &Value) -> Vec<String> {
+    let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(case)));
+    fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
+    let all: Vec<String> = model.warnings().into_iter().chain(warnings.list).collect();
+    for told in &all {
+        assert!(common::warnings::is_listed(told), "docs/reference/warnings.md has no entry for: {told}");
+    }
+    all
+}
+
+fn has(told: &[String], words: &str) -> bool {
+    told.iter().any(|told| told.contains(words))
+}
+
+fn elastic(model: &str) -> Value {
+    json!({"material": {"model": model, "E": 1000, "nu": 0.25, "density": 0.01}})
+}
+
+fn rectangle(body: &str, [x, y]: [[f64; 2]; 2], elements: [usize; 2]) -> Value {
+    let sides = ["bottom", "right", "top", "left"].map(|side| format!("{body}_{side}"));
+    let corners = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
+    json!({"body": body, "corners": corners, "elements": elements, "sides": sides})
+}
+
+/// A block of 4 × 2 on a rigid base.
+fn block(master: &Value, model: &str, step: Value) -> Value {
+    json!({
+        "mesh": {"blocks": [rectangle("block", [[0.0, 4.0], [0.0, 2.0]], [8, 4])]},
+        "bodies": {"block": elastic(model)},
+        "contacts": {"base": {"slave": "block_bottom", "master": master, "friction": {"law": "coulomb", "mu": 0.3}}},
+        "steps": [step]
+    })
+}
+
+fn plane() -> Value {
+    json!({"plane": {"point": [0, 0], "normal": [0, 1]}})
+}
+
+/// Two rings of straight or quadratic edges, of which the outer one is pressed on the inner one by a pressure of 1 on its outside; so many
+/// edges along a quarter, and so far apart.
+fn rings([inner, outer]: [usize; 2], kind: &str, apart: f64) -> Value {
+    let ring = |body: &str, n: usize, [a, b]: [f64; 2]| {
+        let sides = ["bottom", "outside", "top", "inside"].map(|side| format!("{body}_{side}"));
+        json!({"body": body, "corners": [[a, 0], [b, 0], [0, b], [0, a]], "arcs": [null, [0, 0], null, [0, 0]], "elements": [3, n],
+               "kind": kind, "sides": sides})
+    };
+    let hold = |on: &str, along: &str| json!({"on": on, along: 0});
+    json!({
+        "mesh": {"blocks": [ring("inner", inner, [1.0, 2.0 - apart]), ring("outer", outer, [2.0, 3.0])]},
+        "bodies": {"inner": elastic("linear"), "outer": elastic("linear")},
+        "contacts": {"fit": {"slave": "outer_inside", "master": "inner_outside", "friction": {"law": "frictionless"}}},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.05},
+                   "supports": [hold("inner_bottom", "uy"), hold("outer_bottom", "uy"), hold("inner_top", "ux"), hold("outer_top", "ux")],
+                   "loads": [{"on": "outer_outside", "pressure": 1}]}]
+    })
+}
+
+/// By how much the outer ring moves inwards, at its outside on the x axis.
+fn inwards(run: &Finished) -> f64 {
+    let nodes = &run.model.mesh.nodes;
+    let at = (0..nodes.len()).find(|&node| (nodes[node].x - 3.0).abs() + nodes[node].y.abs() < 1e-9);
+    -run.last().displacement[2 * at.expect("a node on the axis")]
+}
+
+/// Chords of 16 edges on the bore leave 1.25e-3 to those of 12 on the shaft: of rings that touch along a circle the outer one moves further
+/// inwards by a third, and of rings apart by 2e-3 by a fifth. By Lamé's solution with ν = 1/4, rings without a gap between them are one of
+/// 1 ≤ r ≤ 3, u = (1 + ν)/E p b²/(b² − a²) ((1 − 2ν) b + a²/b) = 1.25e-3 · 9/8 · (3/2 + 1/3) = 2.578e-3 at its outside.
+#[test]
+fn edges_that_leave_a_gap_between_curves_are_told() {
+    let words = "straight edges that stand for curves";
+    let closed_form = 2.578e-3;
+    let quadratic = common::finish(&rings([12, 16], "Q8", 0.0));
+    common::close("quadratic edges", inwards(&quadratic), closed_form, 0.002 * closed_form);
+    for apart in [0.0, 2e-3] {
+        let right = inwards(&common::finish(&rings([12, 16], "Q8", apart)));
+        let off = |elements| inwards(&common::finish(&rings(elements, "Q4", apart))) / right - 1.0;
+        let coarse = told(&rings([12, 16], "Q4", apart));
+        assert!(has(&coarse, words) && has(&coarse, "leave a gap of 1.24"), "{coarse:?}");
+        assert!(off([12, 16]) > 0.15, "{}", off([12, 16]));
+        for (elements, kind) in [([14, 14], "Q4"), ([48, 64], "Q4"), ([12, 16], "Q8")] {
+            let better = told(&rings(elements, kind, apart));
+            assert!(!has(&better, words), "{elements:?} {kind}: {better:?}");
+        }
+        assert!(off([14, 14]).abs() < 0.01 && off([48, 64]) < 0.025, "{} {}", off([14, 14]), off([48, 64]));
+    }
+    // Counted from where the surfaces are there is no gap.
+    let mut case = rings([12, 16], "Q4", 0.0);
+    case["contacts"]["fit"]["initial"] = json!({"pressure": 0});
+    assert!(!has(&told(&case), words));
+    common::close("from where they are", inwards(&common::finish(&case)), closed_form, 0.01 * closed_form);
+}
+
+/// A load that is there at once does its work in one increment, whatever its length: that is told, and where it grows there is nothing to tell.
+/// What comes little by little is told with shorter increments alone, and they end it.
+#[test]
+fn work_of_a_load_that_jumps_is_told_as_such() {
+    let pulled = |load: Value, dt: f64| {
+        let mut case = block(
+            &plane(),
+            "neo_hookean",
+            json!({"name": "pull", "duration": 1, "dt": {"initial": dt},
+                   "loads": [{"on": "block_left", "spring": {"kx": 50}}, {"on": "block_right", "total_force": {"x": load}}]}),
+        );
+        case["contacts"]["base"]["initial"] = json!({"pressure": 1, "traction": 0, "balanced": true});
+        case["contacts"]["base"]["sliding"] = json!("small");
+        told(&case)
+    };
+    for dt in [0.1, 0.02] {
+        let at_once = pulled(json!("3"), dt);
+        let words = format!("in the one to t = {dt}, 100 % of it, stays: where a load or support jumps, let it grow");
+        assert!(has(&at_once, "energy balance violated") && has(&at_once, &words), "{at_once:?}");
+    }
+    assert!(!has(&pulled(json!(3), 0.1), "energy balance"));
+
+    let crushed = |dt: f64| {
+        let step = json!({"name": "crush", "duration": 1, "dt": {"initial": dt}, "supports": [{"on": "block_top", "ux": 0, "uy": -0.8}]});
+        told(&block(&plane(), "neo_hookean", step))
+    };
+    let coarse = crushed(0.25);
+    assert!(has(&coarse, "in step `crush`: take shorter increments (dt.initial, dt.max)"), "{coarse:?}");
+    assert!(!has(&coarse, "jumps"), "{coarse:?}");
+    assert_eq!(crushed(0.05), Vec::<String>::new());
+}
+
+/// A fluid that is in a part of a fault from the very start counts as there before the run, whether one point or more of them have it; one
+/// that comes there is told no more, nor one that fades out along the surface. It slips sixteen times as far then.
+#[test]
+fn a_fluid_that_is_in_a_zone_at_once_is_told() {
+    let fault = |fluid: &str, method: &str| {
+        json!({
+            "mesh": {"blocks": [rectangle("lower", [[-4.0, 4.0], [-2.0, 0.0]], [32, 6]), rectangle("upper", [[-4.0, 4.0], [0.0, 2.0]], [32, 6])]},
+            "bodies": {"lower": elastic("linear"), "upper": elastic("linear")},
+            "contacts": {"fault": {
+                "slave": "upper_bottom", "master": "lower_top", "method": method, "sliding": "small", "fluid_pressure": fluid,
+                "friction": {"law": "coulomb", "mu": 0.6}, "initial": {"pressure": 2, "traction": 1, "balanced": true}}},
+            "steps": [{"name": "inject", "duration": 1, "dt": {"initial": 0.1},
+                       "supports": [{"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": 0, "uy": 0}]}]
+        })
+    };
+    let zone = "1.2*erfc(max(0, abs(x) - 0.3)/(2*sqrt(0.1*t + 1e-12)))";
+    let from_zero = "1.2*erfc((max(0, abs(x) - 0.3) + 1e-9)/(2*sqrt(0.1*t + 1e-30)))";
+    let fading = "1.2*max(0, 1 - abs(x)/0.6) + 0.5*t";
+    for method in ["node_to_segment", "gauss_to_segment"] {
+        let is_told = |fluid: &str| has(&common::model(&fault(fluid, method)).warnings(), "and none beside it");
+        assert_eq!([zone, from_zero, fading, "0.5 + 0.5*t"].map(is_told), [true, false, false, false], "{method}");
+    }
+    let slip = |fluid: &str| {
+        let run = common::finish(&fault(fluid, "node_to_segment"));
+        run.last().contacts[0].iter().map(|point| point.friction.plastic_slip.abs()).sum::<f64>()
+    };
+    assert!(slip(from_zero) > 10.0 * slip(zone));
+}
+
+/// Of explicit increments only rows of the history are seen: a block that has bounced between them is not said never to have touched.
+#[test]
+fn a_bounce_between_rows_is_not_denied() {
+    let mut case = block(
+        &json!({"plane": {"point": [0, -0.05], "normal": [0, 1]}}),
+        "neo_hookean",
+        json!({"name": "fall", "duration": 0.4, "dt": {"initial": 0.01}, "scheme": {"explicit": {"safety": 0.2}}}),
+    );
+    case["initial_velocity"] = json!({"block": [0, -1]});
+    case["contacts"]["base"]["normal"] = json!({"alpha_n": 4e6});
+    let run = common::finish(&case);
+    let upwards = |state: &State| state.velocity.iter().skip(1).step_by(2).sum::<f64>();
+    let [before, after] = [&run.states[0], run.last()].map(upwards);
+    assert!(before < 0.0 && after > 0.0, "it bounces: {before} {after}");
+    let told = told(&case);
+    assert!(told.iter().all(|told| !told.contains("has never closed:")), "{told:?}");
+    assert!(has(&told, "has never closed at any row of the history (output.interval)"), "{told:?}");
+}
+
+/// Times of output before a step that may end early are as sure as any; lines that a slave looks at from their solid are to be turned; and of
+/// two sides the one with fluid in its pores is to be the slave.
+#[test]
+fn what_is_told_before_the_run_says_what_helps() {
+    let press = |y: f64, until: Value| {
+        json!({"name": format!("to {y}"), "duration": 1, "dt": {"initial": 0.25},
+        "supports": [{"on": "block_top", "ux": 0, "uy": y}], "until": until})
+    };
+    let mut case = block(&plane(), "linear", press(-0.002, json!(null)));
+    case["steps"].as_array_mut().expect("steps").push(press(-0.004, json!({"on": "block_top", "fy": -6})));
+    for (time, is_told) in [(0.5, false), (1.0, false), (1.5, true)] {
+        case["output"] = json!({"times": [time]});
+        assert_eq!(has(&common::model(&case).warnings(), "may end early"), is_told, "{time}");
+    }
+    let line = |points: Value| {
+        common::model(&block(&json!({"polyline": {"points": points}}), "linear", press(-0.002, json!(null)))).warnings()
+    };
+    assert!(has(&line(json!([[5, 0], [-1, 0]])), "and that the solid is on the right of the lines"));
+    assert_eq!(line(json!([[-1, 0], [5, 0]])), Vec::<String>::new());
+
+    let mut wet = json!({
+        "mesh": {"blocks": [rectangle("ground", [[0.0, 8.0], [-2.0, 0.0]], [8, 4]), rectangle("block", [[2.0, 6.0], [0.0, 2.0]], [8, 4])]},
+        "bodies": {"ground": elastic("linear"), "block": elastic("linear")},
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": {"law": "coulomb", "mu": 0.3}}},
+        "steps": [press(-0.002, json!(null))]
+    });
+    wet["bodies"]["ground"]["pore_fluid"] = json!({"bulk_modulus": 2e5, "porosity": 0.4});
+    wet["bodies"]["ground"]["element"] = json!("f_bar");
+    let words = "body `ground` bears: make it the slave and take that part from the pores of the slave";
+    assert!(has(&common::model(&wet).warnings(), words));
+    let base = &mut wet["contacts"]["base"];
+    (base["slave"], base["master"], base["fluid_pressure"]) =
+        (json!("ground_top"), json!("block_bottom"), json!("of_bodies"));
+    assert_eq!(common::model(&wet).warnings(), Vec::<String>::new());
+}
