@@ -83,9 +83,18 @@ fn message(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> St
              expressions, such as \"-9.81\" for a gravity, which act from the start",
             step.name
         ),
-        false => "check initial_stress against gravity and the density, loads on free sides, and what contacts carry at the start \
-                  (initial, with of_bodies), or let it settle in a static step"
-            .into(),
+        false => {
+            let settle = match step.scheme.is_dynamic() {
+                true => "let it settle in a static step before".into(),
+                false => {
+                    format!("let it settle in step `{}`, at the end of which displacements begin to count", step.name)
+                }
+            };
+            format!(
+                "check initial_stress against gravity and the density, loads on free sides, and what contacts carry at the start \
+                 (initial, with of_bodies), or {settle}"
+            )
+        }
     };
     format!(
         "body `{}` is not in equilibrium under its initial stress: the imbalance is {percent} % of the acting forces, \

@@ -504,7 +504,9 @@ fn concerns(
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
     let law = pair.ask_law(point, [time, time], |law| law.description).ok();
-    let limit = law.and_then(|law| law.uniqueness_limit()).filter(|limit| pressure > *limit);
+    let slid = contact.friction.plastic_increment.abs();
+    let limit = law.filter(|law| slid >= law.unique_slip).and_then(|law| law.uniqueness_limit());
+    let limit = limit.filter(|limit| pressure > *limit);
     let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
     let yields = yields_work(&old.friction, &contact.friction).map(|message| (Kind::YieldsWork, message));

@@ -217,3 +217,48 @@ fn what_is_told_before_the_run_says_what_helps() {
         (json!("ground_top"), json!("block_bottom"), json!("of_bodies"));
     assert_eq!(common::model(&wet).warnings(), Vec::<String>::new());
 }
+
+/// Under rate-and-state friction strength grows with the slip rate by a/Δλ and falls with slip by b/D_c at most: up to Δλ = D_c a/b an increment
+/// has one response, however soft the contact. A stiff block that creeps at the rate of its top, in increments whose slip is controlled, is not
+/// told of several, and slips all the way; one in increments of 10 D_c is.
+#[test]
+fn creep_in_short_increments_has_one_response() {
+    let crept = |dt: Value| {
+        let step = json!({"name": "creep", "duration": 10, "dt": dt, "supports": [{"on": "block_top", "ux": {"rate": 1e-3}, "uy": 0}]});
+        let mut case = block(&plane(), "linear", step);
+        let contact = &mut case["contacts"]["base"];
+        contact["friction"] = json!({"law": "rate_and_state", "f_0": 0.6, "a": 0.015, "b": 0.01, "D_c": 1e-4, "V_0": 1e-3, "alpha_t": 200});
+        contact["initial"] = json!({"pressure": 5, "traction": 3, "balanced": true});
+        contact["sliding"] = json!("small");
+        let run = common::finish(&case);
+        let slips: Vec<f64> = run.last().contacts[0].iter().map(|point| point.friction.plastic_slip.abs()).collect();
+        (slips.iter().sum::<f64>() / slips.len() as f64, has(&told(&case), "the response is not unique"))
+    };
+    let (slip, is_told) = crept(json!({"initial": 0.05}));
+    common::close("slip at the rate of the top", slip, 1e-2, 1e-4);
+    assert!(!is_told);
+    assert!(crept(json!({"initial": 1, "error": null})).1);
+}
+
+/// A slope finds its stress in a first static step: the advice is to let it. Before a motion it is a step before.
+#[test]
+fn what_may_settle_is_told_where() {
+    let slope = |scheme: Value| {
+        let mut block = rectangle("soil", [[0.0, 10.0], [-10.0, 0.0]], [5, 5]);
+        block["corners"][2] = json!([5, 0]);
+        let material = json!({"model": "linear", "E": 5000, "nu": 0.3, "density": 1});
+        common::model(&json!({
+            "mesh": {"blocks": [block]},
+            "bodies": {"soil": {"material": material, "initial_stress": {"geostatic": {"surface": 0, "weight": 18, "K0": 0.5}}}},
+            "steps": [{"name": "rest", "duration": 1, "scheme": scheme, "loads": [{"on": "soil", "gravity": {"y": "-18"}}],
+                       "supports": [{"on": "soil_bottom", "ux": 0, "uy": 0}, {"on": "soil_left", "ux": 0}]}]
+        }))
+        .warnings()
+    };
+    let [first, moving] = [json!("static"), json!({"newmark": {}})].map(slope);
+    assert!(
+        first[0].ends_with("or let it settle in step `rest`, at the end of which displacements begin to count"),
+        "{first:?}"
+    );
+    assert!(moving[0].ends_with("or let it settle in a static step before"), "{moving:?}");
+}

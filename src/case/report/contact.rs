@@ -51,11 +51,14 @@ fn initial_tractions(initial: &InitialTractions, pair: &ContactPair) -> String {
     format!("starts closed: pressure {p}, traction {q}{balanced}; mu {mu}, structure {structure}")
 }
 
-/// Warns of an initial pressure above the uniqueness bound, which a run meets in its first increment.
+/// Warns of an initial pressure above the uniqueness bound, which a run meets in its first increment unless the law has one response to
+/// little slip.
 pub fn pressed_too_hard(pair: &ContactPair) -> Option<String> {
     let pressed = pair.points.iter().zip(pair.initial.iter().flatten());
+    let pressed = pressed.map(|(point, initial)| (initial.pressure, pair.law(point).description));
     let limits = pressed
-        .filter_map(|(point, initial)| Some((initial.pressure, pair.law(point).description.uniqueness_limit()?)));
+        .filter(|(_, law)| law.unique_slip == 0.0)
+        .filter_map(|(pressure, law)| Some((pressure, law.uniqueness_limit()?)));
     let (pressure, limit) = limits.filter(|(pressure, limit)| pressure > limit).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!("contact `{}`: {}", pair.name, several_answers(pressure, limit)))
 }

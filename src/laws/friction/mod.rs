@@ -280,6 +280,9 @@ pub struct Description {
     pub full_structure: Option<f64>,
     /// Maximum of −d(q/p)/dδ: weakening of friction in fast slip δ, 0 without weakening [1/L]
     pub weakening: f64,
+    /// Slip of an increment up to which its response has no other solution nearby at any pressure, of a law whose strength grows with the
+    /// slip rate; 0 for others [L]
+    pub unique_slip: f64,
     /// D_c: slip over which a state evolves that increments integrate to first order in time, so that the error of their slip
     /// must be small against it; `None` if the state depends on slip alone, or increments integrate it exactly [L]
     pub critical_slip: Option<f64>,
@@ -297,8 +300,8 @@ impl Description {
         self.starting_coefficient.map_or(f64::INFINITY, |coefficient| coefficient * pressure)
     }
 
-    /// Uniqueness bound: pressure above which the rate problem may have several solutions, α_t/weakening, if there is one
-    /// [F/L²]
+    /// Uniqueness bound: pressure above which the rate problem may have several solutions, α_t/weakening, if there is one; in increments that
+    /// slip by less than [`unique_slip`](Self::unique_slip) it has one even so [F/L²]
     pub fn uniqueness_limit(&self) -> Option<f64> {
         let pressure = self.stiffness / self.weakening;
         pressure.is_finite().then_some(pressure)

@@ -271,6 +271,8 @@ impl FrictionLaw for RateAndState {
             variables: &["theta"],
             observables: Some(&["R", "mu", "theta"]),
             weakening: self.coefficients.b / self.coefficients.critical_slip,
+            // d(|q|/p)/dΔλ ≥ a/Δλ − b/D_c by (2) to (5)
+            unique_slip: self.coefficients.a / self.coefficients.b * self.coefficients.critical_slip,
             critical_slip: Some(self.coefficients.critical_slip),
             ..Description::default()
         }
