@@ -120,12 +120,15 @@ pub(super) fn ladder(base: &Base) -> Outcome {
     let mut last = 0.0;
     for (time, row) in &base.record.rows {
         let dt = row.iter().find(|entry| &*entry.column == "dt").map_or(f64::NAN, |entry| entry.value);
-        // What is left of a stage is shared by its last two increments.
+        // What is left of a stage is shared by its last two increments, and the first of them may have been cut.
         let left = (time / stage - SAME).ceil() * stage - time;
-        let rung = 4.0 * (dt / first).log2();
-        if left > 1.5 * dt && (rung - rung.round()).abs() > RUNG {
+        let from_rung = |length: f64| {
+            let rung = 4.0 * (dt / length).log2();
+            (rung - rung.round()).abs()
+        };
+        if left > 1.5 * dt && from_rung(first) > RUNG && from_rung(0.5 * (left + dt)) > RUNG {
             let place = format!("dt at t = {time}, after {last}");
-            return Outcome::Broken(Difference { share: (rung - rung.round()).abs(), place, values: [dt, first] });
+            return Outcome::Broken(Difference { share: from_rung(first), place, values: [dt, first] });
         }
         last = dt;
     }
