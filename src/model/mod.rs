@@ -275,6 +275,7 @@ impl Model {
                 fading: Vec::new(),
                 absent: self.steps.first().map(|step| step.absent.clone()).unwrap_or_default(),
                 births: Arc::default(),
+                last_dt: 0.0,
             }),
             energy: Energy::default(),
         }

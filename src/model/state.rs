@@ -57,8 +57,14 @@ impl State {
     pub fn begin_step(&mut self, absent: &[bool]) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
         let (fading, absent, births) = (Vec::new(), absent.to_vec(), self.step_start.births.clone());
-        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent, births });
+        let last_dt = self.last_dt();
+        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent, births, last_dt });
         (self.dt, self.last_increment) = (0.0, None);
+    }
+
+    /// Δt of the last increment, which may be one of the step before; 0 before the first one [T]
+    pub fn last_dt(&self) -> f64 {
+        if self.dt > 0.0 { self.dt } else { self.step_start.last_dt }
     }
 
     /// Another state in the memory of this one.
@@ -147,6 +153,8 @@ pub struct StepStart {
     pub absent: Vec<bool>,
     /// displacements of the nodes of each element that came into a deformed model [L]
     pub births: Arc<Births>,
+    /// Δt of the increment before the step; 0 at the start of the run [T]
+    pub last_dt: f64,
 }
 
 /// Energies [F·L]; the dissipations and the external work are totals since the start.

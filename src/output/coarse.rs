@@ -36,7 +36,7 @@ impl Coarse {
             for (point, (before, after)) in pair.points.iter().zip(old.contacts[k].iter().zip(&state.contacts[k])) {
                 let critical = pair.ask_law(point, [state.time; 2], |law| law.description.critical_slip);
                 let Some(critical) = critical.ok().flatten() else { continue };
-                let error = error_of_slip([before, after], [old.dt, state.dt]);
+                let error = error_of_slip([before, after], [old.last_dt(), state.dt]);
                 let so_far = self.largest.get(&k).map_or(COARSE, |(share, _)| *share);
                 if error > so_far * critical {
                     let [slip, last] = [after, before].map(|state| state.friction.plastic_increment.abs());

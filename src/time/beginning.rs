@@ -82,7 +82,10 @@ fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Works
     let evaluated = &work.assembler.evaluation.contacts;
     for ((pair, states), found) in model.contacts.iter().zip(&mut state.contacts).zip(evaluated) {
         if step.joins(pair) && step.changes(pair) {
+            let slipped: Vec<f64> = states.iter().map(|state| state.friction.plastic_increment).collect();
             states.clone_from(found);
+            // They were evaluated at rest; how fast they have slipped is what the first increment goes on from.
+            states.iter_mut().zip(slipped).for_each(|(state, slip)| state.friction.plastic_increment = slip);
         }
     }
     let evaluation = &work.assembler.evaluation;

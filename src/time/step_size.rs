@@ -226,7 +226,7 @@ fn slip_error(model: &Model, step: &Step, [old, new]: [&State; 2]) -> LocalError
             let given = error.filter(|_| !step.scheme.is_dynamic() || law.critical_slip.is_some());
             let share = law.critical_slip.zip(slip).map(|(critical, share)| share * critical);
             if let Some(allowed) = given.into_iter().chain(share).reduce(f64::min).filter(|_| !law.is_frictionless) {
-                let estimate = error_of_slip([before, after], [old.dt, new.dt]);
+                let estimate = error_of_slip([before, after], [old.last_dt(), new.dt]);
                 worst = worst.worse(LocalError { estimate, allowed });
             }
         }

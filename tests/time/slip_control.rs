@@ -111,6 +111,36 @@ fn implicit_stick_slip_is_followed_by_default() {
     }
 }
 
+/// Slip that the loads of a new step end at once: the first increment of the step is compared with the last one before it. (Taken for rest,
+/// that one let a single increment pass over all that follows, a hundredth of D_c.) No increment has more than the promised error, and the slip
+/// is that of increments of a fixed length 5000 times shorter.
+#[test]
+fn slip_that_a_new_step_ends_is_followed() {
+    let run = |dt: Value| {
+        let mut case = slider(&json!("static"), &dt);
+        case["contacts"]["base"]["friction"]["a"] = json!(0.015);
+        case["contacts"]["base"]["friction"]["b"] = json!(0.01);
+        let draw = |rate: f64| json!({"on": "block", "spring": {"kx": 125_000, "driver": {"x": {"rate": rate}}}});
+        case["steps"][0]["duration"] = json!(60);
+        case["steps"][0]["loads"][1] = draw(1e-6);
+        let back = json!({"name": "back", "duration": 10, "dt": dt, "loads": [draw(-1e-4)]});
+        case["steps"].as_array_mut().expect("steps").push(back);
+        finish(&case)
+    };
+    let slip_back = |run: &Finished| {
+        let at_end = run.states.iter().rfind(|state| state.time <= 60.0).expect("a state");
+        run.last().contacts[0][0].friction.plastic_slip - at_end.contacts[0][0].friction.plastic_slip
+    };
+    let (own, fine) = (run(json!({"initial": 5})), run(json!({"initial": 1e-3, "error": null})));
+    let [found, exact] = [&own, &fine].map(slip_back);
+    println!("{} increments: slip {found:.4e}, {exact:.4e} in {}", own.report.increments, fine.report.increments);
+    for pair in own.states.windows(2) {
+        let error = 0.5 * pair[1].dt * (rate(&pair[1]) - rate(&pair[0])).abs();
+        assert!(pair[0].increment == 0 || error <= 1.01e-4 * D_C, "{error} at t = {}", pair[1].time);
+    }
+    close("slip", found, exact, 1e-3 * D_C);
+}
+
 /// The control looks at the slip of friction with a D_c only, against its own D_c: another contact, which slides fast and
 /// unsteadily under another law, changes no increment.
 #[test]
