@@ -238,7 +238,7 @@ fn slip_error(model: &Model, step: &Step, [old, new]: [&State; 2]) -> LocalError
 /// first increment of a run, which may start sliding [L].
 fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
     let mut largest = 0.0f64;
-    if old.dt == 0.0 {
+    if old.last_dt() == 0.0 {
         return largest;
     }
     // Frictionless slip has no onset.
@@ -249,7 +249,7 @@ fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
         if before.contact == after.contact {
             continue;
         }
-        let lost = new.dt / old.dt;
+        let lost = new.dt / old.last_dt();
         for (k, (old, new)) in old.contacts[k].iter().zip(&new.contacts[k]).enumerate() {
             if before.points[k] != after.points[k] {
                 largest = largest.max(slip(new).abs());
