@@ -1,7 +1,17 @@
 //! Mortar contact: gap and slip averaged around each slave node, integrated segment by segment.
 //!
-//! The multiplier λ = Σ φ_j t_j is linear from node to node of the slave. (On a quadratic edge the shape functions N_j of the
+//! The multiplier is λ = Σ φ_j t_j, Σ φ_j = 1, with functions that are linear from node to node of the slave:
+//!
+//! ```text
+//! linear edges:     φ_j = 1 at node j, 0 at the others
+//! quadratic edges:  φ_e = 1 on edge e but for the hats of its corners;  φ_c = 1 at corner c, 0 from the middle node on
+//! ```
+//! A corner of a quadratic edge has a hat of its own at an end of the slave, at an angle of more than 45° and beside a linear edge. Two
+//! tractions per edge, at corner and middle node, would be all but undetermined in shear against the three nodes of an edge: each
+//! point that closes leaves a mismatch of the meshes, which a stiff penalty turns into a zigzag of tractions. Surfaces that are
+//! tied or keep facing nodes have such hats all the same ([`Hats::AtNodes`]). (The shape functions N_j of the
 //! ends are partly negative: the gap weighted by them would not be a mean, and forces would oscillate as nodes slide past.)
+//!
 //! Each slave edge is divided at the projections of master nodes along its own normal, and at its middle node; in between, all
 //! functions are smooth, and Gauss quadrature integrates
 //!
@@ -50,10 +60,29 @@ use crate::mesh::shape;
 pub struct Mortar {
     /// Edges (start, end[, middle]), the body on their left
     edges: Vec<Vec<usize>>,
-    /// Edges at each point, with the number of its shape function there
-    at: Vec<Vec<(usize, usize)>>,
+    /// What each point has of its edges
+    at: Vec<Vec<Part>>,
     /// Gauss points around each point, with their lengths multiplied by φ_j
     around: Vec<Vec<SlavePoint>>,
+}
+
+/// φ_j on one of the edges of its point.
+#[derive(Clone, Debug, PartialEq)]
+struct Part {
+    edge: usize,
+    /// The node of the edge, by its number there, at which the point is
+    node: usize,
+    /// φ_j at start, end and middle node; linear in between
+    hat: [f64; 3],
+}
+
+/// Which nodes of quadratic slave edges have a traction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hats {
+    /// The middle node, that of its edge
+    OfEdges,
+    /// All nodes
+    AtNodes,
 }
 
 /// Weights of all points in the committed configuration; constant during the iterations of an increment.
@@ -80,27 +109,41 @@ impl Committed {
 /// Number of points whose committed weights one thread computes at a time.
 const TOGETHER: usize = 64;
 
-/// Nodes of the slave edges as contact points; each side of a corner is a separate point.
-pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<SlavePoint>, Mortar) {
+/// Nodes of the slave edges as contact points, on quadratic edges those that have `hats`; each side of a corner is a separate point.
+pub fn mortar_points(edges: &[Vec<usize>], hats: Hats, positions: &[Vector2<f64>]) -> (Vec<SlavePoint>, Mortar) {
     let direction = |e: usize| (positions[edges[e][1]] - positions[edges[e][0]]).normalize();
+    let goes_on = |e: usize, other: usize| direction(other).dot(&direction(e)) > CORNER;
+    let of_edge = |e: usize| hats == Hats::OfEdges && edges[e].len() == 3;
+    let ends_at = |node: usize, e: usize| {
+        let others = (0..edges.len()).filter(|&other| other != e && edges[other][..2].contains(&node));
+        !others.into_iter().any(|other| of_edge(other) && goes_on(e, other))
+    };
     let mut nodes: Vec<usize> = Vec::new();
-    let mut at: Vec<Vec<(usize, usize)>> = Vec::new();
+    let mut at: Vec<Vec<Part>> = Vec::new();
     for (e, edge) in edges.iter().enumerate() {
-        let local = if edge.len() == 3 { vec![0, 2, 1] } else { vec![0, 1] };
-        for a in local {
-            let joins = |k: &usize| {
-                nodes[*k] == edge[a] && at[*k].iter().all(|&(other, _)| direction(other).dot(&direction(e)) > CORNER)
-            };
+        let corners = [0, 1].map(|a| !of_edge(e) || ends_at(edge[a], e));
+        for a in if edge.len() == 3 { [0, 2, 1].as_slice() } else { &[0, 1] } {
+            let a = *a;
+            let mut hat = [0.0; 3];
+            hat[a] = 1.0;
+            match a {
+                2 if of_edge(e) => hat = [f64::from(!corners[0]), f64::from(!corners[1]), 1.0],
+                2 => {}
+                _ if !corners[a] => continue,
+                _ => {}
+            }
+            let part = Part { edge: e, node: a, hat };
+            let joins = |k: &usize| nodes[*k] == edge[a] && at[*k].iter().all(|other| goes_on(e, other.edge));
             match (0..nodes.len()).rev().find(joins) {
-                Some(k) => at[k].push((e, a)),
+                Some(k) => at[k].push(part),
                 None => {
                     nodes.push(edge[a]);
-                    at.push(vec![(e, a)]);
+                    at.push(vec![part]);
                 }
             }
         }
     }
-    let around = |of: &Vec<(usize, usize)>| of.iter().flat_map(|&(e, a)| gauss_around(&edges[e], a)).collect();
+    let around = |of: &Vec<Part>| of.iter().flat_map(|part| gauss_around(&edges[part.edge], &part.hat)).collect();
     let around: Vec<Vec<SlavePoint>> = at.iter().map(around).collect();
     let shares = |around: &[SlavePoint]| around.iter().flat_map(|point| point.length.clone()).collect();
     let points =
@@ -108,15 +151,15 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
     (points.collect(), Mortar { edges: edges.to_vec(), at, around })
 }
 
-/// Gauss points between the nodes of an edge, whose lengths sum to ∫ φ_a ds.
-fn gauss_around(edge: &[usize], a: usize) -> Vec<SlavePoint> {
+/// Gauss points between the nodes of an edge, whose lengths sum to ∫ φ ds.
+fn gauss_around(edge: &[usize], hat: &[f64; 3]) -> Vec<SlavePoint> {
     let parts: &[[f64; 2]] = if edge.len() == 2 { &[[-1.0, 1.0]] } else { &[[-1.0, 0.0], [0.0, 1.0]] };
     let points = |&[start, end]: &[f64; 2]| {
         let half = 0.5 * (end - start);
         shape::gauss(2).into_iter().map(move |(at, weight)| (start + half * (1.0 + at), half * weight))
     };
     let all = parts.iter().flat_map(points);
-    all.map(|(xi, weight)| (xi, weight * hat(edge.len(), a, xi).0))
+    all.map(|(xi, weight)| (xi, weight * between_nodes(edge.len(), hat, xi).0))
         .filter(|(_, weight)| *weight > 0.0)
         .map(|(xi, weight)| edge_point(edge, xi, weight))
         .collect()
@@ -238,8 +281,8 @@ impl Facing<'_> {
 
     /// Overlapping segment nearest to a point along its edges.
     fn foot(&self, point: usize) -> Option<MasterPoint> {
-        let of_edge = |&(e, a): &(usize, usize)| self.overlaps.0[e].overlaps.iter().map(move |o| (o, NODE_AT[a]));
-        let all = self.mortar.at[point].iter().flat_map(of_edge);
+        let parts = self.mortar.at[point].iter();
+        let all = parts.flat_map(|part| self.overlaps.0[part.edge].overlaps.iter().map(|o| (o, NODE_AT[part.node])));
         let away = |o: &Overlap, at: f64| (at - at.clamp(o.ends[0].xi, o.ends[1].xi)).abs();
         let (nearest, at) = all.min_by(|a, b| away(a.0, a.1).total_cmp(&away(b.0, b.1)))?;
         // Master and slave have the same direction along s.
@@ -252,7 +295,7 @@ impl Facing<'_> {
     fn list(&self, point: usize, nodes: &mut Vec<usize>) {
         nodes.clear();
         let Mortar { edges, at, .. } = self.mortar;
-        let own = || at[point].iter().map(|&(e, _)| e);
+        let own = || at[point].iter().map(|part| part.edge);
         let parts = || own().flat_map(|e| &self.overlaps.0[e].overlaps);
         let slaves = own().flat_map(|e| edges[e].iter().copied());
         let masters = parts().flat_map(|o| self.surface.segments[o.segment].nodes());
@@ -268,14 +311,14 @@ impl Facing<'_> {
     fn average<N: Number>(&self, point: usize, frame: &Frame<N>, averages: &mut Averages<N>) -> bool {
         averages.clear(frame.nodes.len());
         let mut whole = 0.0;
-        for &(e, a) in &self.mortar.at[point] {
+        for &Part { edge: e, ref hat, .. } in &self.mortar.at[point] {
             let edge = &self.mortar.edges[e];
             let chord = frame.at(edge[1]).minus(frame.at(edge[0]));
             let depths = [0, 1].map(|end| frame.depth(frame.at(edge[end])).map_or(1.0, |depth| depth.value()));
             whole += chord.dot(&chord).value().sqrt() * 0.5 * (depths[0] + depths[1]);
             let along = chord.normalized();
             for overlap in &self.overlaps.0[e].overlaps {
-                averages.integrate(edge, a, overlap, &self.surface.segments[overlap.segment], &along, frame);
+                averages.integrate(edge, hat, overlap, &self.surface.segments[overlap.segment], &along, frame);
             }
         }
         averages.length.value() > NEGLIGIBLE * whole
@@ -289,14 +332,15 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// ξ of the nodes of an edge: its ends, then its middle.
 const NODE_AT: [f64; 3] = [-1.0, 1.0, 0.0];
 
-/// φ_a at ξ on an edge of n nodes, and its derivative: linear from node to node.
-fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
-    let width = if n == 2 { 2.0 } else { 1.0 };
-    let away: f64 = xi - NODE_AT[a];
-    match away.abs() < width {
-        true => (1.0 - away.abs() / width, -away.signum() / width),
-        false => (0.0, 0.0),
-    }
+/// φ at ξ on an edge of n nodes from its values there, and its derivative: linear from node to node.
+fn between_nodes(n: usize, &[start, end, middle]: &[f64; 3], xi: f64) -> (f64, f64) {
+    let (low, left, right, width) = match n {
+        2 => (-1.0, start, end, 2.0),
+        _ if xi < 0.0 => (-1.0, start, middle, 1.0),
+        _ => (0.0, middle, end, 1.0),
+    };
+    let slope = (right - left) / width;
+    (left + slope * (xi - low), slope)
 }
 
 /// Tributary length A_j and mortar weights W_ja of a point.
@@ -318,7 +362,7 @@ impl<N: Number> Averages<N> {
     pub fn integrate(
         &mut self,
         edge: &[usize],
-        a: usize,
+        hat: &[f64; 3],
         overlap: &Overlap,
         segment: &Segment,
         along: &DualVector<N>,
@@ -335,7 +379,7 @@ impl<N: Number> Averages<N> {
             let slave = Line::Edge(edge);
             let values = slave.values(&xi);
             let slope = slave.slope(&xi, frame);
-            let (value, rate) = hat(edge.len(), a, xi.value());
+            let (value, rate) = between_nodes(edge.len(), hat, xi.value());
             let position = frame.position(edge.iter().copied(), &values);
             let share = slope.dot(&slope).sqrt().times(&half.scaled(weight)).times(&xi.map(value, rate));
             let share = match frame.depth(&position) {

@@ -151,7 +151,7 @@ fn straight(
 const FACE: f64 = 1e-6;
 
 /// Whether, in the positions of the mesh, nodes of both surfaces face nodes, or nothing.
-fn nodes_meet(slave: &str, master: &str, mesh: &Mesh) -> bool {
+pub fn nodes_meet(slave: &str, master: &str, mesh: &Mesh) -> bool {
     let edges = |group: &str| match mesh.group(group) {
         Ok(Group::Edges(edges)) => edges.iter().map(|edge| edge.nodes.clone()).collect(),
         _ => Vec::new(),

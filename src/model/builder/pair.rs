@@ -47,7 +47,7 @@ use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
 use super::{contact, friction, initial, pores, rigid};
 use crate::contact::master::{Master, Rigid};
-use crate::contact::mortar::{Mortar, mortar_points};
+use crate::contact::mortar::{Hats, Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
@@ -57,7 +57,7 @@ use crate::laws::friction::Offsets;
 use crate::mesh::section::Section;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
-use crate::model::method::{Asked, Chosen, Method, choose};
+use crate::model::method::{Asked, Chosen, Method, choose, nodes_meet};
 
 /// The pairs of contacts, in a run of this regime.
 pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
@@ -219,8 +219,14 @@ fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
 
 /// Method of a contact of edges; `None` for a point group.
 pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chosen> {
-    let Contact { slave, method, points, smooth, .. } = contact;
-    let asked = Asked {
+    let groups = [Some(contact.slave.as_str()), contact.master_group()];
+    contact.area.is_none().then(|| choose(groups, asked(contact, regime), mesh))
+}
+
+/// What a contact says of its method.
+fn asked(contact: &Contact, regime: Regime) -> Asked {
+    let Contact { method, points, smooth, .. } = contact;
+    Asked {
         method: *method,
         points: *points,
         smooth: *smooth,
@@ -230,8 +236,16 @@ pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chos
             contact.master,
             MasterSide::Circle { .. } | MasterSide::Polyline { .. } | MasterSide::Outline { .. }
         ),
-    };
-    contact.area.is_none().then(|| choose([Some(slave), contact.master_group()], asked, mesh))
+    }
+}
+
+/// Nodes of quadratic edges that have a traction. What is tied, keeps nodes that face nodes or waves that a middle node would average
+/// has one at each.
+fn hats(contact: &Contact, mesh: &Mesh, regime: Regime) -> Hats {
+    let asked = asked(contact, regime);
+    let faces = || contact.master_group().is_some_and(|master| nodes_meet(&contact.slave, master, mesh));
+    let at_nodes = contact.tied || asked.explicit || asked.small && faces();
+    if at_nodes { Hats::AtNodes } else { Hats::OfEdges }
 }
 
 /// Slave nodes whose mass is moved away.
@@ -281,7 +295,7 @@ fn slave_points(
         Method::NodeToSegment => (nodal_points(&edges), None),
         Method::GaussToSegment => (gauss_points(&edges, points), None),
         Method::Mortar => {
-            let (points, mortar) = mortar_points(&edges, &mesh.nodes);
+            let (points, mortar) = mortar_points(&edges, hats(contact, mesh, regime), &mesh.nodes);
             (points, Some(mortar))
         }
     })
