@@ -6,7 +6,7 @@ use std::sync::Arc;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
-use fecontact::contact::mortar::mortar_points;
+use fecontact::contact::mortar::{Hats, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, LawsInTime, Presumption};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::{Index, KeptSearch};
@@ -150,7 +150,7 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
         "nodes" | "small" => (nodal_points(&slave), None),
         "gauss" => (gauss_points(&slave, 2), None),
         _ => {
-            let (p, m) = mortar_points(&slave, &nodes);
+            let (p, m) = mortar_points(&slave, Hats::OfEdges, &nodes);
             (p, Some(m))
         }
     };

@@ -8,7 +8,7 @@ use fecontact::contact::force::{
 };
 use fecontact::contact::kinematics::{Kinematics, kinematics};
 use fecontact::contact::master::{Circle, Master, Plane, Polyline, Rigid, Shape};
-use fecontact::contact::mortar::{Mortar, Overlaps, Room, mortar_points};
+use fecontact::contact::mortar::{Hats, Mortar, Overlaps, Room, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::response::PairResponse;
@@ -438,7 +438,7 @@ fn a_rigid_body_that_moves_answers_as_one_at_rest() {
     let before: Positions = rest.iter().map(|x| x - Vector2::new(0.004, 0.001)).collect();
     let shape = Shape::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false });
     let slave = [vec![0, 1]];
-    let (points, mortar) = mortar_points(&slave, &rest);
+    let (points, mortar) = mortar_points(&slave, Hats::OfEdges, &rest);
     for (points, mortar) in [(gauss_points(&slave, 2), None), (points, Some(mortar))] {
         for faced in [true, false] {
             let answer = |rigid: Rigid, before: &Positions, x: &Positions| {
@@ -608,7 +608,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
     ] {
         let slaves = [vec![vec![0, 1], vec![1, 2]], vec![vec![0, 2, 1]]];
         for (slave, moves) in slaves.iter().flat_map(|slave| [(slave, false), (slave, true)]) {
-            let (points, mortar) = mortar_points(slave, &rest);
+            let (points, mortar) = mortar_points(slave, Hats::OfEdges, &rest);
             let rigid = if moves { moving(body.clone(), 3) } else { body.clone().into() };
             let x = if moves { seen(&rest, [0.4, -0.3], 0.7) } else { rest.clone() };
             let pair = ContactPair { mortar: Some(mortar), ..pair(points, Master::Rigid(rigid), SUPER) };
@@ -763,7 +763,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
     let plane = Master::Rigid(plane.into());
     let rough = r#"{"law": "coulomb", "mu": 1e6}"#;
     let by_mortar = |law: &str| {
-        let (points, mortar) = mortar_points(&slave, &x);
+        let (points, mortar) = mortar_points(&slave, Hats::OfEdges, &x);
         ContactPair { mortar: Some(mortar), ..pair(points, surface.clone(), law) }
     };
     for (number, (pair, way)) in [
@@ -843,7 +843,7 @@ fn mortar_tangent_equals_differences() {
         (&quadratic[..], vec![vec![6, 8, 7]]),
     ] {
         let surface = Surface::new(master);
-        let (points, mortar) = mortar_points(&slave, &x);
+        let (points, mortar) = mortar_points(&slave, Hats::OfEdges, &x);
         for law in [SUPER, COULOMB] {
             let pair = pair(points.clone(), Master::Mesh(surface.clone()), law);
             let mut closed = 0;
@@ -867,7 +867,6 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
     let nodes = [-0.6, -0.3, 0.0, 0.15, 0.3].map(on_circle);
     let x: Positions = [Vector2::new(-3.0, 0.01), Vector2::new(3.0, 0.01)].into_iter().chain(nodes).collect();
     let (master, slave) = (Surface::new(&[vec![1, 0]]), [vec![2, 4, 3], vec![4, 6, 5]]);
-    let (points, mortar) = mortar_points(&slave, &x);
     let place = |edge: &[usize], xi: f64| {
         let [start, end, middle] = [0.5 * xi * (xi - 1.0), 0.5 * xi * (xi + 1.0), 1.0 - xi * xi];
         start * x[edge[0]] + end * x[edge[1]] + middle * x[edge[2]]
@@ -878,24 +877,35 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
     };
     let (start, middle, end) = (|xi: f64| (-xi).max(0.0), |xi: f64| 1.0 - xi.abs(), |xi: f64| xi.max(0.0));
     let [first, second] = &slave;
-    let expected = [
+    let at_nodes = vec![
         mean(first, start),
         mean(first, middle),
         mean(first, end) + mean(second, start),
         mean(second, middle),
         mean(second, end),
     ];
+    // The corner in the middle has no traction of its own, the ends have.
+    let of_edges = vec![
+        mean(first, start),
+        mean(first, |xi| 1.0 - (-xi).max(0.0)),
+        mean(second, |xi| 1.0 - xi.max(0.0)),
+        mean(second, end),
+    ];
     let configuration = Configuration::undeformed(&x);
-    let pair = pair(points, Master::Mesh(master.clone()), FRICTIONLESS);
-    let overlaps = overlaps(&pair, &mortar, &master, &configuration);
-    for (k, expected) in expected.into_iter().enumerate() {
-        let mut met = Kinematics::new(false);
-        mortar
-            .facing(&master, &overlaps)
-            .meet(k, None, &configuration, &mut met, &mut Room::default())
-            .expect("the master faces the point");
-        let away = (met.tangent - expected.normalize()).norm();
-        assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.tangent, expected.normalize());
+    for (hats, expected) in [(Hats::AtNodes, at_nodes), (Hats::OfEdges, of_edges)] {
+        let (points, mortar) = mortar_points(&slave, hats, &x);
+        assert_eq!(points.len(), expected.len());
+        let pair = pair(points, Master::Mesh(master.clone()), FRICTIONLESS);
+        let overlaps = overlaps(&pair, &mortar, &master, &configuration);
+        for (k, expected) in expected.into_iter().enumerate() {
+            let mut met = Kinematics::new(false);
+            mortar
+                .facing(&master, &overlaps)
+                .meet(k, None, &configuration, &mut met, &mut Room::default())
+                .expect("the master faces the point");
+            let away = (met.tangent - expected.normalize()).norm();
+            assert!(away < 1e-6, "{hats:?}, point {k}: {:?}, not {:?}", met.tangent, expected.normalize());
+        }
     }
 }
 
@@ -912,7 +922,7 @@ fn nodes_beyond_a_quadratic_edge_do_not_cut_it() {
         let x: Positions = edge.into_iter().chain((-8..=8).map(roof)).collect();
         let configuration = Configuration::undeformed(&x);
         let gaps = |segments: &[Vec<usize>]| -> Vec<f64> {
-            let (surface, (points, mortar)) = (Surface::new(segments), mortar_points(&slave, &x));
+            let (surface, (points, mortar)) = (Surface::new(segments), mortar_points(&slave, Hats::OfEdges, &x));
             let pair = pair(points, Master::Mesh(surface.clone()), FRICTIONLESS);
             let overlaps = overlaps(&pair, &mortar, &surface, &configuration);
             let facing = mortar.facing(&surface, &overlaps);
@@ -1088,7 +1098,7 @@ fn a_law_that_dilates_presses_and_its_tangent_equals_differences() {
     }
     assert!(closed > 8, "{closed} answers were tested");
 
-    let (points, mortar) = mortar_points(&[vec![6, 7], vec![7, 8]], &x);
+    let (points, mortar) = mortar_points(&[vec![6, 7], vec![7, 8]], Hats::OfEdges, &x);
     let surface = Surface::new(&edges);
     let averaged = ContactPair { laws: rides_up(), ..pair(points, Master::Mesh(surface.clone()), COULOMB) };
     let before: Positions =
@@ -1127,7 +1137,7 @@ fn what_is_kept_and_what_is_left_out_changes_no_bit() {
         let surface = || Master::Mesh(Surface::new(&master));
         let smooth = Master::Mesh(Surface::new(&master).smoothed(&x));
         let mortar = |master: Master| {
-            let (points, mortar) = mortar_points(&slave, &x);
+            let (points, mortar) = mortar_points(&slave, Hats::OfEdges, &x);
             ContactPair { mortar: Some(mortar), ..pair(points, master, COULOMB) }
         };
         let pairs = [

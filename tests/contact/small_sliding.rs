@@ -6,7 +6,7 @@ use super::contact::pair as pair_under;
 use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, quadratic};
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::{Circle, Master, Shape};
-use fecontact::contact::mortar::mortar_points;
+use fecontact::contact::mortar::{Hats, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::small_sliding::{LITTLE_SLIP, LITTLE_TURN};
@@ -150,7 +150,7 @@ fn wavy(law: &str, method: &str, gap: f64) -> (ContactPair, Vec<Vector2<f64>>) {
     let edges = [vec![6, 7], vec![7, 8]];
     let (points, mortar) = match method {
         "mortar" => {
-            let (points, mortar) = mortar_points(&edges, &x);
+            let (points, mortar) = mortar_points(&edges, Hats::OfEdges, &x);
             (points, Some(mortar))
         }
         "node_to_segment" => (nodal_points(&edges), None),
