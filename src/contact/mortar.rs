@@ -109,35 +109,25 @@ impl Committed {
 /// Number of points whose committed weights one thread computes at a time.
 const TOGETHER: usize = 64;
 
-/// Nodes of the slave edges as contact points, on quadratic edges those that have `hats`; each side of a corner is a separate point.
+/// Contact points of slave edges: their nodes, on quadratic edges those that have `hats`; each side of a corner is a separate point.
 pub fn mortar_points(edges: &[Vec<usize>], hats: Hats, positions: &[Vector2<f64>]) -> (Vec<SlavePoint>, Mortar) {
     let direction = |e: usize| (positions[edges[e][1]] - positions[edges[e][0]]).normalize();
     let goes_on = |e: usize, other: usize| direction(other).dot(&direction(e)) > CORNER;
-    let of_edge = |e: usize| hats == Hats::OfEdges && edges[e].len() == 3;
-    let ends_at = |node: usize, e: usize| {
-        let others = (0..edges.len()).filter(|&other| other != e && edges[other][..2].contains(&node));
-        !others.into_iter().any(|other| of_edge(other) && goes_on(e, other))
-    };
     let mut nodes: Vec<usize> = Vec::new();
     let mut at: Vec<Vec<Part>> = Vec::new();
     for (e, edge) in edges.iter().enumerate() {
-        let corners = [0, 1].map(|a| !of_edge(e) || ends_at(edge[a], e));
-        for a in if edge.len() == 3 { [0, 2, 1].as_slice() } else { &[0, 1] } {
-            let a = *a;
-            let mut hat = [0.0; 3];
-            hat[a] = 1.0;
-            match a {
-                2 if of_edge(e) => hat = [f64::from(!corners[0]), f64::from(!corners[1]), 1.0],
-                2 => {}
-                _ if !corners[a] => continue,
-                _ => {}
-            }
-            let part = Part { edge: e, node: a, hat };
-            let joins = |k: &usize| nodes[*k] == edge[a] && at[*k].iter().all(|other| goes_on(e, other.edge));
+        let whole = |other: usize| hats == Hats::OfEdges && edges[other].len() == 3;
+        let ends = [0, 1].map(|end| {
+            let others = (0..edges.len()).filter(|&other| other != e && edges[other][..2].contains(&edge[end]));
+            !whole(e) || !others.into_iter().any(|other| whole(other) && goes_on(e, other))
+        });
+        for part in parts(e, edge, whole(e), ends) {
+            let node = edge[part.node];
+            let joins = |k: &usize| nodes[*k] == node && at[*k].iter().all(|other| goes_on(e, other.edge));
             match (0..nodes.len()).rev().find(joins) {
                 Some(k) => at[k].push(part),
                 None => {
-                    nodes.push(edge[a]);
+                    nodes.push(node);
                     at.push(vec![part]);
                 }
             }
@@ -145,10 +135,40 @@ pub fn mortar_points(edges: &[Vec<usize>], hats: Hats, positions: &[Vector2<f64>
     }
     let around = |of: &Vec<Part>| of.iter().flat_map(|part| gauss_around(&edges[part.edge], &part.hat)).collect();
     let around: Vec<Vec<SlavePoint>> = at.iter().map(around).collect();
+    let position = |of: &[Part], node: usize| match of {
+        [part] if hats == Hats::OfEdges && edges[part.edge].len() == 3 => {
+            let edge = &edges[part.edge];
+            edge.iter().copied().zip(shape::edge_values(3, centre(&part.hat))).collect()
+        }
+        _ => vec![(node, 1.0)],
+    };
     let shares = |around: &[SlavePoint]| around.iter().flat_map(|point| point.length.clone()).collect();
-    let points =
-        nodes.iter().zip(&around).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
-    (points.collect(), Mortar { edges: edges.to_vec(), at, around })
+    let point = |((&node, of), around): ((&usize, &Vec<Part>), &Vec<SlavePoint>)| SlavePoint {
+        length: shares(around),
+        position: position(of, node),
+        ..lone_point(node, 0.0)
+    };
+    (nodes.iter().zip(&at).zip(&around).map(point).collect(), Mortar { edges: edges.to_vec(), at, around })
+}
+
+/// The points of edge e, which stands for one traction as a `whole` but for its `ends` that have their own.
+fn parts(e: usize, edge: &[usize], whole: bool, ends: [bool; 2]) -> Vec<Part> {
+    let of_node = |node: usize| {
+        let mut hat = [0.0; 3];
+        hat[node] = 1.0;
+        Part { edge: e, node, hat }
+    };
+    let middle = |_: &usize| match whole {
+        true => Part { hat: [f64::from(!ends[0]), f64::from(!ends[1]), 1.0], ..of_node(2) },
+        false => of_node(2),
+    };
+    let [start, end] = [0, 1].map(|node| ends[node].then(|| of_node(node)));
+    start.into_iter().chain(edge.get(2).map(middle)).chain(end).collect()
+}
+
+/// ∫ φ ξ dξ/∫ φ dξ on a quadratic edge.
+fn centre(&[start, end, middle]: &[f64; 3]) -> f64 {
+    2.0 * (end - start) / (3.0 * (start + end + 2.0 * middle))
 }
 
 /// Gauss points between the nodes of an edge, whose lengths sum to ∫ φ ds.

@@ -74,6 +74,20 @@ impl SlavePoint {
         self.area + self.length.iter().map(weighted).sum::<f64>()
     }
 
+    /// Mean of a function along the undeformed length of a point that is not a node, but a part of edges; else its value there.
+    pub fn mean(&self, value: impl Fn(Vector2<f64>) -> f64, x: &Configuration) -> f64 {
+        if self.position.len() < 2 || self.length.len() < 2 {
+            return value(self.at(x));
+        }
+        let of = |share: &LengthShare| {
+            let length = share.factor * x.combine(&share.tangent).norm() * x.weight(&share.at);
+            let at = share.at.iter().map(|&(node, w)| x.reference(node) * w).sum();
+            Vector2::new(length, length * value(at))
+        };
+        let sum: Vector2<f64> = self.length.iter().map(of).sum();
+        sum.y / sum.x
+    }
+
     /// Current length of the longest edge of the point; `None` without edges [L].
     pub fn edge_length(&self, x: &Configuration) -> Option<f64> {
         // dx/dξ on an edge from −1 to 1 is half its length.

@@ -909,6 +909,26 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
     }
 }
 
+/// ∫ (1 + x + x²) dx from −1 to 2, of three quadratic edges with tractions of their own at both ends: the points' means by their
+/// lengths. A linear profile has these means at the points themselves.
+#[test]
+fn profiles_enter_by_their_means_along_quadratic_edges() {
+    let place = |x: f64| Vector2::new(x, 0.0);
+    let x: Positions = [-1.0, -0.5, 0.0, 0.4, 0.8, 1.4, 2.0].map(place).to_vec();
+    let slave = [vec![2, 0, 1], vec![4, 2, 3], vec![6, 4, 5]];
+    let (points, _) = mortar_points(&slave, Hats::OfEdges, &x);
+    assert_eq!(points.len(), 5, "one an edge, and both ends");
+    let undeformed = Configuration::undeformed(&x);
+    let resultant = |profile: &dyn Fn(f64) -> f64| -> f64 {
+        let of = |point: &SlavePoint| point.mean(|at| profile(at.x), &undeformed) * point.current_length(&undeformed);
+        points.iter().map(of).sum()
+    };
+    common::close("resultant", resultant(&|x| 1.0 + x + x * x), 3.0 + 1.5 + 3.0, 1e-12);
+    for point in &points {
+        common::close("its place", point.mean(|at| at.x, &undeformed), point.at(&undeformed).x, 1e-12);
+    }
+}
+
 /// A quadratic edge whose middle node is off its middle is a parabola that turns back beyond an end, and passes no master node farther
 /// away: such nodes cut it nowhere, so that its gaps are those against the two segments of a roof that are below it. (By Newton's
 /// iterations without a solution they cut it anywhere, at some places of the middle node and not at others.)

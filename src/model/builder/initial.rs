@@ -16,6 +16,7 @@ use crate::contact::surface::SlavePoint;
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::Group;
 use crate::model::Model;
+use crate::model::boundary::Profile;
 use crate::model::scheme::Scheme;
 use crate::model::text::{apart, number, vector};
 
@@ -208,15 +209,23 @@ fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: 
     let tractions = given.traction.clone().unwrap_or_default();
     check_profile(pressures, &at_pressure)?;
     check_profile(&tractions, &at_traction)?;
+    let undeformed = model.mesh.undeformed();
     let mut initial = Vec::with_capacity(pair.points.len());
     for (k, point) in pair.points.iter().enumerate() {
-        let at = position(point, &model.mesh);
-        let (pressure, traction) = (defined(pressures, at, &at_pressure)?, defined(&tractions, at, &at_traction)?);
+        // A point that stands for an edge takes its mean, so that the resultant is that of the profile.
+        let mean = |profile: &Profile, place: &str| -> Checked<f64> {
+            let at = position(point, &model.mesh);
+            defined(profile, at, place)?;
+            let mean = point.mean(|at| profile.value(at), &undeformed);
+            let message = || format!("is not a finite number around ({}, {})", at.x, at.y);
+            if mean.is_finite() { Ok(mean) } else { Err(ModelError::new(place, message())) }
+        };
+        let (pressure, traction) = (mean(pressures, &at_pressure)?, mean(&tractions, &at_traction)?);
         if pressure < 0.0 {
             let message = format!("is {pressure}: must be zero or positive, which is compression");
             return Err(ModelError::new(at_pressure, message));
         }
-        let total = pressure + pair.pore_pressure(k, &model.mesh.undeformed());
+        let total = pressure + pair.pore_pressure(k, &undeformed);
         let message =
             format!("is {pressure}, {total} with the fluid in the pores, which contact cannot carry: raise it");
         refuse_if(total < 0.0, &at_pressure, message)?;
