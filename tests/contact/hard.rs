@@ -242,29 +242,27 @@ fn alpha_t_is_stiff_where_it_is_a_penalty() {
     }
 }
 
-/// A block of T6 on the ridge of a stiff die, by mortar as by default: no increment is cut, and the force is that of Gauss points within
-/// the difference of the methods on so coarse a mesh. (Where nodes of the die far from an edge cut it at random, runs like this stopped.)
+/// A block of T6 on the ridge of a stiff die, by mortar as by default: no increment is cut, and the force is within 3 % of 12.43, to which
+/// Gauss points (12.027, 12.458, 12.436), nodes (12.371, 12.306, 12.375) and mortar (12.714, 12.361, 12.428) come on meshes of one, two
+/// and four times as many elements. (Where nodes of the die far from an edge cut it at random, runs like this stopped.)
 #[test]
 fn triangles_on_a_ridge() {
-    let pressed = |method: Value| {
-        let side = |corners: Value| json!({"body": "die", "corners": corners, "elements": [4, 3], "sides": ["die_bottom", null, "die_top", null]});
-        finish(&json!({
-            "mesh": {"blocks": [
-                side(json!([[-1, -2], [0, -2], [0, 0], [-1, -0.5]])), side(json!([[0, -2], [1, -2], [1, -0.5], [0, 0]])),
-                {"body": "block", "corners": [[-0.8, 0], [0.8, 0], [0.8, 0.6], [-0.8, 0.6]], "elements": [9, 4], "kind": "T6",
-                 "sides": ["block_bottom", null, "block_top", null]}]},
-            "bodies": {"die": {"material": {"model": "neo_hookean", "E": 1e4, "nu": 0.3}},
-                       "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
-            "contacts": {"base": {"slave": "block_bottom", "master": "die_top", "method": method, "friction": {"law": "frictionless"}}},
-            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.1},
-                       "supports": [{"on": "die_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.15}]}]
-        }))
-    };
-    let [mortar, gauss] = [Value::Null, json!("gauss_to_segment")].map(pressed);
-    let [force, expected] = [&mortar, &gauss].map(|run| run.reaction("block_top", run.last())[1]);
-    println!("{} solves, force {force:.4} (Gauss points {expected:.4})", mortar.report.newton_iterations);
-    assert!(mortar.report.cutbacks == 0 && mortar.report.newton_iterations <= 60);
-    close("force", force / expected, 1.0, 0.05);
+    let side = |corners: Value| json!({"body": "die", "corners": corners, "elements": [4, 3], "sides": ["die_bottom", null, "die_top", null]});
+    let run = finish(&json!({
+        "mesh": {"blocks": [
+            side(json!([[-1, -2], [0, -2], [0, 0], [-1, -0.5]])), side(json!([[0, -2], [1, -2], [1, -0.5], [0, 0]])),
+            {"body": "block", "corners": [[-0.8, 0], [0.8, 0], [0.8, 0.6], [-0.8, 0.6]], "elements": [9, 4], "kind": "T6",
+             "sides": ["block_bottom", null, "block_top", null]}]},
+        "bodies": {"die": {"material": {"model": "neo_hookean", "E": 1e4, "nu": 0.3}},
+                   "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
+        "contacts": {"base": {"slave": "block_bottom", "master": "die_top", "friction": {"law": "frictionless"}}},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.1},
+                   "supports": [{"on": "die_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.15}]}]
+    }));
+    let force = run.reaction("block_top", run.last())[1];
+    println!("{} solves, force {force:.4}", run.report.newton_iterations);
+    assert!(run.report.cutbacks == 0 && run.report.newton_iterations <= 60);
+    close("force", force / -12.43, 1.0, 0.03);
 }
 
 fn method(slave: &str, master: Value, n: [usize; 2], explicit: bool) -> Method {
