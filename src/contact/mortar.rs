@@ -1,4 +1,4 @@
-//! Mortar contact: gap and slip averaged around each slave node, integrated segment by segment.
+//! Mortar contact: gap and slip averaged around each slave node or along each quadratic slave edge, integrated segment by segment.
 //!
 //! The multiplier is λ = Σ φ_j t_j, Σ φ_j = 1, with functions that are linear from node to node of the slave:
 //!
@@ -22,7 +22,7 @@
 //! f_a = −Σ_j W_ja t_j
 //! ```
 //!
-//! n_j is the normal of the edges at the node, oriented into the slave: s_j is the direction of ∫ φ_j dx. Since Σ_j φ_j = 1, a
+//! n_j is the normal of the edges at the point, oriented into the slave: s_j is the direction of ∫ φ_j dx. Since Σ_j φ_j = 1, a
 //! uniform pressure produces the exact forces on both sides: the patch test is passed. A node at a corner of more than 45°
 //! counts as one point per side. All variations are computed with [`Dual`] numbers.
 //!
@@ -30,7 +30,7 @@
 //!
 //! # Averages
 //!
-//! Averages around a slave node define its projection on the master.
+//! Averages around a point define its projection on the master.
 //!
 //! # Rigid masters
 //!

@@ -24,7 +24,7 @@ pub enum Method {
     NodeToSegment,
     /// At Gauss points of the slave's edges
     GaussToSegment,
-    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes
+    /// Averaged around the slave's nodes, or along its quadratic edges, integrated exactly over non-matching meshes
     Mortar,
 }
 
