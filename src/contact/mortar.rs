@@ -8,8 +8,8 @@
 //! ```
 //! A corner of a quadratic edge has a hat of its own at an end of the slave, at an angle of more than 45° and beside a linear edge. Two
 //! tractions per edge, at corner and middle node, would be all but undetermined in shear against the three nodes of an edge: each
-//! point that closes leaves a mismatch of the meshes, which a stiff penalty turns into a zigzag of tractions. Surfaces that are
-//! tied or keep facing nodes have such hats all the same ([`Hats::AtNodes`]). (The shape functions N_j of the
+//! point that closes leaves a mismatch of the meshes, which a stiff penalty turns into a zigzag of tractions. Some surfaces
+//! have such hats all the same ([`Hats::AtNodes`]). (The shape functions N_j of the
 //! ends are partly negative: the gap weighted by them would not be a mean, and forces would oscillate as nodes slide past.)
 //!
 //! Each slave edge is divided at the projections of master nodes along its own normal, and at its middle node; in between, all

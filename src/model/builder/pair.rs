@@ -240,11 +240,13 @@ fn asked(contact: &Contact, regime: Regime) -> Asked {
 }
 
 /// Nodes of quadratic edges that have a traction. What is tied, keeps nodes that face nodes or waves that a middle node would average
-/// has one at each.
+/// has one at each; so has what carries an initial stress of its bodies: constant along edges, a pressure that grows with depth would not
+/// be in equilibrium with it at each node.
 fn hats(contact: &Contact, mesh: &Mesh, regime: Regime) -> Hats {
     let asked = asked(contact, regime);
     let faces = || contact.master_group().is_some_and(|master| nodes_meet(&contact.slave, master, mesh));
-    let at_nodes = contact.tied || asked.explicit || asked.small && faces();
+    let under_stress = contact.initial.as_ref().is_some_and(|initial| initial.of_bodies || initial.balanced);
+    let at_nodes = contact.tied || asked.explicit || under_stress || asked.small && faces();
     if at_nodes { Hats::AtNodes } else { Hats::OfEdges }
 }
 
