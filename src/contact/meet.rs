@@ -186,7 +186,7 @@ impl ContactPair {
         let overlaps = match (&self.mortar, &self.master) {
             (Some(mortar), Master::Mesh(surface)) if self.small.is_none() => {
                 let mut overlaps = Overlaps::default();
-                mortar.cut(surface, &index, x, &mut overlaps);
+                mortar.cut(surface, &index, [x, x], &mut overlaps);
                 Some(overlaps)
             }
             _ => None,

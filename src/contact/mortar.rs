@@ -46,7 +46,7 @@ use super::dual::{Dual, DualVector, Number};
 use super::kinematics::{Kinematics, Lever, Meeting, past_rigid};
 use super::master::{Master, Rigid};
 pub use super::mortar_segments::Overlaps;
-use super::mortar_segments::{CutEdge, Frame, Line, Overlap};
+use super::mortar_segments::{CutEdge, Frame, Line, Overlap, between_nodes, oblique};
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
 use super::projection::{Projection, tangent_of};
 use super::search::{Index, KeptSearch};
@@ -59,7 +59,9 @@ use crate::mesh::shape;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mortar {
     /// Edges (start, end[, middle]), the body on their left
-    edges: Vec<Vec<usize>>,
+    pub edges: Vec<Vec<usize>>,
+    /// Largest depth of each behind a master segment that it may be in contact with: half the thickness of its body [L]
+    pub depths: Vec<f64>,
     /// What each point has of its edges
     at: Vec<Vec<Part>>,
     /// Gauss points around each point, with their lengths multiplied by φ_j
@@ -148,7 +150,7 @@ pub fn mortar_points(edges: &[Vec<usize>], hats: Hats, positions: &[Vector2<f64>
         position: position(of, node),
         ..lone_point(node, 0.0)
     };
-    (nodes.iter().zip(&at).zip(&around).map(point).collect(), Mortar { edges: edges.to_vec(), at, around })
+    (nodes.iter().zip(&at).zip(&around).map(point).collect(), Mortar { depths: vec![f64::INFINITY; edges.len()], edges: edges.to_vec(), at, around })
 }
 
 /// The points of edge e, which stands for one traction as a `whole` but for its `ends` that have their own.
@@ -198,7 +200,7 @@ impl Mortar {
         *section = x.section();
         kept.clear();
         kept.extend(places());
-        self.cut(surface, &Index::kept(master, [x, x], search), x, overlaps);
+        self.cut(surface, &Index::kept(master, [x, x], search), [x, x], overlaps);
         weights.resize_with(self.at.len(), Weights::default);
         rooms.resize_with(self.at.len().div_ceil(TOGETHER), Room::default);
         let parts = weights.par_chunks_mut(TOGETHER).zip(rooms).enumerate();
@@ -208,11 +210,11 @@ impl Mortar {
         });
     }
 
-    /// Divides all slave edges into mortar segments.
-    pub fn cut(&self, surface: &Surface, index: &Index, x: &Configuration, overlaps: &mut Overlaps) {
+    /// Divides all slave edges into mortar segments in the second configuration; the first is the committed one.
+    pub fn cut(&self, surface: &Surface, index: &Index, x: [&Configuration; 2], overlaps: &mut Overlaps) {
         overlaps.0.resize_with(self.edges.len(), CutEdge::default);
-        let edges = self.edges.par_iter().zip(&mut overlaps.0);
-        edges.for_each(|(edge, cut)| cut.cut(edge, surface, index, x));
+        let edges = self.edges.par_iter().zip(&self.depths).zip(&mut overlaps.0);
+        edges.for_each(|((edge, &depth), cut)| cut.cut(edge, depth, surface, index, x));
     }
 
     /// The slave edges as they face a mesh surface, cut in some configuration.
@@ -299,10 +301,18 @@ impl Facing<'_> {
         }
     }
 
+    /// Overlaps of the edges of a point that were no more than an edge's length farther than the nearest when the increment began:
+    /// what lies farther behind an end or a step of the master carries nothing, and must not hold the mean gap open.
+    fn near(&self, point: usize) -> impl Iterator<Item = (&Part, &Overlap)> {
+        let parts = &self.mortar.at[point];
+        let all = move || parts.iter().flat_map(|p| self.overlaps.0[p.edge].overlaps.iter().map(move |o| (p, o)));
+        let reach = all().map(|(_, overlap)| overlap.reach).fold(f64::INFINITY, f64::min);
+        all().filter(move |(_, overlap)| overlap.gap <= reach)
+    }
+
     /// Overlapping segment nearest to a point along its edges.
     fn foot(&self, point: usize) -> Option<MasterPoint> {
-        let parts = self.mortar.at[point].iter();
-        let all = parts.flat_map(|part| self.overlaps.0[part.edge].overlaps.iter().map(|o| (o, NODE_AT[part.node])));
+        let all = self.near(point).map(|(part, overlap)| (overlap, NODE_AT[part.node]));
         let away = |o: &Overlap, at: f64| (at - at.clamp(o.ends[0].xi, o.ends[1].xi)).abs();
         let (nearest, at) = all.min_by(|a, b| away(a.0, a.1).total_cmp(&away(b.0, b.1)))?;
         // Master and slave have the same direction along s.
@@ -315,9 +325,8 @@ impl Facing<'_> {
     fn list(&self, point: usize, nodes: &mut Vec<usize>) {
         nodes.clear();
         let Mortar { edges, at, .. } = self.mortar;
-        let own = || at[point].iter().map(|part| part.edge);
-        let parts = || own().flat_map(|e| &self.overlaps.0[e].overlaps);
-        let slaves = own().flat_map(|e| edges[e].iter().copied());
+        let parts = || self.near(point).map(|(_, overlap)| overlap);
+        let slaves = at[point].iter().flat_map(|part| edges[part.edge].iter().copied());
         let masters = parts().flat_map(|o| self.surface.segments[o.segment].nodes());
         let cuts = parts().flat_map(|o| o.ends.iter().filter_map(|cut| cut.node));
         for node in slaves.chain(masters).chain(cuts) {
@@ -337,7 +346,7 @@ impl Facing<'_> {
             let depths = [0, 1].map(|end| frame.depth(frame.at(edge[end])).map_or(1.0, |depth| depth.value()));
             whole += chord.dot(&chord).value().sqrt() * 0.5 * (depths[0] + depths[1]);
             let along = chord.normalized();
-            for overlap in &self.overlaps.0[e].overlaps {
+            for (_, overlap) in self.near(point).filter(|(part, _)| part.edge == e) {
                 averages.integrate(edge, hat, overlap, &self.surface.segments[overlap.segment], &along, frame);
             }
         }
@@ -351,17 +360,6 @@ const NEGLIGIBLE: f64 = 1e-9;
 
 /// ξ of the nodes of an edge: its ends, then its middle.
 const NODE_AT: [f64; 3] = [-1.0, 1.0, 0.0];
-
-/// φ at ξ on an edge of n nodes from its values there, and its derivative: linear from node to node.
-fn between_nodes(n: usize, &[start, end, middle]: &[f64; 3], xi: f64) -> (f64, f64) {
-    let (low, left, right, width) = match n {
-        2 => (-1.0, start, end, 2.0),
-        _ if xi < 0.0 => (-1.0, start, middle, 1.0),
-        _ => (0.0, middle, end, 1.0),
-    };
-    let slope = (right - left) / width;
-    (left + slope * (xi - low), slope)
-}
 
 /// Tributary length A_j and mortar weights W_ja of a point.
 #[derive(Clone, Debug, Default)]
@@ -404,6 +402,10 @@ impl<N: Number> Averages<N> {
             let share = slope.dot(&slope).sqrt().times(&half.scaled(weight)).times(&xi.map(value, rate));
             let share = match frame.depth(&position) {
                 Some(depth) => share.times(&depth),
+                None => share,
+            };
+            let share = match oblique(segment, along, frame) {
+                Some(factor) => share.times(&factor),
                 None => share,
             };
             let master = Line::Segment(segment);

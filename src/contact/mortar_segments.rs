@@ -12,7 +12,7 @@
 use nalgebra::Vector2;
 
 use super::dual::{DualVector, Number};
-use super::projection::normal_of;
+use super::projection::{FACING, normal_of};
 use super::search::Index;
 use super::surface::{Segment, Surface};
 use crate::mesh::configuration::Configuration;
@@ -24,8 +24,10 @@ use crate::mesh::shape;
 /// first iterates, which must not count as lost contact.
 const REACH: f64 = 10.0;
 
-/// Cosine between the outward normals below which a slave edge and a master segment face each other.
-const EDGE_ON: f64 = -0.01;
+/// Cosine between the normal of a slave edge and the opposite of a segment's from which on it counts whole; down to that of
+/// [`FACING`] it counts less and less, so that no average jumps as surfaces turn. What is steeper is the flank of an end, which
+/// carries nothing of what presses on the edge.
+const OBLIQUE: f64 = 0.5;
 
 /// Distance beyond an end of an edge at which a segment with both ends projected there no longer overlaps it [half edge length]
 const BESIDE: f64 = 1e-3;
@@ -35,6 +37,32 @@ const BESIDE: f64 = 1e-3;
 pub(super) struct Overlap {
     pub segment: usize,
     pub ends: [Cut; 2],
+    /// Gap of its middle along the edge's normal in the committed configuration, to what it faces now [L]
+    pub gap: f64,
+    /// Gap beyond which others do not count beside it [L]
+    pub reach: f64,
+}
+
+impl Overlap {
+    fn middle(&self) -> f64 {
+        0.5 * (self.ends[0].xi + self.ends[1].xi)
+    }
+
+    /// Gap along the edge's normal between the edge at ξ and the place of the segment that it faces in the configuration `x`, as both
+    /// were in the configuration `before`. With the committed one there it is all but constant in an increment: a penetration of any
+    /// depth is found, and the far side of a body is not taken for one.
+    fn gap(&self, edge: &[usize], surface: &Surface, xi: f64, [before, x]: [&Configuration; 2]) -> f64 {
+        let segment = &surface.segments[self.segment];
+        let along = x.between(edge[0], edge[1]);
+        let values = shape::edge_values(edge.len(), xi);
+        let offset = |node: usize, x: &Configuration| -> Vector2<f64> {
+            edge.iter().zip(&values).map(|(&own, w)| *w * x.between(node, own)).sum()
+        };
+        let [start, end] = segment.ends.map(|node| offset(node, x).dot(&along));
+        let eta = start / (start - end);
+        let apart: Vector2<f64> = segment.position(eta).iter().map(|&(node, w)| w * offset(node, before)).sum();
+        apart.dot(&normal_of(before.between(edge[0], edge[1]).normalize()))
+    }
 }
 
 /// A coordinate at which a slave edge is cut into mortar segments.
@@ -62,33 +90,37 @@ pub(super) struct CutEdge {
 }
 
 impl CutEdge {
-    /// Divides an edge at the projections of master nodes; where several segments overlap, the nearest one counts.
-    pub fn cut(&mut self, edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) {
+    /// Divides an edge at the projections of master nodes; where several segments overlap, the nearest one counts. Segments that
+    /// were deeper than `depth` in front of it in the first configuration do not count.
+    pub fn cut(
+        &mut self,
+        edge: &[usize],
+        depth: f64,
+        surface: &Surface,
+        index: &Index,
+        [before, x]: [&Configuration; 2],
+    ) {
         let Self { overlaps, candidates, cuts, around } = self;
         candidates.clear();
         facing(edge, surface, index, x, around, candidates);
+        candidates.retain(|overlap| overlap.gap(edge, surface, overlap.middle(), [before, x]) >= -depth);
         cuts.clear();
         cuts.extend(candidates.iter().flat_map(|overlap| overlap.ends));
         if edge.len() == 3 {
             cuts.push(Cut { xi: 0.0, node: None });
         }
         cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
-        let distance = |overlap: &Overlap, xi: f64| {
-            let values = shape::edge_values(edge.len(), xi);
-            let [a, b] = surface.segments[overlap.segment].ends;
-            edge.iter()
-                .zip(values)
-                .map(|(&node, w)| w * x.between(a, node))
-                .sum::<Vector2<f64>>()
-                .dot(&normal_of(x.between(a, b).normalize()))
-                .abs()
-        };
+        let distance = |overlap: &Overlap, xi: f64| overlap.gap(edge, surface, xi, [x, x]).abs();
+        let length = x.between(edge[0], edge[1]).norm();
         overlaps.clear();
         for pair in cuts.windows(2).filter(|pair| pair[0].xi < pair[1].xi) {
             let middle = 0.5 * (pair[0].xi + pair[1].xi);
             let facing = candidates.iter().filter(|overlap| overlap.ends[0].xi < middle && middle < overlap.ends[1].xi);
             let nearest = facing.min_by(|a, b| distance(a, middle).total_cmp(&distance(b, middle)));
-            overlaps.extend(nearest.map(|overlap| Overlap { segment: overlap.segment, ends: [pair[0], pair[1]] }));
+            overlaps.extend(nearest.map(|overlap| {
+                let gap = overlap.gap(edge, surface, middle, [before, x]);
+                Overlap { segment: overlap.segment, ends: [pair[0], pair[1]], gap, reach: gap + length }
+            }));
         }
     }
 }
@@ -120,8 +152,7 @@ fn facing(
         if start.min(end) > 1.0 + BESIDE || start.max(end) < -1.0 - BESIDE {
             continue;
         }
-        // A segment is included until it is nearly edge-on, with almost no overlap: the average must not jump as it rotates.
-        if normal_of(x.between(a, b).normalize()).dot(&normal) >= EDGE_ON {
+        if normal_of(x.between(a, b).normalize()).dot(&normal) >= FACING {
             continue;
         }
         // Both run along s, so the start of the segment comes first.
@@ -133,9 +164,28 @@ fn facing(
             last = Cut { xi: 1.0, node: None };
         }
         if first.xi < last.xi {
-            candidates.push(Overlap { segment, ends: [first, last] });
+            candidates.push(Overlap { segment, ends: [first, last], gap: 0.0, reach: 0.0 });
         }
     }
+}
+
+/// Factor of what faces the direction of an edge obliquely; `None` for what counts whole.
+pub(super) fn oblique<N: Number>(segment: &Segment, along: &DualVector<N>, frame: &Frame<N>) -> Option<N> {
+    let [start, end] = segment.ends;
+    let cosine = frame.at(end).minus(frame.at(start)).normalized().dot(along);
+    let width = OBLIQUE + FACING;
+    (cosine.value() < OBLIQUE).then(|| cosine.map(((cosine.value() + FACING) / width).max(0.0), 1.0 / width))
+}
+
+/// φ at ξ on an edge of n nodes from its values there, and its derivative: linear from node to node.
+pub(super) fn between_nodes(n: usize, &[start, end, middle]: &[f64; 3], xi: f64) -> (f64, f64) {
+    let (low, left, right, width) = match n {
+        2 => (-1.0, start, end, 2.0),
+        _ if xi < 0.0 => (-1.0, start, middle, 1.0),
+        _ => (0.0, middle, end, 1.0),
+    };
+    let slope = (right - left) / width;
+    (left + slope * (xi - low), slope)
 }
 
 /// A slave edge, ξ from −1 to 1, or a master segment, ξ from 0 to 1.

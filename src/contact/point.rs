@@ -49,6 +49,9 @@ pub struct SlavePoint {
     pub law: usize,
     /// Initial overlap of the point in a shrink fit, applied gradually over the first step [L]
     pub overlap: f64,
+    /// Largest depth behind a master segment, other than the nearest, that it may be in contact with: half the thickness of its
+    /// body [L]
+    pub depth: f64,
 }
 
 impl SlavePoint {
@@ -149,7 +152,15 @@ fn at_nodes(edges: &[Vec<usize>], shares: impl Fn(&[usize], f64, f64) -> Vec<Len
 
 /// Returns a node without edges, with an area of its own [L].
 pub fn lone_point(node: usize, area: f64) -> SlavePoint {
-    SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, law: 0, overlap: 0.0 }
+    SlavePoint {
+        position: vec![(node, 1.0)],
+        length: Vec::new(),
+        area,
+        touch: 0.0,
+        law: 0,
+        overlap: 0.0,
+        depth: f64::INFINITY,
+    }
 }
 
 /// Returns the point of an edge at ξ, with its part of the edge's length as tributary length.
@@ -164,6 +175,7 @@ pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
         touch: 0.0,
         law: 0,
         overlap: 0.0,
+        depth: f64::INFINITY,
     }
 }
 

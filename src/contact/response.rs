@@ -157,7 +157,7 @@ impl ContactPair {
         let index = Index::kept(&self.master, [before, x], search);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             mortar.commit(&self.master, surface, before, committed);
-            mortar.cut(surface, &index, x, overlaps);
+            mortar.cut(surface, &index, [before, x], overlaps);
             let (committed, facing) = (&*committed, mortar.facing(surface, overlaps));
             return question.each(old, response, |k, slave, old, increment, kinematics, room| {
                 let weights = committed.weights(k);

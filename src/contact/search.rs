@@ -136,7 +136,7 @@ impl<'a, S: SegmentSearch> Index<'a, S> {
                 // A node is the projection only if no nearer segment faces the point: beyond the end of a surface, where the
                 // last segment has no projection, each inner node would be one, far away and deep.
                 facing.find_map(|(rank, segment)| {
-                    let found = on_segment(slave, surface, segment, x)?;
+                    let found = on_segment(slave, surface, segment, x).filter(|found| found.gap >= -slave.depth)?;
                     (rank == 0 || found.bound == Bound::Segment).then_some(found)
                 })
             }

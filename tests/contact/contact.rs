@@ -954,10 +954,24 @@ fn nodes_beyond_a_quadratic_edge_do_not_cut_it() {
     }
 }
 
+/// Mortar: the tangent where a master segment at 68° to the slave edge counts in part.
+#[test]
+fn oblique_mortar_tangent_equals_differences() {
+    let at = [[0.0, 0.0], [0.4, 1.0], [1.4, 1.0], [0.1, 0.55], [0.7, 0.6], [1.3, 0.65]];
+    let x: Positions = at.map(|[x, y]| Vector2::new(x, y)).into();
+    let surface = Surface::new(&[vec![1, 0], vec![2, 1]]);
+    let (points, mortar) = mortar_points(&[vec![3, 4], vec![4, 5]], Hats::OfEdges, &x);
+    let pair = pair(points, Master::Mesh(surface.clone()), COULOMB);
+    let mut before = x.clone();
+    before[3..].iter_mut().for_each(|x| x.x -= 0.01);
+    let closed = (0..3).filter(|&k| check_mortar_tangent(&pair, &mortar, &surface, k, &before, -0.02, &x));
+    assert_eq!(closed.count(), 3);
+}
+
 /// The slave edges cut in the configuration `x`.
 fn overlaps(pair: &ContactPair, mortar: &Mortar, surface: &Surface, x: &Configuration) -> Overlaps {
     let mut found = Overlaps::default();
-    mortar.cut(surface, &Index::new(&pair.master, x), x, &mut found);
+    mortar.cut(surface, &Index::new(&pair.master, x), [x, x], &mut found);
     found
 }
 

@@ -63,6 +63,7 @@ mod rigid;
 pub(crate) mod schedule;
 mod stages;
 mod supports;
+mod thickness;
 mod unconstrained;
 
 pub use body::{BodyInput, BulkLaw, PointMassInput};

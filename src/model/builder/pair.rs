@@ -45,6 +45,7 @@ use super::friction::{DefaultAlphaT, Laws};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
+use super::thickness::Outline;
 use super::{contact, friction, initial, pores, rigid};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
@@ -62,17 +63,20 @@ use crate::model::method::{Asked, Chosen, Method, choose, nodes_meet};
 /// The pairs of contacts, in a run of this regime.
 pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
     check_allowed(contacts, &model.mesh)?;
-    let mut pairs = contacts.iter().map(|contact| pair(contact, model, regime)).collect::<Checked<Vec<_>>>()?;
+    let outline = contacts.iter().any(|contact| contact.master_group().is_some()).then(|| Outline::new(&model.mesh));
+    let pair = |contact| pair(contact, model, regime, outline.as_ref());
+    let mut pairs = contacts.iter().map(pair).collect::<Checked<Vec<_>>>()?;
     undetected(contacts, &mut pairs, model);
     Ok(pairs)
 }
 
 /// Builds the pair of a contact, except for the data of the bodies.
-fn pair(contact: &Contact, model: &Model, regime: Regime) -> Checked<ContactPair> {
+fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outline>) -> Checked<ContactPair> {
     let place = format!("contacts.{}", contact.name);
-    let (mut points, mortar) = slave_points(&place, contact, &model.mesh, regime)?;
+    let (mut points, mut mortar) = slave_points(&place, contact, &model.mesh, regime)?;
     let master = master(&place, contact, &points, model)?;
-    if let Master::Mesh(surface) = &master {
+    if let (Master::Mesh(surface), Some(outline)) = (&master, outline) {
+        outline.limit(&mut points, mortar.as_mut());
         points.iter_mut().flat_map(|point| &mut point.length).for_each(|length| length.factor *= surface.share());
     }
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model, regime)?;

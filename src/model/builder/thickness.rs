@@ -1,0 +1,96 @@
+//! Thickness of bodies behind their surfaces: how far a line along the inward normal goes until it leaves them.
+//!
+//! The far side of a body faces what the near side faces, from behind: two blocks on each other, each with all its sides in contact, face
+//! with the top of the upper one the bottom of the lower one, two thicknesses deep. A point that is deeper behind a surface than half of
+//! its own body is not in contact with it.
+
+use nalgebra::Vector2;
+
+use crate::contact::mortar::Mortar;
+use crate::contact::projection::normal_of;
+use crate::contact::surface::SlavePoint;
+use crate::mesh::Mesh;
+
+/// Sides of elements without a neighbour, with the connected part of the mesh to which each belongs.
+pub struct Outline<'m> {
+    mesh: &'m Mesh,
+    /// First node of the part of every node
+    part: Vec<usize>,
+    /// Ends, the body on the left
+    sides: Vec<[usize; 2]>,
+}
+
+/// Distance of a place from a side, relative to its length, below which it lies on it.
+const ON_SIDE: f64 = 1e-9;
+
+impl<'m> Outline<'m> {
+    /// Finds the outline of all bodies.
+    pub fn new(mesh: &'m Mesh) -> Self {
+        let mut part: Vec<usize> = (0..mesh.nodes.len()).collect();
+        let mut sides = Vec::new();
+        for element in &mesh.elements {
+            for pair in element.nodes.windows(2) {
+                let [a, b] = [first(&mut part, pair[0]), first(&mut part, pair[1])];
+                part[a.max(b)] = a.min(b);
+            }
+            for side in 0..element.kind.corners() {
+                let (corners, _) = element.kind.edge(side);
+                let [a, b] = corners.map(|local| element.nodes[local]);
+                sides.push(([a.min(b), a.max(b)], [a, b]));
+            }
+        }
+        let part = (0..part.len()).map(|node| first(&mut part, node)).collect();
+        sides.sort_unstable();
+        let lone = sides.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() == 1).map(|alike| alike[0].1);
+        Self { mesh, part, sides: lone.collect() }
+    }
+
+    /// Sets the depths of points, and of edges for mortar averages.
+    pub fn limit(&self, points: &mut [SlavePoint], mortar: Option<&mut Mortar>) {
+        let x = self.mesh.undeformed();
+        for point in points {
+            if let (Some(outward), Some(&(node, _))) = (point.outward(&x), point.position.first()) {
+                point.depth = 0.5 * self.behind(node, point.at(&x), -outward);
+            }
+        }
+        if let Some(Mortar { edges, depths, .. }) = mortar {
+            let depth = |edge: &Vec<usize>| {
+                let [a, b] = [edge[0], edge[1]].map(|node| self.mesh.nodes[node]);
+                0.5 * self.behind(edge[0], 0.5 * (a + b), normal_of((b - a).normalize()))
+            };
+            *depths = edges.iter().map(depth).collect();
+        }
+    }
+
+    /// Thickness of the body of a node behind a place of its surface; infinite where no side is met.
+    fn behind(&self, node: usize, at: Vector2<f64>, inward: Vector2<f64>) -> f64 {
+        let part = self.part[node];
+        let leaves = |&[start, end]: &[usize; 2]| {
+            if self.part[start] != part {
+                return None;
+            }
+            let [a, b] = [start, end].map(|node| self.mesh.nodes[node] - at);
+            let along = b - a;
+            let across = inward.perp(&along);
+            // The body lies on the left of a side: what leaves it crosses to the right.
+            if across <= ON_SIDE * along.norm() {
+                return None;
+            }
+            let share = a.perp(&inward) / across;
+            let distance = a.perp(&along) / across;
+            let meets = (-ON_SIDE..=1.0 + ON_SIDE).contains(&share) && distance > ON_SIDE * along.norm();
+            meets.then_some(distance)
+        };
+        self.sides.iter().filter_map(leaves).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// First node of the part to which a node belongs, as far as parts are joined.
+fn first(part: &mut [usize], node: usize) -> usize {
+    let mut at = node;
+    while part[at] != at {
+        part[at] = part[part[at]];
+        at = part[at];
+    }
+    at
+}
