@@ -18,6 +18,11 @@ use super::surface::{SlavePoint, Weights};
 use crate::laws::friction::FrictionState;
 use crate::mesh::configuration::Configuration;
 
+/// Gap within which surfaces that bear nothing at the start count as touching, over the length of the slave's edge there: what the
+/// positions of a file with a few digits leave open, and far less than what a curve recedes over the closed edges of a contact. As
+/// larger gaps are counted from there, too, no step is left in the surface, and no kink where an overlap ends.
+const TOUCHING: f64 = 1e-6;
+
 /// Projection of a point on the master and its kinematics; `None` without a projection.
 pub(super) type Met = Option<(Meeting, Kinematics)>;
 
@@ -27,15 +32,30 @@ impl ContactPair {
     /// ```text
     /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
     /// ```
-    /// In the augmented Lagrangian method p_init is the first multiplier instead.
+    /// In the augmented Lagrangian method p_init is the first multiplier instead. Points that bear nothing keep the shape of the
+    /// surfaces, without their overlap D:
+    ///
+    /// ```text
+    /// g = max(g_x + D − 10⁻⁶ ℓ, 0) at the start     D = −min(g_x, 0) over these points,   ℓ: the slave's edge
+    /// ```
     ///
     /// # Errors
-    /// Returns the number of the first point without a projection on the master.
+    /// Returns the number of the first point that bears something and has no projection on the master.
     pub fn start_closed(&mut self, initial: Vec<InitialTraction>, x: &Configuration) -> Result<(), usize> {
         let met = self.meetings(x, false);
+        let bears = |k: usize| initial[k].pressure > 0.0 || initial[k].traction != 0.0;
+        let free = met.iter().enumerate().filter(|(k, _)| !bears(*k)).filter_map(|(_, met)| Some(met.as_ref()?.0.gap));
+        let overlap = -free.fold(0.0, f64::min);
         for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
-            let give = if self.penetration.is_some() { 0.0 } else { initial[k].pressure / self.alpha_n };
-            slave.touch = met.ok_or(k)?.0.gap + give;
+            let (pressure, bears) = (initial[k].pressure, bears(k));
+            let give = if self.penetration.is_some() { 0.0 } else { pressure / self.alpha_n };
+            let touching = TOUCHING * slave.edge_length(x).unwrap_or(slave.area);
+            slave.touch = match met {
+                Some((Meeting { gap, .. }, _)) if bears => gap + give,
+                Some((Meeting { gap, .. }, _)) => gap.min(touching - overlap),
+                None if bears => return Err(k),
+                None => 0.0,
+            };
         }
         self.initial = Some(initial);
         Ok(())

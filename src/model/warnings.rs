@@ -28,9 +28,9 @@ impl Model {
     /// Warnings before the run starts.
     pub fn warnings(&self) -> Vec<String> {
         let of_contact = |pair: &ContactPair| {
-            // A contact that starts closed has no gaps, and self-contact usually starts open.
+            // A contact that starts closed has no gaps that it keeps under pressure, and self-contact usually starts open.
             let warnings = match pair.initial.is_some() || pair.is_own() {
-                true => Vec::new(),
+                true => closed_across(self, pair).into_iter().collect(),
                 false => Gaps::of(self, pair).warnings(),
             };
             let further = faces_away(self, pair).into_iter().chain(friction_of_total_pressure(self, pair));
@@ -354,6 +354,29 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     })
 }
 
+/// Gap or overlap that a contact closes at its start, over the slave's edge there, above which it is told: surfaces that carry a pressure
+/// touch, but for the facets of both.
+const CLOSED_ACROSS: f64 = 0.1;
+
+/// A contact that starts closed across a gap or an overlap that no pressure acts across.
+fn closed_across(model: &Model, pair: &ContactPair) -> Option<String> {
+    let initial = pair.initial.as_ref().filter(|_| !pair.tied)?;
+    let x = model.mesh.undeformed();
+    let closed = pair.points.iter().zip(initial).filter_map(|(point, initial)| {
+        let give = if pair.penetration.is_some() { 0.0 } else { initial.pressure / pair.alpha_n };
+        Some((point, point.touch - give, (point.touch - give).abs() / point.edge_length(&x)?))
+    });
+    let (point, gap, share) = closed.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|closed| closed.2 > CLOSED_ACROSS)?;
+    let what = if gap > 0.0 { "a gap" } else { "an overlap" };
+    Some(format!(
+        "`initial` closes {what} of {} at {}, {} of the edge there: name as slave only what touches, move the surfaces together, or give no pressure \
+         there, under which gaps stay open",
+        number(gap.abs()),
+        vector(point.at(&x)),
+        number(share)
+    ))
+}
+
 /// Describes the gaps of a contact that does not start closed, in words.
 pub fn gaps(model: &Model, pair: &ContactPair, shrink_fit: bool) -> String {
     let gaps = Gaps::of(model, pair);
@@ -379,8 +402,8 @@ struct Gaps {
     lines: bool,
     points: usize,
     facing: usize,
-    /// Smallest gap, and its position [L]
-    low: (f64, Vector2<f64>),
+    /// Smallest gap, its position [L], and the length of the slave's edge there, 0 without one [L]
+    low: (f64, Vector2<f64>, f64),
     high: f64,
     /// Largest overlap of a shrink fit, and its position [L]
     fit: Option<(f64, Vector2<f64>)>,
@@ -404,7 +427,7 @@ impl Gaps {
             lines: matches!(&pair.master, Master::Rigid(Rigid { shape: Shape::Polyline(_), .. })),
             points: states.len(),
             facing: 0,
-            low: (f64::INFINITY, Vector2::zeros()),
+            low: (f64::INFINITY, Vector2::zeros(), 0.0),
             high: f64::NEG_INFINITY,
             fit: None,
         };
@@ -413,7 +436,7 @@ impl Gaps {
             gaps.facing += 1;
             gaps.high = gaps.high.max(gap);
             if gap < gaps.low.0 {
-                gaps.low = (gap, point.at(&x));
+                gaps.low = (gap, point.at(&x), point.edge_length(&x).unwrap_or(0.0));
             }
             if overlap > gaps.fit.map_or(0.0, |(largest, _)| largest) {
                 gaps.fit = Some((overlap, point.at(&x)));
@@ -432,7 +455,7 @@ impl Gaps {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let Self { points, facing, low: (low, at), .. } = *self;
+        let Self { points, facing, low: (low, at, edge), .. } = *self;
         if facing == 0 {
             let none = "no point of the slave has a projection on the master; check the groups named and their \
                         positions";
@@ -447,10 +470,18 @@ impl Gaps {
             warnings.push(format!("{} of the slave {never}", self.beside()));
         }
         if low < 0.0 {
+            // What is deep in an edge is no inaccuracy of the mesh.
+            let remedies = match -low <= CLOSED_ACROSS * edge {
+                true => {
+                    "move them apart, bring the overlap in over the first step (shrink_fit), or, if they should only touch, take it \
+                     out of the gaps (\"initial\": {\"pressure\": 0})"
+                }
+                false => {
+                    "move them apart, or, if they are to be fitted, bring the overlap in over the first step (shrink_fit)"
+                }
+            };
             warnings.push(format!(
-                "surfaces overlap by up to {} at the start, at ({}, {}), and are in contact from the first increment \
-                 on; move them apart, bring the overlap in over the first step (shrink_fit), or, if the whole slave \
-                 should touch at the start, count gaps from where they are (\"initial\": {{\"pressure\": 0}})",
+                "surfaces overlap by up to {} at the start, at ({}, {}), and are in contact from the first increment on; {remedies}",
                 number(-low),
                 number(at.x),
                 number(at.y)
@@ -460,7 +491,7 @@ impl Gaps {
     }
 
     fn message(&self) -> String {
-        let Self { facing, low: (low, _), high, .. } = *self;
+        let Self { facing, low: (low, ..), high, .. } = *self;
         match facing {
             0 => format!("initial gap: {}, none with a projection on the master", self.beside()),
             _ if low == high => format!("initial gap {} everywhere{}", number(low), self.without()),

@@ -7,6 +7,7 @@ mod along;
 mod contact;
 mod hard;
 mod moving;
+mod outlines;
 mod periodic;
 mod points;
 mod random;

@@ -255,7 +255,8 @@ impl Default for Radiation {
 #[schemars(rename = "Initial")]
 #[non_exhaustive]
 pub struct InitialTractions {
-    /// p: contact pressure, zero or positive [F/L²]
+    /// p: contact pressure, zero or positive [F/L²]. Where it is 0, and no traction acts, the deepest overlap and 10⁻⁶ of the slave's edge
+    /// are taken out of all gaps, and what is left of them stays open
     pub pressure: Option<Profile>,
     /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
     pub traction: Option<Profile>,
