@@ -14,7 +14,7 @@ use super::point::ContactState;
 use super::pores::effective;
 use super::search::Index;
 use super::small_sliding::{SmallPoint, SmallSliding};
-use super::surface::{SlavePoint, Weights};
+use super::surface::{SlavePoint, Weights, nodal_points};
 use crate::laws::friction::FrictionState;
 use crate::mesh::configuration::Configuration;
 
@@ -255,6 +255,23 @@ impl ContactPair {
             (share < 1.0 && closed.contains(&a) && closed.contains(&b)).then(|| (point.at(x), -met.gap, share))
         };
         nodes.iter().filter_map(depth).max_by(|a, b| a.2.total_cmp(&b.2))
+    }
+
+    /// Slave node that lies deepest in a mesh master while all averages around it are open, as an edge of the slave that enters first:
+    /// position, depth [L], and depth over the length of its longest edge [-].
+    pub fn deepest_slave_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
+        let (Some(mortar), Master::Mesh(_), None) = (&self.mortar, &self.master, &self.small) else { return None };
+        let pressed = self.points.iter().zip(states).filter(|(_, state)| state.is_closed());
+        let shares = pressed.flat_map(|(point, _)| &point.length).flat_map(|share| &share.tangent);
+        let pressed: BTreeSet<usize> = shares.map(|&(node, _)| node).collect();
+        let index = Index::new(&self.master, x);
+        let depth = |point: SlavePoint| {
+            let free = point.position.iter().all(|(node, _)| !pressed.contains(node));
+            let met = free.then(|| index.project(&point, None, x)).flatten().filter(|met| met.gap < 0.0)?;
+            let share = -met.gap / point.edge_length(x)?;
+            (share < 1.0).then(|| (point.at(x), -met.gap, share))
+        };
+        nodal_points(&mortar.edges).into_iter().filter_map(depth).max_by(|a, b| a.2.total_cmp(&b.2))
     }
 
     /// Slip rate of each point along +s under nodal velocities, by the variation of Δu_t; 0 without a projection [L/T].

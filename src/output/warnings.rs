@@ -129,6 +129,7 @@ impl Observer for Warnings {
             }
             if !(fading || explicit || pair.initial.is_some()) {
                 self.deep_master_node(number, pair, state, &x);
+                self.deep_slave_node(number, pair, state, &x);
             }
         }
         self.report();
@@ -210,6 +211,20 @@ impl Warnings {
         };
         self.list.push(format!(
             "{}: a master node penetrates the slave by {depth:.3e}, {:.1} % of its edge; {remedy}",
+            place(pair, at, state.time),
+            100.0 * share
+        ));
+    }
+
+    /// Slave nodes inside a mesh master that the averages around them do not press on.
+    fn deep_slave_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
+        let seen = self.given.contains(&(number, Kind::DeepSlaveNode));
+        let deepest = if seen { None } else { pair.deepest_slave_node(&state.contacts[number], x) };
+        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP_BETWEEN) else { return };
+        self.given.insert((number, Kind::DeepSlaveNode));
+        self.list.push(format!(
+            "{}: a slave node is inside the master by {depth:.3e}, {:.1} % of its edge, and the means around it are open: refine the slave \
+             there, or take \"method\": \"node_to_segment\"",
             place(pair, at, state.time),
             100.0 * share
         ));
@@ -461,6 +476,8 @@ enum Kind {
     DeepPenetration,
     /// A master node penetrates the slave
     DeepMasterNode,
+    /// A slave node is inside a master while means are open
+    DeepSlaveNode,
     /// A node outside the slave group penetrates a rigid master
     DeepUnseen,
     /// Edges are longer than the process zone of friction
