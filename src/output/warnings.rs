@@ -15,7 +15,7 @@ use super::coarse::Coarse;
 use super::csv;
 use super::instability::Instability;
 use crate::contact::force::ContactState;
-use crate::contact::master::Master;
+use crate::contact::master::{Master, Shape};
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSliding};
 use crate::contact::surface::SlavePoint;
@@ -251,9 +251,12 @@ impl Warnings {
         if pair.unseen.is_empty() || self.given.contains(&(number, Kind::DeepUnseen)) {
             return;
         }
-        let depths = pair.unseen.iter().filter_map(|node| Some((node, -rigid.project(node, x)?.gap)));
-        let Some((node, depth)) = depths.max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
         let longest = pair.points.iter().filter_map(|point| point.edge_length(x)).fold(0.0, f64::max);
+        // What is deeper behind a line than an edge is beyond the other side of its tool.
+        let most = if matches!(rigid.shape, Shape::Polyline(_)) { longest } else { f64::INFINITY };
+        let depths = pair.unseen.iter().filter_map(|node| Some((node, -rigid.project(node, x)?.gap)));
+        let within = depths.filter(|(_, depth)| *depth < most);
+        let Some((node, depth)) = within.max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
         if depth > UNSEEN * longest {
             self.given.insert((number, Kind::DeepUnseen));
             self.list.push(format!(

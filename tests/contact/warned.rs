@@ -573,6 +573,43 @@ fn the_slave_of_another_contact_is_not_unseen() {
     assert!(!told.iter().any(|told| told.contains("outside the slave group")), "{told:?}");
 }
 
+/// A side that another contact keeps from another surface is not looked after by it: it runs into the circle of the bottom.
+#[test]
+fn the_slave_of_a_contact_with_another_surface_is_not_seen_here() {
+    let mut case = moved(&json!({"circle": {"centre": [5.5, 1.0], "radius": 1.0}}), [0.8, 0.0]);
+    case["contacts"]["side"] = case["contacts"]["base"].clone();
+    case["contacts"]["side"]["slave"] = json!("right");
+    case["contacts"]["side"]["master"] = json!({"plane": {"point": [9, 0], "normal": [-1, 0]}});
+    let told = warnings(&case);
+    assert_eq!(told.iter().filter(|told| told.contains("outside the slave group")).count(), 1, "{told:?}");
+}
+
+/// The edge of a die enters the ground: the means over its flanks, whose hats are a third of an edge high, are open until it is ℓ sin 45°/3
+/// = 0.167 deep, which is told from 0.02 ℓ on: at 0.0275 after a quarter of the way. By nodes it is pressed on.
+#[test]
+fn a_ridge_between_means_is_told() {
+    let told = |method: &str| {
+        let case = json!({
+            "mesh": {"blocks": [
+                {"body": "ground", "corners": [[-10, -8], [10, -8], [10, 0], [-10, 0]], "elements": [27, 10], "sides": ["low", null, "top", null]},
+                {"body": "die", "corners": [[0, 0.01], [4, 4.01], [0, 8.01], [-4, 4.01]], "elements": [8, 8],
+                 "sides": ["flank", "held", "held", "flank"]}]},
+            "bodies": {"die": {"material": {"model": "neo_hookean", "E": 2000, "nu": 0.3}},
+                       "ground": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
+            "contacts": {"c": {"slave": "flank", "master": "top", "friction": {"law": "coulomb", "mu": 0.3}, "method": method}},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.25},
+                       "supports": [{"on": "low", "ux": 0, "uy": 0}, {"on": "held", "ux": 0, "uy": -0.15}]}],
+        });
+        warnings(&case)
+            .into_iter()
+            .filter(|told| told.contains("a slave node is inside the master"))
+            .collect::<Vec<_>>()
+    };
+    let of_means = told("mortar");
+    assert!(of_means.len() == 1 && of_means[0].contains("by 2.750e-2"), "{of_means:?}");
+    assert_eq!(told("node_to_segment"), Vec::<String>::new());
+}
+
 /// Elements that lock are told as their bodies flow: Cam-clay contracts unless it is heavily overconsolidated; an element alone does not lock.
 #[test]
 fn what_locks_is_told_by_how_it_flows() {

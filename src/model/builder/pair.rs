@@ -513,8 +513,10 @@ pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
 /// Finds surface nodes of the slave's bodies that are not on the slave and initially outside a rigid master, whose penetration
 /// would not be detected.
 fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
-    // What another contact looks after is seen: the sides of a tool are often contacts of their own.
-    let slaves: Vec<BTreeSet<usize>> = pairs.iter().map(|pair| pair.nodes().collect()).collect();
+    // What another contact looks after is seen, if it is the same surface of the same tool that this one presses on.
+    let rigid = |pair: &&ContactPair| matches!(pair.master, Master::Rigid(_));
+    let slave = |pair: &ContactPair| (pair.master.clone(), pair.slave_nodes().collect());
+    let slaves: Vec<(Master, BTreeSet<usize>)> = pairs.iter().filter(rigid).map(slave).collect();
     // Several contacts may belong to the same bodies.
     let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
     for (contact, pair) in contacts.iter().zip(pairs) {
@@ -522,7 +524,7 @@ fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
             continue;
         };
         let bodies: BTreeSet<usize> = slave.iter().map(|edge| model.body_of_element[edge.element]).collect();
-        let seen = |node: &usize| slaves.iter().any(|slave| slave.contains(node));
+        let seen = |node: &usize| slaves.iter().any(|(of, slave)| *of == pair.master && slave.contains(node));
         let surface = surfaces.entry(bodies).or_insert_with_key(|bodies| surface_nodes(model, bodies));
         let others = surface.iter().filter(|node| !seen(node)).map(|&node| lone_point(node, 0.0));
         pair.unseen = others.filter(|point| is_outside(rigid, point, &model.mesh)).collect();
