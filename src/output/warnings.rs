@@ -31,7 +31,7 @@ use crate::run::observer::{Attempt, Observer};
 use crate::time::step_size::LocalError;
 use crate::time::touching::DOUBT;
 
-/// Smallest reported penetration of a rigid master by a node that the contact does not check, as a fraction of the
+/// Smallest reported penetration of a master by a node that the contact does not check or press on, as a fraction of the
 /// slave's longest edge.
 const UNSEEN: f64 = 0.05;
 
@@ -220,7 +220,7 @@ impl Warnings {
     fn deep_slave_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
         let seen = self.given.contains(&(number, Kind::DeepSlaveNode));
         let deepest = if seen { None } else { pair.deepest_slave_node(&state.contacts[number], x) };
-        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP_BETWEEN) else { return };
+        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > UNSEEN) else { return };
         self.given.insert((number, Kind::DeepSlaveNode));
         self.list.push(format!(
             "{}: a slave node is inside the master by {depth:.3e}, {:.1} % of its edge, and the means around it are open: refine the slave \
