@@ -12,6 +12,7 @@
 
 pub mod dual;
 pub mod force;
+mod hats;
 pub mod kinematics;
 pub mod master;
 mod meet;

@@ -1,16 +1,6 @@
 //! Mortar contact: gap and slip averaged around each slave node or along each quadratic slave edge, integrated segment by segment.
 //!
-//! The multiplier is λ = Σ φ_j t_j, Σ φ_j = 1, with functions that are linear from node to node of the slave:
-//!
-//! ```text
-//! linear edges:     φ_j = 1 at node j, 0 at the others
-//! quadratic edges:  φ_e = 1 on edge e but for the hats of its corners;  φ_c = 1 at corner c, 0 from the middle node on
-//! ```
-//! A corner of a quadratic edge has a hat of its own at an end of the slave, at an angle of more than 45° and beside a linear edge. Two
-//! tractions per edge, at corner and middle node, would be all but undetermined in shear against the three nodes of an edge: each
-//! point that closes leaves a mismatch of the meshes, which a stiff penalty turns into a zigzag of tractions. Some surfaces
-//! have such hats all the same ([`Hats::AtNodes`]). (The shape functions N_j of the
-//! ends are partly negative: the gap weighted by them would not be a mean, and forces would oscillate as nodes slide past.)
+//! The multiplier is λ = Σ φ_j t_j, Σ φ_j = 1, with the functions of `hats.rs`, linear from node to node of the slave.
 //!
 //! Each slave edge is divided at the projections of master nodes along its own normal, and at its middle node; in between, all
 //! functions are smooth, and Gauss quadrature integrates
@@ -43,14 +33,16 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::dual::{Dual, DualVector, Number};
+pub use super::hats::Hats;
+use super::hats::{Part, centre, gauss_around, parts};
 use super::kinematics::{Kinematics, Lever, Meeting, past_rigid};
 use super::master::{Master, Rigid};
 pub use super::mortar_segments::Overlaps;
 use super::mortar_segments::{CutEdge, Frame, Line, Overlap, between_nodes, oblique};
-use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
+use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, lone_point};
 use super::projection::{Projection, tangent_of};
 use super::search::{Index, KeptSearch};
-use super::surface::{CORNER, Segment, Surface};
+use super::surface::{Segment, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::section::Section;
 use crate::mesh::shape;
@@ -66,25 +58,6 @@ pub struct Mortar {
     at: Vec<Vec<Part>>,
     /// Gauss points around each point, with their lengths multiplied by φ_j
     around: Vec<Vec<SlavePoint>>,
-}
-
-/// φ_j on one of the edges of its point.
-#[derive(Clone, Debug, PartialEq)]
-struct Part {
-    edge: usize,
-    /// The node of the edge, by its number there, at which the point is
-    node: usize,
-    /// φ_j at start, end and middle node; linear in between
-    hat: [f64; 3],
-}
-
-/// Which nodes of quadratic slave edges have a traction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Hats {
-    /// The middle node, that of its edge
-    OfEdges,
-    /// All nodes
-    AtNodes,
 }
 
 /// Weights of all points in the committed configuration; constant during the iterations of an increment.
@@ -113,78 +86,17 @@ const TOGETHER: usize = 64;
 
 /// Contact points of slave edges: their nodes, on quadratic edges those that have `hats`; each side of a corner is a separate point.
 pub fn mortar_points(edges: &[Vec<usize>], hats: Hats, positions: &[Vector2<f64>]) -> (Vec<SlavePoint>, Mortar) {
-    let direction = |e: usize| (positions[edges[e][1]] - positions[edges[e][0]]).normalize();
-    let goes_on = |e: usize, other: usize| direction(other).dot(&direction(e)) > CORNER;
-    let mut nodes: Vec<usize> = Vec::new();
-    let mut at: Vec<Vec<Part>> = Vec::new();
-    for (e, edge) in edges.iter().enumerate() {
-        let whole = |other: usize| hats == Hats::OfEdges && edges[other].len() == 3;
-        let ends = [0, 1].map(|end| {
-            let others = (0..edges.len()).filter(|&other| other != e && edges[other][..2].contains(&edge[end]));
-            !whole(e) || !others.into_iter().any(|other| whole(other) && goes_on(e, other))
-        });
-        for part in parts(e, edge, whole(e), ends) {
-            let node = edge[part.node];
-            let joins = |k: &usize| nodes[*k] == node && at[*k].iter().all(|other| goes_on(e, other.edge));
-            match (0..nodes.len()).rev().find(joins) {
-                Some(k) => at[k].push(part),
-                None => {
-                    nodes.push(node);
-                    at.push(vec![part]);
-                }
-            }
-        }
-    }
+    let at = parts(edges, hats, positions);
     let around = |of: &Vec<Part>| of.iter().flat_map(|part| gauss_around(&edges[part.edge], &part.hat)).collect();
     let around: Vec<Vec<SlavePoint>> = at.iter().map(around).collect();
-    let position = |of: &[Part], node: usize| match of {
-        [part] if hats == Hats::OfEdges && edges[part.edge].len() == 3 => {
-            let edge = &edges[part.edge];
-            edge.iter().copied().zip(shape::edge_values(3, centre(&part.hat))).collect()
-        }
-        _ => vec![(node, 1.0)],
-    };
     let shares = |around: &[SlavePoint]| around.iter().flat_map(|point| point.length.clone()).collect();
-    let point = |((&node, of), around): ((&usize, &Vec<Part>), &Vec<SlavePoint>)| SlavePoint {
+    let point = |(of, around): (&Vec<Part>, &Vec<SlavePoint>)| SlavePoint {
         length: shares(around),
-        position: position(of, node),
-        ..lone_point(node, 0.0)
+        position: centre(of, hats, edges),
+        ..lone_point(edges[of[0].edge][of[0].node], 0.0)
     };
-    (nodes.iter().zip(&at).zip(&around).map(point).collect(), Mortar { depths: vec![f64::INFINITY; edges.len()], edges: edges.to_vec(), at, around })
-}
-
-/// The points of edge e, which stands for one traction as a `whole` but for its `ends` that have their own.
-fn parts(e: usize, edge: &[usize], whole: bool, ends: [bool; 2]) -> Vec<Part> {
-    let of_node = |node: usize| {
-        let mut hat = [0.0; 3];
-        hat[node] = 1.0;
-        Part { edge: e, node, hat }
-    };
-    let middle = |_: &usize| match whole {
-        true => Part { hat: [f64::from(!ends[0]), f64::from(!ends[1]), 1.0], ..of_node(2) },
-        false => of_node(2),
-    };
-    let [start, end] = [0, 1].map(|node| ends[node].then(|| of_node(node)));
-    start.into_iter().chain(edge.get(2).map(middle)).chain(end).collect()
-}
-
-/// ∫ φ ξ dξ/∫ φ dξ on a quadratic edge.
-fn centre(&[start, end, middle]: &[f64; 3]) -> f64 {
-    2.0 * (end - start) / (3.0 * (start + end + 2.0 * middle))
-}
-
-/// Gauss points between the nodes of an edge, whose lengths sum to ∫ φ ds.
-fn gauss_around(edge: &[usize], hat: &[f64; 3]) -> Vec<SlavePoint> {
-    let parts: &[[f64; 2]] = if edge.len() == 2 { &[[-1.0, 1.0]] } else { &[[-1.0, 0.0], [0.0, 1.0]] };
-    let points = |&[start, end]: &[f64; 2]| {
-        let half = 0.5 * (end - start);
-        shape::gauss(2).into_iter().map(move |(at, weight)| (start + half * (1.0 + at), half * weight))
-    };
-    let all = parts.iter().flat_map(points);
-    all.map(|(xi, weight)| (xi, weight * between_nodes(edge.len(), hat, xi).0))
-        .filter(|(_, weight)| *weight > 0.0)
-        .map(|(xi, weight)| edge_point(edge, xi, weight))
-        .collect()
+    let points = at.iter().zip(&around).map(point).collect();
+    (points, Mortar { depths: vec![f64::INFINITY; edges.len()], edges: edges.to_vec(), at, around })
 }
 
 impl Mortar {

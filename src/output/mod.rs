@@ -11,6 +11,7 @@ cfg_if::cfg_if! {
         pub mod bodies;
         pub mod checkpoint;
         pub mod coarse;
+        pub mod concerns;
         pub mod events;
         pub mod fields;
         pub mod files;
@@ -35,6 +36,7 @@ cfg_if::cfg_if! {
         pub(crate) mod bodies;
         pub(crate) mod checkpoint;
         pub(crate) mod coarse;
+        pub(crate) mod concerns;
         pub(crate) mod events;
         pub(crate) mod fields;
         pub(crate) mod files;

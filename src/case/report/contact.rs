@@ -17,7 +17,7 @@ use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, defau
 use crate::model::method::{Chosen, Method};
 use crate::model::text::{count, number, vector};
 use crate::model::warnings::gaps;
-use crate::output::warnings::several_answers;
+use crate::output::concerns::several_answers;
 
 /// Lists every contact, with the position of its surfaces at the start.
 pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
