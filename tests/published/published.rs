@@ -354,12 +354,13 @@ fn quadratic_elements_have_the_pressure_of_hertz_by_default() {
         let mut found: Vec<[f64; 2]> =
             points.map(|(point, contact)| [point.at(&places).x, contact.friction.pressure]).collect();
         found.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let element = found[2][0] - found[0][0];
+        // One traction an edge, and one of its own at the end.
+        let element = found[2][0] - found[1][0];
         let inside = found.iter().filter(|[x, _]| *x < a - 2.0 * element);
         let errors: Vec<f64> = inside.map(|[x, p]| p / p0 - (1.0 - (x / a).powi(2)).sqrt()).collect();
         let most = errors.iter().fold(0.0f64, |most, error| most.max(error.abs()));
         println!("change {k}: {} points, off by {:.2} % of p0", errors.len(), 100.0 * most);
-        assert!(errors.len() >= 8 && most < 0.02);
+        assert!(errors.len() >= 5 && most < 0.02);
     }
 }
 
