@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 
 use super::point::{MasterPoint, SlavePoint};
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
-use super::surface::{Segment, Surface};
+use super::surface::{CORNER, Segment, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::rigid::RigidBody;
 
@@ -194,6 +194,14 @@ impl Polyline {
     /// Corners, in their order.
     pub fn corners(&self) -> &[Vector2<f64>] {
         &self.corners
+    }
+
+    /// Whether it has corners of more than 45°, or, as a straight line, nothing but its ends.
+    pub fn is_sharp(&self) -> bool {
+        let lines = self.corners.len() - 1;
+        let turns = (1..lines).map(|line| [line - 1, line]).chain(self.is_closed().then_some([lines - 1, 0]));
+        let mut turns = turns.map(|lines| lines.map(|line| self.direction(line))).map(|[a, b]| a.dot(&b)).peekable();
+        turns.peek().is_none() || turns.any(|turn| turn <= CORNER)
     }
 
     fn is_closed(&self) -> bool {

@@ -112,6 +112,37 @@ pub fn gauss_points(edges: &[Vec<usize>], per_edge: usize) -> Vec<SlavePoint> {
     edges.iter().flat_map(|edge| rule.iter().map(|&(xi, weight)| edge_point(edge, xi, weight))).collect()
 }
 
+/// Returns the Gauss points of each edge, but for edges at an end or corner of the surface: there the points of Radau's or, at
+/// both, Lobatto's rule, of which one is the corner itself. Linear edges have two, quadratic ones four or, with one end, three: products
+/// of two shape functions are integrated exactly.
+pub fn gauss_points_and_corners(edges: &[Vec<usize>], is_corner: impl Fn(usize, usize) -> bool) -> Vec<SlavePoint> {
+    let rule = |edge: usize| -> Vec<(f64, f64)> {
+        let (linear, root) = (edges[edge].len() == 2, |x: f64| x.sqrt());
+        let radau = |side: f64| match linear {
+            true => vec![(side, 0.5), (-side / 3.0, 1.5)],
+            false => vec![
+                (side, 2.0 / 9.0),
+                (-side * (1.0 - root(6.0)) / 5.0, (16.0 + root(6.0)) / 18.0),
+                (-side * (1.0 + root(6.0)) / 5.0, (16.0 - root(6.0)) / 18.0),
+            ],
+        };
+        match [0, 1].map(|end| is_corner(edge, end)) {
+            [false, false] => shape::gauss(if linear { 2 } else { 4 }).to_vec(),
+            [true, false] => radau(-1.0),
+            [false, true] => radau(1.0).into_iter().rev().collect(),
+            [true, true] if linear => vec![(-1.0, 1.0 / 3.0), (0.0, 4.0 / 3.0), (1.0, 1.0 / 3.0)],
+            [true, true] => {
+                let inner = root(0.2);
+                vec![(-1.0, 1.0 / 6.0), (-inner, 5.0 / 6.0), (inner, 5.0 / 6.0), (1.0, 1.0 / 6.0)]
+            }
+        }
+    };
+    let points = |(edge, nodes): (usize, &Vec<usize>)| -> Vec<SlavePoint> {
+        rule(edge).into_iter().map(|(xi, weight)| edge_point(nodes, xi, weight)).collect()
+    };
+    edges.iter().enumerate().flat_map(points).collect()
+}
+
 /// Returns the nodes with their tributary lengths: trapezoidal rule (linear edges) or Simpson's rule (quadratic edges).
 pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
     at_nodes(edges, |edge, xi, weight| edge_point(edge, xi, weight).length)

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 pub use super::point::{
-    LengthShare, MasterPoint, SlavePoint, Weights, edge_point, gauss_points, lone_point, nodal_points,
+    LengthShare, MasterPoint, SlavePoint, Weights, edge_point, gauss_points, gauss_points_and_corners, lone_point, nodal_points,
     nodal_points_of_rings,
 };
 use crate::mesh::configuration::Configuration;
@@ -294,6 +294,13 @@ pub fn in_order(edges: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let by_ends: BTreeMap<[usize; 2], &Vec<usize>> = edges.iter().map(|edge| ([edge[0], edge[1]], edge)).collect();
     let ends: Vec<[usize; 2]> = edges.iter().map(|edge| [edge[0], edge[1]]).collect();
     chains(&ends).concat().iter().filter_map(|pair| by_ends.get(pair).map(|&edge| edge.clone())).collect()
+}
+
+/// Whether an end of an edge, 0 or 1, is an end of the surface, or a corner of more than 45° in the given positions.
+pub fn is_corner(edges: &[Vec<usize>], positions: &[Vector2<f64>], edge: usize, end: usize) -> bool {
+    let direction = |edge: &[usize]| (positions[edge[1]] - positions[edge[0]]).normalize();
+    let next = edges.iter().find(|other| other[1 - end] == edges[edge][end]);
+    next.is_none_or(|next| direction(next).dot(&direction(&edges[edge])) <= CORNER)
 }
 
 /// Joins directed pairs end to start; open chains begin at their start, closed ones anywhere.

@@ -5,6 +5,10 @@
 //! the penalty turns into pressures far above those sought. There mortar averages. It costs about a third more per evaluation of
 //! the contact, and may take more iterations where points slide off an edge; explicit increments, which do little else than to
 //! evaluate, stay with points. A corner of the slave is held where it has a contact point of its own.
+//!
+//! A rigid master is met by nodes where it is bent, and there by Gauss points where it has corners or ends: of the points between two nodes
+//! each leaves a corner of the master by itself and has the normal of a face, whereas a node at a corner has none, and an average over an
+//! edge lets the corner in. Their penalty is soft (`builder/pair.rs`), with which their pressures do not scatter.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -75,6 +79,12 @@ enum Shape {
 /// Default number of Gauss points per edge.
 const POINTS: usize = 2;
 
+/// The same on quadratic edges against a rigid master with corners: of fewer, each is a larger part of the edge that a corner lets go.
+const FINE_POINTS: usize = 4;
+
+/// Reason for nodes on a bent rigid master
+const BENT: &str = "chosen because the master is bent";
+
 /// Angle by which the direction of a linear-edge surface must vary between two corners for it to count as curved; far above the
 /// round-off of a straight line, and below facets that affect the pressure [rad].
 const CURVED: f64 = 0.0175;
@@ -92,8 +102,20 @@ pub struct Asked {
     pub explicit: bool,
     /// Whether every point keeps what it faces
     pub small: bool,
-    /// Whether a rigid master is bent: two Gauss points would hold each node of an edge twice
-    pub bent: bool,
+    /// Shape of a rigid master
+    pub tool: Tool,
+}
+
+/// Shape of a rigid master that decides on the default method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tool {
+    /// A plane, or no rigid master
+    #[default]
+    Flat,
+    /// A circle, or lines without sharp corners: two Gauss points would hold each node of an edge twice
+    Bent,
+    /// With corners or ends, at which a node would have no normal of its own, and of which an average knows nothing
+    Sharp,
 }
 
 /// Chooses the method of a contact of two edge groups, the second `None` for a rigid master.
@@ -110,6 +132,17 @@ pub fn choose(groups: [Option<&str>; 2], asked: Asked, mesh: &Mesh) -> Chosen {
         return Chosen { method, points, because: None, concern };
     }
     let chosen = |method, because, concern| Chosen { method, points, because: Some(because), concern };
+    if groups[1].is_none() && !asked.small {
+        match (asked.tool, slave.shape) {
+            (Tool::Sharp, shape) => {
+                let points = if shape == Shape::Quadratic { FINE_POINTS } else { POINTS };
+                let because = "chosen because the master has corners";
+                return Chosen { points, ..chosen(Method::GaussToSegment, because, None) };
+            }
+            (Tool::Bent, Shape::Quadratic) => return chosen(Method::NodeToSegment, BENT, None),
+            _ => {}
+        }
+    }
     let has = |shape: Shape| slave.shape == shape || master.is_some_and(|master| master.shape == shape);
     let because = match (has(Shape::Quadratic), has(Shape::Curved)) {
         (true, _) => "chosen because edges are quadratic",
@@ -133,9 +166,9 @@ fn straight(
     mesh: &Mesh,
     chosen: impl Fn(Method, &'static str, Option<&'static str>) -> Chosen,
 ) -> Chosen {
-    if groups[1].is_none() && (slave.corner || asked.bent) {
-        let because =
-            if asked.bent { "chosen because the master is bent" } else { "chosen because the slave has a corner" };
+    let bent = asked.tool != Tool::Flat;
+    if groups[1].is_none() && (slave.corner || bent) {
+        let because = if bent { BENT } else { "chosen because the slave has a corner" };
         return chosen(Method::NodeToSegment, because, None);
     }
     let [Some(slave), Some(master)] = groups else {

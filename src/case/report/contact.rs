@@ -80,7 +80,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     let alpha_n = match input.normal.alpha_n {
         Some(_) => "given".into(),
         None => {
-            let over = default_over(input, regime);
+            let over = default_over(input, &model.mesh, regime);
             let because = match regime {
                 Regime::Explicit => ": a step is explicit",
                 Regime::Dynamic if !pair.tied => ": a step has inertia",

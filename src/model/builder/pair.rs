@@ -23,6 +23,8 @@
 //! ```
 //! α_t of (1) is for laws to which it is a penalty; where the elastic slip is a part of the law, α_t is that of (2) in every run.
 //!
+//! At Gauss points against a rigid master with corners, α_n is that of (2) in every run: with (1) the pressures of quadratic edges scatter.
+//!
 //! Explicit increments are as long as α_n allows. Implicit ones that do not resolve the oscillation of a surface node on α_n gain
 //! energy where surfaces part and meet: with (1) more than all that was supplied, with (2) less than a hundredth of it
 //! (`energy_from_nowhere_ends_with_a_remedy_that_helps`).
@@ -47,18 +49,19 @@ use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
 use super::thickness::Outline;
 use super::{contact, friction, initial, pores, rigid};
-use crate::contact::master::{Master, Rigid};
+use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::surface::{
-    SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
+    SlavePoint, Surface, gauss_points, gauss_points_and_corners, in_order, is_corner, lone_point, nodal_points,
+    nodal_points_of_rings,
 };
 use crate::laws::bulk::Material;
 use crate::laws::friction::Offsets;
 use crate::mesh::section::Section;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
-use crate::model::method::{Asked, Chosen, Method, choose, nodes_meet};
+use crate::model::method::{Asked, Chosen, Method, Tool, choose, nodes_meet};
 
 /// The pairs of contacts, in a run of this regime.
 pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
@@ -224,11 +227,11 @@ fn check_stick(pair: &ContactPair, place: &str) -> Checked<()> {
 /// Method of a contact of edges; `None` for a point group.
 pub fn evaluation(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Chosen> {
     let groups = [Some(contact.slave.as_str()), contact.master_group()];
-    contact.area.is_none().then(|| choose(groups, asked(contact, regime), mesh))
+    contact.area.is_none().then(|| choose(groups, asked(contact, mesh, regime), mesh))
 }
 
 /// What a contact says of its method.
-fn asked(contact: &Contact, regime: Regime) -> Asked {
+fn asked(contact: &Contact, mesh: &Mesh, regime: Regime) -> Asked {
     let Contact { method, points, smooth, .. } = contact;
     Asked {
         method: *method,
@@ -236,18 +239,34 @@ fn asked(contact: &Contact, regime: Regime) -> Asked {
         smooth: *smooth,
         explicit: regime == Regime::Explicit && !contact.tied,
         small: contact.tied || contact.sliding == SlidingRange::Small,
-        bent: matches!(
-            contact.master,
-            MasterSide::Circle { .. } | MasterSide::Polyline { .. } | MasterSide::Outline { .. }
-        ),
+        tool: tool(contact, mesh),
     }
+}
+
+/// Shape of a rigid master; one that is not valid is refused elsewhere.
+fn tool(contact: &Contact, mesh: &Mesh) -> Tool {
+    match &contact.master {
+        MasterSide::Plane { .. } | MasterSide::Group(_) => Tool::Flat,
+        MasterSide::Circle { .. } => Tool::Bent,
+        MasterSide::Polyline { .. } | MasterSide::Outline { .. } => match contact::shape(&contact.master, mesh, "") {
+            Ok(Shape::Polyline(line)) if line.is_sharp() => Tool::Sharp,
+            _ => Tool::Bent,
+        },
+    }
+}
+
+/// Whether a contact meets a rigid master with corners, by Gauss points and the slave's corners unless told otherwise.
+fn meets_corners(contact: &Contact, mesh: &Mesh) -> bool {
+    let free = contact.method.is_none() && contact.points.is_none();
+    let slides = !contact.tied && contact.sliding != SlidingRange::Small;
+    free && slides && contact.area.is_none() && tool(contact, mesh) == Tool::Sharp
 }
 
 /// Nodes of quadratic edges that have a traction. What is tied, keeps nodes that face nodes or waves that a middle node would average
 /// has one at each; so has what carries an initial stress of its bodies: constant along edges, a pressure that grows with depth would not
 /// be in equilibrium with it at each node.
 fn hats(contact: &Contact, mesh: &Mesh, regime: Regime) -> Hats {
-    let asked = asked(contact, regime);
+    let asked = asked(contact, mesh, regime);
     let faces = || contact.master_group().is_some_and(|master| nodes_meet(&contact.slave, master, mesh));
     let under_stress = contact.initial.as_ref().is_some_and(|initial| initial.of_bodies || initial.balanced);
     let at_nodes = contact.tied || asked.explicit || under_stress || asked.small && faces();
@@ -299,6 +318,9 @@ fn slave_points(
     Ok(match method {
         Method::NodeToSegment if mesh.section.is_axisymmetric() => (nodal_points_of_rings(&edges), None),
         Method::NodeToSegment => (nodal_points(&edges), None),
+        Method::GaussToSegment if meets_corners(contact, mesh) => {
+            (gauss_points_and_corners(&edges, |edge, end| is_corner(&edges, &mesh.nodes, edge, end)), None)
+        }
         Method::GaussToSegment => (gauss_points(&edges, points), None),
         Method::Mortar => {
             let (points, mortar) = mortar_points(&edges, hats(contact, mesh, regime), &mesh.nodes);
@@ -437,9 +459,10 @@ pub struct Penalty {
 
 /// α_n over (λ + 2G)/h unless given [-]
 #[doc(hidden)]
-pub fn default_over(contact: &Contact, regime: Regime) -> f64 {
+pub fn default_over(contact: &Contact, mesh: &Mesh, regime: Regime) -> f64 {
     match regime {
         Regime::Static | Regime::Dynamic if contact.tied => TIED,
+        Regime::Static if meets_corners(contact, mesh) => MOVING,
         Regime::Static => STATIC,
         Regime::Dynamic | Regime::Explicit => MOVING,
     }
@@ -457,7 +480,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) ->
     let at = format!("{place}.normal.alpha_n");
     let alpha_n = match (contact.normal.alpha_n, elastic) {
         (Some(alpha_n), _) => alpha_n,
-        (None, Some(elastic)) => elastic * default_over(contact, regime),
+        (None, Some(elastic)) => elastic * default_over(contact, &model.mesh, regime),
         (None, None) => {
             let message =
                 format!("is missing: there are no elements behind the points of `{}` to choose it by", contact.slave);
