@@ -199,9 +199,35 @@ impl Polyline {
     /// Whether it has corners of more than 45°, or, as a straight line, nothing but its ends.
     pub fn is_sharp(&self) -> bool {
         let lines = self.corners.len() - 1;
-        let turns = (1..lines).map(|line| [line - 1, line]).chain(self.is_closed().then_some([lines - 1, 0]));
-        let mut turns = turns.map(|lines| lines.map(|line| self.direction(line))).map(|[a, b]| a.dot(&b)).peekable();
-        turns.peek().is_none() || turns.any(|turn| turn <= CORNER)
+        lines == 1 || (0..=lines).any(|corner| self.turn(corner).is_some_and(|turn| turn <= CORNER))
+    }
+
+    /// Convex corners of more than 45°, and the ends of an open line.
+    pub fn sharp_corners(&self) -> impl Iterator<Item = Vector2<f64>> {
+        let count = self.corners.len() - usize::from(self.is_closed());
+        let is_sharp = |corner: &usize| self.turn(*corner).is_none_or(|turn| turn <= CORNER && self.is_convex(*corner));
+        (0..count).filter(is_sharp).map(|corner| self.corners[corner])
+    }
+
+    /// Lines before and after a corner; `None` at an end.
+    fn around(&self, corner: usize) -> Option<[usize; 2]> {
+        let lines = self.corners.len() - 1;
+        match corner {
+            0 => self.is_closed().then_some([lines - 1, 0]),
+            _ if corner == lines => self.is_closed().then_some([lines - 1, 0]),
+            _ => Some([corner - 1, corner]),
+        }
+    }
+
+    /// Cosine of the angle between the lines at a corner; `None` at an end.
+    fn turn(&self, corner: usize) -> Option<f64> {
+        let [before, after] = self.around(corner)?.map(|line| self.direction(line));
+        Some(before.dot(&after))
+    }
+
+    /// Whether the solid, on the right of the lines, has less than a straight angle at a corner.
+    fn is_convex(&self, corner: usize) -> bool {
+        self.around(corner).is_some_and(|[before, after]| self.direction(before).perp(&self.direction(after)) < 0.0)
     }
 
     fn is_closed(&self) -> bool {
@@ -246,7 +272,10 @@ impl Polyline {
         };
         let arm = offset - s * along;
         let mean = normal_of(s + self.direction(neighbour)).normalize();
-        let gap = if arm.dot(&mean) < 0.0 { -distance } else { distance };
+        // Past the end of a line at a convex corner the solid ends, but for what is behind the other line too.
+        let first_after = if past_start { k } else { neighbour };
+        let beside = self.is_convex(first_after) && arm.dot(&normal_of(self.direction(neighbour))) >= 0.0;
+        let gap = if arm.dot(&mean) < 0.0 && !beside { -distance } else { distance };
         let (normal, turn) = if gap == 0.0 { (mean, 0.0) } else { (arm / gap, -1.0 / gap) };
         let foot = MasterPoint { segment: k, xi: along - reference.dot(&s) };
         Some(Projection { foot, gap, normal, bound: Bound::Rigid { advance: 0.0, turn } })

@@ -238,12 +238,12 @@ impl ContactPair {
     /// Master node with the deepest penetration of slave edges with closed points: position, depth [L], and depth divided by
     /// the length of that edge [-].
     pub fn deepest_master_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
-        let Some(Reverse { nodes, slave: Master::Mesh(slave) }) = &self.reverse else { return None };
+        let Some(Reverse { nodes, slave: Master::Mesh(slave), .. }) = &self.reverse else { return None };
         let closed = self.points.iter().zip(states).filter(|(_, state)| state.is_closed());
         let closed =
             closed.flat_map(|(point, _)| &point.length).flat_map(|share| share.tangent.iter().map(|(node, _)| *node));
         let closed: BTreeSet<usize> = closed.collect();
-        if closed.is_empty() {
+        if closed.is_empty() || nodes.is_empty() {
             return None;
         }
         let index = Index::new(&self.reverse.as_ref()?.slave, x);

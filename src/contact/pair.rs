@@ -82,7 +82,7 @@ pub struct ContactPair {
     pub truncated: BTreeMap<String, usize>,
     /// Initial tractions of every point of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
-    /// The pair with exchanged sides, for the penetration of master nodes into the slave
+    /// The pair with exchanged sides, for what lies between the points of the slave; `None` for self-contact and slaves without edges
     pub reverse: Option<Reverse>,
     /// Surface nodes of the slave's bodies that belong to no contact point, if the master is rigid
     pub unseen: Vec<SlavePoint>,
@@ -96,13 +96,17 @@ pub struct ContactPair {
     pub small: Option<SmallSliding>,
 }
 
-/// Nodes of a mesh master as slave points, with the slave as their master.
+/// Nodes of both sides as slave points, with the slave as a master.
 #[derive(Clone, Debug)]
 pub struct Reverse {
-    /// Master nodes
+    /// Nodes of a mesh master
     pub nodes: Vec<SlavePoint>,
     /// Slave surface
     pub slave: Master,
+    /// Nodes of the slave
+    pub own: Vec<SlavePoint>,
+    /// Sides of the slave's bodies, with these on their left, where the master is rigid: (start, end[, middle])
+    pub sides: Vec<Vec<usize>>,
 }
 
 /// Tractions at a contact point at the start of the run.

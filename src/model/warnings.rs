@@ -178,7 +178,7 @@ const SOFT: f64 = 30.0;
 fn uneven(model: &Model, pair: &ContactPair, chosen: &Chosen) -> Option<String> {
     let asked = chosen.because.is_none() && pair.mortar.is_none();
     let implicit = model.steps.iter().all(|step| step.rupture.is_none() && !step.scheme.is_integrated_explicitly());
-    let (Master::Mesh(master), Some(Reverse { nodes, slave: facing @ Master::Mesh(slave) })) =
+    let (Master::Mesh(master), Some(Reverse { nodes, slave: facing @ Master::Mesh(slave), .. })) =
         (&pair.master, &pair.reverse)
     else {
         return None;

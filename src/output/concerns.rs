@@ -29,6 +29,8 @@ pub enum Kind {
     DeepSlaveNode,
     /// A node outside the slave group penetrates a rigid master
     DeepUnseen,
+    /// A rigid master is inside the slave between its points, or a slave node inside a rigid master
+    RigidInside,
     /// Edges are longer than the process zone of friction
     Unresolved,
     /// The pressure exceeds the uniqueness bound of the law

@@ -19,6 +19,7 @@ use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
 use crate::equations::contacts;
 use crate::laws::friction::{Regime, observables};
+use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;
 use crate::model::state::{Energy, State};
 use crate::model::{Model, WatchedSet};
@@ -125,8 +126,9 @@ impl HistoryRows {
     pub(super) fn values(&mut self, model: &Model, old: &State, state: &State) -> Vec<f64> {
         let Self { observed, middles, bodies, edges, memory } = self;
         let mut row = Vec::from(energy_row(&state.energy));
+        let x = model.configuration(&state.displacement);
         for ((pair, states), course) in model.contacts.iter().zip(&state.contacts).zip(&mut memory.courses) {
-            let columns @ [normal, tangential, _, slipping, ..] = contact_row(pair, states);
+            let columns @ [normal, tangential, _, slipping, ..] = contact_row(pair, states, pair.bodies.iter().flatten().all(|&body| state.has(body)).then_some(&x));
             course.note(state.time, normal, tangential, slipping);
             row.extend(columns);
         }
@@ -200,8 +202,8 @@ fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {
 }
 
 /// Columns of one contact. The forces are ∫ p ds and ∫ q ds, with radiation damping ∫ (q + η v) ds; means are taken over the
-/// closed length.
-fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len()] {
+/// closed length. The deepest penetration is looked for in the configuration `x`, if all bodies are there.
+fn contact_row(pair: &ContactPair, states: &[ContactState], x: Option<&Configuration>) -> [f64; CONTACT.len()] {
     let (mut normal, mut tangential, mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut largest_elastic, mut elastic) = (0.0f64, 0.0f64, 0.0);
     for (point, state) in pair.points.iter().zip(states) {
@@ -217,6 +219,10 @@ fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len
         penetration = penetration.max(-state.clearance());
         largest_elastic = largest_elastic.max(pair.elastic_slip(point, state).abs());
         elastic += length * pair.elastic_slip(point, state);
+    }
+    if let Some(x) = x {
+        let of_master = pair.deepest_master_node(states, x).map(|(_, depth, _)| depth);
+        penetration = of_master.into_iter().chain(pair.deepest(x).map(|deepest| deepest.depth)).fold(penetration, f64::max);
     }
     let share = |part: f64| if closed > 0.0 { part / closed } else { 0.0 };
     [normal, tangential, closed, share(slipping), share(slip), penetration, largest_elastic, share(elastic)]

@@ -1,6 +1,7 @@
 //! Output of a run: observers of every attempt, and the files they write.
 
 mod csv;
+mod depths;
 mod frames;
 pub mod results;
 

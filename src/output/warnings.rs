@@ -14,6 +14,7 @@ use super::audit::Audit;
 use super::coarse::Coarse;
 use super::concerns::{Kind, concerns, left};
 use super::csv;
+use super::depths;
 use super::instability::Instability;
 use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Shape};
@@ -126,6 +127,11 @@ impl Observer for Warnings {
             self.never_closed(number, pair, states);
             if !explicit || attempt.ends_step(state) {
                 self.deep_unseen(number, pair, state.time, &x);
+                let told = Kind::RigidInside;
+                let deep = if self.given.contains(&(number, told)) { None } else { depths::rigid_inside(pair, &x) };
+                if let Some((at, message)) = deep.filter(|_| self.given.insert((number, told))) {
+                    self.list.push(format!("{}: {message}", place(pair, at, state.time)));
+                }
             }
             if !(fading || explicit || pair.initial.is_some()) {
                 self.deep_master_node(number, pair, state, &x);

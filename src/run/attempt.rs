@@ -101,7 +101,7 @@ impl Simulation {
         }
         let (step, time, min) = (name.clone(), self.state.time, increments.min);
         let limit = limit(&self.step, &self.state, &cause);
-        let (suspicion, cause) = (suspicion(&self.model, &self.step, &self.work, &cause), Box::new(cause));
+        let (suspicion, cause) = (suspicion(&self.model, &self.step, &self.work, &self.state, &cause), Box::new(cause));
         Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, limit, cause, suspicion })
     }
 

@@ -14,6 +14,7 @@ use crate::contact::pair::ContactPair;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::free;
 use crate::linear::{LinearFailure, norm};
+use crate::mesh::configuration::Configuration;
 use crate::model::element::Formulation;
 use crate::model::state::State;
 use crate::model::text::{number, vector};
@@ -154,7 +155,7 @@ const STIFF: f64 = 1e4;
 const LOCKS: f64 = 0.49;
 
 /// Likely causes of a failure in addition to its message; empty if the message is sufficient.
-pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &IncrementFailure) -> String {
+pub fn suspicion(model: &Model, step: &Step, work: &Workspace, state: &State, cause: &IncrementFailure) -> String {
     let unbalanced = match cause {
         IncrementFailure::Newton(NewtonFailure::Evaluation(_)) | IncrementFailure::ContactLost(_) => None,
         IncrementFailure::Newton(failure) if failure.is_without_end() => worst_node(model, step, &work.system.residual),
@@ -175,7 +176,14 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
             }
         });
         let owner = owner.unwrap_or_default();
-        format!("largest residual at node {tag}{owner}, ({}, {})", number(at.x), number(at.y))
+        let corner = contact.and_then(|pair| corner(pair, node, &work.system.residual, &model.configuration(&state.displacement)));
+        let corner = corner.map(|at| format!(", at the corner ({}, {}) of its rigid master", number(at.x), number(at.y)));
+        format!(
+            "largest residual at node {tag}{owner}, ({}, {}){}",
+            number(at.x),
+            number(at.y),
+            corner.unwrap_or_default()
+        )
     });
     let causes = place.into_iter().chain(contacts().filter_map(penalty));
     let causes = causes.chain(bodies().filter_map(|body| locking(model, body)));
@@ -227,6 +235,15 @@ fn growing_loads(step: &Step, time: f64) -> Vec<String> {
         }
     }
     most.iter().map(|(kind, [now, end])| format!("{kind} {} of {}", number(*now), number(*end))).collect()
+}
+
+/// Current place of the sharp corner of a rigid master at the node with the largest residual; if that is the node of the body's own motion,
+/// at the slave's node with the largest.
+fn corner(pair: &ContactPair, node: usize, residual: &[f64], x: &Configuration) -> Option<Vector2<f64>> {
+    let size = |node: &usize| residual[2 * node].hypot(residual[2 * node + 1]);
+    let own = pair.master.rigid_body().is_some_and(|body| body.nodes().contains(&node));
+    let node = if own { pair.slave_nodes().max_by(|a, b| size(a).total_cmp(&size(b)))? } else { node };
+    pair.corner_at(node, x)
 }
 
 /// The free node with the largest residual force.

@@ -64,6 +64,7 @@ pub(crate) mod schedule;
 mod stages;
 mod supports;
 mod thickness;
+mod unseen;
 mod unconstrained;
 
 pub use body::{BodyInput, BulkLaw, PointMassInput};

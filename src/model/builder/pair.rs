@@ -38,7 +38,7 @@
 //!
 //! Some data of a contact do not follow from its points: nodes without a contact point, and the stiffness of the bodies.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
@@ -48,10 +48,10 @@ use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::{Regime, regime};
 use super::thickness::Outline;
-use super::{contact, friction, initial, pores, rigid};
+use super::{contact, friction, initial, pores, rigid, unseen};
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
-use crate::contact::pair::{ContactPair, Reverse};
+use crate::contact::pair::ContactPair;
 use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, gauss_points_and_corners, in_order, is_corner, lone_point, nodal_points,
     nodal_points_of_rings,
@@ -69,7 +69,7 @@ pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec
     let outline = contacts.iter().any(|contact| contact.master_group().is_some()).then(|| Outline::new(&model.mesh));
     let pair = |contact| pair(contact, model, regime, outline.as_ref());
     let mut pairs = contacts.iter().map(pair).collect::<Checked<Vec<_>>>()?;
-    undetected(contacts, &mut pairs, model);
+    unseen::undetected(contacts, &mut pairs, model);
     Ok(pairs)
 }
 
@@ -114,7 +114,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         initial: None,
         unseen: Vec::new(),
         modulus: modulus(contact, model),
-        reverse: reverse(contact, &model.mesh),
+        reverse: unseen::reverse(contact, model, outline),
         small: None,
         master,
     };
@@ -264,12 +264,13 @@ fn meets_corners(contact: &Contact, mesh: &Mesh) -> bool {
 
 /// Nodes of quadratic edges that have a traction. What is tied, keeps nodes that face nodes or waves that a middle node would average
 /// has one at each; so has what carries an initial stress of its bodies: constant along edges, a pressure that grows with depth would not
-/// be in equilibrium with it at each node.
+/// be in equilibrium with it at each node; and so have edges against a bent rigid master, which a mean over an edge lets in.
 fn hats(contact: &Contact, mesh: &Mesh, regime: Regime) -> Hats {
     let asked = asked(contact, mesh, regime);
     let faces = || contact.master_group().is_some_and(|master| nodes_meet(&contact.slave, master, mesh));
     let under_stress = contact.initial.as_ref().is_some_and(|initial| initial.of_bodies || initial.balanced);
-    let at_nodes = contact.tied || asked.explicit || under_stress || asked.small && faces();
+    let bent = asked.tool != Tool::Flat;
+    let at_nodes = contact.tied || asked.explicit || under_stress || bent || asked.small && faces();
     if at_nodes { Hats::AtNodes } else { Hats::OfEdges }
 }
 
@@ -284,17 +285,6 @@ pub fn massless(contacts: &[Contact], mesh: &Mesh) -> Checked<Vec<bool>> {
         slave.iter().flat_map(|edge| &edge.nodes).for_each(|&node| massless[node] = true);
     }
     Ok(massless)
-}
-
-/// Nodes of a mesh master, with the slave edges as their master.
-fn reverse(contact: &Contact, mesh: &Mesh) -> Option<Reverse> {
-    let master = contact.master_group()?;
-    let [master, slave] = [master, &contact.slave].map(|name| match mesh.group(name) {
-        Ok(Group::Edges(edges)) => in_order(&node_lists(edges)),
-        _ => Vec::new(),
-    });
-    let seen = !contact.is_own() && !slave.is_empty();
-    seen.then(|| Reverse { nodes: nodal_points(&master), slave: Master::Mesh(Surface::new(&slave)) })
 }
 
 /// Slave points of edges, or the points of a point group with the given area; and the edges for mortar averages.
@@ -531,48 +521,6 @@ fn facing<'a>(place: &str, contact: &Contact, model: &'a Model) -> Checked<Facin
 pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
     let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
     model.solids[edge.element].area() / (b - a).norm()
-}
-
-/// Finds surface nodes of the slave's bodies that are not on the slave and initially outside a rigid master, whose penetration
-/// would not be detected.
-fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
-    // What another contact looks after is seen, if it is the same surface of the same tool that this one presses on.
-    let rigid = |pair: &&ContactPair| matches!(pair.master, Master::Rigid(_));
-    let slave = |pair: &ContactPair| (pair.master.clone(), pair.slave_nodes().collect());
-    let slaves: Vec<(Master, BTreeSet<usize>)> = pairs.iter().filter(rigid).map(slave).collect();
-    // Several contacts may belong to the same bodies.
-    let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
-    for (contact, pair) in contacts.iter().zip(pairs) {
-        let (Master::Rigid(rigid), Ok(Group::Edges(slave))) = (&pair.master, model.mesh.group(&contact.slave)) else {
-            continue;
-        };
-        let bodies: BTreeSet<usize> = slave.iter().map(|edge| model.body_of_element[edge.element]).collect();
-        let seen = |node: &usize| slaves.iter().any(|(of, slave)| *of == pair.master && slave.contains(node));
-        let surface = surfaces.entry(bodies).or_insert_with_key(|bodies| surface_nodes(model, bodies));
-        let others = surface.iter().filter(|node| !seen(node)).map(|&node| lone_point(node, 0.0));
-        pair.unseen = others.filter(|point| is_outside(rigid, point, &model.mesh)).collect();
-    }
-}
-
-fn is_outside(rigid: &Rigid, point: &SlavePoint, mesh: &Mesh) -> bool {
-    rigid.project(point, &mesh.undeformed()).is_none_or(|projection| projection.gap > 0.0)
-}
-
-/// Nodes on element sides that belong to one element only.
-fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
-    let mut sides: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
-    for (element, body) in model.mesh.elements.iter().zip(&model.body_of_element) {
-        if !bodies.contains(body) {
-            continue;
-        }
-        for side in 0..element.kind.corners() {
-            let (corners, middle) = element.kind.edge(side);
-            let nodes: Vec<usize> = corners.into_iter().chain(middle).map(|local| element.nodes[local]).collect();
-            let ends = [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
-            sides.entry(ends).and_modify(|known| *known = None).or_insert(Some(nodes));
-        }
-    }
-    sides.into_values().flatten().flatten().collect()
 }
 
 /// G*: stiffness against slip that varies along the interface, 0 for points without bodies [F/L²]
