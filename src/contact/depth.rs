@@ -74,7 +74,12 @@ impl ContactPair {
         let node = |point: &SlavePoint| {
             let depth = -index.project(point, None, x)?.gap;
             let edge = point.edge_length(x)?;
-            (0.0 < depth && depth < most.min(point.depth)).then(|| Depth { what: Inside::SlaveNode, at: point.at(x), depth, edge })
+            (0.0 < depth && depth < most.min(point.depth)).then(|| Depth {
+                what: Inside::SlaveNode,
+                at: point.at(x),
+                depth,
+                edge,
+            })
         };
         let nodes = own.iter().filter_map(node);
         nodes.chain(self.deepest_of_tool(x)).max_by(|a, b| a.depth.total_cmp(&b.depth))
@@ -142,7 +147,9 @@ fn nearest(surface: &Surface, at: Vector2<f64>, x: &Configuration) -> Option<Nea
             let now = Nearest { distance, behind, edge };
             match &mut found {
                 // At a corner of the surface two chords are as near: what is behind one of them alone is outside.
-                Some((least, _, nearest)) if (distance - *least).abs() <= f64::EPSILON * edge => nearest.behind &= behind,
+                Some((least, _, nearest)) if (distance - *least).abs() <= f64::EPSILON * edge => {
+                    nearest.behind &= behind
+                }
                 Some((least, ..)) if distance > *least => {}
                 _ => found = Some((distance, past, now)),
             }

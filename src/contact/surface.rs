@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 
 pub use super::point::{
-    LengthShare, MasterPoint, SlavePoint, Weights, edge_point, gauss_points, gauss_points_and_corners, lone_point, nodal_points,
-    nodal_points_of_rings,
+    LengthShare, MasterPoint, SlavePoint, Weights, edge_point, gauss_points, gauss_points_and_corners, lone_point,
+    nodal_points, nodal_points_of_rings,
 };
 use crate::mesh::configuration::Configuration;
 use crate::mesh::few::Few;

@@ -17,7 +17,9 @@ pub fn rigid_inside(pair: &ContactPair, x: &Configuration) -> Option<(Vector2<f6
     let Depth { what, at, depth, edge } = pair.deepest(x).filter(|deepest| deepest.depth > DEEP * deepest.edge)?;
     let refined = "take shorter edges there, or round the corner off by an edge";
     let (what, remedy) = match (what, shape) {
-        (Inside::SlaveNode, _) => ("a slave node is inside the rigid master", "take shorter edges there, or raise alpha_n".into()),
+        (Inside::SlaveNode, _) => {
+            ("a slave node is inside the rigid master", "take shorter edges there, or raise alpha_n".into())
+        }
         (Inside::Disk, Shape::Circle(circle)) => {
             let [radius, edge] = apart([circle.radius, edge]);
             let remedy = format!("edges of {edge} do not see a radius of {radius}: take edges of a fifth of it");

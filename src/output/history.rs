@@ -128,7 +128,8 @@ impl HistoryRows {
         let mut row = Vec::from(energy_row(&state.energy));
         let x = model.configuration(&state.displacement);
         for ((pair, states), course) in model.contacts.iter().zip(&state.contacts).zip(&mut memory.courses) {
-            let columns @ [normal, tangential, _, slipping, ..] = contact_row(pair, states, pair.bodies.iter().flatten().all(|&body| state.has(body)).then_some(&x));
+            let columns @ [normal, tangential, _, slipping, ..] =
+                contact_row(pair, states, pair.bodies.iter().flatten().all(|&body| state.has(body)).then_some(&x));
             course.note(state.time, normal, tangential, slipping);
             row.extend(columns);
         }
@@ -222,7 +223,8 @@ fn contact_row(pair: &ContactPair, states: &[ContactState], x: Option<&Configura
     }
     if let Some(x) = x {
         let of_master = pair.deepest_master_node(states, x).map(|(_, depth, _)| depth);
-        penetration = of_master.into_iter().chain(pair.deepest(x).map(|deepest| deepest.depth)).fold(penetration, f64::max);
+        penetration =
+            of_master.into_iter().chain(pair.deepest(x).map(|deepest| deepest.depth)).fold(penetration, f64::max);
     }
     let share = |part: f64| if closed > 0.0 { part / closed } else { 0.0 };
     [normal, tangential, closed, share(slipping), share(slip), penetration, largest_elastic, share(elastic)]

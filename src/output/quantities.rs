@@ -171,7 +171,11 @@ pub const CONTACT: [Quantity; 8] = [
     q("contact_length", LENGTH, "closed length"),
     q("slip_fraction", NONE, "slipping fraction of the closed length; 1 without friction"),
     q("mean_slip", LENGTH, "mean of the plastic slip"),
-    q("max_penetration", LENGTH, "deepest point of either surface in the other: points of the contact, nodes, corners and disks"),
+    q(
+        "max_penetration",
+        LENGTH,
+        "deepest point of either surface in the other: points of the contact, nodes, corners and disks",
+    ),
     q("max_elastic_slip", LENGTH, "largest |q|/α_t"),
     q("mean_elastic_slip", LENGTH, "mean of q/α_t"),
 ];

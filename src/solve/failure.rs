@@ -176,8 +176,10 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, state: &State, ca
             }
         });
         let owner = owner.unwrap_or_default();
-        let corner = contact.and_then(|pair| corner(pair, node, &work.system.residual, &model.configuration(&state.displacement)));
-        let corner = corner.map(|at| format!(", at the corner ({}, {}) of its rigid master", number(at.x), number(at.y)));
+        let corner = contact
+            .and_then(|pair| corner(pair, node, &work.system.residual, &model.configuration(&state.displacement)));
+        let corner =
+            corner.map(|at| format!(", at the corner ({}, {}) of its rigid master", number(at.x), number(at.y)));
         format!(
             "largest residual at node {tag}{owner}, ({}, {}){}",
             number(at.x),

@@ -5,6 +5,7 @@ mod common;
 
 mod along;
 mod contact;
+mod corners;
 mod hard;
 mod moving;
 mod outlines;

@@ -64,8 +64,8 @@ pub(crate) mod schedule;
 mod stages;
 mod supports;
 mod thickness;
-mod unseen;
 mod unconstrained;
+mod unseen;
 
 pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use contact::{Contact, FluidPressure, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
