@@ -39,10 +39,11 @@ pub struct Contact {
     pub rigid_body: Option<String>,
     /// Contact method. By default mortar where an edge of either side is quadratic or a side curved (its direction
     /// turns by more than 1° between two corners of more than 45°), and where nodes do not face nodes unless a step is explicit;
-    /// node_to_segment where a slave of straight linear edges meets a rigid circle, polyline or outline, or a slave with a corner a rigid plane;
-    /// gauss_to_segment otherwise, with a `smooth` master, and where `points` are given
+    /// node_to_segment where straight linear or quadratic edges meet a bent rigid master, or a slave with a corner a rigid plane;
+    /// gauss_to_segment against a polyline or outline with a corner of more than 45°, there with points at the slave's own corners and ends;
+    /// it also otherwise, with a `smooth` master, and where `points` are given
     pub method: Option<Method>,
-    /// Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
+    /// Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2, and 4 for quadratic edges against a rigid master with corners
     pub points: Option<usize>,
     /// Whether the master's straight edges are replaced by a smooth curve through their nodes (not with mortar), so
     /// that forces do not jump where a slave slides from one edge to the next. Corners of more than 45° remain
