@@ -219,7 +219,7 @@ fn a_bar_necks_at_consideres_load() {
 }
 
 /// Hill (1950): a sheet drawn through a smooth wedge of half angle α by the stress 2k · 2(1 + α) sin α/(1 + 2 sin α). Half of it, shaped as in the
-/// die; the mean over the second half of a way of twice its half thickness. Measured: −1.5 %, on a mesh twice as fine +0.3 %.
+/// die; the mean over the second half of a way of twice its half thickness. Measured: +2.2 %, on a mesh twice as fine +1.5 %.
 #[test]
 fn a_sheet_is_drawn_through_a_wedge() {
     let alpha = 15f64.to_radians();
