@@ -583,11 +583,13 @@ class Contact(dict[str, Any]):
             force
         method: Contact method. By default mortar where an edge of either side is quadratic or a side curved
             (its direction turns by more than 1° between two corners of more than 45°), and where nodes do not
-            face nodes unless a step is explicit; node_to_segment where a slave of straight linear edges meets a
-            rigid circle, polyline or outline, or a slave with a corner a rigid plane; gauss_to_segment
-            otherwise, with a `smooth` master, and where `points` are given
+            face nodes unless a step is explicit; node_to_segment where straight linear or quadratic edges meet
+            a bent rigid master, or a slave with a corner a rigid plane; gauss_to_segment against a polyline or
+            outline with a corner of more than 45°, there with points at the slave's own corners and ends; it
+            also otherwise, with a `smooth` master, and where `points` are given
         normal: Normal contact
-        points: Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
+        points: Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2, and 4 for quadratic edges
+            against a rigid master with corners
         radiation_damping: Static steps: radiation damping, a traction η × slip rate that resists slip in
             addition to friction and approximates the inertia that is neglected, by shear waves radiated into
             unbounded bodies. A number is η [F·T/L³]; true takes the impedances of the bodies, 1/η = 1/Z₁ + 1/Z₂
@@ -938,7 +940,8 @@ class Initial(dict[str, Any]):
         of_bodies: Instead of pressure and traction: those of the `initial_stress` of the slave's body at the
             contact, p = −n·σn (minus an initial fluid pressure) and q = s·σn, with the normal n and the tangent
             s of the master
-        pressure: p: contact pressure, zero or positive [F/L²]
+        pressure: p: contact pressure, zero or positive [F/L²]. Where it is 0, and no traction acts, the deepest
+            overlap and 10⁻⁶ of the slave's edge are taken out of all gaps, and what is left of them stays open
         structure: 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; default: that of the law [-]
         traction: q: traction that resists the slip of the slave along +s, the master's normal turned by −90°
             [F/L²]
