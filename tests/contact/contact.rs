@@ -21,6 +21,7 @@ use fecontact::linear::system::{Contribution, Request};
 use fecontact::mesh::configuration::Configuration;
 use fecontact::mesh::rigid::RigidBody;
 use nalgebra::{DMatrix, DVector, Rotation2, Vector2};
+use serde_json::json;
 
 use crate::common;
 
@@ -927,6 +928,20 @@ fn profiles_enter_by_their_means_along_quadratic_edges() {
     for point in &points {
         common::close("its place", point.mean(|at| at.x, &undeformed), point.at(&undeformed).x, 1e-12);
     }
+
+    // As the pressure of a model: ∫ (1 + x²) dx from 0 to 3.
+    let model = common::model(&json!({
+        "mesh": {"blocks": [{"body": "block", "kind": "Q8", "corners": [[0, 0], [3, 0], [3, 1], [0, 1]], "elements": [3, 1],
+                             "sides": ["bottom", null, "top", null]}]},
+        "bodies": {"block": {"material": {"model": "linear", "E": 100, "nu": 0.3}}},
+        "contacts": {"base": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "method": "mortar",
+                              "friction": {"law": "frictionless"}, "initial": {"pressure": "1 + x^2"}}},
+        "steps": [{"name": "rest", "duration": 1, "supports": [{"on": "top", "ux": 0, "uy": 0}]}],
+    }));
+    let (undeformed, state) = (model.mesh.undeformed(), model.initial_state());
+    let points = model.contacts[0].points.iter().zip(&state.contacts[0]);
+    let force: f64 = points.map(|(point, state)| state.friction.pressure * point.current_length(&undeformed)).sum();
+    common::close("force", force, 12.0, 1e-12);
 }
 
 /// A quadratic edge whose middle node is off its middle is a parabola that turns back beyond an end, and passes no master node farther

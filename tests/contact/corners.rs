@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fecontact::contact::depth::Inside;
-use fecontact::contact::surface::{gauss_points_and_corners, is_corner};
+use fecontact::contact::surface::{SlavePoint, gauss_points_and_corners, is_corner};
 use fecontact::output::warnings::Warnings;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
@@ -157,7 +157,8 @@ fn a_wider_rigid_block_presses_evenly() {
     }
 }
 
-/// The rules at ends and corners integrate powers up to the second on linear edges, and up to the fourth on quadratic ones.
+/// Ends and corners of the slave are points, and the rules there integrate powers up to the second on linear edges, and up to the fourth on
+/// quadratic ones.
 #[test]
 fn points_at_corners_integrate_exactly() {
     let at = |x: f64, y: f64| Vector2::new(x, y);
@@ -172,14 +173,17 @@ fn points_at_corners_integrate_exactly() {
         at(3.0, 0.0),
         at(2.5, 0.0),
     ];
-    for (edges, degree) in [
-        (vec![vec![0, 1], vec![1, 2], vec![2, 3]], 2),
-        (vec![vec![0, 1, 4], vec![1, 2, 5], vec![2, 3, 6]], 4),
-        (vec![vec![0, 1, 4], vec![1, 2, 5], vec![2, 7, 8]], 4),
+    for (edges, degree, held) in [
+        (vec![vec![0, 1], vec![1, 2], vec![2, 3]], 2, vec![0, 2, 2, 3]),
+        (vec![vec![0, 1, 4], vec![1, 2, 5], vec![2, 3, 6]], 4, vec![0, 2, 2, 3]),
+        (vec![vec![0, 1, 4], vec![1, 2, 5], vec![2, 7, 8]], 4, vec![0, 7]),
     ] {
         let points = gauss_points_and_corners(&edges, |edge, end| is_corner(&edges, &nodes, edge, end));
+        let at_node =
+            |point: &SlavePoint| point.position.iter().find(|(_, weight)| *weight == 1.0).map(|&(node, _)| node);
+        assert_eq!(points.iter().filter_map(at_node).collect::<Vec<_>>(), held);
         for edge in &edges {
-            let own = |point: &&fecontact::contact::surface::SlavePoint| point.length[0].tangent[0].0 == edge[0];
+            let own = |point: &&SlavePoint| point.length[0].tangent[0].0 == edge[0];
             for power in 0..=degree {
                 // N₂ + N_m/2 = (1 + ξ)/2
                 let half =

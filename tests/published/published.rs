@@ -365,6 +365,33 @@ fn quadratic_elements_have_the_pressure_of_hertz_by_default() {
     }
 }
 
+/// The shear of bodies that stick under a pressing load grows smoothly from the middle outwards, on meshes that do not match as well: from
+/// edge to edge it alternates by less than 0.5 % of p₀ = 3585 MPa about the line through its neighbours. (Two tractions an edge, at corners
+/// and middles, alternate by up to 152 MPa.) The point at the axis and those about the edge of contact are left out.
+#[test]
+fn shear_along_quadratic_edges_does_not_zigzag() {
+    let (run, _) = solve("hertz_q8", |case| {
+        let contact = case["contacts"]["base"].as_object_mut().expect("a contact");
+        contact.remove("method");
+        contact.insert("friction".into(), json!({"law": "coulomb", "mu": 0.5}));
+    });
+    let places = Configuration::undeformed(&run.model.mesh.nodes);
+    let points = run.model.contacts[0].points.iter().zip(&run.last().contacts[0]);
+    let mut found: Vec<[f64; 2]> =
+        points.map(|(point, contact)| [point.at(&places).x, contact.friction.traction]).collect();
+    found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    found.retain(|[x, _]| (0.5..4.5).contains(x));
+    let off = |three: &[[f64; 2]]| {
+        let [[x0, q0], [x, q], [x1, q1]] = [three[0], three[1], three[2]];
+        q - q0 - (q1 - q0) * (x - x0) / (x1 - x0)
+    };
+    let off: Vec<f64> = found.windows(3).map(off).collect();
+    let alternates = off.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).map(|pair| pair[0].abs().min(pair[1].abs()));
+    let most = alternates.fold(0.0, f64::max);
+    println!("{found:.1?}: off the line of the neighbours by {off:.1?}, alternating by {most:.1}");
+    assert!(off.len() >= 5 && most < 0.005 * 3585.0);
+}
+
 /// Pointwise contact finds the same u_y as mortar, master and slave either way round, penalty times 0.1 and times 10: within
 /// 0.5 % of the published value and the penetration p/α_n, by which the surfaces come nearer. Q8, large displacements.
 /// Measured: −0.08 to −0.02 %, with the softest penalty −0.7 %.
