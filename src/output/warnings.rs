@@ -20,7 +20,6 @@ use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Shape};
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::SmallSliding;
-
 use crate::mesh::configuration::{Configuration, vector};
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;

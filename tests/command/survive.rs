@@ -606,12 +606,19 @@ fn a_requeued_job_begins_anew_where_there_is_no_checkpoint_yet() {
     fs::write(empty.join("fecontact.lock"), "").expect("a file");
     fs::write(empty.join("summary.json.new"), "{").expect("a file");
     done(&run(folder.path(), "empty", &["--resume"]));
-    // It holds this case's own run, killed before its first checkpoint.
-    let mut child = command(folder.path(), "killed", &[]).spawn().expect("it runs");
-    wait_for_rows(&mut child, &killed, 3);
-    child.kill().expect("it is killed");
-    child.wait().expect("it ends");
-    assert!(!killed.join("checkpoint.bin").exists() && summary(&killed)["status"] == "running");
+    // It holds this case's own run, killed before its first checkpoint. On a busy machine a run may end before it is killed: another is.
+    let cut_short = || {
+        let mut child = command(folder.path(), "killed", &[]).spawn().expect("it runs");
+        wait_for_rows(&mut child, &killed, 3);
+        child.kill().expect("it is killed");
+        child.wait().expect("it ends");
+        let is_cut_short = !killed.join("checkpoint.bin").exists() && summary(&killed)["status"] == "running";
+        if !is_cut_short {
+            fs::remove_dir_all(&killed).expect("it can go");
+        }
+        is_cut_short
+    };
+    assert!((0..100).any(|_| cut_short()), "a hundred runs have ended before they were killed");
     // Another case begins neither in its place nor in that of foreign files.
     let mut other = case.clone();
     other["contacts"]["base"]["friction"]["mu_s"] = json!(0.41);
