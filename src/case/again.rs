@@ -20,7 +20,8 @@ use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::model::builder::{Checked, ModelError, Regime, evaluation, regime};
+use crate::model::builder::{Checked, ModelError, evaluation, regime};
+use crate::model::scheme::Regime;
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::output::gradients::Parameter;
@@ -330,7 +331,7 @@ fn same_defaults(before: &Value, now: &Case, mesh: &Mesh) -> Checked<()> {
     if regimes[0] == regimes[1] {
         return Ok(());
     }
-    let explicit = regimes.contains(&Regime::Explicit);
+    let explicit = regimes.iter().any(|regime| matches!(regime, Regime::Explicit | Regime::QuasiDynamic));
     for (name, contact) in &now.contacts {
         let [was, is] = regimes.map(|regime| evaluation(contact, mesh, regime).map(|own| (own.method, own.points)));
         let key = if was != is {

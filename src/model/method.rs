@@ -1,10 +1,10 @@
 //! Contact method: as requested, or chosen for the surfaces.
 //!
-//! Pointwise contact passes the patch test where nodes face nodes, and else to a few percent. On quadratic edges two points leave
-//! the pressure to alternate, and between two faceted curves the gap itself alternates by the height of the facets, which
-//! the penalty turns into pressures far above those sought. There mortar averages. It costs about a third more per evaluation of
-//! the contact, and may take more iterations where points slide off an edge; explicit increments, which do little else than to
-//! evaluate, stay with points. A corner of the slave is held where it has a contact point of its own.
+//! Pointwise contact of meshes is exact only while nodes face nodes. Elsewhere two points per edge, and on quadratic edges anywhere, leave
+//! the pressure to alternate, the more so the stiffer the penalty. Whatever faces what at the start, surfaces slide; so meshes are met by
+//! mortar, which averages. It costs about a third more per evaluation of the contact: explicit increments, which do little else, stay with
+//! points on straight linear edges, and quasi-dynamic ones need nodes. A corner of the slave is held where it has a contact point of its
+//! own.
 //!
 //! A rigid master is met by nodes where it is bent, and there by Gauss points where it has corners or ends: of the points between two nodes
 //! each leaves a corner of the master by itself and has the normal of a face, whereas a node at a corner has none, and an average over an
@@ -18,6 +18,7 @@ use crate::contact::search::Index;
 use crate::contact::surface::{CORNER, MasterPoint, SlavePoint, Surface, in_order, nodal_points};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::{Group, Mesh};
+use crate::model::scheme::Regime;
 
 /// Contact method: evaluation points of contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -89,8 +90,8 @@ const BENT: &str = "chosen because the master is bent";
 /// round-off of a straight line, and below facets that affect the pressure [rad].
 const CURVED: f64 = 0.0175;
 
-/// Input of a contact that decides on its method, and whether the run has explicit steps.
-#[derive(Clone, Copy, Debug, Default)]
+/// Input of a contact that decides on its method, and the steps of the run.
+#[derive(Clone, Copy, Debug)]
 pub struct Asked {
     /// The method, if it is given
     pub method: Option<Method>,
@@ -98,8 +99,10 @@ pub struct Asked {
     pub points: Option<usize>,
     /// Whether the master is smoothed
     pub smooth: bool,
-    /// Whether some step may be explicit
-    pub explicit: bool,
+    /// The steps of the run
+    pub regime: Regime,
+    /// Whether the surfaces neither part nor slide
+    pub tied: bool,
     /// Whether every point keeps what it faces
     pub small: bool,
     /// Shape of a rigid master
@@ -132,6 +135,9 @@ pub fn choose(groups: [Option<&str>; 2], asked: Asked, mesh: &Mesh) -> Chosen {
         return Chosen { method, points, because: None, concern };
     }
     let chosen = |method, because, concern| Chosen { method, points, because: Some(because), concern };
+    if asked.regime == Regime::QuasiDynamic {
+        return chosen(Method::NodeToSegment, "chosen because a step is quasi_dynamic", None);
+    }
     if groups[1].is_none() && !asked.small {
         match (asked.tool, slave.shape) {
             (Tool::Sharp, shape) => {
@@ -143,41 +149,38 @@ pub fn choose(groups: [Option<&str>; 2], asked: Asked, mesh: &Mesh) -> Chosen {
             _ => {}
         }
     }
-    let has = |shape: Shape| slave.shape == shape || master.is_some_and(|master| master.shape == shape);
-    let because = match (has(Shape::Quadratic), has(Shape::Curved)) {
-        (true, _) => "chosen because edges are quadratic",
-        (_, true) => "chosen because surfaces are curved",
-        _ => return straight(groups, slave, asked, mesh, chosen),
-    };
-    if !asked.smooth {
-        return chosen(Method::Mortar, because, None);
+    if asked.smooth {
+        let concern = (slave.shape != Shape::Straight).then_some(
+            "`smooth` takes pointwise contact, and on a curved or quadratic slave pressures scatter: leave `smooth` out for mortar",
+        );
+        return chosen(Method::GaussToSegment, "chosen because mortar takes no smooth master", concern);
     }
-    let concern = (slave.shape != Shape::Straight).then_some(
-        "`smooth` takes pointwise contact, and on a curved or quadratic slave pressures scatter: leave `smooth` out for mortar",
-    );
-    chosen(Method::GaussToSegment, "chosen because mortar takes no smooth master", concern)
+    let (method, because) = match (groups, asked.regime) {
+        ([_, Some(_)], Regime::Static | Regime::Dynamic) => (Method::Mortar, "chosen because the master is a mesh"),
+        _ => by_looks(groups, [Some(slave), master], asked, mesh),
+    };
+    chosen(method, because, None)
 }
 
-/// The method of straight linear edges.
-fn straight(
-    groups: [Option<&str>; 2],
-    slave: Looks,
-    asked: Asked,
-    mesh: &Mesh,
-    chosen: impl Fn(Method, &'static str, Option<&'static str>) -> Chosen,
-) -> Chosen {
-    let bent = asked.tool != Tool::Flat;
-    if groups[1].is_none() && (slave.corner || bent) {
-        let because = if bent { BENT } else { "chosen because the slave has a corner" };
-        return chosen(Method::NodeToSegment, because, None);
+/// The method against rigid masters, and in explicit runs.
+fn by_looks(groups: [Option<&str>; 2], looks: [Option<Looks>; 2], asked: Asked, mesh: &Mesh) -> (Method, &'static str) {
+    let are = |shape: Shape| looks.iter().flatten().any(|looks| looks.shape == shape);
+    if are(Shape::Quadratic) {
+        return (Method::Mortar, "chosen because edges are quadratic");
     }
-    let [Some(slave), Some(master)] = groups else {
-        return chosen(Method::GaussToSegment, "chosen because surfaces are straight and linear", None);
-    };
-    if asked.smooth || asked.explicit || slave == master || nodes_meet(slave, master, mesh) {
-        return chosen(Method::GaussToSegment, "chosen because surfaces are straight and linear", None);
+    if are(Shape::Curved) {
+        return (Method::Mortar, "chosen because surfaces are curved");
     }
-    chosen(Method::Mortar, "chosen because nodes do not face nodes", None)
+    match groups {
+        [_, None] if asked.tool != Tool::Flat => (Method::NodeToSegment, BENT),
+        [_, None] if looks[0].is_some_and(|slave| slave.corner) => {
+            (Method::NodeToSegment, "chosen because the slave has a corner")
+        }
+        [Some(slave), Some(master)] if asked.tied && !nodes_meet(slave, master, mesh) => {
+            (Method::Mortar, "chosen because nodes do not face nodes")
+        }
+        _ => (Method::GaussToSegment, "chosen because surfaces are straight and linear"),
+    }
 }
 
 /// Nodes that face each other within this share of an edge do so but for round-off.

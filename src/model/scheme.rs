@@ -166,7 +166,20 @@ pub struct Coefficients {
     pub gamma: f64,
 }
 
+/// Kind of the steps of a run, as far as the defaults of penalties and methods depend on it.
 #[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regime {
+    /// All are static
+    Static,
+    /// One has inertia, and none takes explicit increments
+    Dynamic,
+    /// One takes explicit increments, or may
+    Explicit,
+    /// One is quasi-dynamic: its increments are explicit, between nodes
+    QuasiDynamic,
+}
+
 impl Scheme {
     /// Whether masses have inertia.
     pub fn is_dynamic(self) -> bool {

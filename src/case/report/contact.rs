@@ -13,8 +13,9 @@ use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::{Dilatancy, Onset};
 use crate::model::Model;
 use crate::model::boundary::Profile;
-use crate::model::builder::{Contact, InitialTractions, MasterSide, Regime, default_over, regime, tangential_over};
+use crate::model::builder::{Contact, InitialTractions, MasterSide, default_over, regime, tangential_over};
 use crate::model::method::{Chosen, Method};
+use crate::model::scheme::Regime;
 use crate::model::text::{count, number, vector};
 use crate::model::warnings::gaps;
 use crate::output::concerns::several_answers;
@@ -77,12 +78,14 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> String {
 fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chosen>) -> Vec<String> {
     let input = &case.contacts[&pair.name];
     let regime = regime(&case.steps);
+    let method = chosen.map(|chosen| chosen.method);
     let alpha_n = match input.normal.alpha_n {
         Some(_) => "given".into(),
         None => {
-            let over = default_over(input, &model.mesh, regime);
+            let over = default_over(input, method, regime);
             let because = match regime {
                 Regime::Explicit => ": a step is explicit",
+                Regime::QuasiDynamic => ": a step is quasi_dynamic",
                 Regime::Dynamic if !pair.tied => ": a step has inertia",
                 Regime::Dynamic | Regime::Static => "",
             };
@@ -110,7 +113,8 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
             (true, _) => "given".into(),
             (false, Some(_)) => "alpha_n/2".into(),
             (false, None) => {
-                let over = pair.laws.iter().map(|law| tangential_over(law.description.stiffness_is_penalty, regime));
+                let over =
+                    pair.laws.iter().map(|law| tangential_over(law.description.stiffness_is_penalty, method, regime));
                 format!("{} (λ + 2G)/h", range(over))
             }
         };

@@ -166,7 +166,7 @@ fn check_nodes(model: &Model) -> Checked<()> {
             let Some((own, master)) = point.facing() else {
                 return refused(format!(
                     "nodes {} coincide: quasi_dynamic steps need a master node opposite every slave node (and method \
-                     node_to_segment or mortar)",
+                     node_to_segment, which is the default)",
                     tags(&point.nodes)
                 ));
             };

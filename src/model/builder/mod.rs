@@ -83,7 +83,7 @@ pub(crate) use pair::evaluation;
 pub use pair::{default_alpha_t, default_over, tangential_over};
 pub use requests::Gauge;
 pub use rigid::{LoadingPlateInput, MovingPlateInput, Plate, RigidBodyInput};
-pub use schedule::{Regime, regime};
+pub use schedule::regime;
 
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;

@@ -46,7 +46,7 @@ use super::facing::Facing;
 use super::friction::{DefaultAlphaT, Laws};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
-use super::schedule::{Regime, regime};
+use super::schedule::regime;
 use super::thickness::Outline;
 use super::{contact, friction, initial, pores, rigid, unseen};
 use crate::contact::master::{Master, Rigid, Shape};
@@ -62,6 +62,7 @@ use crate::mesh::section::Section;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
 use crate::model::method::{Asked, Chosen, Method, Tool, choose, nodes_meet};
+use crate::model::scheme::Regime;
 
 /// The pairs of contacts, in a run of this regime.
 pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
@@ -237,7 +238,8 @@ fn asked(contact: &Contact, mesh: &Mesh, regime: Regime) -> Asked {
         method: *method,
         points: *points,
         smooth: *smooth,
-        explicit: regime == Regime::Explicit && !contact.tied,
+        regime,
+        tied: contact.tied,
         small: contact.tied || contact.sliding == SlidingRange::Small,
         tool: tool(contact, mesh),
     }
@@ -267,10 +269,11 @@ fn meets_corners(contact: &Contact, mesh: &Mesh) -> bool {
 /// be in equilibrium with it at each node; and so have edges against a bent rigid master, which a mean over an edge lets in.
 fn hats(contact: &Contact, mesh: &Mesh, regime: Regime) -> Hats {
     let asked = asked(contact, mesh, regime);
+    let explicit = matches!(regime, Regime::Explicit | Regime::QuasiDynamic);
     let faces = || contact.master_group().is_some_and(|master| nodes_meet(&contact.slave, master, mesh));
     let under_stress = contact.initial.as_ref().is_some_and(|initial| initial.of_bodies || initial.balanced);
     let bent = asked.tool != Tool::Flat;
-    let at_nodes = contact.tied || asked.explicit || under_stress || bent || asked.small && faces();
+    let at_nodes = contact.tied || explicit || under_stress || bent || asked.small && faces();
     if at_nodes { Hats::AtNodes } else { Hats::OfEdges }
 }
 
@@ -428,8 +431,8 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
 /// α_n over (λ + 2G)/h where all steps are static, and α_t where it is a penalty, by (1) [-]
 const STATIC: f64 = 300.0;
 
-/// The same where a step has inertia, or explicit increments, by (2) [-]
-const MOVING: f64 = 10.0;
+/// α_n at Gauss points, and where a step has inertia, or explicit increments, by (2) [-]
+const SOFTER: f64 = 10.0;
 
 /// The same of surfaces that are tied, without explicit increments [-]
 const TIED: f64 = 1e4;
@@ -449,28 +452,29 @@ pub struct Penalty {
 
 /// α_n over (λ + 2G)/h unless given [-]
 #[doc(hidden)]
-pub fn default_over(contact: &Contact, mesh: &Mesh, regime: Regime) -> f64 {
+pub fn default_over(contact: &Contact, method: Option<Method>, regime: Regime) -> f64 {
     match regime {
         Regime::Static | Regime::Dynamic if contact.tied => TIED,
-        Regime::Static if meets_corners(contact, mesh) => MOVING,
-        Regime::Static => STATIC,
-        Regime::Dynamic | Regime::Explicit => MOVING,
+        Regime::Static if method != Some(Method::GaussToSegment) => STATIC,
+        _ => SOFTER,
     }
 }
 
 /// Returns α_t over (λ + 2G)/h of a law that gives none, beside an α_n that is not given [-]
 #[doc(hidden)]
-pub fn tangential_over(penalty: bool, regime: Regime) -> f64 {
-    if penalty && regime == Regime::Static { STATIC } else { TANGENTIAL }
+pub fn tangential_over(penalty: bool, method: Option<Method>, regime: Regime) -> f64 {
+    let stiff = penalty && regime == Regime::Static && method != Some(Method::GaussToSegment);
+    if stiff { STATIC } else { TANGENTIAL }
 }
 
 /// The penalties of a contact, those given checked, in a run of this regime.
 pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) -> Checked<Penalty> {
     let elastic = elastic_stiffness(place, contact, model)?;
+    let method = evaluation(contact, &model.mesh, regime).map(|chosen| chosen.method);
     let at = format!("{place}.normal.alpha_n");
     let alpha_n = match (contact.normal.alpha_n, elastic) {
         (Some(alpha_n), _) => alpha_n,
-        (None, Some(elastic)) => elastic * default_over(contact, &model.mesh, regime),
+        (None, Some(elastic)) => elastic * default_over(contact, method, regime),
         (None, None) => {
             let message =
                 format!("is missing: there are no elements behind the points of `{}` to choose it by", contact.slave);
@@ -483,7 +487,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) ->
     let alpha_t = match (contact.tied, contact.normal.alpha_n, elastic) {
         (true, ..) => both(alpha_n),
         (false, None, Some(elastic)) => {
-            let [penalty, of_law] = [true, false].map(|penalty| elastic * tangential_over(penalty, regime));
+            let [penalty, of_law] = [true, false].map(|penalty| elastic * tangential_over(penalty, method, regime));
             DefaultAlphaT { penalty, of_law }
         }
         (false, ..) => both(0.5 * alpha_n),

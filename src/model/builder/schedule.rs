@@ -20,28 +20,18 @@ use crate::contact::pair::ContactPair;
 use crate::mesh::rigid::RigidBody;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::coupled::CoupledParts;
-use crate::model::scheme::Scheme;
+use crate::model::scheme::{Regime, Scheme};
 use crate::model::step::{Entry, ForceComponent, SHORTEST_INCREMENT, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
-
-/// Kind of the steps of a run, as far as the defaults of penalties and methods depend on it.
-#[doc(hidden)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Regime {
-    /// All are static
-    Static,
-    /// One has inertia, and none takes explicit increments
-    Dynamic,
-    /// One takes explicit increments, or may
-    Explicit,
-}
 
 /// The regime of a run of these steps.
 #[doc(hidden)]
 pub fn regime(steps: &[LoadStep]) -> Regime {
     let any = |is: &dyn Fn(Scheme) -> bool| steps.iter().any(|step| step.scheme.is_some_and(is));
-    if any(&Scheme::is_integrated_explicitly) || steps.iter().any(|step| step.rupture.is_some()) {
+    if any(&Scheme::is_quasi_dynamic) {
+        Regime::QuasiDynamic
+    } else if any(&Scheme::is_explicit) || steps.iter().any(|step| step.rupture.is_some()) {
         Regime::Explicit
     } else if any(&Scheme::is_dynamic) {
         Regime::Dynamic
