@@ -25,6 +25,7 @@ pub mod point;
 pub mod pores;
 pub mod projection;
 pub mod response;
+pub mod scatter;
 pub mod search;
 pub mod segment_grid;
 pub mod segment_search;

@@ -12,11 +12,12 @@ use super::csv::{Rows, Sheet, Table};
 use super::friction_history::FrictionHistory;
 use super::quantities::{
     BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, PLASTIC, Quantity, RADIATED, RESULTANT, RIGID,
-    WATCHED, names,
+    SCATTER, WATCHED, names,
 };
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
+use crate::contact::scatter::Course;
 use crate::equations::contacts;
 use crate::laws::friction::{Regime, observables};
 use crate::mesh::configuration::Configuration;
@@ -36,6 +37,8 @@ pub struct HistoryRows {
     observed: Vec<Vec<&'static str>>,
     /// Center of each undeformed slave surface, the reference point of moments
     middles: Vec<Vector2<f64>>,
+    /// How the points of each contact follow each other
+    surfaces: Vec<Course>,
     bodies: Arc<[BodyMeans]>,
     /// ∫ N_a ds of the watched edge sets
     edges: Vec<EdgeMeans>,
@@ -84,12 +87,14 @@ impl Rows for HistoryRows {
         let in_fluid = model.contacts.iter().filter(|pair| pair.holds_fluid());
         header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
+        header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &[SCATTER])));
         header.extend(model.mesh.rigid_bodies.iter().flat_map(|body| of(&body.name, &RIGID)));
         header.extend(yields(model).then(|| PLASTIC.name.into()));
         let undeformed = model.mesh.undeformed();
         let rows = Self {
             observed,
             middles: model.contacts.iter().map(|pair| pair.middle(&undeformed)).collect(),
+            surfaces: model.contacts.iter().map(|pair| Course::new(&pair.points, &undeformed)).collect(),
             bodies: model.bodies.iter().map(|body| BodyMeans::new(model, body)).collect(),
             edges,
             memory: Memory {
@@ -124,7 +129,7 @@ impl Rows for HistoryRows {
 impl HistoryRows {
     /// Numbers of the row of an accepted increment behind those of the increment itself ([`INCREMENT`]).
     pub(super) fn values(&mut self, model: &Model, old: &State, state: &State) -> Vec<f64> {
-        let Self { observed, middles, bodies, edges, memory } = self;
+        let Self { observed, middles, surfaces, bodies, edges, memory } = self;
         let mut row = Vec::from(energy_row(&state.energy));
         let x = model.configuration(&state.displacement);
         for ((pair, states), course) in model.contacts.iter().zip(&state.contacts).zip(&mut memory.courses) {
@@ -165,6 +170,7 @@ impl HistoryRows {
             *heat += more;
             row.extend([*heat, more / (state.time - old.time)]);
         }
+        row.extend(surfaces.iter().zip(&state.contacts).map(|(course, states)| course.scatter(states)));
         for body in &model.mesh.rigid_bodies {
             row.extend([body.angle(&x), body.radius * state.reaction[2 * body.turning]]);
         }

@@ -22,6 +22,7 @@ cfg_if::cfg_if! {
         pub mod gradients;
         pub mod history;
         pub mod instability;
+        pub mod scattered;
         pub mod store;
         pub mod law;
         pub mod newton_log;
@@ -47,6 +48,7 @@ cfg_if::cfg_if! {
         pub(crate) mod gradients;
         pub(crate) mod history;
         pub(crate) mod instability;
+        pub(crate) mod scattered;
         pub(crate) mod store;
         pub(crate) mod law;
         pub(crate) mod newton_log;

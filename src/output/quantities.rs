@@ -180,6 +180,10 @@ pub const CONTACT: [Quantity; 8] = [
     q("mean_elastic_slip", LENGTH, "mean of q/α_t"),
 ];
 
+/// How tractions of a contact alternate from point to point.
+pub const SCATTER: Quantity =
+    q("scatter", NONE, "rms by which p, or q, alternates from point to point, over the mean p of the points inside");
+
 /// Mean displacement of a watched set, and its reactions.
 pub const WATCHED: [Quantity; 4] = [
     q("ux", LENGTH, "mean displacement of the nodes along x"),
@@ -475,6 +479,7 @@ pub const ALL: [(&str, &[Group]); 12] = [
             ("SET", &EDGES),
             ("CONTACT", &[FLUID_FORCE]),
             ("CONTACT", &HEAT),
+            ("CONTACT", &[SCATTER]),
             ("RIGID", &RIGID),
             ("", &[PLASTIC]),
         ],

@@ -16,6 +16,7 @@ use super::concerns::{Kind, concerns, left};
 use super::csv;
 use super::depths;
 use super::instability::Instability;
+use super::scattered::Scattered;
 use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Shape};
 use crate::contact::pair::ContactPair;
@@ -62,6 +63,8 @@ pub struct Warnings {
     unstable: Instability,
     /// Friction in increments that are too long for it
     coarse: Coarse,
+    /// Contacts whose tractions alternate from point to point
+    scattered: Scattered,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -107,6 +110,7 @@ impl Observer for Warnings {
         self.linear_bodies(model, state, way, attempt.ends_step(state));
         let x = model.configuration(&state.displacement);
         self.coarse.record(model, attempt, state, &x);
+        self.scattered.record(model, attempt, state);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
@@ -152,6 +156,7 @@ impl Observer for Warnings {
         }
         self.list.extend(self.unstable.message());
         self.list.extend(self.coarse.tell());
+        self.list.extend(self.scattered.tell());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()

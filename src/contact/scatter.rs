@@ -1,0 +1,63 @@
+//! Scatter of tractions from point to point along a slave surface, which the mesh has made and not the problem.
+//!
+//! ```text
+//! r_i = p_i − (line through the neighbours of i)                     inner points: i and both neighbours are closed
+//! scatter of p = 1/p̄ · √(Σ m_i²/n),   m_i = min(|r_i|, |r_i+1|) where r_i r_i+1 < 0, otherwise 0
+//! ```
+//! over the n inner points, with their mean pressure p̄; that of q alike, by p̄ as well. A smooth pressure has residuals of one sign, or small
+//! ones where its curvature changes; a kink or the edge of a contact has a single large one. What alternates counts twice its amplitude.
+
+use super::force::ContactState;
+use super::point::SlavePoint;
+use super::surface::CORNER;
+use crate::mesh::configuration::Configuration;
+
+/// How the points of a slave surface follow each other.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// Distance of each point to the next one; `None` at ends and corners of the surface [L]
+    next: Vec<Option<f64>>,
+}
+
+impl Course {
+    /// The course of points that are listed in the order of their surface, in a configuration.
+    pub fn new(points: &[SlavePoint], x: &Configuration) -> Self {
+        let nodes = |point: &SlavePoint| -> Vec<usize> {
+            point.length.iter().flat_map(|share| &share.tangent).map(|&(node, _)| node).collect()
+        };
+        let goes_on = |pair: &[SlavePoint]| {
+            let own = nodes(&pair[0]);
+            let joined = nodes(&pair[1]).iter().any(|node| own.contains(node));
+            joined && matches!([pair[0].outward(x), pair[1].outward(x)], [Some(a), Some(b)] if a.dot(&b) > CORNER)
+        };
+        let distance = |pair: &[SlavePoint]| (pair[1].at(x) - pair[0].at(x)).norm();
+        let next = points.windows(2).map(|pair| Some(distance(pair)).filter(|&way| goes_on(pair) && way > 0.0));
+        Self { next: next.chain([None]).collect() }
+    }
+
+    /// The larger of the scatters of p and q [-]
+    pub fn scatter(&self, states: &[ContactState]) -> f64 {
+        let inner = |k: usize| -> Option<[f64; 2]> {
+            let ways = [self.next[k.checked_sub(1)?]?, self.next[k]?];
+            states[k - 1..=k + 1].iter().all(ContactState::is_closed).then_some(ways)
+        };
+        let ways: Vec<Option<[f64; 2]>> = (0..states.len()).map(inner).collect();
+        let pressures = states.iter().zip(&ways).filter(|(_, ways)| ways.is_some()).map(|(s, _)| s.friction.pressure);
+        let (count, sum) = pressures.fold((0.0, 0.0), |(count, sum), pressure| (count + 1.0, sum + pressure));
+        let alternates = |traction: &dyn Fn(&ContactState) -> f64| {
+            let residual = |k: usize| {
+                let [before, after] = ways[k]?;
+                let [left, own, right] = [k - 1, k, k + 1].map(|k| traction(&states[k]));
+                Some(own - (left * after + right * before) / (before + after))
+            };
+            let residuals: Vec<Option<f64>> = (0..states.len()).map(residual).collect();
+            let least = residuals.windows(2).filter_map(|pair| match pair {
+                [Some(a), Some(b)] if a * b < 0.0 => Some(a.abs().min(b.abs()).powi(2)),
+                _ => None,
+            });
+            least.sum::<f64>()
+        };
+        let [p, q] = [alternates(&|state| state.friction.pressure), alternates(&|state| state.friction.traction)];
+        if sum > 0.0 { (p.max(q) / count).sqrt() / (sum / count) } else { 0.0 }
+    }
+}

@@ -1,0 +1,55 @@
+//! Warning about tractions that alternate from point to point: sums of them may be right, the distribution is not.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::scatter::Course;
+use crate::model::Model;
+use crate::model::method::Method;
+use crate::model::scheme::{Scheme, time_text};
+use crate::model::state::State;
+use crate::run::observer::Attempt;
+
+/// Scatter of tractions at the end of a step that causes a warning, over the mean pressure.
+const SCATTERS: f64 = 0.05;
+
+/// The largest scatter of each contact at the end of a step, where it is not small, and what is to be said of it.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub struct Scattered {
+    largest: BTreeMap<usize, (f64, String)>,
+}
+
+impl Scattered {
+    /// Looks at the end of a step without explicit increments, whose waves alternate as well.
+    pub fn record(&mut self, model: &Model, attempt: &Attempt, state: &State) {
+        if !attempt.ends_step(state) || matches!(attempt.step.scheme, Scheme::Explicit { .. }) {
+            return;
+        }
+        let undeformed = model.mesh.undeformed();
+        let contacts = model.contacts.iter().zip(&model.methods).zip(&state.contacts).enumerate();
+        for (k, ((pair, chosen), states)) in contacts.filter(|(_, ((pair, _), _))| attempt.step.joins(pair)) {
+            let scatter = Course::new(&pair.points, &undeformed).scatter(states);
+            if scatter <= self.largest.get(&k).map_or(SCATTERS, |(scatter, _)| *scatter) {
+                continue;
+            }
+            let remedy = match chosen.as_ref().map(|chosen| chosen.method) {
+                Some(Method::Mortar) => "softer alpha_n and alpha_t, a finer slave, or shorter increments while points close",
+                _ => "\"method\": \"mortar\", or a softer alpha_n",
+            };
+            let message = format!(
+                "contact `{}`, t = {}: tractions alternate from point to point by {:.0} % of the mean pressure (column scatter): sums of \
+                 them may be right, their distribution is not; {remedy}",
+                pair.name,
+                time_text(state.time),
+                100.0 * scatter
+            );
+            self.largest.insert(k, (scatter, message));
+        }
+    }
+
+    /// The warnings, each of which is told once.
+    pub fn tell(&mut self) -> impl Iterator<Item = String> {
+        std::mem::take(&mut self.largest).into_values().map(|(_, message)| message)
+    }
+}
