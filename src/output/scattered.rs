@@ -34,7 +34,9 @@ impl Scattered {
                 continue;
             }
             let remedy = match chosen.as_ref().map(|chosen| chosen.method) {
-                Some(Method::Mortar) => "softer alpha_n and alpha_t, a finer slave, or shorter increments while points close",
+                Some(Method::Mortar) => {
+                    "softer alpha_n and alpha_t, a finer slave, or shorter increments while points close"
+                }
                 _ => "\"method\": \"mortar\", or a softer alpha_n",
             };
             let message = format!(
