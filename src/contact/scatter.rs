@@ -1,16 +1,20 @@
 //! Scatter of tractions from point to point along a slave surface, which the mesh has made and not the problem.
 //!
 //! ```text
-//! r_i = p_i − (line through the neighbours of i)                     inner points: i and both neighbours are closed
+//! r_i = p_i − (line through the neighbours of i)                     inner points: i and three points on either side are closed
 //! scatter of p = 1/p̄ · √(Σ m_i²/n),   m_i = min(|r_i|, |r_i+1|) where r_i r_i+1 < 0, otherwise 0
 //! ```
-//! over the n inner points, with their mean pressure p̄; that of q alike, by p̄ as well. A smooth pressure has residuals of one sign, or small
+//! over the n inner points, with their mean pressure p̄; that of q alike, by p̄ as well. Towards the end of a contact the elastic pressure is
+//! steep, at the corner of a block singular, which no mesh resolves over its last points. A smooth pressure has residuals of one sign, or small
 //! ones where its curvature changes; a kink or the edge of a contact has a single large one. What alternates counts twice its amplitude.
 
 use super::force::ContactState;
 use super::point::SlavePoint;
 use super::surface::CORNER;
 use crate::mesh::configuration::Configuration;
+
+/// Number of points on either side of an inner one.
+const BESIDE: usize = 3;
 
 /// How the points of a slave surface follow each other.
 #[derive(Clone, Debug)]
@@ -38,8 +42,10 @@ impl Course {
     /// The larger of the scatters of p and q [-]
     pub fn scatter(&self, states: &[ContactState]) -> f64 {
         let inner = |k: usize| -> Option<[f64; 2]> {
-            let ways = [self.next[k.checked_sub(1)?]?, self.next[k]?];
-            states[k - 1..=k + 1].iter().all(ContactState::is_closed).then_some(ways)
+            let first = k.checked_sub(BESIDE)?;
+            let goes_on = self.next.get(first..k + BESIDE)?.iter().all(Option::is_some);
+            let closed = states.get(first..=k + BESIDE)?.iter().all(ContactState::is_closed);
+            Some([self.next[k - 1]?, self.next[k]?]).filter(|_| goes_on && closed)
         };
         let ways: Vec<Option<[f64; 2]>> = (0..states.len()).map(inner).collect();
         let pressures = states.iter().zip(&ways).filter(|(_, ways)| ways.is_some()).map(|(s, _)| s.friction.pressure);

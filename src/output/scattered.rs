@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::master::Master;
 use crate::contact::scatter::Course;
 use crate::model::Model;
 use crate::model::method::Method;
@@ -33,11 +34,10 @@ impl Scattered {
             if scatter <= self.largest.get(&k).map_or(SCATTERS, |(scatter, _)| *scatter) {
                 continue;
             }
-            let remedy = match chosen.as_ref().map(|chosen| chosen.method) {
-                Some(Method::Mortar) => {
-                    "softer alpha_n and alpha_t, a finer slave, or shorter increments while points close"
-                }
-                _ => "\"method\": \"mortar\", or a softer alpha_n",
+            let by_mortar = chosen.as_ref().is_some_and(|chosen| chosen.method == Method::Mortar);
+            let remedy = match &pair.master {
+                Master::Mesh(_) if !by_mortar => "take \"method\": \"mortar\", or a softer alpha_n",
+                _ => "take softer alpha_n and alpha_t, a finer slave, or shorter increments while points close",
             };
             let message = format!(
                 "contact `{}`, t = {}: tractions alternate from point to point by {:.0} % of the mean pressure (column scatter): sums of \

@@ -37,8 +37,9 @@ pub struct Contact {
     pub master: MasterSide,
     /// Moving rigid body to which a rigid master belongs: one of `rigid_bodies`; default: the master is fixed
     pub rigid_body: Option<String>,
-    /// Contact method. By default mortar where an edge of either side is quadratic or a side curved (its direction
-    /// turns by more than 1° between two corners of more than 45°), and where nodes do not face nodes unless a step is explicit;
+    /// Contact method. By default mortar against a mesh in a run without explicit increments; node_to_segment where a step is quasi_dynamic.
+    /// Against rigid masters, and in runs with explicit increments: mortar where an edge of either side is quadratic or a side curved (its direction
+    /// turns by more than 1° between two corners of more than 45°);
     /// node_to_segment where straight linear or quadratic edges meet a bent rigid master, or a slave with a corner a rigid plane;
     /// gauss_to_segment against a polyline or outline with a corner of more than 45°, there with points at the slave's own corners and ends;
     /// it also otherwise, with a `smooth` master, and where `points` are given
@@ -68,8 +69,7 @@ pub struct Contact {
     #[serde(default)]
     pub massless: bool,
     /// Whether the surfaces are tied: they neither part nor slide, whatever pulls at them, however large the motion. Every
-    /// slave point keeps the place on the master that it faces in the mesh, across a gap as well (the finer side is the slave, by mortar
-    /// where nodes do not face nodes); points that face nothing stay free. Pressure and traction count per initial length.
+    /// slave point keeps the place on the master that it faces in the mesh, across a gap as well (the finer side is the slave); points that face nothing stay free. Pressure and traction count per initial length.
     /// Without `friction`
     #[serde(default)]
     pub tied: bool,
@@ -155,7 +155,7 @@ impl Serialize for FluidPressure {
 #[non_exhaustive]
 pub struct Normal {
     /// α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body and the depth h of
-    /// the slave's elements; 10 (λ + 2G)/h where a step has inertia, is quasi_dynamic or has `rupture`. A slave group of
+    /// the slave's elements; 10 (λ + 2G)/h at Gauss points, and where a step has inertia, is quasi_dynamic or has `rupture`. A slave group of
     /// points has no elements and needs a number
     pub alpha_n: Option<f64>,
     /// Largest penetration allowed [L]: the pressure is increased until no penetration is larger (augmented Lagrangian

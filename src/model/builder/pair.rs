@@ -18,12 +18,13 @@
 //! Default penalties are stiff compared with the adjacent elements, but soft enough for the iterations.
 //!
 //! ```text
-//! α_n = 300 (λ + 2G)/h,   α_t = 300 (λ + 2G)/h         all steps are static                                         (1)
-//! α_n =  10 (λ + 2G)/h,   α_t =   5 (λ + 2G)/h         a step has inertia, or explicit increments                   (2)
+//! α_n = 300 (λ + 2G)/h,   α_t = 300 (λ + 2G)/h         all steps are static, at nodes and by mortar                 (1)
+//! α_n =  10 (λ + 2G)/h,   α_t =   5 (λ + 2G)/h         a step has inertia, or explicit increments; at Gauss points  (2)
 //! ```
 //! α_t of (1) is for laws to which it is a penalty; where the elastic slip is a part of the law, α_t is that of (2) in every run.
 //!
-//! At Gauss points against a rigid master with corners, α_n is that of (2) in every run: with (1) the pressures of quadratic edges scatter.
+//! The nodes of an edge do not determine the pressures of two Gauss points on it: the weakest of their combinations meets no stiffness
+//! but that of the penalty. With (1) the pressure of sliding blocks scatters by 56 to 86 % of its mean, with (2) by 2 to 4 %.
 //!
 //! Explicit increments are as long as α_n allows. Implicit ones that do not resolve the oscillation of a surface node on α_n gain
 //! energy where surfaces part and meet: with (1) more than all that was supplied, with (2) less than a hundredth of it
