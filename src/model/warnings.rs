@@ -169,8 +169,9 @@ fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
     ))
 }
 
-/// α_n over (λ + 2G)/h up to which Gauss points on the finer side leave an even pressure even within some 5 % [-]
-const SOFT: f64 = 30.0;
+/// α_n ℓ/G*, ℓ being the slave's edge, up to which Gauss points on the finer side leave an even pressure even within some 5 %: what gives
+/// way evens out as much as the bodies do over an edge [-]
+const SOFT: f64 = 14.5;
 
 /// Points that were asked for on linear edges whose nodes do not face nodes. Shape functions of the master have their kinks at its
 /// nodes; where one faces the inside of a slave edge, quadrature over that edge hands on an even pressure unevenly, at every size of
@@ -189,7 +190,8 @@ fn uneven(model: &Model, pair: &ContactPair, chosen: &Chosen) -> Option<String> 
         let lengths = surface.segments.iter().map(|&Segment { ends: [a, b], .. }| x.between(a, b).norm());
         lengths.sum::<f64>() / surface.segments.len() as f64
     };
-    let gives_way = pair.penetration.is_none() && pair.alpha_n * pair.compliance <= SOFT && edge(slave) <= edge(master);
+    let gives_way =
+        pair.penetration.is_none() && pair.alpha_n * edge(slave) <= SOFT * pair.modulus && edge(slave) <= edge(master);
     if !(asked && implicit && is_linear(master) && is_linear(slave))
         || chosen.method == Method::GaussToSegment && gives_way
     {

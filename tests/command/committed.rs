@@ -22,6 +22,11 @@ const SHOWN: &[(&str, &str, &str)] = &[
         "it resolves every swing of the slowest of the paper's cases",
     ),
     (
+        "coulomb_drag_",
+        "tractions alternate from point to point by",
+        "other codes are compared at these points with these penalties (benches/README.md)",
+    ),
+    (
         "validation/ironing_",
         "a master node penetrates the slave by",
         "coarse meshes are compared with finer ones (docs/validation/ironing.md)",

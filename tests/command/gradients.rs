@@ -102,8 +102,10 @@ fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
         });
         assert_eq!(low["time"], history["time"], "the same increments");
         assert_eq!(high["time"], history["time"], "the same increments");
-        for (name, low) in low.iter().filter(|(name, _)| !["time", "dt", "step", "iterations"].contains(&name.as_str()))
-        {
+        // Scatter has kinks where the residuals of neighbours change their order.
+        let is_smooth =
+            |name: &str| !["time", "dt", "step", "iterations"].contains(&name) && !name.ends_with(".scatter");
+        for (name, low) in low.iter().filter(|(name, _)| is_smooth(name)) {
             let differences: Vec<f64> =
                 low.iter().zip(&high[name]).map(|(low, high)| (high - low) / (ends[1] - ends[0])).collect();
             let scale = differences.iter().fold(0.0f64, |most, value| most.max(value.abs()));

@@ -148,7 +148,7 @@ fn the_store_holds_what_the_frames_show() {
         let row = |values: &[f64]| values[k * points..(k + 1) * points].to_vec();
         let near = |what: &str, stored: &[f64], exact: &[f64]| {
             for (stored, exact) in row(stored).iter().zip(exact) {
-                close(what, *stored, *exact, exact.abs() * 2f64.powi(-16));
+                close(what, *stored, *exact, exact.abs() * 2f64.powi(-16) + f64::from(f32::MIN_POSITIVE));
             }
         };
         let exact = shown("slip");

@@ -64,7 +64,7 @@ fn history_has_the_promised_columns() {
                   external_work,energy_error,base.normal_force,base.tangential_force,base.contact_length,\
                   base.slip_fraction,base.mean_slip,base.max_penetration,base.max_elastic_slip,base.mean_elastic_slip,\
                   block.ux,block.uy,block.fx,block.fy,base.force_x,base.force_y,base.moment,\
-                  base.frictional_heat,base.frictional_power";
+                  base.frictional_heat,base.frictional_power,base.scatter";
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some(header));
     let column = |name: &str| header.split(',').position(|column| column == name).unwrap();

@@ -220,7 +220,8 @@ fn master_nodes_deep_in_the_slave_are_told() {
         let points = model.contacts[0].points.iter().zip(&state.contacts[0]);
         let share = |(point, state): (&SlavePoint, &ContactState)| -state.gap / point.edge_length(&x).expect("an edge");
         assert!(points.map(share).fold(0.0, f64::max) < 5e-3);
-        warnings.list
+        // Chords on chords: their pressure alternates as well.
+        warnings.list.into_iter().filter(|told| !told.contains("tractions alternate")).collect()
     };
     let coarse = told([32, 40]);
     println!("{coarse:?}");

@@ -80,7 +80,7 @@ fn length_at_loss_of_stability(friction: Value, [peak, curvature]: [f64; 2]) -> 
             "normal": {"alpha_n": 50.0 * STEEPEST}, "friction": friction,
             "initial": {"pressure": P, "balanced": true,
                         "traction": format!("{P}*({peak} - {curvature}*x^2/(1 + {}*x^2))", curvature / 0.3)}}},
-        "steps": [{"name": "shear", "duration": 1, "dt": {"initial": 0.005, "min": 4e-5}, "supports": supports}],
+        "steps": [{"name": "shear", "duration": 1, "dt": {"initial": 0.002, "max": 0.002, "min": 4e-5}, "supports": supports}],
     }));
     let mut record = Record::default();
     let model = Arc::new(model);
@@ -101,7 +101,7 @@ fn length_at_loss_of_stability(friction: Value, [peak, curvature]: [f64; 2]) -> 
         .iter()
         .zip(&before.contacts[0])
         .filter(|(new, old)| new.friction.traction < old.friction.traction);
-    falls.count() as f64 * 8.0 / (2 * columns) as f64
+    falls.map(|(new, _)| new.length).sum()
 }
 
 /// Linear weakening loses stability at 1.158 G/((1 − ν) W) whatever the shape of the load (Uenishi & Rice 2003, J.

@@ -113,8 +113,8 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
             (true, _) => "given".into(),
             (false, Some(_)) => "alpha_n/2".into(),
             (false, None) => {
-                let over =
-                    pair.laws.iter().map(|law| tangential_over(law.description.stiffness_is_penalty, method, regime));
+                let penalties = pair.laws.iter().map(|law| law.description.stiffness_is_penalty);
+                let over = penalties.map(|penalty| tangential_over(penalty, input, method, regime));
                 format!("{} (λ + 2G)/h", range(over))
             }
         };

@@ -155,7 +155,7 @@ impl Serialize for FluidPressure {
 #[non_exhaustive]
 pub struct Normal {
     /// α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body and the depth h of
-    /// the slave's elements; 10 (λ + 2G)/h at Gauss points, and where a step has inertia, is quasi_dynamic or has `rupture`. A slave group of
+    /// the slave's elements; 10 (λ + 2G)/h at Gauss points but on planes, and where a step has inertia, is quasi_dynamic or has `rupture`. A slave group of
     /// points has no elements and needs a number
     pub alpha_n: Option<f64>,
     /// Largest penetration allowed [L]: the pressure is increased until no penetration is larger (augmented Lagrangian

@@ -18,7 +18,7 @@
 //! Default penalties are stiff compared with the adjacent elements, but soft enough for the iterations.
 //!
 //! ```text
-//! α_n = 300 (λ + 2G)/h,   α_t = 300 (λ + 2G)/h         all steps are static, at nodes and by mortar                 (1)
+//! α_n = 300 (λ + 2G)/h,   α_t = 300 (λ + 2G)/h         all steps are static, at nodes, by mortar, and on planes     (1)
 //! α_n =  10 (λ + 2G)/h,   α_t =   5 (λ + 2G)/h         a step has inertia, or explicit increments; at Gauss points  (2)
 //! ```
 //! α_t of (1) is for laws to which it is a penalty; where the elastic slip is a part of the law, α_t is that of (2) in every run.
@@ -432,7 +432,7 @@ fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked
 /// α_n over (λ + 2G)/h where all steps are static, and α_t where it is a penalty, by (1) [-]
 const STATIC: f64 = 300.0;
 
-/// α_n at Gauss points, and where a step has inertia, or explicit increments, by (2) [-]
+/// α_n at Gauss points but on planes, and where a step has inertia, or explicit increments, by (2) [-]
 const SOFTER: f64 = 10.0;
 
 /// The same of surfaces that are tied, without explicit increments [-]
@@ -456,16 +456,22 @@ pub struct Penalty {
 pub fn default_over(contact: &Contact, method: Option<Method>, regime: Regime) -> f64 {
     match regime {
         Regime::Static | Regime::Dynamic if contact.tied => TIED,
-        Regime::Static if method != Some(Method::GaussToSegment) => STATIC,
+        Regime::Static if bears_stiffness(contact, method) => STATIC,
         _ => SOFTER,
     }
 }
 
 /// Returns α_t over (λ + 2G)/h of a law that gives none, beside an α_n that is not given [-]
 #[doc(hidden)]
-pub fn tangential_over(penalty: bool, method: Option<Method>, regime: Regime) -> f64 {
-    let stiff = penalty && regime == Regime::Static && method != Some(Method::GaussToSegment);
+pub fn tangential_over(penalty: bool, contact: &Contact, method: Option<Method>, regime: Regime) -> f64 {
+    let stiff = penalty && regime == Regime::Static && bears_stiffness(contact, method);
     if stiff { STATIC } else { TANGENTIAL }
+}
+
+/// Whether pressures stay smooth however stiff the penalty is: at Gauss points on a plane, to which the gaps of an edge are those of its
+/// nodes, and on no other master.
+fn bears_stiffness(contact: &Contact, method: Option<Method>) -> bool {
+    method != Some(Method::GaussToSegment) || matches!(contact.master, MasterSide::Plane { .. })
 }
 
 /// The penalties of a contact, those given checked, in a run of this regime.
@@ -488,7 +494,8 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) ->
     let alpha_t = match (contact.tied, contact.normal.alpha_n, elastic) {
         (true, ..) => both(alpha_n),
         (false, None, Some(elastic)) => {
-            let [penalty, of_law] = [true, false].map(|penalty| elastic * tangential_over(penalty, method, regime));
+            let [penalty, of_law] =
+                [true, false].map(|penalty| elastic * tangential_over(penalty, contact, method, regime));
             DefaultAlphaT { penalty, of_law }
         }
         (false, ..) => both(0.5 * alpha_n),
