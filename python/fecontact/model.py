@@ -581,12 +581,13 @@ class Contact(dict[str, Any]):
         massless: Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their
             elements, so that impact does not excite spurious oscillation of these nodes and of the contact
             force
-        method: Contact method. By default mortar where an edge of either side is quadratic or a side curved
-            (its direction turns by more than 1° between two corners of more than 45°), and where nodes do not
-            face nodes unless a step is explicit; node_to_segment where straight linear or quadratic edges meet
-            a bent rigid master, or a slave with a corner a rigid plane; gauss_to_segment against a polyline or
-            outline with a corner of more than 45°, there with points at the slave's own corners and ends; it
-            also otherwise, with a `smooth` master, and where `points` are given
+        method: Contact method. By default mortar against a mesh in a run without explicit increments;
+            node_to_segment where a step is quasi_dynamic. Against rigid masters, and in runs with explicit
+            increments: mortar where an edge of either side is quadratic or a side curved (its direction turns
+            by more than 1° between two corners of more than 45°); node_to_segment where straight linear or
+            quadratic edges meet a bent rigid master, or a slave with a corner a rigid plane; gauss_to_segment
+            against a polyline or outline with a corner of more than 45°, there with points at the slave's own
+            corners and ends; it also otherwise, with a `smooth` master, and where `points` are given
         normal: Normal contact
         points: Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2, and 4 for quadratic edges
             against a rigid master with corners
@@ -608,8 +609,8 @@ class Contact(dict[str, Any]):
             larger, as `penetration` does it along the normal; default: penalty only
         tied: Whether the surfaces are tied: they neither part nor slide, whatever pulls at them, however large
             the motion. Every slave point keeps the place on the master that it faces in the mesh, across a gap
-            as well (the finer side is the slave, by mortar where nodes do not face nodes); points that face
-            nothing stay free. Pressure and traction count per initial length. Without `friction`
+            as well (the finer side is the slave); points that face nothing stay free. Pressure and traction
+            count per initial length. Without `friction`
         wear: k of Archard's law: the surfaces wear by dw = k p × plastic slip, in either direction of slip; k
             is the wear coefficient divided by the hardness. The wear depth w is `wear` in tables and frames
             [L²/F]
@@ -964,8 +965,9 @@ class Normal(dict[str, Any]):
 
     Args:
         alpha_n: α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body
-            and the depth h of the slave's elements; 10 (λ + 2G)/h where a step has inertia, is quasi_dynamic or
-            has `rupture`. A slave group of points has no elements and needs a number
+            and the depth h of the slave's elements; 10 (λ + 2G)/h at Gauss points but on planes, and where a
+            step has inertia, is quasi_dynamic or has `rupture`. A slave group of points has no elements and
+            needs a number
         penetration: Largest penetration allowed [L]: the pressure is increased until no penetration is larger
             (augmented Lagrangian by Uzawa's method), so that the solution does not depend on alpha_n; default:
             penalty only

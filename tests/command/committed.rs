@@ -27,6 +27,11 @@ const SHOWN: &[(&str, &str, &str)] = &[
         "other codes are compared at these points with these penalties (benches/README.md)",
     ),
     (
+        "coulomb_drag_",
+        "gauss_to_segment where nodes do not face nodes",
+        "other codes are compared at these points with these penalties (benches/README.md)",
+    ),
+    (
         "validation/ironing_",
         "a master node penetrates the slave by",
         "coarse meshes are compared with finer ones (docs/validation/ironing.md)",

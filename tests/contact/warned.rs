@@ -216,8 +216,9 @@ fn patch([lower, upper]: [usize; 2], contact: &Value) -> Value {
 /// edges of its master, by mortar, or by Gauss points on the finer side with a soft penalty it is even enough, and nothing is told.
 #[test]
 fn points_on_edges_that_do_not_match_are_told() {
-    let [gauss, nodes] = ["gauss_to_segment", "node_to_segment"].map(|method| json!({"method": method}));
-    // 20 (λ + 2G)/h, h = 1/8
+    let nodes = json!({"method": "node_to_segment"});
+    // 300 and 20 (λ + 2G)/h, h = 1/8
+    let gauss = json!({"method": "gauss_to_segment", "normal": {"alpha_n": 300.0 * 8.0 * 1346.0}});
     let soft = json!({"method": "gauss_to_segment", "normal": {"alpha_n": 20.0 * 8.0 * 1346.0}});
     let (augmented, open) = (json!({"method": "gauss_to_segment", "normal": {"penetration": 1e-9}}), json!({}));
     for (elements, contact, is_told) in [
