@@ -71,7 +71,7 @@ fn history_has_the_promised_columns() {
     let mut pulled = false;
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        assert_eq!(cells.len(), 28, "{line}");
+        assert_eq!(cells.len(), 29, "{line}");
         let number = |name: &str| cells[column(name)].parse::<f64>().unwrap();
         assert_eq!(cells[2], "pull");
         // One point of area 2: q = force/2, elastic slip q/α_t, plastic slip the rest of the motion.
