@@ -346,7 +346,11 @@ fn every_increment_can_be_redone_and_resumed() {
 /// Bodies that have come, gone or stayed, in the residual of a step that changes them.
 #[test]
 fn the_tangent_is_that_of_the_residual() {
-    for (case, step) in [(strained_wall(), 1), (strained_wall(), 2), (visitor(), 2), (visitor(), 4)] {
+    // At the axis of a guest that is only pressed there is no shear, where the tangent of the law is that at a yield ratio of zero and
+    // any slip, however small, has another.
+    let mut visitor = visitor();
+    visitor["steps"][4]["supports"][0]["ux"] = json!(0.02);
+    for (case, step) in [(strained_wall(), 1), (strained_wall(), 2), (visitor.clone(), 2), (visitor, 4)] {
         let run = finish(&case);
         let (step, span) = (&run.model.steps[step], run.model.steps[step].span);
         let old =
