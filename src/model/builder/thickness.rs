@@ -54,12 +54,14 @@ impl<'m> Outline<'m> {
             }
         }
         if let Some(Mortar { edges, depths, .. }) = mortar {
-            let depth = |edge: &Vec<usize>| {
-                let [a, b] = [edge[0], edge[1]].map(|node| self.mesh.nodes[node]);
-                0.5 * self.behind(edge[0], 0.5 * (a + b), normal_of((b - a).normalize()))
-            };
-            *depths = edges.iter().map(depth).collect();
+            *depths = edges.iter().map(|edge| 0.5 * self.thickness_at(edge)).collect();
         }
+    }
+
+    /// Thickness of the body behind the middle of one of its edges (start, end[, middle]); infinite where no side is met.
+    pub fn thickness_at(&self, edge: &[usize]) -> f64 {
+        let [a, b] = [edge[0], edge[1]].map(|node| self.mesh.nodes[node]);
+        self.behind(edge[0], 0.5 * (a + b), normal_of((b - a).normalize()))
     }
 
     /// Thickness of the body of a node behind a place of its surface; infinite where no side is met.
