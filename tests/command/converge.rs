@@ -408,7 +408,7 @@ fn levels_warn_as_runs_do() {
             "sides": ["bottom", null, "top", null]}]},
         "bodies": {"b": {"material": {"model": "linear", "E": 100, "nu": 0.3}}},
         "contacts": {"c": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
-            "friction": {"law": "coulomb", "mu": 0.3}}},
+            "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 4e4}}},
         "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "top", "ux": 0, "uy": -0.01}]}],
     });
     fs::write(folder.path().join("block.json"), case.to_string()).expect("a case");

@@ -400,7 +400,7 @@ fn every_aid_saves_solves_or_a_failure() {
         ("carried", "ridge"),
         ("touch", "slab_touch_once"),
         ("stick", "slab_gap"),
-        ("stick_again", "ironing_q4"),
+        ("stick_again", "ridge"),
         ("valley", "tube"),
         ("old_tangents", "valley"),
         ("downhill", "ridge"),
