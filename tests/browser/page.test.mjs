@@ -282,7 +282,7 @@ test("an event of the table is shown close up, with its fronts, at its time", as
     interfaceView.draw();
     return counts;
   });
-  assert.ok(drawn[0] > drawn[1] + 100, `${drawn} white pixels with and without fronts`);
+  assert.ok(drawn[0] > drawn[1] + 30, `${drawn} white pixels with and without fronts`);
   assert.ok(window[0] < first && first < window[1] && window[1] - window[0] < 0.01, `${window} about ${first}`);
   assert.ok(Math.abs(time - first) < 1e-9 && Math.abs(onset - first) < 1e-4);
   await close(page, "slip_front_event");
