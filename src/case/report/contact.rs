@@ -115,15 +115,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
             (false, None) => {
                 let penalties = pair.laws.iter().map(|law| law.description.stiffness_is_penalty);
                 let over = penalties.map(|penalty| tangential_over(penalty, input, method, regime));
-                let over: Vec<f64> = over.collect();
-                let thin =
-                    pair.laws.iter().zip(&over).map(|(law, over)| law.description.stiffness * pair.compliance / over);
-                let thin = if thin.fold(1.0, f64::min) < 0.999 {
-                    ", less in a body thinner than its edges are long"
-                } else {
-                    ""
-                };
-                format!("{} (λ + 2G)/h{thin}", range(over.into_iter()))
+                format!("{} (λ + 2G)/h", range(over))
             }
         };
         let what =

@@ -18,14 +18,14 @@
 //! Default penalties are stiff compared with the adjacent elements, but soft enough for the iterations.
 //!
 //! ```text
-//! α_n = 300 (λ + 2G)/h,   α_t = 15 β (λ + 2G)/h         all steps are static, at nodes, by mortar, and on planes     (1)
-//! α_n =  10 (λ + 2G)/h,   α_t =  5 β (λ + 2G)/h         a step has inertia, or explicit increments; at Gauss points  (2)
-//! β = min(1, (t/ℓ)²)                                    t: thickness of the slave's body, ℓ: its edge; 1 if increments are explicit
+//! α_n = 300 (λ + 2G)/h,   α_t = 15 (λ + 2G)/h           all steps are static, at nodes, by mortar, and on planes     (1)
+//! α_n =  10 (λ + 2G)/h,   α_t =  5 (λ + 2G)/h           a step has inertia, or explicit increments; at Gauss points  (2)
 //! ```
-//! α_t of (1) is for laws to which it is a penalty, 300 β (λ + 2G)/h with `stick`; where the elastic slip is a part of the law, α_t is that
+//! α_t of (1) is for laws to which it is a penalty, 300 (λ + 2G)/h with `stick`; where the elastic slip is a part of the law, α_t is that
 //! of (2) in every run. With (1) a block of n layers of elements that sticks gives way by G/(15 n (λ + 2G)) of its own shear, 1 % for two.
-//! A stiffer α_t turns the mismatch of two meshes at every closure into shear, and takes more iterations. In a member that is thinner than
-//! its edges are long, a belt, it would be stiff compared with what bends, and Newton's method would find no equilibrium.
+//! A stiffer α_t turns the mismatch of two meshes at every closure into shear, and takes more iterations; beside the bending
+//! of a thin belt it may be too stiff for Newton's method. It is not softened for thin bodies: a coat on a block is thin as well, does not
+//! bend, and would creep untold.
 //!
 //! The nodes of an edge do not determine the pressures of two Gauss points on it: the weakest of their combinations meets no stiffness
 //! but that of the penalty. With (1) the pressure of sliding blocks scatters by 56 to 86 % of its mean, with (2) by 2 to 4 %.
@@ -468,7 +468,7 @@ pub fn default_over(contact: &Contact, method: Option<Method>, regime: Regime) -
     }
 }
 
-/// Returns α_t over β (λ + 2G)/h of a law that gives none, beside an α_n that is not given [-]
+/// Returns α_t over (λ + 2G)/h of a law that gives none, beside an α_n that is not given [-]
 #[doc(hidden)]
 pub fn tangential_over(penalty: bool, contact: &Contact, method: Option<Method>, regime: Regime) -> f64 {
     let holds = penalty && regime == Regime::Static && bears_stiffness(contact, method);
@@ -505,10 +505,8 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) ->
     let alpha_t = match (contact.tied, contact.normal.alpha_n, elastic) {
         (true, ..) => both(alpha_n),
         (false, None, Some(elastic)) => {
-            let implicit = matches!(regime, Regime::Static | Regime::Dynamic);
-            let thin = if implicit { thinness(place, contact, model)? } else { 1.0 };
             let [penalty, of_law] =
-                [true, false].map(|penalty| elastic * thin * tangential_over(penalty, contact, method, regime));
+                [true, false].map(|penalty| elastic * tangential_over(penalty, contact, method, regime));
             DefaultAlphaT { penalty, of_law }
         }
         (false, ..) => both(0.5 * alpha_n),
@@ -533,19 +531,6 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
     let softest = master.into_iter().map(modulus).fold(f64::INFINITY, f64::min);
     let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
     Ok(Some(slave.iter().map(|edge| stiffness(edge)).sum::<f64>() / slave.len() as f64))
-}
-
-/// β of (1) and (2), the mean over the slave's edges on the bodies that face each other [-]
-fn thinness(place: &str, contact: &Contact, model: &Model) -> Checked<f64> {
-    let Facing { slave, .. } = facing(place, contact, model)?;
-    let outline = Outline::new(&model.mesh);
-    let share = |edge: &&Edge| {
-        let length = (model.mesh.nodes[edge.nodes[1]] - model.mesh.nodes[edge.nodes[0]]).norm();
-        // The element behind the edge is a part of the body.
-        let thick = depth_behind(edge, model) >= length;
-        if thick { 1.0 } else { (outline.thickness_at(&edge.nodes) / length).min(1.0).powi(2) }
-    };
-    Ok(slave.iter().map(share).sum::<f64>() / slave.len() as f64)
 }
 
 /// Edges of a contact on the bodies that face each other.

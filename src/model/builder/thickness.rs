@@ -59,7 +59,7 @@ impl<'m> Outline<'m> {
     }
 
     /// Thickness of the body behind the middle of one of its edges (start, end[, middle]); infinite where no side is met.
-    pub fn thickness_at(&self, edge: &[usize]) -> f64 {
+    fn thickness_at(&self, edge: &[usize]) -> f64 {
         let [a, b] = [edge[0], edge[1]].map(|node| self.mesh.nodes[node]);
         self.behind(edge[0], 0.5 * (a + b), normal_of((b - a).normalize()))
     }
