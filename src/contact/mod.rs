@@ -32,4 +32,5 @@ pub mod segment_search;
 pub mod segment_tree;
 pub mod sight;
 pub mod small_sliding;
+pub mod stretch;
 pub mod surface;

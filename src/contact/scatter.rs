@@ -39,6 +39,11 @@ impl Course {
         Self { next: next.chain([None]).collect() }
     }
 
+    /// Distance of a point to the next one; `None` at an end or a corner of the surface [L]
+    pub fn after(&self, point: usize) -> Option<f64> {
+        *self.next.get(point)?
+    }
+
     /// The larger of the scatters of p and q [-]
     pub fn scatter(&self, states: &[ContactState]) -> f64 {
         let inner = |k: usize| -> Option<[f64; 2]> {

@@ -30,7 +30,7 @@
 //! # Touch
 //!
 //! The work of a static increment is that of its mean force. Where surfaces close within it they act in a part of it alone, which the
-//! balance does not see: the states at its ends are right all the same. Such errors are counted for themselves.
+//! balance does not see: the states at its ends are right all the same. Such errors are counted for themselves, and all others without them.
 
 use nalgebra::Vector2;
 
@@ -63,10 +63,10 @@ pub struct Audit {
     pub supplied: f64,
     /// Error at the last row [F·L]
     error: f64,
-    /// That of static increments in which surfaces closed or parted [F·L]
-    touch: f64,
-    /// When the error was largest
-    worst: Worst,
+    /// That of static increments in which surfaces closed or parted
+    touch: Arisen,
+    /// That of all others
+    rest: Arisen,
     /// External work, all of it taken as positive [F·L]
     work: f64,
     /// Contribution of every step to the error
@@ -89,15 +89,40 @@ pub struct Audit {
     chords: Option<Vec<f64>>,
 }
 
-/// Largest energy error.
+/// Energy error that has arisen in some of the increments.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Worst {
-    /// [F·L]
+struct Arisen {
+    /// So far [F·L]
     error: f64,
-    /// The part of it that came by touch [F·L]
-    touch: f64,
-    /// [T]
-    time: f64,
+    /// When that was largest [F·L], [T]
+    worst: [f64; 2],
+    /// The most that arose in one of them [F·L], and its end [T]
+    most: [f64; 2],
+}
+
+impl Arisen {
+    fn add(&mut self, arose: f64, time: f64) {
+        self.error += arose;
+        let further = |value: f64, [so_far, at]: [f64; 2]| {
+            if value.abs() > so_far.abs() || value.is_nan() { [value, time] } else { [so_far, at] }
+        };
+        self.worst = further(self.error, self.worst);
+        self.most = further(arose, self.most);
+    }
+
+    /// Where half of it or more arose in one increment, and by its length did not need to: what else may be the cause.
+    fn at_once(&self) -> String {
+        let [most, at] = self.most;
+        if most / self.error < AT_ONCE {
+            return String::new();
+        }
+        format!(
+            ", unless what arose in the one to t = {}, {:.0} % of it, stays: where a load or support jumps, let it grow over several increments; \
+             where bodies snap through or break away, a step with inertia keeps the energy that a static one drops",
+            time_text(at),
+            100.0 * most / self.error
+        )
+    }
 }
 
 /// Forces of the initial stress of a body on its nodes [F].
@@ -138,16 +163,20 @@ impl Scales {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct StepError {
     step: String,
-    /// Error that arose in its increments [F·L]
-    error: f64,
-    /// The most that arose in one of them [F·L], and its end [T]
-    most: f64,
-    at: f64,
+    /// Error that arose in its increments, but by touch
+    own: Arisen,
     remedy: String,
 }
 
 /// Remedy for the energy of static steps.
 const STATIC: &str = "take shorter increments (dt.initial, dt.max)";
+
+/// Remedy for the energy that a scheme damps.
+const DAMPS: &str =
+    "the scheme damps frequencies that the increments do not resolve: take shorter increments (dt.error)";
+
+/// The same where energy is gained.
+const GAINS: &str = "the increments are too long for the motion, or for surfaces that close or part within them: take shorter increments (dt.error)";
 
 /// Remedy for the energy of a static first step in which surfaces begin to push each other apart.
 const OVERLAP: &str = "surfaces that overlap at the start set energy free: bring the overlap in over the step (shrink_fit), or move \
@@ -211,28 +240,22 @@ impl Audit {
             let overlap = self.steps.is_empty() && old.time == 0.0 && !step.scheme.is_dynamic() && model.overlaps();
             let remedy = if overlap { OVERLAP } else { remedy(model, step) };
             let name = step.name.clone();
-            self.steps.push(StepError { step: name, error: 0.0, most: 0.0, at: old.time, remedy: remedy.into() });
+            self.steps.push(StepError { step: name, own: Arisen::default(), remedy: remedy.into() });
         }
         let arose = error - self.error;
-        if let Some(last) = self.steps.last_mut() {
-            last.error += arose;
-            if arose.abs() > last.most.abs() {
-                (last.most, last.at) = (arose, new.time);
-            }
-        }
         if step.scheme.is_dynamic() {
             self.moving += arose;
             self.gained = self.gained.max(-self.moving);
         }
         let overlaps = self.steps.last().is_some_and(|step| step.remedy == OVERLAP);
         if matches!(step.scheme, Scheme::Static) && !overlaps && touches(old, new) {
-            self.touch += arose;
+            self.touch.add(arose, new.time);
+        } else {
+            self.rest.add(arose, new.time);
+            self.steps.iter_mut().next_back().into_iter().for_each(|last| last.own.add(arose, new.time));
         }
         self.work += (new.energy.external_work - old.energy.external_work).abs();
         self.error = error;
-        if error.abs() > self.worst.error.abs() || error.is_nan() {
-            self.worst = Worst { error, touch: self.touch, time: new.time };
-        }
         let stresses = self.stresses.get_or_insert_with(|| stresses(model));
         let chords = self.chords.get_or_insert_with(|| model.contacts.iter().map(|pair| chords(model, pair)).collect());
         self.give.record(model, new, stresses, chords);
@@ -253,7 +276,7 @@ impl Audit {
     /// Warnings at the end of a run: that the energies do not balance, or contacts give way.
     pub fn concerns(&self) -> Vec<String> {
         let unbalanced = self.unbalanced().filter(|_| !self.is_unstable());
-        unbalanced.into_iter().chain(self.give.concerns()).collect()
+        unbalanced.into_iter().chain(self.by_touch()).chain(self.give.concerns()).collect()
     }
 
     /// Checks at the end of a run that no motion gained more energy than was supplied.
@@ -268,17 +291,17 @@ impl Audit {
         self.gained > self.supplied
     }
 
+    /// Largest error that is not told [F·L]
+    fn allowed(&self) -> f64 {
+        (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise)
+    }
+
     fn unbalanced(&self) -> Option<String> {
-        let Worst { error: worst, touch, time } = self.worst;
-        let allowed = (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise);
-        if worst.abs() <= allowed {
+        let [worst, time] = self.rest.worst;
+        if worst.abs() <= self.allowed() {
             return None;
         }
-        if (worst - touch).abs() <= allowed && self.work > 0.0 {
-            return self.by_touch(touch, time);
-        }
-        let largest = self.steps.iter().max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()));
-        let step = largest?;
+        let step = self.steps.iter().max_by(|a, b| a.own.error.abs().total_cmp(&b.own.error.abs()))?;
         let (name, remedy) = (&step.step, step.remedy());
         let fate = if worst < 0.0 { "gain" } else { "loss" };
         let share = if self.supplied > 0.0 {
@@ -299,33 +322,29 @@ impl Audit {
 }
 
 impl StepError {
-    /// What ends the error: shorter increments do not where it arises at once, whatever their length.
+    /// What ends the error: shorter increments do not where it arises at once, whatever their length, and nothing is damped where energy is gained.
     fn remedy(&self) -> String {
-        let Self { error, most, at, remedy, .. } = self;
-        if remedy != STATIC || most / error < AT_ONCE {
-            return remedy.clone();
+        match &*self.remedy {
+            STATIC => format!("{STATIC}{}", self.own.at_once()),
+            DAMPS if self.own.error < 0.0 => GAINS.into(),
+            remedy => remedy.into(),
         }
-        format!(
-            "{remedy}, unless what arose in the one to t = {}, {:.0} % of it, stays: where a load or support jumps, let it grow over several \
-             increments; where bodies snap through or break away, a step with inertia keeps the energy that a static one drops",
-            time_text(*at),
-            100.0 * most / error
-        )
     }
 }
 
 impl Audit {
-    /// Warning about an error that came by touch alone.
-    fn by_touch(&self, touch: f64, time: f64) -> Option<String> {
-        let work = self.work.max(self.supplied);
-        (touch.abs() > BY_TOUCH * work).then(|| {
+    /// Warning about the error that came by touch.
+    fn by_touch(&self) -> Option<String> {
+        let ([touch, time], work) = (self.touch.worst, self.work.max(self.supplied));
+        (work > 0.0 && touch.abs() > self.allowed().max(BY_TOUCH * work)).then(|| {
             format!(
                 "surfaces close or part within increments, whose work is known to {:.3e} by t = {}, {:.1} % of the work of the run: displacements \
                  and forces at the ends of increments do not suffer, but energies do; where these matter, take shorter increments as they \
-                 close (dt.initial, dt.max)",
+                 close (dt.initial, dt.max){}",
                 touch.abs(),
                 time_text(time),
-                100.0 * touch.abs() / work
+                100.0 * touch.abs() / work,
+                self.touch.at_once()
             )
         })
     }
@@ -529,8 +548,6 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
             "frequencies that the increments do not resolve are damped, or excited by impact: make the contact `massless`, \
              and take shorter increments (dt.error)"
         }
-        (false, false) => {
-            "the scheme damps frequencies that the increments do not resolve: take shorter increments (dt.error)"
-        }
+        (false, false) => DAMPS,
     }
 }

@@ -14,6 +14,7 @@ cfg_if::cfg_if! {
         pub mod coarse;
         pub mod concerns;
         pub mod events;
+        pub mod few_edges;
         pub mod fields;
         pub mod files;
         pub mod folder;
@@ -40,6 +41,7 @@ cfg_if::cfg_if! {
         pub(crate) mod coarse;
         pub(crate) mod concerns;
         pub(crate) mod events;
+        pub(crate) mod few_edges;
         pub(crate) mod fields;
         pub(crate) mod files;
         pub(crate) mod folder;

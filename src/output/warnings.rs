@@ -15,6 +15,7 @@ use super::coarse::Coarse;
 use super::concerns::{Kind, concerns, left};
 use super::csv;
 use super::depths;
+use super::few_edges::FewEdges;
 use super::instability::Instability;
 use super::scattered::Scattered;
 use crate::contact::force::ContactState;
@@ -65,6 +66,8 @@ pub struct Warnings {
     coarse: Coarse,
     /// Contacts whose tractions alternate from point to point
     scattered: Scattered,
+    /// Contacts that are closed on few edges
+    few_edges: FewEdges,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -111,6 +114,7 @@ impl Observer for Warnings {
         let x = model.configuration(&state.displacement);
         self.coarse.record(model, attempt, state, &x);
         self.scattered.record(model, attempt, state);
+        self.few_edges.record(model, attempt, state, &x);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
@@ -157,6 +161,7 @@ impl Observer for Warnings {
         self.list.extend(self.unstable.message());
         self.list.extend(self.coarse.tell());
         self.list.extend(self.scattered.tell());
+        self.list.extend(self.few_edges.tell());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()

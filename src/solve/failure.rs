@@ -11,11 +11,14 @@ use thiserror::Error;
 use super::Workspace;
 use super::newton::NewtonFailure;
 use crate::contact::pair::ContactPair;
+use crate::contact::surface::SlavePoint;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::free;
 use crate::linear::{LinearFailure, norm};
 use crate::mesh::configuration::Configuration;
+use crate::model::builder::thickness::Outline;
 use crate::model::element::Formulation;
+use crate::model::method::Method;
 use crate::model::state::State;
 use crate::model::text::{number, vector};
 use crate::model::{Body, Model, Step};
@@ -151,6 +154,16 @@ fn kind_of_trial(failure: &TrialFailure) -> &'static str {
 /// Ratio of a penalty to (λ + 2G)/h above which it is suspected; the default is 10.
 const STIFF: f64 = 1e4;
 
+/// Part of the largest residual from which on a corner is named [-]
+const AT_CORNER: f64 = 0.05;
+
+/// Edge over the thickness of a body behind it from which on the body bends rather than that it is sheared.
+const THIN: f64 = 3.0;
+
+/// Ratio of α_t to the bending stiffness of a thin body above which it is suspected, and the one that is advised: belts on drums run from 70
+/// to 350, and above 1600 some stop.
+const STIFF_TO_BEND: [f64; 2] = [200.0, 100.0];
+
 /// Poisson's ratio above which fully integrated elements lock.
 const LOCKS: f64 = 0.49;
 
@@ -178,8 +191,9 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, state: &State, ca
         let owner = owner.unwrap_or_default();
         let corner = contact
             .and_then(|pair| corner(pair, node, &work.system.residual, &model.configuration(&state.displacement)));
-        let corner =
-            corner.map(|at| format!(", at the corner ({}, {}) of its rigid master", number(at.x), number(at.y)));
+        let corner = corner.map(|at| {
+            format!(", at the corner ({}, {}) of its rigid master{}", number(at.x), number(at.y), met(model, contact))
+        });
         format!(
             "largest residual at node {tag}{owner}, ({}, {}){}",
             number(at.x),
@@ -187,7 +201,9 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, state: &State, ca
             corner.unwrap_or_default()
         )
     });
-    let causes = place.into_iter().chain(contacts().filter_map(penalty));
+    let thin =
+        unbalanced.map(|node| contacts().filter_map(|pair| beside_bending(model, pair, node)).collect::<Vec<_>>());
+    let causes = place.into_iter().chain(contacts().filter_map(penalty)).chain(thin.into_iter().flatten());
     let causes = causes.chain(bodies().filter_map(|body| locking(model, body)));
     causes.map(|cause| format!("; {cause}")).collect()
 }
@@ -239,13 +255,28 @@ fn growing_loads(step: &Step, time: f64) -> Vec<String> {
     most.iter().map(|(kind, [now, end])| format!("{kind} {} of {}", number(*now), number(*end))).collect()
 }
 
-/// Current place of the sharp corner of a rigid master at the node with the largest residual; if that is the node of the body's own motion,
-/// at the slave's node with the largest.
+/// Current place of the sharp corner of a rigid master where the slave is least in balance, if that is more than a part of the largest
+/// residual: a point that jumps from one line to the other there sends its neighbours, or the rigid body, out of balance.
 fn corner(pair: &ContactPair, node: usize, residual: &[f64], x: &Configuration) -> Option<Vector2<f64>> {
-    let size = |node: &usize| residual[2 * node].hypot(residual[2 * node + 1]);
+    let size = |node: usize| residual[2 * node].hypot(residual[2 * node + 1]);
     let own = pair.master.rigid_body().is_some_and(|body| body.nodes().contains(&node));
-    let node = if own { pair.slave_nodes().max_by(|a, b| size(a).total_cmp(&size(b)))? } else { node };
-    pair.corner_at(node, x)
+    let largest = if own { pair.slave_nodes().map(size).fold(0.0, f64::max) } else { size(node) };
+    let at_corners = pair.slave_nodes().filter_map(|node| Some((size(node), pair.corner_at(node, x)?)));
+    let (worst, at) = at_corners.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (worst > AT_CORNER * largest).then_some(at)
+}
+
+/// What meets a corner of the rigid master of a contact.
+fn met(model: &Model, contact: Option<&ContactPair>) -> &'static str {
+    let own =
+        model.contacts.iter().zip(&model.methods).find(|(pair, _)| contact.is_some_and(|own| own.name == pair.name));
+    let by_points =
+        own.and_then(|(_, chosen)| chosen.as_ref()).is_some_and(|chosen| chosen.method == Method::GaussToSegment);
+    if by_points {
+        ": round it off, by an edge"
+    } else {
+        ": take \"method\": \"gauss_to_segment\" there, or round it off"
+    }
 }
 
 /// The free node with the largest residual force.
@@ -284,4 +315,47 @@ fn locking(model: &Model, body: &Body) -> Option<String> {
             body.name
         )
     })
+}
+
+/// A penalty along a surface far above the stiffness with which a thin body behind it bends: as an edge ℓ turns, the surface slips by half
+/// the thickness t.
+///
+/// ```text
+/// α_t ℓ (t/2)² / (E′ t³/12ℓ) = 3 α_t ℓ²/(E′ t),   E′ = E/(1 − ν²)
+/// ```
+fn beside_bending(model: &Model, pair: &ContactPair, node: usize) -> Option<String> {
+    let alpha_t = pair.laws.iter().map(|law| law.description.stiffness).fold(0.0, f64::max);
+    let [slave, master] = &pair.bodies;
+    let is_of = |bodies: &[usize]| bodies.iter().any(|&body| model.bodies[body].nodes.binary_search(&node).is_ok());
+    if pair.tied || !(pair.nodes().any(|own| own == node) || is_of(slave) || is_of(master)) {
+        return None;
+    }
+    let (outline, x) = (Outline::new(&model.mesh), model.mesh.undeformed());
+    let reverse = pair.reverse.as_ref()?;
+    let bends = |(points, bodies): (&Vec<SlavePoint>, &Vec<usize>)| {
+        let mut points = points.clone();
+        outline.limit(&mut points, None);
+        let shape = |point: &SlavePoint| Some((point.edge_length(&x)?, 2.0 * point.depth));
+        let thin = points.iter().filter_map(shape).filter(|(edge, thickness)| *edge > THIN * thickness);
+        let (edge, thickness) = thin.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
+        let plate = |&body: &usize| {
+            let law = model.bodies[body].material.description();
+            4.0 * law.shear_modulus * (law.p_wave_modulus - law.shear_modulus) / law.p_wave_modulus
+        };
+        let modulus = bodies.iter().map(plate).min_by(f64::total_cmp)?;
+        let times = 3.0 * alpha_t * edge * edge / (modulus * thickness);
+        (times > STIFF_TO_BEND[0]).then_some((times, edge, thickness))
+    };
+    let sides = [(&reverse.own, slave), (&reverse.nodes, master)];
+    let (times, edge, thickness) = sides.into_iter().filter_map(bends).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "alpha_t = {} of contact `{}` is {:.0} times the stiffness with which a body behind it bends, which is {} thick beside edges of {}: \
+         lower it, to {:.1e} say",
+        number(alpha_t),
+        pair.name,
+        times,
+        number(thickness),
+        number(edge),
+        alpha_t * STIFF_TO_BEND[1] / times
+    ))
 }

@@ -199,13 +199,23 @@ fn points_at_corners_integrate_exactly() {
     }
 }
 
-/// Nodes stop at a corner beside them; the message says where the corner is by then.
+/// Nodes stop at a corner beside them; the message says where the corner is by then, and what meets it. The largest residual lies there, or at
+/// another node of the clay: one that jumps from the base to the side of the box lets go of all others.
 #[test]
 fn a_stop_names_the_corner() {
-    let mut case = box_on_clay("Q4", 0.001, &json!({"law": "coulomb", "mu": 0.5}));
-    case["contacts"]["base"]["method"] = json!("node_to_segment");
-    let model = Arc::new(common::model(&case));
-    let message = fecontact::run::run(&model, &mut []).1.expect_err("a node has no normal there").to_string();
-    assert!(message.contains("of contact `base`") && message.contains(", at the corner ("), "{message}");
-    assert!(message.contains(") of its rigid master"), "{message}");
+    for (gap, penalty) in [(0.001, None), (0.0, None), (0.0, Some(1e9))] {
+        let mut case = box_on_clay("Q4", gap, &json!({"law": "coulomb", "mu": 0.5}));
+        case["contacts"]["base"]["method"] = json!("node_to_segment");
+        case["steps"][1]["dt"]["min"] = json!(2e-4);
+        if let Some(alpha_n) = penalty {
+            case["contacts"]["base"]["normal"] = json!({"alpha_n": alpha_n});
+        }
+        let model = Arc::new(common::model(&case));
+        let message = fecontact::run::run(&model, &mut []).1.expect_err("a node has no normal there").to_string();
+        let named = message.split_once(", at the corner (").unwrap_or_else(|| panic!("{message}")).1;
+        let x: f64 = named.split(',').next().and_then(|x| x.parse().ok()).unwrap_or_else(|| panic!("{message}"));
+        assert!(message.contains("of contact `base`") && (x.abs() - 1.0).abs() < 0.01, "{message}");
+        assert!(named.contains(") of its rigid master: take \"method\": \"gauss_to_segment\" there"), "{message}");
+    }
+    // What it says is `a_rigid_box_presses_and_drags`.
 }

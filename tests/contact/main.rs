@@ -6,6 +6,7 @@ mod common;
 mod along;
 mod contact;
 mod corners;
+mod few_edges;
 mod hard;
 mod moving;
 mod outlines;

@@ -134,6 +134,108 @@ fn work_of_a_load_that_jumps_is_told_as_such() {
     assert_eq!(crushed(0.05), Vec::<String>::new());
 }
 
+/// Energies of surfaces that close within static increments are told with shorter increments, which end it; where a load that is there at once
+/// closes them, these do not, and it is to grow.
+#[test]
+fn energy_of_touch_is_told_with_what_ends_it() {
+    let closed = |load: Value, dt: f64| {
+        let spring = json!({"on": "block_top", "spring": {"kx": 1, "ky": 1}});
+        let mut case = block(
+            &json!({"plane": {"point": [0, -0.05], "normal": [0, 1]}}),
+            "neo_hookean",
+            json!({"name": "drop", "duration": 1, "dt": {"initial": dt}, "loads": [spring, {"on": "block_top", "total_force": {"y": load}}]}),
+        );
+        case["contacts"]["base"]["friction"] = json!({"law": "frictionless"});
+        told(&case)
+    };
+    let touch = "surfaces close or part within increments";
+    for dt in [0.1, 0.02] {
+        let at_once = closed(json!("-2"), dt);
+        let words = format!("in the one to t = {dt}, 100 % of it, stays: where a load or support jumps, let it grow");
+        assert!(has(&at_once, touch) && has(&at_once, &words) && !has(&at_once, "energy balance"), "{at_once:?}");
+    }
+    let coarse = closed(json!(-2), 0.1);
+    assert!(
+        has(&coarse, touch) && has(&coarse, "take shorter increments as they close (dt.initial, dt.max)"),
+        "{coarse:?}"
+    );
+    assert_eq!(closed(json!(-2), 0.02), Vec::<String>::new());
+}
+
+/// A block closes in a static increment and is let go in a motion that loses energy: each is told for itself, and the motion by its own step.
+/// Where a scheme that damps gains energy as surfaces close, nothing is said of damping, and shorter increments end it.
+#[test]
+fn energy_of_touch_does_not_hide_another() {
+    let below = |y: f64| json!({"plane": {"point": [0, y], "normal": [0, 1]}});
+    let touch = json!({"name": "touch", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "block_top", "ux": 0, "uy": -0.08}]});
+    let mut case = block(&below(-0.05), "neo_hookean", touch);
+    case["contacts"]["base"]["massless"] = json!(true);
+    case["contacts"]["base"]["friction"] = json!({"law": "frictionless"});
+    case["steps"].as_array_mut().expect("steps").push(json!({
+        "name": "swing", "duration": 0.2, "scheme": {"newmark": {"gamma": 0.6, "beta": 0.3025}}, "dt": {"initial": 0.002},
+        "supports": [{"on": "block_top", "uy": null}]}));
+    let both = told(&case);
+    assert!(
+        has(&both, "mostly in step `swing`: the scheme damps frequencies") && has(&both, "surfaces close or part"),
+        "{both:?}"
+    );
+
+    let fallen = |dt: Value| {
+        let fall = json!({"name": "fall", "duration": 0.04, "scheme": {"generalized_alpha": {}}, "dt": dt});
+        let mut case = block(&below(-0.02), "neo_hookean", fall);
+        case["contacts"]["base"]["massless"] = json!(true);
+        case["initial_velocity"] = json!({"block": [0, -1]});
+        told(&case)
+    };
+    let gains = fallen(json!({"initial": 1e-3}));
+    assert!(has(&gains, "spurious gain") && has(&gains, "or for surfaces that close or part within them"), "{gains:?}");
+    assert!(!has(&gains, "damps"), "{gains:?}");
+    assert!(!has(&fallen(json!({"initial": 1e-3, "error": 1e-5})), "energy balance"));
+}
+
+/// A belt of t/R = 0.0025 on a drum, held by a force at one end and pulled at the other: with the default α_t the run stops, and says how stiff it is
+/// beside the bending of the belt; with the one advised it goes on, and the ratio of the forces at which it slides is exp(μ π), to what its bending
+/// adds.
+#[test]
+fn a_stop_of_a_thin_belt_names_an_alpha_t_that_runs() {
+    let belt = |alpha_t: Option<f64>| {
+        let (inner, outer) = (10.0, 10.025);
+        let part = |corners: Value, elements: [usize; 2], arcs: Value, sides: Value| json!({"body": "belt", "kind": "Q8", "corners": corners, "elements": elements, "arcs": arcs, "sides": sides});
+        let arcs = json!([[0, 0], null, [0, 0], null]);
+        let straight = json!([null, null, null, null]);
+        let mut friction = json!({"law": "coulomb", "mu": 0.3});
+        if let Some(alpha_t) = alpha_t {
+            friction["alpha_t"] = json!(alpha_t);
+        }
+        json!({
+            "mesh": {"blocks": [
+                part(json!([[-inner, -10], [-inner, 0], [-outer, 0], [-outer, -10]]), [20, 1], straight.clone(), json!([null, null, null, "left"])),
+                part(json!([[-inner, 0], [0, inner], [0, outer], [-outer, 0]]), [32, 1], arcs.clone(), json!(["inner", null, null, null])),
+                part(json!([[0, inner], [inner, 0], [outer, 0], [0, outer]]), [32, 1], arcs, json!(["inner", null, null, null])),
+                part(json!([[inner, 0], [inner, -10], [outer, -10], [outer, 0]]), [20, 1], straight, json!([null, "right", null, null]))]},
+            "bodies": {"belt": {"material": {"model": "neo_hookean", "E": 1e4, "nu": 0.3}}},
+            "contacts": {"drum": {"slave": "inner", "master": {"circle": {"centre": [0, 0], "radius": inner}}, "friction": friction}},
+            "steps": [
+                {"name": "tension", "duration": 1, "loads": [{"on": "left", "total_force": {"y": -0.0625}}],
+                 "supports": [{"on": "right", "ux": 0, "uy": 0}, {"on": "left", "ux": 0}]},
+                {"name": "pull", "duration": 0.2, "dt": {"initial": 0.02, "min": 5e-3}, "supports": [{"on": "right", "uy": -0.4}]}],
+        })
+    };
+    let model = Arc::new(common::model(&belt(None)));
+    let message = fecontact::run::run(&model, &mut []).1.expect_err("it goes round in circles").to_string();
+    let words = "of contact `drum` is 24134 times the stiffness with which a body behind it bends, which is 0.0219";
+    assert!(message.contains(words), "{message}");
+    let advised = message
+        .split_once("lower it, to ")
+        .and_then(|(_, rest)| rest.split_once(" say"))
+        .map(|(value, _)| value.parse());
+    let Some(Ok(advised)) = advised else { panic!("{message}") };
+    let run = common::finish(&belt(Some(advised)));
+    let [held, pulled] = ["left", "right"].map(|on| run.reaction(on, run.last())[1]);
+    println!("{advised} {held} {pulled}");
+    common::close("T₂/T₁", -pulled / 0.0625, (0.3 * std::f64::consts::PI).exp(), 0.05);
+}
+
 /// A fluid that is in a part of a fault from the very start counts as there before the run, whether one point or more of them have it; one
 /// that comes there is told no more, nor one that fades out along the surface. It slips sixteen times as far then.
 #[test]

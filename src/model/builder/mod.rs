@@ -63,7 +63,7 @@ mod rigid;
 pub(crate) mod schedule;
 mod stages;
 mod supports;
-mod thickness;
+pub(crate) mod thickness;
 mod unconstrained;
 mod unseen;
 
