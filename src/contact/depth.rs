@@ -144,9 +144,10 @@ fn nearest(surface: &Surface, at: Vector2<f64>, x: &Configuration) -> Option<Nea
             let behind = offset.dot(&normal_of(along)) < 0.0;
             let now = Nearest { distance, behind, edge };
             match &mut found {
-                // At a corner of the surface two chords are as near: what is behind one of them alone is outside.
+                // At a corner of the surface two chords are as near. Beside a notch the body is in front of the line of one of them, and
+                // beyond a corner behind the line of one there is no body, as its sides tell.
                 Some((least, _, nearest)) if (distance - *least).abs() <= f64::EPSILON * edge => {
-                    nearest.behind &= behind
+                    nearest.behind |= behind
                 }
                 Some((least, ..)) if distance > *least => {}
                 _ => found = Some((distance, past, now)),
