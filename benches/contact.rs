@@ -46,7 +46,7 @@ fn surfaces(n: usize) -> Surfaces {
         initial: None,
         unseen: Vec::new(),
         modulus: 0.0,
-        reverse: None,
+        both: None,
         body: None,
         small: None,
         mortar: None,

@@ -12,7 +12,7 @@
 use nalgebra::{Rotation2, Vector2};
 
 use super::master::{Circle, Master, Rigid, Shape};
-use super::pair::{ContactPair, Reverse};
+use super::pair::{BothSurfaces, ContactPair};
 use super::projection::normal_of;
 use super::search::Index;
 use super::surface::{Segment, SlavePoint, Surface};
@@ -58,7 +58,7 @@ impl ContactPair {
     /// Deepest place of either side in the other, with its depth; none in contacts whose gaps are not those of the surfaces.
     pub fn deepest(&self, x: &Configuration) -> Option<Depth> {
         let offset = |slave: &SlavePoint| slave.touch != 0.0 || slave.overlap != 0.0;
-        let Reverse { own, .. } = self.reverse.as_ref().filter(|_| self.small.is_none() && !self.tied)?;
+        let BothSurfaces { own, .. } = self.both.as_ref().filter(|_| self.small.is_none() && !self.tied)?;
         if self.points.iter().any(offset) {
             return None;
         }
@@ -85,7 +85,7 @@ impl ContactPair {
 
     /// Deepest corner, or disk, of a rigid master inside the slave's bodies.
     fn deepest_of_tool(&self, x: &Configuration) -> Option<Depth> {
-        let Some(Reverse { slave: Master::Mesh(slave), sides, .. }) = &self.reverse else { return None };
+        let Some(BothSurfaces { slave: Master::Mesh(slave), sides, .. }) = &self.both else { return None };
         let Master::Rigid(rigid) = &self.master else { return None };
         match &rigid.shape {
             Shape::Plane(_) => None,
@@ -111,7 +111,7 @@ impl ContactPair {
     pub fn corner_at(&self, node: usize, x: &Configuration) -> Option<Vector2<f64>> {
         let Master::Rigid(rigid) = &self.master else { return None };
         let Shape::Polyline(line) = &rigid.shape else { return None };
-        let own = self.reverse.as_ref()?.own.iter().filter(|point| point.position.iter().any(|&(own, _)| own == node));
+        let own = self.both.as_ref()?.own.iter().filter(|point| point.position.iter().any(|&(own, _)| own == node));
         let (at, edge) = own.filter_map(|point| Some((point.at(x), point.edge_length(x)?))).next()?;
         let corners = line.sharp_corners().map(|corner| rigid.place(corner, x));
         let nearest = corners.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm()))?;

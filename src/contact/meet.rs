@@ -9,7 +9,7 @@ use super::kinematics::{Kinematics, Meeting, kinematics};
 use super::master::Master;
 use super::mortar::{Overlaps, Room};
 use super::nodal_forces::nodal_forces;
-use super::pair::{ContactPair, InitialTraction, Reverse};
+use super::pair::{BothSurfaces, ContactPair, InitialTraction};
 use super::point::ContactState;
 use super::pores::effective;
 use super::search::Index;
@@ -238,7 +238,7 @@ impl ContactPair {
     /// Master node with the deepest penetration of slave edges with closed points: position, depth [L], and depth divided by
     /// the length of that edge [-].
     pub fn deepest_master_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
-        let Some(Reverse { nodes, slave: Master::Mesh(slave), .. }) = &self.reverse else { return None };
+        let Some(BothSurfaces { nodes, slave: Master::Mesh(slave), .. }) = &self.both else { return None };
         let closed = self.points.iter().zip(states).filter(|(_, state)| state.is_closed());
         let closed =
             closed.flat_map(|(point, _)| &point.length).flat_map(|share| share.tangent.iter().map(|(node, _)| *node));
@@ -246,7 +246,7 @@ impl ContactPair {
         if closed.is_empty() || nodes.is_empty() {
             return None;
         }
-        let index = Index::new(&self.reverse.as_ref()?.slave, x);
+        let index = Index::new(&self.both.as_ref()?.slave, x);
         let depth = |point: &SlavePoint| {
             let met = index.project(point, None, x).filter(|met| met.gap < 0.0)?;
             let [a, b] = slave.segments[met.foot.segment].ends;

@@ -82,8 +82,8 @@ pub struct ContactPair {
     pub truncated: BTreeMap<String, usize>,
     /// Initial tractions of every point of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
-    /// The pair with exchanged sides, for what lies between the points of the slave; `None` for self-contact and slaves without edges
-    pub reverse: Option<Reverse>,
+    /// Both surfaces whole, for what lies between the points of the slave; `None` for self-contact and slaves without edges
+    pub both: Option<BothSurfaces>,
     /// Surface nodes of the slave's bodies that belong to no contact point, if the master is rigid
     pub unseen: Vec<SlavePoint>,
     /// G*: G/(1 − ν) of both sides, the stiffness against slip that varies along the interface; 0 without bodies [F/L²]
@@ -96,9 +96,9 @@ pub struct ContactPair {
     pub small: Option<SmallSliding>,
 }
 
-/// Nodes of both sides as slave points, with the slave as a master.
+/// Nodes of both surfaces as points, and the slave as a master: what may enter the other side between the points of the slave.
 #[derive(Clone, Debug)]
-pub struct Reverse {
+pub struct BothSurfaces {
     /// Nodes of a mesh master
     pub nodes: Vec<SlavePoint>,
     /// Slave surface

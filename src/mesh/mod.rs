@@ -180,6 +180,21 @@ impl Mesh {
         self.groups.iter().find(|(_, group)| holds(group)).map(|(name, _)| name.as_str())
     }
 
+    /// Sides of some elements that belong to one of them only, the element on their left: (start, end[, middle]).
+    #[doc(hidden)]
+    pub fn free_sides<'a>(elements: impl IntoIterator<Item = &'a Element>) -> Vec<Vec<usize>> {
+        let mut sides: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
+        for element in elements {
+            for side in 0..element.kind.corners() {
+                let (corners, middle) = element.kind.edge(side);
+                let nodes: Vec<usize> = corners.into_iter().chain(middle).map(|local| element.nodes[local]).collect();
+                let ends = [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
+                sides.entry(ends).and_modify(|known| *known = None).or_insert(Some(nodes));
+            }
+        }
+        sides.into_values().flatten().collect()
+    }
+
     /// Lower left and upper right corner of the bounding box of all nodes [L].
     pub fn bounding_box(&self) -> [Vector2<f64>; 2] {
         let corner = |pick: fn(Vector2<f64>, Vector2<f64>) -> Vector2<f64>| {

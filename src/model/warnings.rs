@@ -9,7 +9,7 @@ use super::balance;
 use super::text::{count, number, vector};
 use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
-use crate::contact::pair::{ContactPair, Reverse};
+use crate::contact::pair::{BothSurfaces, ContactPair};
 use crate::contact::surface::{Segment, SlavePoint, Surface};
 use crate::laws::friction::{ContactLaw, Description};
 use crate::mesh::shape::ElementKind;
@@ -179,8 +179,8 @@ const SOFT: f64 = 20.0;
 fn uneven(model: &Model, pair: &ContactPair, chosen: &Chosen) -> Option<String> {
     let asked = chosen.because.is_none() && pair.mortar.is_none();
     let implicit = model.steps.iter().all(|step| step.rupture.is_none() && !step.scheme.is_integrated_explicitly());
-    let (Master::Mesh(master), Some(Reverse { nodes, slave: facing @ Master::Mesh(slave), .. })) =
-        (&pair.master, &pair.reverse)
+    let (Master::Mesh(master), Some(BothSurfaces { nodes, slave: facing @ Master::Mesh(slave), .. })) =
+        (&pair.master, &pair.both)
     else {
         return None;
     };
@@ -226,7 +226,7 @@ const OF_OVERLAP: f64 = 0.02;
 /// Straight edges that stand for curves, of other lengths on the two sides of a shrink fit: they change its overlap, and all that follows
 /// from it. (By mortar, which averages; equal edges cancel.)
 fn facets_of_a_fit(model: &Model, pair: &ContactPair) -> Option<String> {
-    let Some(Reverse { slave: Master::Mesh(slave), .. }) = pair.reverse.as_ref().filter(|_| pair.mortar.is_some())
+    let Some(BothSurfaces { slave: Master::Mesh(slave), .. }) = pair.both.as_ref().filter(|_| pair.mortar.is_some())
     else {
         return None;
     };

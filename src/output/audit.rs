@@ -35,7 +35,7 @@
 use nalgebra::Vector2;
 
 use crate::contact::master::Master;
-use crate::contact::pair::{ContactPair, Reverse};
+use crate::contact::pair::{BothSurfaces, ContactPair};
 use crate::contact::point::ContactState;
 use crate::equations::contacts::Springs;
 use crate::mesh::configuration::vector;
@@ -368,8 +368,8 @@ fn stresses(model: &Model) -> Vec<Stress> {
 /// starts closed counts gaps from where its surfaces are, and of a shrink fit this is told before the run.
 fn chords(model: &Model, pair: &ContactPair) -> f64 {
     let counts = pair.mortar.is_some() && !pair.tied && !pair.is_own() && pair.initial.is_none();
-    match (&pair.master, &pair.reverse) {
-        (Master::Mesh(master), Some(Reverse { slave: Master::Mesh(slave), .. }))
+    match (&pair.master, &pair.both) {
+        (Master::Mesh(master), Some(BothSurfaces { slave: Master::Mesh(slave), .. }))
             if counts && pair.points.iter().all(|point| point.overlap == 0.0) =>
         {
             let [slave, master] = [slave, master].map(|surface| surface.by_chords(&model.mesh.undeformed()));

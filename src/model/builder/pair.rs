@@ -120,7 +120,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         initial: None,
         unseen: Vec::new(),
         modulus: modulus(contact, model),
-        reverse: unseen::reverse(contact, model, outline),
+        both: unseen::both_surfaces(contact, model, outline),
         small: None,
         master,
     };

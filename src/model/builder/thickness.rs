@@ -16,8 +16,8 @@ pub struct Outline<'m> {
     mesh: &'m Mesh,
     /// First node of the part of every node
     part: Vec<usize>,
-    /// Ends, the body on the left
-    sides: Vec<[usize; 2]>,
+    /// Start and end first, the body on the left
+    sides: Vec<Vec<usize>>,
 }
 
 /// Distance of a place from a side, relative to its length, below which it lies on it.
@@ -27,22 +27,14 @@ impl<'m> Outline<'m> {
     /// Finds the outline of all bodies.
     pub fn new(mesh: &'m Mesh) -> Self {
         let mut part: Vec<usize> = (0..mesh.nodes.len()).collect();
-        let mut sides = Vec::new();
         for element in &mesh.elements {
             for pair in element.nodes.windows(2) {
                 let [a, b] = [first(&mut part, pair[0]), first(&mut part, pair[1])];
                 part[a.max(b)] = a.min(b);
             }
-            for side in 0..element.kind.corners() {
-                let (corners, _) = element.kind.edge(side);
-                let [a, b] = corners.map(|local| element.nodes[local]);
-                sides.push(([a.min(b), a.max(b)], [a, b]));
-            }
         }
         let part = (0..part.len()).map(|node| first(&mut part, node)).collect();
-        sides.sort_unstable();
-        let lone = sides.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() == 1).map(|alike| alike[0].1);
-        Self { mesh, part, sides: lone.collect() }
+        Self { mesh, part, sides: Mesh::free_sides(&mesh.elements) }
     }
 
     /// Sets the depths of points, and of edges for mortar averages.
@@ -67,7 +59,8 @@ impl<'m> Outline<'m> {
     /// Thickness of the body of a node behind a place of its surface; infinite where no side is met.
     fn behind(&self, node: usize, at: Vector2<f64>, inward: Vector2<f64>) -> f64 {
         let part = self.part[node];
-        let leaves = |&[start, end]: &[usize; 2]| {
+        let leaves = |side: &Vec<usize>| {
+            let [start, end] = [side[0], side[1]];
             if self.part[start] != part {
                 return None;
             }

@@ -6,7 +6,7 @@ use super::contact::Contact;
 use super::groups::node_lists;
 use super::thickness::Outline;
 use crate::contact::master::{Master, Rigid};
-use crate::contact::pair::{ContactPair, Reverse};
+use crate::contact::pair::{BothSurfaces, ContactPair};
 use crate::contact::surface::{SlavePoint, Surface, in_order, lone_point, nodal_points};
 use crate::mesh::{Group, Mesh};
 use crate::model::Model;
@@ -26,7 +26,9 @@ pub fn undetected(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model
         };
         let bodies: BTreeSet<usize> = slave.iter().map(|edge| model.body_of_element[edge.element]).collect();
         let seen = |node: &usize| slaves.iter().any(|(of, slave)| *of == pair.master && slave.contains(node));
-        let surface = surfaces.entry(bodies).or_insert_with_key(|bodies| surface_nodes(model, bodies));
+        let surface = surfaces
+            .entry(bodies)
+            .or_insert_with_key(|bodies| free_sides(model, bodies).into_iter().flatten().collect());
         let others = surface.iter().filter(|node| !seen(node)).map(|&node| lone_point(node, 0.0));
         pair.unseen = others.filter(|point| is_outside(rigid, point, &model.mesh)).collect();
     }
@@ -36,30 +38,14 @@ fn is_outside(rigid: &Rigid, point: &SlavePoint, mesh: &Mesh) -> bool {
     rigid.project(point, &mesh.undeformed()).is_none_or(|projection| projection.gap > 0.0)
 }
 
-/// Nodes on element sides that belong to one element only.
-fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
-    sides(model, bodies).into_iter().flatten().collect()
-}
-
-/// Element sides that belong to one element only, with the body on their left: (start, end[, middle]).
-fn sides(model: &Model, bodies: &BTreeSet<usize>) -> Vec<Vec<usize>> {
-    let mut sides: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
-    for (element, body) in model.mesh.elements.iter().zip(&model.body_of_element) {
-        if !bodies.contains(body) {
-            continue;
-        }
-        for side in 0..element.kind.corners() {
-            let (corners, middle) = element.kind.edge(side);
-            let nodes: Vec<usize> = corners.into_iter().chain(middle).map(|local| element.nodes[local]).collect();
-            let ends = [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
-            sides.entry(ends).and_modify(|known| *known = None).or_insert(Some(nodes));
-        }
-    }
-    sides.into_values().flatten().collect()
+/// Sides of bodies that no two of their elements share, with the body on their left.
+fn free_sides(model: &Model, bodies: &BTreeSet<usize>) -> Vec<Vec<usize>> {
+    let elements = model.mesh.elements.iter().zip(&model.body_of_element);
+    Mesh::free_sides(elements.filter(|(_, body)| bodies.contains(body)).map(|(element, _)| element))
 }
 
 /// Nodes of both sides, with the slave edges as a master, and the outline of the slave's bodies if the master is rigid.
-pub fn reverse(contact: &Contact, model: &Model, outline: Option<&Outline>) -> Option<Reverse> {
+pub fn both_surfaces(contact: &Contact, model: &Model, outline: Option<&Outline>) -> Option<BothSurfaces> {
     let of = |name: &str| match model.mesh.group(name) {
         Ok(Group::Edges(edges)) => in_order(&node_lists(edges)),
         _ => Vec::new(),
@@ -71,7 +57,7 @@ pub fn reverse(contact: &Contact, model: &Model, outline: Option<&Outline>) -> O
     let mut own = nodal_points(&slave);
     let sides = match (master, model.mesh.group(&contact.slave)) {
         (None, Ok(Group::Edges(slave))) => {
-            sides(model, &slave.iter().map(|edge| model.body_of_element[edge.element]).collect())
+            free_sides(model, &slave.iter().map(|edge| model.body_of_element[edge.element]).collect())
         }
         _ => Vec::new(),
     };
@@ -79,5 +65,5 @@ pub fn reverse(contact: &Contact, model: &Model, outline: Option<&Outline>) -> O
         outline.limit(&mut own, None);
     }
     let nodes = master.map(|master| nodal_points(&of(master))).unwrap_or_default();
-    Some(Reverse { nodes, slave: Master::Mesh(Surface::new(&slave)), own, sides })
+    Some(BothSurfaces { nodes, slave: Master::Mesh(Surface::new(&slave)), own, sides })
 }
