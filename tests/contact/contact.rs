@@ -79,7 +79,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         initial: None,
         unseen: Vec::new(),
         modulus: 0.0,
-        reverse: None,
+        both: None,
         body: None,
         small: None,
     }
