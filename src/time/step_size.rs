@@ -62,7 +62,7 @@ pub(super) const LEAST_SHARE: f64 = 0.1;
 const WORTHWHILE: f64 = 1.25;
 
 /// Strongest growth by one estimate of the next attempt at the rest of a subdivided increment.
-pub(super) const MOST_SHARE: f64 = 4.0;
+const MOST_SHARE: f64 = 4.0;
 /// Relative remainder of a step that is not worth another increment.
 const ROUND_OFF: f64 = 1e-6;
 
