@@ -16,7 +16,8 @@ use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::model::step::{Until, UntilStatus};
 use crate::solve::IterationRecord;
-use crate::solve::failure::{IncrementFailure, limit, suspicion};
+use crate::solve::failure::{IncrementFailure, suspicion};
+use crate::solve::limit::limit;
 use crate::time::beginning::{after_change, begin, go_on};
 use crate::time::explicit::Explicit;
 use crate::time::increment::{Advanced, advance};
@@ -100,7 +101,7 @@ impl Simulation {
             return Outcome::Cut(cause, self.rupture());
         }
         let (step, time, min) = (name.clone(), self.state.time, increments.min);
-        let limit = limit(&self.step, &self.state, &cause);
+        let limit = limit(&self.model, &self.step, &self.state, &cause);
         let (suspicion, cause) = (suspicion(&self.model, &self.step, &self.work, &self.state, &cause), Box::new(cause));
         Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, limit, cause, suspicion })
     }

@@ -14,7 +14,7 @@ use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::free;
-use crate::linear::{LinearFailure, norm};
+use crate::linear::LinearFailure;
 use crate::mesh::configuration::Configuration;
 use crate::model::builder::thickness::Outline;
 use crate::model::element::Formulation;
@@ -206,53 +206,6 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, state: &State, ca
     let causes = place.into_iter().chain(contacts().filter_map(penalty)).chain(thin.into_iter().flatten());
     let causes = causes.chain(bodies().filter_map(|body| locking(model, body)));
     causes.map(|cause| format!("; {cause}")).collect()
-}
-
-/// Growth of the rate of displacement over its mean in the step, from which it has begun to run away.
-const RUNS_AWAY: f64 = 2.0;
-
-/// Says that a static step under forces may have come to a limit point, with what its loads had reached, before a semicolon; empty unless
-/// displacements have begun to run away from the loads.
-pub fn limit(step: &Step, state: &State, cause: &IncrementFailure) -> String {
-    if !matches!(cause, IncrementFailure::Newton(_)) || step.scheme.is_dynamic() {
-        return String::new();
-    }
-    let loads = growing_loads(step, state.time);
-    let Some(last) = state.last_increment.as_ref().filter(|_| !loads.is_empty()) else { return String::new() };
-    let so_far = state.displacement.iter().zip(&state.step_start.displacement).map(|(u, before)| (u - before).powi(2));
-    let mean = so_far.sum::<f64>().sqrt() / (state.time - step.span.start);
-    if norm(&last.displacement) / last.dt < RUNS_AWAY * mean {
-        return String::new();
-    }
-    format!(
-        "this may be a limit point, the most that the structure bears, since displacements grow ever faster than the loads: {} had been \
-         reached; prescribe displacements instead of forces to go on; ",
-        loads.join(" and ")
-    )
-}
-
-/// Lists the loads that vary in a step: their values at a time and their targets; of each kind the one that varies most.
-fn growing_loads(step: &Step, time: f64) -> Vec<String> {
-    let loads = &step.loads;
-    let dead = loads.dead.iter().filter_map(|load| {
-        let place = load.weights.first()?.position;
-        Some((["load along x", "load along y"][load.component], &load.amplitude, place))
-    });
-    let pressures = loads.pressures.iter().map(|load| ("pressure", &load.amplitude, Vector2::zeros()));
-    let moments = loads.moments.iter().map(|load| ("moment", &load.amplitude, Vector2::zeros()));
-    let mut most: Vec<(&str, [f64; 2])> = Vec::new();
-    for (kind, amplitude, place) in dead.chain(pressures).chain(moments) {
-        let [start, now, end] = [step.span.start, time, step.span.end].map(|time| amplitude.value(place, time));
-        if start == end || !(end - start).is_finite() {
-            continue;
-        }
-        match most.iter_mut().find(|(known, _)| *known == kind) {
-            None => most.push((kind, [now, end])),
-            Some((_, values)) if end.abs() > values[1].abs() => *values = [now, end],
-            Some(_) => {}
-        }
-    }
-    most.iter().map(|(kind, [now, end])| format!("{kind} {} of {}", number(*now), number(*end))).collect()
 }
 
 /// Current place of the sharp corner of a rigid master where the slave is least in balance, if that is more than a part of the largest

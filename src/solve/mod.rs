@@ -6,6 +6,7 @@ pub mod contact_iteration;
 pub mod equilibrium;
 pub mod failure;
 pub mod floating;
+pub mod limit;
 pub mod neighbour;
 pub mod newton;
 

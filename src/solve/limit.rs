@@ -1,0 +1,100 @@
+//! Why a static step may have no equilibrium further on: loads at their limit point, and friction that weakens faster than what drives it
+//! gives way.
+
+use nalgebra::Vector2;
+
+use super::failure::IncrementFailure;
+use crate::contact::force::ContactState;
+use crate::contact::pair::ContactPair;
+use crate::laws::friction::Regime;
+use crate::linear::norm;
+use crate::model::state::State;
+use crate::model::text::number;
+use crate::model::{Model, Step};
+
+/// Growth of the rate of displacement over its mean in the step, from which it has begun to run away.
+const RUNS_AWAY: f64 = 2.0;
+
+/// Says why a static step may have no equilibrium further on, before a semicolon; empty unless something has begun to run away.
+pub fn limit(model: &Model, step: &Step, state: &State, cause: &IncrementFailure) -> String {
+    if !matches!(cause, IncrementFailure::Newton(_)) || step.scheme.is_dynamic() {
+        return String::new();
+    }
+    let contacts = model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| step.joins(pair));
+    limit_point(step, state)
+        + &contacts.filter_map(|(pair, states)| unstable_slip(step, state, pair, states)).collect::<String>()
+}
+
+/// A limit point under forces, with what its loads had reached, if displacements have begun to run away from them.
+fn limit_point(step: &Step, state: &State) -> String {
+    let loads = growing_loads(step, state.time);
+    let Some(last) = state.last_increment.as_ref().filter(|_| !loads.is_empty()) else { return String::new() };
+    let so_far = state.displacement.iter().zip(&state.step_start.displacement).map(|(u, before)| (u - before).powi(2));
+    let mean = so_far.sum::<f64>().sqrt() / (state.time - step.span.start);
+    if norm(&last.displacement) / last.dt < RUNS_AWAY * mean {
+        return String::new();
+    }
+    format!(
+        "this may be a limit point, the most that the structure bears, since displacements grow ever faster than the loads: {} had been \
+         reached; prescribe displacements instead of forces to go on; ",
+        loads.join(" and ")
+    )
+}
+
+/// Lists the loads that vary in a step: their values at a time and their targets; of each kind the one that varies most.
+fn growing_loads(step: &Step, time: f64) -> Vec<String> {
+    let loads = &step.loads;
+    let dead = loads.dead.iter().filter_map(|load| {
+        let place = load.weights.first()?.position;
+        Some((["load along x", "load along y"][load.component], &load.amplitude, place))
+    });
+    let pressures = loads.pressures.iter().map(|load| ("pressure", &load.amplitude, Vector2::zeros()));
+    let moments = loads.moments.iter().map(|load| ("moment", &load.amplitude, Vector2::zeros()));
+    let mut most: Vec<(&str, [f64; 2])> = Vec::new();
+    for (kind, amplitude, place) in dead.chain(pressures).chain(moments) {
+        let [start, now, end] = [step.span.start, time, step.span.end].map(|time| amplitude.value(place, time));
+        if start == end || !(end - start).is_finite() {
+            continue;
+        }
+        match most.iter_mut().find(|(known, _)| *known == kind) {
+            None => most.push((kind, [now, end])),
+            Some((_, values)) if end.abs() > values[1].abs() => *values = [now, end],
+            Some(_) => {}
+        }
+    }
+    most.iter().map(|(kind, [now, end])| format!("{kind} {} of {}", number(*now), number(*end))).collect()
+}
+
+/// Share of the closed length that slips from which on a contact slides as a whole.
+const SLIDES: f64 = 0.5;
+
+/// Length of a slipping zone from which on linear slip weakening is unstable between half-spaces, over G*/(p |dμ/dδ|). Source: Uenishi &
+/// Rice (2003), J. Geophys. Res. 108, 2042.
+const NUCLEATION: f64 = 1.158;
+
+/// Slip that may be unstable under friction that weakens by W = Σ |dμ/dδ| p ℓ over the length L of the points that slip: a zone of
+/// L > 1.158 G* L/W, or a contact that slides as a whole and ever faster.
+fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[ContactState]) -> Option<String> {
+    let (mut length, mut slipping, mut weakening, mut now, mut so_far) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (slave, point) in pair.points.iter().zip(states).filter(|(_, point)| point.is_closed()) {
+        length += point.length;
+        if point.regime() != Regime::Slip {
+            continue;
+        }
+        let law = pair.ask_law(slave, [state.time; 2], |law| law.description).ok()?;
+        slipping += point.length;
+        weakening += law.weakening * point.friction.pressure * point.length;
+        now += point.friction.plastic_increment.abs() * point.length / state.dt;
+        so_far += point.friction.plastic_slip.abs() * point.length / (state.time - step.span.start);
+    }
+    let nucleates = pair.modulus > 0.0 && weakening > NUCLEATION * pair.modulus;
+    let slides = weakening > 0.0 && slipping > SLIDES * length && now > RUNS_AWAY * so_far;
+    (nucleates || slides).then(|| {
+        format!(
+            "slip of contact `{}` may be unstable here: where it slips, friction weakens by up to {} per slip (force over length); where the \
+             bodies and what drives them give way by less, no static equilibrium follows: take a dynamic step (\"hht\"), with densities; ",
+            pair.name,
+            number(weakening)
+        )
+    })
+}
