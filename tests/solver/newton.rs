@@ -359,3 +359,37 @@ fn a_run_that_meets_a_limit_point_under_forces_says_so() {
     let told = stopped(0.4, 0.1, json!({"max_iterations": 1, "tolerance": 1e-15}));
     assert!(told.contains("no equilibrium within 1 iteration") && !told.contains("limit point"), "{told}");
 }
+
+/// Slip weakening on a rigid plane is unstable once it weakens, over the length that slips, by more than 1.158 G/(1 − ν) per slip (Uenishi &
+/// Rice 2003): a run that stops there says so, with the weakening. A thousandth of it lets the block slide to the end, and a run that stops
+/// for another reason says no such thing.
+#[test]
+fn a_run_that_meets_unstable_slip_says_so() {
+    let stopped = |critical_slip: f64, newton: Value| {
+        let block = json!({"body": "block", "corners": [[0, 0], [4, 0], [4, 2], [0, 2]], "elements": [8, 4],
+                           "sides": ["foot", null, "top", null]});
+        let mut run = Simulation::new(common::model(&json!({
+            "mesh": {"blocks": [block]}, "newton": newton,
+            "bodies": {"block": {"material": {"model": "linear", "E": 1000, "nu": 0.3}}},
+            "contacts": {"base": {"slave": "foot", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                                  "friction": {"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.3, "D_c": critical_slip}}},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "top", "ux": 0, "uy": -0.02}]},
+                      {"name": "drag", "duration": 1, "dt": {"initial": 0.05}, "supports": [{"on": "top", "ux": 0.05}]}]
+        })));
+        loop {
+            match run.next_increment() {
+                Ok(Some(_)) => {}
+                Ok(None) => return String::new(),
+                Err(stopped) => return stopped.to_string(),
+            }
+        }
+    };
+    assert_eq!(stopped(2.0, json!({})), "");
+    let told = stopped(0.002, json!({}));
+    let (_, weakening) = told.split_once("friction weakens by up to ").expect(&told);
+    let weakening: f64 = weakening.split(' ').next().expect("a number").parse().expect("a number");
+    let modulus = 1000.0 / 2.6 / 0.7;
+    assert!(told.contains("may be unstable here") && weakening > 1.158 * modulus, "{told}");
+    let told = stopped(2.0, json!({"max_iterations": 1, "tolerance": 1e-15}));
+    assert!(told.contains("no equilibrium within 1 iteration") && !told.contains("unstable"), "{told}");
+}
