@@ -5,7 +5,8 @@ use std::process::{Command, ExitCode};
 fn main() -> ExitCode {
     // Cargo itself appends `--bench`.
     let filters = std::env::args().skip(1).filter(|argument| argument != "--bench");
-    let run = Command::new(env!("CARGO")).args(["bench", "--package", "fecontact-benches", "--"]).args(filters).status();
+    let run =
+        Command::new(env!("CARGO")).args(["bench", "--package", "fecontact-benches", "--"]).args(filters).status();
     match run {
         Ok(status) if status.success() => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,

@@ -284,7 +284,7 @@ fn beside_bending(model: &Model, pair: &ContactPair, node: usize) -> Option<Stri
         return None;
     }
     let (outline, x) = (Outline::new(&model.mesh), model.mesh.undeformed());
-    let reverse = pair.reverse.as_ref()?;
+    let both = pair.both.as_ref()?;
     let bends = |(points, bodies): (&Vec<SlavePoint>, &Vec<usize>)| {
         let mut points = points.clone();
         outline.limit(&mut points, None);
@@ -299,7 +299,7 @@ fn beside_bending(model: &Model, pair: &ContactPair, node: usize) -> Option<Stri
         let times = 3.0 * alpha_t * edge * edge / (modulus * thickness);
         (times > STIFF_TO_BEND[0]).then_some((times, edge, thickness))
     };
-    let sides = [(&reverse.own, slave), (&reverse.nodes, master)];
+    let sides = [(&both.own, slave), (&both.nodes, master)];
     let (times, edge, thickness) = sides.into_iter().filter_map(bends).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
         "alpha_t = {} of contact `{}` is {:.0} times the stiffness with which a body behind it bends, which is {} thick beside edges of {}: \
