@@ -40,6 +40,7 @@ mod neo_hookean;
 mod parameters;
 pub mod plasticity;
 mod saint_venant_kirchhoff;
+mod slots;
 pub(crate) mod spatial;
 mod undrained;
 mod viscoelastic;
@@ -51,10 +52,11 @@ pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
 pub use plasticity::{
     BackStress, CamClay, CamClayParameters, DruckerPrager, DruckerPragerParameters, Elasticity, Elastoplastic,
-    LogarithmicBulk, Matching, MohrCoulomb, MohrCoulombParameters, ReturnMap, Returned, Softening, SysCamClay,
-    SysCamClayParameters, VonMises, VonMisesParameters,
+    LogarithmicBulk, Matching, MohrCoulomb, MohrCoulombParameters, ReturnDescription, ReturnMap, Returned, Softening,
+    SysCamClay, SysCamClayParameters, VonMises, VonMisesParameters,
 };
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+pub use slots::Slot;
 pub use spatial::{PlaneStress, Spatial, Stretched};
 pub use undrained::{PORE_PRESSURE, Undrained};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};

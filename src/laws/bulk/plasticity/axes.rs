@@ -28,7 +28,7 @@ pub(super) struct Axes {
 impl Axes {
     /// The trial state of F, F₃₃ and C_p⁻¹ − 1 (xx, yy, xy, zz). b − 1 is formed from F − 1, so that small strains lose no digits.
     #[inline(always)]
-    pub fn of(deformation: &Matrix2<f64>, stretch: f64, state: &[f64]) -> Result<Self, MaterialFailure> {
+    pub fn of(deformation: &Matrix2<f64>, stretch: f64, state: &[f64; 4]) -> Result<Self, MaterialFailure> {
         let f = deformation;
         let (d, c) = (f - Matrix2::identity(), Matrix2::new(state[0], state[2], state[2], state[1]));
         let b = d + d.transpose() + d * d.transpose() + f * c * f.transpose();
@@ -65,7 +65,7 @@ impl Axes {
     /// C_p⁻¹ ← C_p⁻¹ + F⁻¹ (exp(2 ε_e) − b) F⁻ᵀ,   ε_e = ε − Δε_p
     /// ```
     #[inline(always)]
-    pub fn flow(&self, plastic: &Vector4<f64>, stretch: f64, state: &mut [f64]) {
+    pub fn flow(&self, plastic: &Vector4<f64>, stretch: f64, state: &mut [f64; 4]) {
         if plastic.iter().all(|part| *part == 0.0) {
             return;
         }

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::isotropic;
 use super::{
-    Elasticity, Elastoplastic, LogarithmicBulk, ONE, ROUND_OFF, ReturnMap, Returned, SHOWN, deviator, double_dot,
-    in_axes,
+    Elasticity, Elastoplastic, LogarithmicBulk, ONE, ROUND_OFF, ReturnDescription, ReturnMap, Returned, VOLUME,
+    deviator, double_dot, in_axes, within,
 };
-use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, Lame, MaterialFailure};
+use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, MaterialFailure, Slot};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::{at_least, number};
 
@@ -129,8 +129,6 @@ pub struct CamClay {
     floor: f64,
     shear: Shear,
     pub(super) start: Start,
-    /// Pressure of the moduli that are told [F/L²]
-    typical: f64,
 }
 
 /// Shear stiffness as given.
@@ -162,12 +160,11 @@ impl Start {
 /// History of the law itself.
 const OWN: [&str; 2] = ["p_c", "shear_modulus"];
 
-/// Places of p_c and G in the history.
-pub(super) const P_C: usize = 2;
-pub(super) const SHEAR: usize = 3;
+pub(super) const P_C: Slot<1> = Slot::after(VOLUME);
+pub(super) const SHEAR: Slot<1> = Slot::after(P_C);
 
 /// Names of the quantities that the law shows.
-const SHOWN_TOO: [&str; 6] = [SHOWN[0], SHOWN[1], SHOWN[2], "effective_pressure", "deviator_stress", "p_c"];
+const SHOWN: [&str; 3] = ["effective_pressure", "deviator_stress", "p_c"];
 
 /// Most iterations for (6) and for (7).
 const ITERATIONS: usize = 200;
@@ -244,8 +241,7 @@ impl CamClay {
             require("OCR", ratio, ratio >= 1.0, "it must be 1 or more")?;
         }
         let start = either(["p_c", "OCR"], [p_c, ratio], [Start::Pressure, Start::Ratio])?;
-        let (plastic, floor, typical) = (lambda - kappa, p_min, p_min);
-        Ok(Self { plastic, kappa, critical, floor, shear, start, typical })
+        Ok(Self { plastic: lambda - kappa, kappa, critical, floor: p_min, shear, start })
     }
 
     /// Elasticity with a shear modulus.
@@ -261,6 +257,11 @@ impl CamClay {
         }
     }
 
+    /// What makes results depend on the mesh.
+    pub(super) fn localizes(&self) -> Option<&'static str> {
+        matches!(self.start, Start::Ratio(ratio) if ratio > 2.0).then_some("softens where p < p_c/2 (OCR > 2)")
+    }
+
     /// p_c of a stress whose yield surface has a size P, the yield surface of the soil being 1/R* that of p_c.
     pub(super) fn initial_p_c(&self, size: f64, structure: f64) -> f64 {
         match self.start {
@@ -268,6 +269,22 @@ impl CamClay {
             Start::Ratio(ratio) if size > 0.0 => (ratio * structure * size).max(self.floor),
             Start::Ratio(_) => self.floor,
         }
+    }
+}
+
+/// Whether a stress compresses the soil.
+///
+/// # Errors
+/// That it does not, and what to do.
+pub(super) fn compressed(stress: &CauchyStress) -> Result<(), InadmissibleStress> {
+    let p = stress.pressure() + 0.0;
+    match p > 0.0 {
+        true => Ok(()),
+        false => Err(InadmissibleStress(format!(
+            "has a mean pressure of {}, and Cam-clay has its stiffness and strength from pressure: give an initial stress that \
+             compresses it, at a free surface by a surcharge",
+            number(p)
+        ))),
     }
 }
 
@@ -435,44 +452,34 @@ impl Increment<'_> {
 const NAME: &str = "cam_clay";
 
 impl ReturnMap for CamClay {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn elastic(&self) -> Lame {
-        let shear = self.initial_shear(self.typical);
-        Lame { lambda: self.logarithmic(shear).bulk(self.typical) - 2.0 / 3.0 * shear, shear }
+    fn description(&self) -> ReturnDescription<'_> {
+        ReturnDescription {
+            history: &OWN,
+            shown: &SHOWN,
+            flow: self.start.flow(1.0),
+            // Flow is associated, but p_c of the end of the increment makes D unsymmetric.
+            is_associated: false,
+            localizes: self.localizes(),
+            ..ReturnDescription::new(NAME)
+        }
     }
 
     fn elasticity(&self, history: &[f64]) -> Elasticity {
-        Elasticity::Logarithmic(self.logarithmic(history[SHEAR]))
+        Elasticity::Logarithmic(self.logarithmic(SHEAR.value(history)))
     }
 
-    fn at_pressure(&self, pressure: f64) -> Option<Self> {
-        Some(Self { typical: pressure.max(self.floor), ..*self })
-    }
-
-    fn history(&self) -> &[&'static str] {
-        &OWN
-    }
-
-    fn begin(&self, stress: &Vector4<f64>, history: &mut [f64]) {
-        let [p, q] = invariants(stress);
-        history[SHEAR] = self.initial_shear(p);
-        let size = if p > 0.0 { p + q * q / (self.critical * self.critical * p) } else { 0.0 };
-        history[P_C] = self.initial_p_c(size, 1.0);
-    }
-
-    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
-        let p = stress.pressure() + 0.0;
-        match p > 0.0 {
-            true => Ok(()),
-            false => Err(InadmissibleStress(format!(
-                "has a mean pressure of {}, and Cam-clay has its stiffness and strength from pressure: give an initial stress that \
-                 compresses it, at a free surface by a surcharge",
-                number(p)
-            ))),
-        }
+    fn begin(&self, stress: &CauchyStress, history: &mut [f64]) -> Result<(), InadmissibleStress> {
+        let [p, q] = invariants(&Vector4::from(stress.components()));
+        SHEAR.set(history, self.initial_shear(p));
+        let size = p + q * q / (self.critical * self.critical * p);
+        P_C.set(history, self.initial_p_c(if p > 0.0 { size } else { 0.0 }, 1.0));
+        compressed(stress)?;
+        within(self, stress, history, || {
+            let [p, q, needed] = [number(p), number(q), at_least(size)];
+            format!(
+                "p = {p} and q = {q} need a p_c of {needed} at least; raise p_c, give OCR in its place, or choose K0 nearer to 1"
+            )
+        })
     }
 
     fn returned(
@@ -482,7 +489,7 @@ impl ReturnMap for CamClay {
         history: &mut [f64],
     ) -> Result<Returned, MaterialFailure> {
         let elasticity = self.elasticity(history);
-        let (elastic, strain) = (self.logarithmic(history[SHEAR]), in_axes(trial));
+        let (elastic, strain) = (self.logarithmic(SHEAR.value(history)), in_axes(trial));
         let stress = elasticity.kirchhoff(&strain);
         if self.yield_indicator(&stress, history) <= ROUND_OFF * elastic.shear {
             let tangent = elasticity.stiffness(&strain);
@@ -492,9 +499,9 @@ impl ReturnMap for CamClay {
         let size = double_dot(&of_shape, &of_shape).sqrt();
         let normal = if size > 0.0 { of_shape / size } else { of_shape };
         let trial = [-trace, (2.0f64 / 3.0).sqrt() * size];
-        let increment = Increment { law: self, elastic, trial, before: history[P_C] };
+        let increment = Increment { law: self, elastic, trial, before: P_C.value(history) };
         let state = increment.solved()?;
-        history[P_C] = state.p_c;
+        P_C.set(history, state.p_c);
         let slipped = 2.0 * state.q * state.slip / (self.critical * self.critical);
         Ok(Returned {
             stress: (2.0f64 / 3.0).sqrt() * state.q * normal - state.p * ONE,
@@ -505,38 +512,12 @@ impl ReturnMap for CamClay {
 
     /// √(q²/M² + (p − p_c/2)²) − p_c/2, which is 0 where (1) is.
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
-        let ([p, q], half) = (invariants(stress), 0.5 * history[P_C]);
+        let ([p, q], half) = (invariants(stress), 0.5 * P_C.value(history));
         (q / self.critical).hypot(p - half) - half
-    }
-
-    fn flow(&self) -> Flow {
-        self.start.flow(1.0)
-    }
-
-    /// Flow is associated, but p_c of the end of the increment makes D unsymmetric.
-    fn is_associated(&self) -> bool {
-        false
-    }
-
-    fn localizes(&self) -> Option<&'static str> {
-        matches!(self.start, Start::Ratio(ratio) if ratio > 2.0).then_some("softens where p < p_c/2 (OCR > 2)")
-    }
-
-    fn beyond(&self, stress: &CauchyStress) -> String {
-        let [p, q] = invariants(&Vector4::from(stress.components()));
-        let needed = p + q * q / (self.critical * self.critical * p);
-        let [p, q, needed] = [number(p), number(q), at_least(needed)];
-        format!(
-            "p = {p} and q = {q} need a p_c of {needed} at least; raise p_c, give OCR in its place, or choose K0 nearer to 1"
-        )
-    }
-
-    fn shown(&self) -> &'static [&'static str] {
-        &SHOWN_TOO
     }
 
     fn show(&self, stress: &Vector4<f64>, history: &[f64], values: &mut [f64]) {
         let [p, q] = invariants(stress);
-        values.copy_from_slice(&[p, q, history[P_C]]);
+        values.copy_from_slice(&[p, q, P_C.value(history)]);
     }
 }

@@ -3,8 +3,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::elasticity::isotropic;
-use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, THIRD, deviator, double_dot, in_axes};
-use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
+use super::{
+    Elasticity, Elastoplastic, ONE, ROUND_OFF, ReturnDescription, ReturnMap, Returned, THIRD, deviator, double_dot,
+    in_axes, within,
+};
+use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative};
 use crate::laws::text::{apart, number};
 
@@ -132,12 +135,33 @@ pub(super) fn check_strength(c: f64, phi: f64, psi: f64) -> Result<(), InvalidPa
 }
 
 impl ReturnMap for DruckerPrager {
-    fn name(&self) -> &'static str {
-        "drucker_prager"
+    #[inline(always)]
+    fn description(&self) -> ReturnDescription<'_> {
+        let is_associated = self.friction == self.dilation;
+        ReturnDescription {
+            flow: if self.dilation > 0.0 { Flow::Dilating } else { Flow::Isochoric },
+            is_associated,
+            localizes: (!is_associated).then_some("flows otherwise than it yields (psi < phi)"),
+            ..ReturnDescription::new("drucker_prager")
+        }
     }
 
-    fn elastic(&self) -> Lame {
-        self.elastic
+    #[inline(always)]
+    fn elasticity(&self, _: &[f64]) -> Elasticity {
+        Elasticity::Linear(self.elastic)
+    }
+
+    fn begin(&self, stress: &CauchyStress, history: &mut [f64]) -> Result<(), InadmissibleStress> {
+        within(self, stress, history, || {
+            let (s, trace) = deviator(&Vector4::from(stress.components()));
+            let root = (0.5 * double_dot(&s, &s)).sqrt();
+            let [is, carried] = apart([root, self.radius(trace / 3.0)]);
+            format!(
+                "√J₂ is {is} at the mean stress {}, where the cone carries {carried}; raise c or phi, or choose stresses that \
+                 differ less (K0 nearer to 1)",
+                number(trace / 3.0)
+            )
+        })
     }
 
     #[inline(always)]
@@ -189,29 +213,5 @@ impl ReturnMap for DruckerPrager {
         let (mean, root) = (THIRD * trace, (0.5 * double_dot(&s, &s)).sqrt());
         let cone = root + if self.friction > 0.0 { self.friction * mean } else { 0.0 } - self.cohesion;
         cone.max(mean - self.tension)
-    }
-
-    fn flow(&self) -> Flow {
-        if self.dilation > 0.0 { Flow::Dilating } else { Flow::Isochoric }
-    }
-
-    fn is_associated(&self) -> bool {
-        self.friction == self.dilation
-    }
-
-    fn localizes(&self) -> Option<&'static str> {
-        (!self.is_associated()).then_some("flows otherwise than it yields (psi < phi)")
-    }
-
-    fn beyond(&self, stress: &CauchyStress) -> String {
-        let CauchyStress { xx, yy, zz, xy } = *stress;
-        let (s, trace) = deviator(&Vector4::new(xx, yy, zz, xy));
-        let root = (0.5 * double_dot(&s, &s)).sqrt();
-        let [is, carried] = apart([root, self.radius(trace / 3.0)]);
-        format!(
-            "√J₂ is {is} at the mean stress {}, where the cone carries {carried}; raise c or phi, or choose stresses that differ \
-             less (K0 nearer to 1)",
-            number(trace / 3.0)
-        )
     }
 }

@@ -89,6 +89,14 @@ impl Elasticity {
         }
     }
 
+    /// λ and G under a mean pressure.
+    pub(super) fn moduli(&self, pressure: f64) -> Lame {
+        match self {
+            Self::Linear(lame) => *lame,
+            Self::Logarithmic(law) => Lame { lambda: law.bulk(pressure) - 2.0 / 3.0 * law.shear, shear: law.shear },
+        }
+    }
+
     /// K at a strain.
     pub(super) fn bulk(&self, strain: &Vector4<f64>) -> f64 {
         match self {

@@ -30,7 +30,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::spatial::{Stretched, plane, positive_stretch};
 use super::{
     CauchyStress, Flow, InadmissibleStress, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse,
-    PlaneStress, Spatial, Straining, positive_jacobian,
+    PlaneStress, Slot, Spatial, Straining, positive_jacobian,
 };
 use crate::laws::parameter::{InvalidParameter, require_not_negative};
 use crate::laws::text::number;
@@ -129,62 +129,75 @@ const THIRD: f64 = 1.0 / 3.0;
 /// The unit tensor.
 const ONE: Vector4<f64> = Vector4::new(1.0, 1.0, 1.0, 0.0);
 
+/// What a law that yields says of itself in plain values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+pub struct ReturnDescription<'a> {
+    /// Name of the law in a case
+    pub name: &'static str,
+    /// Names of its own history, that of its tensors last: four each, xx, yy, zz, xy
+    pub history: &'a [&'static str],
+    /// Number of tensors in the history, which turn with the body
+    pub tensors: usize,
+    /// Names of what it shows besides what every law shows
+    pub shown: &'a [&'static str],
+    /// Whether it dilates as it yields
+    pub flow: Flow,
+    /// Whether D is symmetric, as it is where the flow is associated, and ∂P/∂F with it
+    pub is_associated: bool,
+    /// What makes results depend on the size of elements: "softens", or another word; none if nothing does
+    pub localizes: Option<&'static str>,
+    /// Whether the law makes sense in a plate
+    pub in_plates: bool,
+}
+
+impl ReturnDescription<'_> {
+    /// An associated law without a history of its own, which keeps its volume, for bodies that are no plates.
+    pub const fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            history: &[],
+            tensors: 0,
+            shown: &[],
+            flow: Flow::Isochoric,
+            is_associated: true,
+            localizes: None,
+            in_plates: false,
+        }
+    }
+}
+
+/// Equivalent plastic strain ε̄_p in the history of every law that yields, its first number.
+pub const EQUIVALENT: Slot<1> = Slot::FIRST;
+
+/// Plastic volume strain behind it. What a law has of its own follows.
+pub const VOLUME: Slot<1> = Slot::after(EQUIVALENT);
+
 /// A law that yields, at small strains: a pure function of trial strains and history.
 ///
 /// ```text
 /// (τ, D, Δε_p, history₁) = law(ε_trial; history₀)
 /// ```
-/// The trial strains are principal ones, so the law is isotropic. Its history begins with the equivalent plastic strain ε̄_p and the
-/// plastic volume strain, which [`Elastoplastic`] adds up, then come its own numbers, then [`tensors`](Self::tensors) in the axes of the
-/// trial strains.
+/// The trial strains are principal ones, so the law is isotropic. Its history begins with [`EQUIVALENT`] and [`VOLUME`], which
+/// [`Elastoplastic`] adds up, then come the numbers that it [names](ReturnDescription::history), tensors in the axes of the trial strains.
 pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
-    /// Returns the name of the law in a case.
-    fn name(&self) -> &'static str;
-
-    /// λ and G of its elasticity, τ = λ tr(ε_e) 1 + 2G ε_e, or of an [elasticity](Self::elasticity) that is not linear at the start.
-    fn elastic(&self) -> Lame;
+    /// Describes the law before anything is strained.
+    fn description(&self) -> ReturnDescription<'_>;
 
     /// Returns the elasticity, which derives from a potential.
-    fn elasticity(&self, _history: &[f64]) -> Elasticity {
-        Elasticity::Linear(self.elastic())
-    }
+    fn elasticity(&self, history: &[f64]) -> Elasticity;
 
-    /// The law with the [moduli](Self::elastic) that it has under a mean pressure p; none where they do not depend on it [F/L²]
-    fn at_pressure(&self, _pressure: f64) -> Option<Self> {
-        None
-    }
-
-    /// Write its own history at the start, under an initial stress. It stays zero unless the law says otherwise.
-    fn begin(&self, _stress: &Vector4<f64>, _history: &mut [f64]) {}
-
-    /// Whether it can begin under a stress, which is not beyond its yield surface.
+    /// Write its own history at the start, under an initial stress, whether or not it can begin there. It stays zero unless the law says
+    /// otherwise.
     ///
     /// # Errors
-    /// Why it cannot, and what to do.
-    fn admits(&self, _stress: &CauchyStress) -> Result<(), InadmissibleStress> {
-        Ok(())
-    }
-
-    /// Names of what it shows, those that every law shows first.
-    fn shown(&self) -> &'static [&'static str] {
-        &SHOWN
-    }
-
-    /// Write what it shows behind those, of a stress and its history.
-    fn show(&self, _stress: &Vector4<f64>, _history: &[f64], _values: &mut [f64]) {}
-
-    /// Names of its own history, that of the tensors last: four each, xx, yy, zz, xy.
-    fn history(&self) -> &[&'static str] {
-        &[]
-    }
-
-    /// Returns the number of tensors in the history, which turn with the body.
-    fn tensors(&self) -> usize {
-        0
+    /// Why it cannot begin, and what to do: the stress is not [`within`] the yield surface.
+    fn begin(&self, stress: &CauchyStress, history: &mut [f64]) -> Result<(), InadmissibleStress> {
+        within(self, stress, history, || "lower it, or raise the strength".into())
     }
 
     /// The answer to trial strains, after the committed stress `before` in their axes. The committed history stands in `history`, and what
-    /// it is at the end of the increment is written over it. A law that asks for the stress before has [`tensors`](Self::tensors).
+    /// it is at the end of the increment is written over it. A law that asks for the stress before has tensors.
     ///
     /// # Errors
     /// [`MaterialFailure::NotConverged`] when there is no return to the yield surface.
@@ -209,24 +222,27 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
         0.0
     }
 
-    /// Whether it dilates as it yields.
-    fn flow(&self) -> Flow;
+    /// Write what it [shows](ReturnDescription::shown), of a stress and its history.
+    fn show(&self, _stress: &Vector4<f64>, _history: &[f64], _values: &mut [f64]) {}
+}
 
-    /// Whether D is symmetric, as it is where the flow is associated, and ∂P/∂F with it.
-    fn is_associated(&self) -> bool;
-
-    /// Says what makes results depend on the size of elements: "softens", or another word; none if nothing does.
-    fn localizes(&self) -> Option<&'static str> {
-        None
+/// Whether a stress is within the yield surface of a law, but for the digits that numbers are written without.
+///
+/// # Errors
+/// That it is not, and what to do.
+pub fn within(
+    law: &impl ReturnMap,
+    stress: &CauchyStress,
+    history: &[f64],
+    remedy: impl FnOnce() -> String,
+) -> Result<(), InadmissibleStress> {
+    let tensor = Vector4::from(stress.components());
+    // f is a function of stresses in any axes.
+    let f = law.yield_indicator(&tensor, history);
+    match f <= WRITTEN * tensor.amax() {
+        true => Ok(()),
+        false => Err(InadmissibleStress(format!("is beyond the yield surface, f = {} > 0: {}", number(f), remedy()))),
     }
-
-    /// Whether the law makes sense in a plate.
-    fn in_plates(&self) -> bool {
-        false
-    }
-
-    /// Why a stress beyond the yield surface is one, and what to do, for a message.
-    fn beyond(&self, stress: &CauchyStress) -> String;
 }
 
 /// A [`ReturnMap`] at large deformations, F = F_e F_p.
@@ -262,13 +278,16 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
 pub struct Elastoplastic<L> {
     law: L,
     density: f64,
+    /// λ and G under the mean pressure that is typical, 0 unless it is told
+    moduli: Lame,
     /// τ_v [T]
     viscosity: f64,
     names: Vec<&'static str>,
+    shown: Vec<&'static str>,
     concern: Option<String>,
 }
 
-/// C_p⁻¹ − 1, what was stored at the start, the unrotated stress, and what every law has in its history.
+/// Names of C_p⁻¹ − 1, of what was stored at the start, of the unrotated stress, and of what every law has in its history.
 const STATE: [&str; 11] = [
     "plastic_xx",
     "plastic_yy",
@@ -283,14 +302,10 @@ const STATE: [&str; 11] = [
     "plastic_volume_strain",
 ];
 
-/// Place of W at the start among the variables.
-const AT_START: usize = 4;
-
-/// Place of the unrotated stress.
-const STRESS: usize = 5;
-
-/// Place of the law's history.
-const HISTORY: usize = 9;
+const PLASTIC: Slot<4> = Slot::FIRST;
+const AT_START: Slot<1> = Slot::after(PLASTIC);
+/// The history of the law stands behind the stress.
+const STRESS: Slot<4> = Slot::after(AT_START);
 
 /// Quantities that every law shows.
 const SHOWN: [&str; 3] = ["equivalent_plastic_strain", "plastic_volume_strain", "yield_indicator"];
@@ -304,6 +319,13 @@ const ROUND_OFF: f64 = 1e-14;
 /// Share of the stress by which an initial stress may be beyond the yield surface: numbers are written with a few digits.
 const WRITTEN: f64 = 1e-6;
 
+/// Elasticity of a law that begins under a mean pressure.
+fn elasticity_at(law: &impl ReturnMap, pressure: f64) -> Elasticity {
+    let mut history = vec![0.0; VOLUME.end() + law.description().history.len()];
+    let _ = law.begin(&CauchyStress { xx: -pressure, yy: -pressure, zz: -pressure, xy: 0.0 }, &mut history);
+    law.elasticity(&history)
+}
+
 impl<L: ReturnMap> Elastoplastic<L> {
     /// A law at large deformations, with a density [M/L³] and the relaxation time of its viscosity, 0 for none [T].
     ///
@@ -312,15 +334,18 @@ impl<L: ReturnMap> Elastoplastic<L> {
     pub fn new(law: L, density: f64, viscosity: f64) -> Result<Self, InvalidParameter> {
         require_not_negative("density", density)?;
         require_not_negative("viscosity", viscosity)?;
-        let names = STATE.iter().chain(law.history()).copied().collect();
-        let concern = law.localizes().filter(|_| viscosity == 0.0).map(|why| {
+        let own = law.description();
+        let names = STATE.iter().chain(own.history).copied().collect();
+        let shown = SHOWN.iter().chain(own.shown).copied().collect();
+        let concern = own.localizes.filter(|_| viscosity == 0.0).map(|why| {
             format!(
                 "`{}` {why}: bands of localized strain are as wide as an element, and what follows a peak load depends on the \
                  mesh; compare two meshes, or give the law a `viscosity`",
-                law.name()
+                own.name
             )
         });
-        Ok(Self { law, density, viscosity, names, concern })
+        let moduli = elasticity_at(&law, 0.0).moduli(0.0);
+        Ok(Self { law, density, moduli, viscosity, names, shown, concern })
     }
 
     /// The axes of b, the law's answer there at the end of the increment, W and what was dissipated.
@@ -329,34 +354,36 @@ impl<L: ReturnMap> Elastoplastic<L> {
         let Straining { deformation, stretch, dt, old, .. } = *straining;
         positive_stretch(straining)?;
         positive_jacobian(&deformation)?;
-        let axes = Axes::of(&deformation, stretch, old)?;
+        let axes = Axes::of(&deformation, stretch, PLASTIC.of(old))?;
         new.copy_from_slice(old);
-        let history = &mut new[HISTORY..];
+        let (committed, history) = (STRESS.behind(old), STRESS.behind_mut(new));
         self.turn(history, |tensor| axes.entered(tensor));
-        let before = axes.entered(&Vector4::from_column_slice(&old[STRESS..HISTORY]));
+        let before = axes.entered(&(*STRESS.of(old)).into());
         let mut found = self.law.returned(&axes.strains, &before, history)?;
         let largest = found.plastic.amax();
         if largest.is_nan() || largest > LARGEST {
-            return Err(MaterialFailure::OutOfRange { law: self.law.name(), strain: largest });
+            return Err(MaterialFailure::OutOfRange { law: self.law.description().name, strain: largest });
         }
         self.turn(history, |tensor| axes.left(tensor));
         if self.viscosity > 0.0 {
-            self.lag(dt, &axes, &old[HISTORY..], history, &mut found);
+            self.lag(dt, &axes, committed, history, &mut found);
         }
         let (deviator, volume) = deviator(&found.plastic);
-        history[0] = old[HISTORY] + (2.0 / 3.0 * double_dot(&deviator, &deviator)).sqrt();
-        history[1] = old[HISTORY + 1] + volume;
-        let dissipated = self.dissipated(&axes, [&before, &found.stress], &found.plastic, [old, new]);
-        new[STRESS..HISTORY].copy_from_slice(axes.left(&found.stress).as_slice());
-        axes.flow(&found.plastic, stretch, new);
-        let energy = self.stored(&(in_axes(&axes.strains) - found.plastic), new) - old[AT_START];
+        let length = (2.0 / 3.0 * double_dot(&deviator, &deviator)).sqrt();
+        EQUIVALENT.set(history, EQUIVALENT.value(committed) + length);
+        VOLUME.set(history, VOLUME.value(committed) + volume);
+        let dissipated = self.dissipated(&axes, [&before, &found.stress], &found.plastic, [committed, history]);
+        *STRESS.of_mut(new) = axes.left(&found.stress).into();
+        axes.flow(&found.plastic, stretch, PLASTIC.of_mut(new));
+        let strain = in_axes(&axes.strains) - found.plastic;
+        let energy = self.stored(&strain, STRESS.behind(new)) - AT_START.value(old);
         Ok((axes, found, [energy, dissipated]))
     }
 
     /// Turn the tensors of a history.
     #[inline(always)]
     fn turn(&self, history: &mut [f64], turned: impl Fn(&Vector4<f64>) -> Vector4<f64>) {
-        let first = history.len() - 4 * self.law.tensors();
+        let first = history.len() - 4 * self.law.description().tensors;
         for tensor in history[first..].chunks_exact_mut(4) {
             tensor.copy_from_slice(turned(&Vector4::from_column_slice(tensor)).as_slice());
         }
@@ -364,15 +391,15 @@ impl<L: ReturnMap> Elastoplastic<L> {
 
     /// A committed history in the axes.
     #[inline(always)]
-    fn history_in<'a>(&self, axes: &Axes, variables: &'a [f64]) -> Cow<'a, [f64]> {
-        let mut history = Cow::from(&variables[HISTORY..]);
-        if self.law.tensors() > 0 {
+    fn history_in<'a>(&self, axes: &Axes, committed: &'a [f64]) -> Cow<'a, [f64]> {
+        let mut history = Cow::from(committed);
+        if self.spins() {
             self.turn(history.to_mut(), |tensor| axes.entered(tensor));
         }
         history
     }
 
-    /// (5), of the stress in the axes and the variables at both ends of the increment.
+    /// (5), of the stress in the axes and the history at both ends of the increment.
     #[inline(always)]
     fn dissipated(
         &self,
@@ -387,7 +414,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
         let committed = self.history_in(axes, old);
         let trial = self.law.elasticity(&committed).kirchhoff(&in_axes(&axes.strains));
         let met = before + self.law.onset([before, &trial], &committed) * (trial - before);
-        let stored = self.law.stored(&new[HISTORY..]) - self.law.stored(&old[HISTORY..]);
+        let stored = self.law.stored(new) - self.law.stored(old);
         0.5 * double_dot(&(met + after), plastic) - stored
     }
 
@@ -411,14 +438,20 @@ impl<L: ReturnMap> Elastoplastic<L> {
 
     /// Elastic energy and that of the history.
     #[inline(always)]
-    fn stored(&self, elastic_strain: &Vector4<f64>, variables: &[f64]) -> f64 {
-        self.law.elasticity(&variables[HISTORY..]).stored(elastic_strain) + self.law.stored(&variables[HISTORY..])
+    fn stored(&self, elastic_strain: &Vector4<f64>, history: &[f64]) -> f64 {
+        self.law.elasticity(history).stored(elastic_strain) + self.law.stored(history)
+    }
+
+    /// Whether the axes of the history turn otherwise than those of the stress.
+    #[inline(always)]
+    fn spins(&self) -> bool {
+        self.law.description().tensors > 0
     }
 
     /// Stress and history in the axes where the law remembers `straining.old`.
     fn committed<'a>(&self, straining: &Straining<'a>) -> Result<(Vector4<f64>, Cow<'a, [f64]>), MaterialFailure> {
-        let axes = Axes::of(&straining.deformation, straining.stretch, straining.old)?;
-        let history = self.history_in(&axes, straining.old);
+        let axes = Axes::of(&straining.deformation, straining.stretch, PLASTIC.of(straining.old))?;
+        let history = self.history_in(&axes, STRESS.behind(straining.old));
         Ok((self.law.elasticity(&history).kirchhoff(&in_axes(&axes.strains)), history))
     }
 }
@@ -448,7 +481,7 @@ impl<L: ReturnMap, const TANGENT: bool> NullaryFnOnce for InPlane<'_, L, TANGENT
             response.stress_zz = stress[4] / straining.deformation.determinant();
             (response.energy, response.dissipation) = (energy, dissipation);
             if TANGENT {
-                response.tangent = axes.moduli_in_plane(&found, law.law.tensors() > 0);
+                response.tangent = axes.moduli_in_plane(&found, law.spins());
             }
         }
         Ok(())
@@ -469,7 +502,7 @@ impl<L: ReturnMap, const TANGENT: bool> NullaryFnOnce for InSpace<'_, L, TANGENT
     fn call(self) -> Self::Output {
         let Self { law, straining, new } = self;
         let (axes, found, [energy, dissipation]) = law.answer(straining, new)?;
-        let tangent = if TANGENT { axes.moduli(&found, law.law.tensors() > 0) } else { Matrix5::zeros() };
+        let tangent = if TANGENT { axes.moduli(&found, law.spins()) } else { Matrix5::zeros() };
         Ok(Stretched { stress: axes.first_piola_kirchhoff(&found.stress), tangent, energy, dissipation })
     }
 }
@@ -485,27 +518,28 @@ impl<L: ReturnMap> Spatial for Elastoplastic<L> {
     /// Returns the stretch that leaves a plate without out-of-plane stress if it does not yield in the increment.
     fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
         let jacobian = positive_jacobian(&straining.deformation)?;
-        let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| straining.old[k]);
+        let [xx, yy, xy, zz] = *PLASTIC.of(straining.old);
         let areal = jacobian.ln() + 0.5 * (xx + yy + xx * yy - xy * xy).ln_1p();
-        let Lame { lambda, shear } = self.law.elastic();
+        let Lame { lambda, shear } = self.moduli;
         Ok(-lambda / (lambda + 2.0 * shear) * areal - 0.5 * zz.ln_1p())
     }
 }
 
 impl<L: ReturnMap> Material for Elastoplastic<L> {
     fn description(&self) -> MaterialDescription<'_> {
+        let own = self.law.description();
         MaterialDescription {
-            is_symmetric: self.law.is_associated() && self.law.tensors() == 0,
-            flow: Some(self.law.flow()),
+            is_symmetric: own.is_associated && own.tensors == 0,
+            flow: Some(own.flow),
             concern: self.concern.as_deref(),
             holds_initial_stress: true,
-            shown: self.law.shown(),
-            ..self.law.elastic().description(self.density).remembering(&self.names)
+            shown: &self.shown,
+            ..self.moduli.description(self.density).remembering(&self.names)
         }
     }
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
-        self.law.in_plates().then(|| Box::new(PlaneStress::new(self.clone())) as Box<dyn Material>)
+        self.law.description().in_plates.then(|| Box::new(PlaneStress::new(self.clone())) as Box<dyn Material>)
     }
 
     fn spatial(&self) -> Option<&dyn Spatial> {
@@ -513,35 +547,25 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
     }
 
     fn at_pressure(&self, pressure: f64) -> Option<Arc<dyn Material>> {
-        let law = self.law.at_pressure(pressure)?;
-        Some(Arc::new(Self { law, ..self.clone() }))
-    }
-
-    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
-        self.law.admits(stress)?;
-        let CauchyStress { xx, yy, zz, xy } = *stress;
-        let (tensor, mut history) = (Vector4::new(xx, yy, zz, xy), vec![0.0; self.names.len() - HISTORY]);
-        self.law.begin(&tensor, &mut history);
-        // f is a function of stresses in any axes.
-        let f = self.law.yield_indicator(&tensor, &history);
-        match f <= WRITTEN * tensor.amax() {
-            true => Ok(()),
-            false => {
-                let why = format!("is beyond the yield surface, f = {} > 0: {}", number(f), self.law.beyond(stress));
-                Err(InadmissibleStress(why))
-            }
+        match elasticity_at(&self.law, pressure) {
+            Elasticity::Linear(_) => None,
+            elasticity => Some(Arc::new(Self { moduli: elasticity.moduli(pressure), ..self.clone() })),
         }
     }
 
+    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
+        self.law.begin(stress, &mut vec![0.0; self.names.len() - STRESS.end()])
+    }
+
     fn initial_state(&self, _: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
-        let CauchyStress { xx, yy, zz, xy } = *stress;
-        let tensor = Vector4::new(xx, yy, zz, xy);
-        self.law.begin(&tensor, &mut variables[HISTORY..]);
-        let strain = self.law.elasticity(&variables[HISTORY..]).strain(&tensor);
+        let (tensor, history) = (Vector4::from(stress.components()), STRESS.behind_mut(variables));
+        let _ = self.law.begin(stress, history);
+        let strain = self.law.elasticity(history).strain(&tensor);
+        let stored = self.stored(&strain, history);
         let [xx, yy, zz, xy] = axes::exponential_less_one(&(2.0 * strain)).into();
-        variables[..AT_START].copy_from_slice(&[xx, yy, xy, zz]);
-        variables[AT_START] = self.stored(&strain, variables);
-        variables[STRESS..HISTORY].copy_from_slice(tensor.as_slice());
+        *PLASTIC.of_mut(variables) = [xx, yy, xy, zz];
+        AT_START.set(variables, stored);
+        *STRESS.of_mut(variables) = tensor.into();
     }
 
     fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
@@ -565,7 +589,8 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
         let (stress, history) = self.committed(straining)?;
         let (first, own) = values.split_at_mut(SHOWN.len());
-        first.copy_from_slice(&[history[0], history[1], self.law.yield_indicator(&stress, &history)]);
+        let indicator = self.law.yield_indicator(&stress, &history);
+        first.copy_from_slice(&[EQUIVALENT.value(&history), VOLUME.value(&history), indicator]);
         self.law.show(&stress, &history, own);
         Ok(())
     }

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::drucker_prager::{FLOOR, check_strength};
-use super::{Elastoplastic, ROUND_OFF, ReturnMap, Returned, in_axes};
-use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
+use super::{Elasticity, Elastoplastic, ROUND_OFF, ReturnDescription, ReturnMap, Returned, VOLUME, in_axes, within};
+use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::{at_least, number};
 
@@ -388,7 +388,7 @@ impl MohrCoulomb {
     #[cold]
     fn none(&self, trial: &Vector3<f64>, before: f64) -> MaterialFailure {
         let residual = self.excess(&self.strength(before).0, trial) / trial.amax();
-        MaterialFailure::NotConverged { law: self.name(), residual }
+        MaterialFailure::NotConverged { law: NAME, residual }
     }
 
     /// That of a strength that falls with γ_p: γ_p,n + Σ |Δε_p,i(γ_p)| − γ_p has its root between γ_p,n, where it is positive, and where
@@ -470,16 +470,39 @@ impl Planes {
 }
 
 impl ReturnMap for MohrCoulomb {
-    fn name(&self) -> &'static str {
-        "mohr_coulomb"
+    #[inline(always)]
+    fn description(&self) -> ReturnDescription<'_> {
+        let softens = self.residual.is_some();
+        let is_associated = self.virgin.phi == self.virgin.psi;
+        ReturnDescription {
+            history: if softens { &SOFTENING[..] } else { &[] },
+            flow: if self.virgin.psi.value > 0.0 { Flow::Dilating } else { Flow::Isochoric },
+            is_associated: is_associated && !softens,
+            localizes: match (softens, is_associated) {
+                (true, _) => Some("softens"),
+                (false, false) => Some("flows otherwise than it yields (psi < phi)"),
+                (false, true) => None,
+            },
+            ..ReturnDescription::new(NAME)
+        }
     }
 
-    fn elastic(&self) -> Lame {
-        self.elastic
+    #[inline(always)]
+    fn elasticity(&self, _: &[f64]) -> Elasticity {
+        Elasticity::Linear(self.elastic)
     }
 
-    fn history(&self) -> &[&'static str] {
-        if self.residual.is_some() { &["plastic_shear_strain"] } else { &[] }
+    fn begin(&self, stress: &CauchyStress, history: &mut [f64]) -> Result<(), InadmissibleStress> {
+        within(self, stress, history, || {
+            let sorted = principal(&Vector4::from(stress.components()));
+            let ([high, low], Angle { sin, value, .. }) = ([sorted[0], sorted[2]].map(number), self.virgin.phi);
+            let (phi, ratio) = ((value.to_degrees() * 1e9).round() / 1e9, at_least((1.0 - sin) / (1.0 + sin)));
+            format!(
+                "its principal stresses reach from {low} to {high}; with phi = {phi} degrees and c = {} a ratio of pressures such \
+                 as K0 is at least (1 - sin phi)/(1 + sin phi) = {ratio}, somewhat less for the cohesion; raise K0, c or phi",
+                self.virgin.c
+            )
+        })
     }
 
     #[inline(always)]
@@ -492,7 +515,7 @@ impl ReturnMap for MohrCoulomb {
         let mut answer = Returned::elastic(self.elastic, trial);
         let rank = rank_across(trial);
         let sorted = Vector3::from(sorted(rank, [answer.stress[0], answer.stress[1], answer.stress[2]]));
-        let before = history.get(OWN).copied().unwrap_or(0.0);
+        let before = slipped(history);
         if self.excess(&self.strength(before).0, &sorted) <= ROUND_OFF * self.elastic.shear {
             return Ok(answer);
         }
@@ -510,52 +533,28 @@ impl ReturnMap for MohrCoulomb {
         };
         answer.tangent = tangent;
         answer.plastic = in_axes(trial) - self.elastic.strain(&answer.stress);
-        if let Some(own) = history.get_mut(OWN) {
-            *own = slip;
-        }
+        VOLUME.behind_mut(history).fill(slip);
         Ok(answer)
     }
 
     #[inline(always)]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
-        let (strength, _) = self.strength(history.get(OWN).copied().unwrap_or(0.0));
+        let (strength, _) = self.strength(slipped(history));
         self.excess(&strength, &principal(stress))
-    }
-
-    fn flow(&self) -> Flow {
-        if self.virgin.psi.value > 0.0 { Flow::Dilating } else { Flow::Isochoric }
-    }
-
-    fn is_associated(&self) -> bool {
-        self.virgin.phi == self.virgin.psi && self.residual.is_none()
-    }
-
-    fn localizes(&self) -> Option<&'static str> {
-        match (self.residual, self.virgin.phi == self.virgin.psi) {
-            (Some(_), _) => Some("softens"),
-            (None, false) => Some("flows otherwise than it yields (psi < phi)"),
-            (None, true) => None,
-        }
-    }
-
-    fn beyond(&self, stress: &CauchyStress) -> String {
-        let CauchyStress { xx, yy, zz, xy } = *stress;
-        let sorted = principal(&Vector4::new(xx, yy, zz, xy));
-        let sin = self.virgin.phi.sin;
-        format!(
-            "its principal stresses reach from {} to {}; with phi = {} degrees and c = {} a ratio of pressures such as K0 is at \
-             least (1 - sin phi)/(1 + sin phi) = {}, somewhat less for the cohesion; raise K0, c or phi",
-            number(sorted[2]),
-            number(sorted[0]),
-            (self.virgin.phi.value.to_degrees() * 1e9).round() / 1e9,
-            self.virgin.c,
-            at_least((1.0 - sin) / (1.0 + sin))
-        )
     }
 }
 
-/// Place of γ_p in the history.
-const OWN: usize = 2;
+/// Name of γ_p, which a law that softens alone has in its history.
+const SOFTENING: [&str; 1] = ["plastic_shear_strain"];
+
+/// γ_p of a history.
+#[inline(always)]
+fn slipped(history: &[f64]) -> f64 {
+    VOLUME.behind(history).first().copied().unwrap_or(0.0)
+}
+
+/// Name of the law in a case.
+const NAME: &str = "mohr_coulomb";
 
 /// Difference of two strains below which their axes are any.
 const EQUAL: f64 = 1e-10;

@@ -2,10 +2,13 @@ use nalgebra::{Matrix4, Vector3, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::cam_clay::{CamClay, CamClayParameters, P_C, SHEAR, invariants};
+use super::cam_clay::{CamClay, CamClayParameters, P_C, SHEAR, compressed, invariants};
 use super::skeleton::{Skeleton, State, Tensor, values};
-use super::{Elasticity, Elastoplastic, ReturnMap, Returned, SHOWN, deviator, double_dot, in_axes, share_within};
-use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, Lame, MaterialFailure};
+use super::{
+    Elasticity, Elastoplastic, ReturnDescription, ReturnMap, Returned, deviator, double_dot, in_axes, share_within,
+    within,
+};
+use crate::laws::bulk::{CauchyStress, InadmissibleStress, MaterialFailure, Slot};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::{at_least, number};
 
@@ -175,14 +178,12 @@ pub struct SysCamClay {
 /// History of the law itself: that of [`CamClay`], and the skeleton.
 const OWN: [&str; 8] = ["p_c", "shear_modulus", "R", "R_star", "beta_xx", "beta_yy", "beta_zz", "beta_xy"];
 
-/// Places of R, R* and β in the history.
-const RATIO: usize = 4;
-const STRUCTURE: usize = 5;
-const ROTATION: usize = 6;
+const RATIO: Slot<1> = Slot::after(SHEAR);
+const STRUCTURE: Slot<1> = Slot::after(RATIO);
+const ROTATION: Slot<4> = Slot::after(STRUCTURE);
 
 /// Names of the quantities that the law shows.
-const SHOWN_TOO: [&str; 9] =
-    [SHOWN[0], SHOWN[1], SHOWN[2], "effective_pressure", "deviator_stress", "p_c", "R", "R_star", "zeta"];
+const SHOWN: [&str; 6] = ["effective_pressure", "deviator_stress", "p_c", "R", "R_star", "zeta"];
 
 /// Numbers of parts of an increment that are tried.
 const PARTS: [u32; 5] = [1, 4, 16, 64, 256];
@@ -194,11 +195,6 @@ const NAME: &str = "sys_cam_clay";
 fn split(stress: &Vector4<f64>) -> (f64, Tensor<f64>) {
     let (deviator, trace) = deviator(stress);
     (-trace / 3.0, deviator.into())
-}
-
-/// β of a history.
-fn rotation(history: &[f64]) -> Tensor<f64> {
-    std::array::from_fn(|k| history[ROTATION + k])
 }
 
 impl SysCamClay {
@@ -240,62 +236,56 @@ impl SysCamClay {
         let size = (1.5 * double_dot(&tensor, &tensor)).sqrt();
         if self.zeta > 0.0 && size > 0.0 { deviator.map(|part| self.zeta / size * part) } else { [0.0; 4] }
     }
-
-    /// P of a stress.
-    fn size(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
-        let (pressure, deviator) = split(stress);
-        self.skeleton.size((pressure, &deviator), &rotation(history))
-    }
 }
 
 impl ReturnMap for SysCamClay {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn elastic(&self) -> Lame {
-        self.clay.elastic()
+    fn description(&self) -> ReturnDescription<'_> {
+        ReturnDescription {
+            history: &OWN,
+            tensors: 1,
+            shown: &SHOWN,
+            flow: self.clay.start.flow(self.structure),
+            // Flow is associated, but the skeleton at the end of the increment makes D unsymmetric.
+            is_associated: false,
+            localizes: match self.structure < 1.0 && self.skeleton.decay > 0.0 {
+                true => Some("softens as it loses its structure"),
+                false => self.clay.localizes(),
+            },
+            ..ReturnDescription::new(NAME)
+        }
     }
 
     fn elasticity(&self, history: &[f64]) -> Elasticity {
         self.clay.elasticity(history)
     }
 
-    fn at_pressure(&self, pressure: f64) -> Option<Self> {
-        Some(Self { clay: self.clay.at_pressure(pressure)?, ..*self })
-    }
-
-    fn history(&self) -> &[&'static str] {
-        &OWN
-    }
-
-    fn tensors(&self) -> usize {
-        1
-    }
-
-    fn begin(&self, stress: &Vector4<f64>, history: &mut [f64]) {
-        let (pressure, deviator) = split(stress);
+    fn begin(&self, stress: &CauchyStress, history: &mut [f64]) -> Result<(), InadmissibleStress> {
+        let tensor = Vector4::from(stress.components());
+        let (pressure, deviator) = split(&tensor);
         let rotation = self.initial_rotation(&deviator);
         let size = if pressure > 0.0 { self.skeleton.size((pressure, &deviator), &rotation) } else { 0.0 };
-        history[SHEAR] = self.clay.initial_shear(pressure);
-        history[P_C] = self.clay.initial_p_c(size, self.structure);
-        history[RATIO] = (self.structure * size / history[P_C]).min(1.0);
-        history[STRUCTURE] = self.structure;
-        history[ROTATION..].copy_from_slice(&rotation);
-    }
-
-    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
-        self.clay.admits(stress)?;
-        let tensor = Vector4::from(stress.components());
-        let round = invariants(&tensor)[1] <= 1e-9 * tensor.amax();
-        match self.zeta > 0.0 && round {
-            true => Err(InadmissibleStress(
+        let p_c = self.clay.initial_p_c(size, self.structure);
+        SHEAR.set(history, self.clay.initial_shear(pressure));
+        P_C.set(history, p_c);
+        RATIO.set(history, (self.structure * size / p_c).min(1.0));
+        STRUCTURE.set(history, self.structure);
+        *ROTATION.of_mut(history) = rotation;
+        compressed(stress)?;
+        let [p, q] = invariants(&tensor);
+        if self.zeta > 0.0 && q <= 1e-9 * tensor.amax() {
+            return Err(InadmissibleStress(
                 "is the same in all directions, and `zeta` rotates the yield surface of sys_cam_clay towards its deviator: give a K0, or \
                  leave `zeta` out"
                     .into(),
-            )),
-            false => Ok(()),
+            ));
         }
+        within(self, stress, history, || {
+            let [p, q, needed] = [number(p), number(q), at_least(self.structure * size)];
+            format!(
+                "p = {p} and q = {q} need a p_c of {needed} at least; raise p_c or structure, give OCR in place of p_c, or choose K0 \
+                 nearer to 1"
+            )
+        })
     }
 
     fn returned(
@@ -304,13 +294,13 @@ impl ReturnMap for SysCamClay {
         before: &Vector4<f64>,
         history: &mut [f64],
     ) -> Result<Returned, MaterialFailure> {
-        let (elasticity, elastic) = (self.elasticity(history), self.clay.logarithmic(history[SHEAR]));
+        let (elasticity, elastic) = (self.elasticity(history), self.clay.logarithmic(SHEAR.value(history)));
         let old = State {
             strain: elasticity.strain(before).into(),
-            rotation: rotation(history),
-            ratio: history[RATIO],
-            structure: history[STRUCTURE],
-            p_c: history[P_C],
+            rotation: *ROTATION.of(history),
+            ratio: RATIO.value(history),
+            structure: STRUCTURE.value(history),
+            p_c: P_C.value(history),
         };
         let strain = in_axes(trial);
         let mut rest = f64::NAN;
@@ -323,10 +313,10 @@ impl ReturnMap for SysCamClay {
         };
         let (pressure, deviator) = elastic.stress(&state.strain);
         let stress: Tensor<_> = std::array::from_fn(|k| if k < 3 { deviator[k] - pressure } else { deviator[k] });
-        history[P_C] = state.p_c.value;
-        history[RATIO] = state.ratio.value.min(1.0);
-        history[STRUCTURE] = state.structure.value;
-        history[ROTATION..].copy_from_slice(&values(&state.rotation));
+        P_C.set(history, state.p_c.value);
+        RATIO.set(history, state.ratio.value.min(1.0));
+        STRUCTURE.set(history, state.structure.value);
+        *ROTATION.of_mut(history) = values(&state.rotation);
         Ok(Returned {
             stress: values(&stress).into(),
             tangent: Matrix4::from_fn(|row, column| stress[row].by[column]),
@@ -337,9 +327,9 @@ impl ReturnMap for SysCamClay {
     /// √(q*²/M² + (p − P/2)²) − P/2 with P = p_c/R* of the superloading surface.
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
         let (pressure, deviator) = split(stress);
-        let beta = rotation(history);
+        let beta = ROTATION.of(history);
         let apart = Vector4::from_fn(|k, _| deviator[k] - pressure * beta[k]);
-        let half = 0.5 * history[P_C] / history[STRUCTURE];
+        let half = 0.5 * P_C.value(history) / STRUCTURE.value(history);
         ((1.5 * double_dot(&apart, &apart)).sqrt() / self.skeleton.critical).hypot(pressure - half) - half
     }
 
@@ -349,48 +339,16 @@ impl ReturnMap for SysCamClay {
         match self.skeleton.loosening {
             Some(_) => {
                 let [from, to] = &ways;
-                self.skeleton.least([(from.0, &from.1), (to.0, &to.1)], &rotation(history))
+                self.skeleton.least([(from.0, &from.1), (to.0, &to.1)], ROTATION.of(history))
             }
             None => share_within(|share| self.yield_indicator(&(before + share * (trial - before)), history)),
         }
     }
 
-    fn flow(&self) -> Flow {
-        self.clay.start.flow(self.structure)
-    }
-
-    /// Flow is associated, but the skeleton at the end of the increment makes D unsymmetric.
-    fn is_associated(&self) -> bool {
-        false
-    }
-
-    fn localizes(&self) -> Option<&'static str> {
-        match self.structure < 1.0 && self.skeleton.decay > 0.0 {
-            true => Some("softens as it loses its structure"),
-            false => self.clay.localizes(),
-        }
-    }
-
-    fn beyond(&self, stress: &CauchyStress) -> String {
-        let tensor = Vector4::from(stress.components());
-        let mut history = [0.0; 2 + OWN.len()];
-        self.begin(&tensor, &mut history);
-        let ([p, q], needed) = (invariants(&tensor), self.structure * self.size(&tensor, &history));
-        let [p, q, needed] = [number(p), number(q), at_least(needed)];
-        format!(
-            "p = {p} and q = {q} need a p_c of {needed} at least; raise p_c or structure, give OCR in place of p_c, or choose K0 nearer \
-             to 1"
-        )
-    }
-
-    fn shown(&self) -> &'static [&'static str] {
-        &SHOWN_TOO
-    }
-
     fn show(&self, stress: &Vector4<f64>, history: &[f64], values: &mut [f64]) {
         let [p, q] = invariants(stress);
-        let beta = Vector4::from(rotation(history));
+        let beta = Vector4::from(*ROTATION.of(history));
         let zeta = (1.5 * double_dot(&beta, &beta)).sqrt();
-        values.copy_from_slice(&[p, q, history[P_C], history[RATIO], history[STRUCTURE], zeta]);
+        values.copy_from_slice(&[p, q, P_C.value(history), RATIO.value(history), STRUCTURE.value(history), zeta]);
     }
 }

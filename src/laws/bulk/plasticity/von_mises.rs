@@ -3,8 +3,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::elasticity::isotropic;
-use super::{Elastoplastic, ONE, ROUND_OFF, ReturnMap, Returned, THIRD, deviator, double_dot};
-use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, Lame, MaterialFailure};
+use super::{
+    EQUIVALENT, Elasticity, Elastoplastic, ONE, ROUND_OFF, ReturnDescription, ReturnMap, Returned, THIRD, VOLUME,
+    deviator, double_dot, within,
+};
+use crate::laws::bulk::{CauchyStress, ElasticConstants, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::apart;
 
@@ -114,8 +117,8 @@ const BACK: [&str; 16] = [
     "back_stress_4_xy",
 ];
 
-/// Numbers of a history before its back stresses.
-const TENSORS: usize = 2;
+/// Name of the law in a case.
+const NAME: &str = "von_mises";
 
 /// Most iterations for (5).
 const ITERATIONS: usize = 60;
@@ -179,7 +182,7 @@ impl VonMises {
     /// Δε̄ of (5).
     #[inline(always)]
     fn slip(&self, trial: &Vector4<f64>, history: &[f64]) -> Result<f64, MaterialFailure> {
-        let (before, back, stiff) = (history[0], &history[TENSORS..], 3.0 * self.elastic.shear);
+        let (before, back, stiff) = (EQUIVALENT.value(history), VOLUME.behind(history), 3.0 * self.elastic.shear);
         let largest = equivalent(trial);
         if back.is_empty() && self.saturation == 0.0 {
             // (5) is linear.
@@ -208,7 +211,7 @@ impl VonMises {
             }
             slip = next;
         }
-        Err(MaterialFailure::NotConverged { law: self.name(), residual: rest / largest })
+        Err(MaterialFailure::NotConverged { law: NAME, residual: rest / largest })
     }
 }
 
@@ -238,20 +241,29 @@ fn equivalent(a: &Vector4<f64>) -> f64 {
 }
 
 impl ReturnMap for VonMises {
-    fn name(&self) -> &'static str {
-        "von_mises"
+    #[inline(always)]
+    fn description(&self) -> ReturnDescription<'_> {
+        let tensors = self.back.len();
+        ReturnDescription {
+            // Without a panic, so that it costs nothing where the number of tensors alone is asked.
+            history: BACK.get(..4 * tensors).unwrap_or(&BACK),
+            tensors,
+            localizes: (self.saturation < 0.0).then_some("softens (Q < 0)"),
+            in_plates: true,
+            ..ReturnDescription::new(NAME)
+        }
     }
 
-    fn elastic(&self) -> Lame {
-        self.elastic
+    #[inline(always)]
+    fn elasticity(&self, _: &[f64]) -> Elasticity {
+        Elasticity::Linear(self.elastic)
     }
 
-    fn history(&self) -> &[&'static str] {
-        &BACK[..4 * self.back.len()]
-    }
-
-    fn tensors(&self) -> usize {
-        self.back.len()
+    fn begin(&self, stress: &CauchyStress, history: &mut [f64]) -> Result<(), InadmissibleStress> {
+        within(self, stress, history, || {
+            let [is, strength] = apart([stress.von_mises(), self.strength]);
+            format!("its von Mises stress is {is}, and sigma_y is {strength}; lower it, or raise sigma_y")
+        })
     }
 
     #[inline(always)]
@@ -267,9 +279,9 @@ impl ReturnMap for VonMises {
             return Ok(answer);
         }
         let (deviator, trace) = deviator(&answer.stress);
-        let before = history[0];
+        let before = EQUIVALENT.value(history);
         let slip = self.slip(&deviator, history)?;
-        let shifted = self.shifted(&deviator, &history[TENSORS..], slip);
+        let shifted = self.shifted(&deviator, VOLUME.behind(history), slip);
         let q = equivalent(&shifted.zeta);
         let over_q = 1.0 / q;
         let normal = 1.5 * over_q * shifted.zeta;
@@ -286,7 +298,7 @@ impl ReturnMap for VonMises {
         let along = 4.0 * shear * shear * Vector4::new(normal[0], normal[1], normal[2], 2.0 * normal[3]);
         answer.tangent = isotropic(self.elastic.bulk(), shear * left)
             + (slip * over_q * normal - 1.0 / stiffness * of_slip) * along.transpose();
-        for (own, back) in self.back.iter().zip(history[TENSORS..].chunks_exact_mut(4)) {
+        for (own, back) in self.back.iter().zip(VOLUME.behind_mut(history).chunks_exact_mut(4)) {
             let old = Vector4::from_column_slice(back);
             let new = (old + 2.0 / 3.0 * own.modulus * slip * normal) / (1.0 + own.gamma * slip);
             back.copy_from_slice(new.as_slice());
@@ -297,8 +309,8 @@ impl ReturnMap for VonMises {
     #[inline(always)]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
         let mut beyond = deviator(stress).0;
-        history[TENSORS..].chunks_exact(4).for_each(|back| beyond -= Vector4::from_column_slice(back));
-        equivalent(&beyond) - self.strength(history[0])[0]
+        VOLUME.behind(history).chunks_exact(4).for_each(|back| beyond -= Vector4::from_column_slice(back));
+        equivalent(&beyond) - self.strength(EQUIVALENT.value(history))[0]
     }
 
     #[inline(always)]
@@ -307,27 +319,6 @@ impl ReturnMap for VonMises {
             let back = Vector4::from_column_slice(back);
             0.75 / own.modulus * double_dot(&back, &back)
         };
-        self.back.iter().zip(history[TENSORS..].chunks_exact(4)).map(own).sum()
-    }
-
-    fn flow(&self) -> Flow {
-        Flow::Isochoric
-    }
-
-    fn is_associated(&self) -> bool {
-        true
-    }
-
-    fn localizes(&self) -> Option<&'static str> {
-        (self.saturation < 0.0).then_some("softens (Q < 0)")
-    }
-
-    fn in_plates(&self) -> bool {
-        true
-    }
-
-    fn beyond(&self, stress: &CauchyStress) -> String {
-        let [is, strength] = apart([stress.von_mises(), self.strength]);
-        format!("its von Mises stress is {is}, and sigma_y is {strength}; lower it, or raise sigma_y")
+        self.back.iter().zip(VOLUME.behind(history).chunks_exact(4)).map(own).sum()
     }
 }
