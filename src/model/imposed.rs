@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::boundary::{Amplitude, Moment, Profile};
 use super::element::SolidElement;
 use super::{Body, Model, Step};
-use crate::laws::bulk::{CauchyStress, TEMPERATURE};
+use crate::laws::bulk::{CauchyStress, PORE_PRESSURE, Slot, TEMPERATURE};
 
 /// Initial stress of a body. Displacements and strains are measured from the initial state; stresses are total. The run
 /// reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
@@ -153,12 +153,14 @@ impl Model {
         for (e, own) in self.memories.each_mut(&mut memory).enumerate() {
             let body = self.body_of(e);
             let stress_at = |at| body.initial_stress.as_ref().map(|stress| stress.at(at, self.mesh.section.is_plate()));
-            let count = body.material.description().variables.len().max(1);
+            let law = body.material.description();
+            let (count, pores) = (law.variables.len().max(1), law.slot(&[PORE_PRESSURE]));
             for (point, at) in own.chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
                 let [xx, yy, xy, zz] = stress_at(at).unwrap_or_default();
-                body.material.initial_state(at, &CauchyStress { xx, yy, zz, xy }, point);
-                if let Some(fluid) = &body.pore_fluid {
-                    point[0] = fluid.pressure.value(at);
+                // Whether it can begin there was asked when the model was built.
+                let _ = body.material.begin(at, &CauchyStress { xx, yy, zz, xy }, point);
+                if let (Some(fluid), Some(pores)) = (&body.pore_fluid, pores) {
+                    pores.set(point, fluid.pressure.value(at));
                 }
             }
         }
@@ -168,47 +170,47 @@ impl Model {
     /// Writes T − T₀ to the variables of an element's material at a moment of a step. A body without a prescribed temperature
     /// is unchanged.
     pub fn write_temperatures(&self, step: &Step, at: Moment, element: usize, old: &[f64], new: &mut [f64]) {
-        let (body, Some((count, rise))) = (self.body_of_element[element], self.rises(element)) else { return };
+        let (body, Some((count, heat))) = (self.body_of_element[element], self.heat(element)) else { return };
         let reference = self.bodies[body].thermal.map_or(0.0, |thermal| thermal.reference);
         let given = step.temperatures.iter().find(|temperature| temperature.body == body);
         let points = new.chunks_exact_mut(count).zip(old.chunks_exact(count));
         match given {
             Some(Temperature { amplitude, .. }) => {
                 for ((new, _), place) in points.zip(self.quadrature_positions(element)) {
-                    new[rise] = amplitude.value(place, at) - reference;
+                    heat.of_mut(new)[0] = amplitude.value(place, at) - reference;
                 }
             }
-            None => points.for_each(|(new, old)| new[rise] = old[rise]),
+            None => points.for_each(|(new, old)| heat.of_mut(new)[0] = heat.of(old)[0]),
         }
     }
 
     /// T − T₀ at the points of an element, from the internal variables of all elements; empty without thermal expansion.
     pub fn temperatures<'a>(&self, element: usize, memory: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let of =
-            |(count, rise)| self.memories.of(element, memory).chunks_exact(count).map(move |point: &[f64]| point[rise]);
-        self.rises(element).map(of).into_iter().flatten()
+        let of = |(count, heat): (usize, Slot<2>)| {
+            self.memories.of(element, memory).chunks_exact(count).map(move |point: &[f64]| heat.of(point)[0])
+        };
+        self.heat(element).map(of).into_iter().flatten()
     }
 
     /// Work of a temperature change on an element, as it came, in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: the change of
     /// the stored energy at constant displacement [F·L].
     pub fn heating(&self, solid: &SolidElement, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
-        let (Some((count, rise)), Some(thermal)) = (self.rises(element), self.body_of(element).thermal) else {
+        let (Some((count, heat)), Some(thermal)) = (self.heat(element), self.body_of(element).thermal) else {
             return 0.0;
         };
         let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
-            -0.5 * (old[rise + 1] + new[rise + 1]) * thermal.expansion * (new[rise] - old[rise]) * volume
+            let ([before, resisted], [after, resists]) = (heat.of(old), heat.of(new));
+            -0.5 * (resisted + resists) * thermal.expansion * (after - before) * volume
         };
         let points = old.chunks_exact(count).zip(new.chunks_exact(count));
         solid.point_volumes().iter().zip(points).map(of).sum()
     }
 
-    /// Number of variables of an element's material at a point, and the index of T − T₀; `None` without thermal expansion.
-    fn rises(&self, element: usize) -> Option<(usize, usize)> {
+    /// Number of variables of an element's material at a point, and those of its temperature; `None` without thermal expansion.
+    fn heat(&self, element: usize) -> Option<(usize, Slot<2>)> {
         let body = self.body_of(element);
-        body.thermal.map(|_| {
-            let count = body.material.description().variables.len();
-            (count, count - TEMPERATURE.len())
-        })
+        let law = body.material.description();
+        body.thermal.and_then(|_| law.slot(&TEMPERATURE)).map(|slot| (law.variables.len(), slot))
     }
 
     /// Reference positions of an element's quadrature points.

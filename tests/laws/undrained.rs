@@ -3,7 +3,8 @@
 use crate::common::close;
 use crate::random::Random;
 use fecontact::laws::bulk::{
-    CauchyStress, Material, MaterialFailure, MaterialParameters, Straining, Stretched, Undrained,
+    BodyLaw, BulkLaw, BulkResponse, CauchyStress, Material, MaterialFailure, MaterialParameters, PORE_PRESSURE,
+    PoreFluid, Straining, Surroundings,
 };
 use nalgebra::{Matrix2, Matrix5, Vector2, Vector5};
 use serde_json::{Value, json};
@@ -17,7 +18,12 @@ fn build(given: Value) -> Box<dyn Material> {
     serde_json::from_value::<MaterialParameters>(given).expect("well formed").build().expect("allowed")
 }
 
-fn laws() -> Vec<(&'static str, Undrained)> {
+/// A law with a fluid in its pores.
+fn undrained(law: Box<dyn Material>, modulus: f64, cavitation: Option<f64>) -> Option<BodyLaw> {
+    BodyLaw::new(law, Surroundings::default().fluid(PoreFluid { modulus, cavitation }))
+}
+
+fn laws() -> Vec<(&'static str, BodyLaw)> {
     let clay =
         json!({"model": "cam_clay", "lambda": 0.1, "kappa": 0.03, "M": 1.1, "G": 20.0, "p_c": 0.4, "p_min": 0.01});
     let skeleton = json!({"model": "sys_cam_clay", "lambda": 0.1, "kappa": 0.03, "M": 1.1, "G": 20.0, "OCR": 1.4, "p_min": 0.01,
@@ -31,18 +37,18 @@ fn laws() -> Vec<(&'static str, Undrained)> {
         ("skeleton", skeleton, None),
     ]
     .into_iter()
-    .map(|(name, given, least)| (name, Undrained::new(build(given), MODULUS, least).expect("every section")))
+    .map(|(name, given, least)| (name, undrained(build(given), MODULUS, least).expect("every section")))
     .collect()
 }
 
-fn start(law: &Undrained) -> Vec<f64> {
+fn start(law: &BodyLaw) -> Vec<f64> {
     let mut variables = vec![0.0; law.description().variables.len()];
     let stress = match law.description().holds_initial_stress {
         true => CauchyStress { xx: -0.3, yy: -0.3, zz: -0.3, xy: 0.0 },
         false => CauchyStress::default(),
     };
-    law.initial_state(Vector2::zeros(), &stress, &mut variables);
-    variables[0] = P_W0;
+    law.begin(Vector2::zeros(), &stress, &mut variables).expect("a stress that it can have");
+    law.description().slot(&[PORE_PRESSURE]).expect("it has one").set(&mut variables, P_W0);
     variables
 }
 
@@ -50,13 +56,13 @@ fn plane(f: &Vector5<f64>) -> Matrix2<f64> {
     Matrix2::from_column_slice(&f.as_slice()[..4])
 }
 
-fn at(law: &Undrained, f: &Vector5<f64>, old: &[f64]) -> Result<(Stretched, Vec<f64>), MaterialFailure> {
+fn at(law: &BodyLaw, f: &Vector5<f64>, old: &[f64]) -> Result<(BulkResponse, Vec<f64>), MaterialFailure> {
     let mut new = vec![0.0; old.len()];
     let straining = with!(Straining::new(plane(f), old), stretch: f[4], dt: 0.1);
-    law.spatial().expect("every section").stretched(&straining, &mut new).map(|answer| (answer, new))
+    law.respond(&straining, &mut new).map(|answer| (answer, new))
 }
 
-fn pore_pressure(law: &Undrained, f: &Vector5<f64>, old: &[f64]) -> f64 {
+fn pore_pressure(law: &BodyLaw, f: &Vector5<f64>, old: &[f64]) -> f64 {
     let mut values = vec![f64::NAN; law.description().shown.len()];
     assert_eq!(law.description().shown.last(), Some(&"pore_pressure"));
     law.show(&with!(Straining::new(plane(f), old), stretch: f[4]), &mut values).expect("an answer");
@@ -130,13 +136,13 @@ fn energy_is_balanced() {
 fn moduli_and_damping() {
     let own = build(json!({"model": "hencky", "E": 100.0, "nu": 0.3, "density": 2.0}));
     let law = build(json!({"model": "hencky", "E": 100.0, "nu": 0.3, "density": 2.0}));
-    let law = Undrained::new(law, MODULUS, None).expect("every section");
+    let law = undrained(law, MODULUS, None).expect("every section");
     close("λ + 2G", law.description().p_wave_modulus, own.description().p_wave_modulus + MODULUS, 1e-12);
     assert_eq!([law.description().shear_modulus, law.description().density], [own.description().shear_modulus, 2.0]);
-    let (one, rate) = (Matrix2::identity(), Matrix2::new(0.1, 0.2, 0.0, 0.3));
-    assert_eq!(law.viscous_stress([&one, &rate]), own.viscous_stress([&one, &rate]));
+    let motion = [&Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0), &Vector5::new(0.1, 0.0, 0.2, 0.3, 0.1)];
+    assert_eq!(law.description().viscous_stress(motion), own.description().viscous_stress(motion));
     let soft = build(json!({"model": "linear", "E": 100.0, "nu": 0.3}));
-    assert!(Undrained::new(soft, MODULUS, Some(0.0)).is_none());
+    assert!(undrained(soft, MODULUS, Some(0.0)).is_none());
 }
 
 /// Triaxial compression of clay under a constant total lateral stress, K_w/n → ∞: p follows the closed form of undrained Cam-clay at every
@@ -147,10 +153,11 @@ fn clay_under_a_constant_lateral_stress() {
     let of_cauchy = |slope: f64| slope / (1.0 + slope);
     let given = json!({"model": "cam_clay", "lambda": of_cauchy(lambda), "kappa": of_cauchy(kappa), "M": m, "G": 3000.0,
                        "p_c": p_0, "p_min": 1.0});
-    let law = Undrained::new(build(given), 2.2e6 / 0.5, None).expect("every section");
+    let law = undrained(build(given), 2.2e6 / 0.5, None).expect("every section");
     let mut old = vec![0.0; law.description().variables.len()];
-    law.initial_state(Vector2::zeros(), &CauchyStress { xx: -p_0, yy: -p_0, zz: -p_0, xy: 0.0 }, &mut old);
-    old[0] = 30.0;
+    law.begin(Vector2::zeros(), &CauchyStress { xx: -p_0, yy: -p_0, zz: -p_0, xy: 0.0 }, &mut old)
+        .expect("a stress that it can have");
+    law.description().slot(&[PORE_PRESSURE]).expect("it has one").set(&mut old, 30.0);
     let total = p_0 + 30.0;
     let mut radial = 0.0f64;
     for k in 1..=1000 {

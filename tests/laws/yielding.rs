@@ -3,7 +3,8 @@
 
 use crate::common::{Blocks, close, finished};
 use fecontact::laws::bulk::{
-    CauchyStress, ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining,
+    BulkLaw, BulkResponse, CauchyStress, ElasticConstants, InadmissibleStress, Lame, MaterialDescription,
+    MaterialFailure, MaterialResponse, Sections, Slot, Straining,
 };
 use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
@@ -27,33 +28,34 @@ struct VonMises {
 
 const LONGEST: f64 = 0.1;
 
-impl Material for VonMises {
+const VARIABLES: [&str; 5] = ["plastic_xx", "plastic_yy", "plastic_zz", "plastic_xy", "equivalent_plastic"];
+const PLASTIC: Slot<4> = Slot::FIRST;
+const HARDENED: Slot<1> = Slot::after(PLASTIC);
+
+impl BulkLaw for VonMises {
     fn description(&self) -> MaterialDescription<'_> {
-        MaterialDescription::new(0.0, self.lame.constrained_modulus(), self.lame.shear).remembering(&[
-            "plastic_xx",
-            "plastic_yy",
-            "plastic_zz",
-            "plastic_xy",
-            "equivalent_plastic",
-        ])
+        let own =
+            MaterialDescription::new(0.0, self.lame.constrained_modulus(), self.lame.shear).remembering(&VARIABLES);
+        with!(own, sections: Sections::PlaneStrain)
     }
 
     /// What has been loaded up to a stress has hardened for it.
-    fn initial_state(&self, _: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
-        variables[4] = (stress.von_mises() - self.strength).max(0.0) / self.hardening;
+    fn begin(&self, _: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) -> Result<(), InadmissibleStress> {
+        HARDENED.set(variables, (stress.von_mises() - self.strength).max(0.0) / self.hardening);
+        Ok(())
     }
 
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
         let (f, shear, old) = (straining.deformation, self.lame.shear, straining.old);
         let bulk = self.lame.lambda + 2.0 / 3.0 * shear;
         // Components xx, yy, zz, xy
         let strain = Vector4::new(f.m11 - 1.0, f.m22 - 1.0, 0.0, 0.5 * (f.m12 + f.m21));
-        let (elastic, one) = (strain - Vector4::from_column_slice(&old[..4]), Vector4::new(1.0, 1.0, 1.0, 0.0));
+        let (elastic, one) = (strain - Vector4::from(*PLASTIC.of(old)), Vector4::new(1.0, 1.0, 1.0, 0.0));
         let twice = Vector4::new(1.0, 1.0, 1.0, 2.0);
         let volume = elastic.dot(&one);
         let trial = 2.0 * shear * (elastic - volume / 3.0 * one);
         let norm = trial.component_mul(&twice).dot(&trial).sqrt();
-        let (q, before) = (1.5f64.sqrt() * norm, old[4]);
+        let (q, before) = (1.5f64.sqrt() * norm, HARDENED.value(old));
         let excess = q - self.strength - self.hardening * before;
         let slope = 3.0 * shear + self.hardening;
         let slip = excess.max(0.0) / slope;
@@ -63,8 +65,8 @@ impl Material for VonMises {
         let left = if slip > 0.0 { 1.0 - 3.0 * shear * slip / q } else { 1.0 };
         let direction = if norm > 0.0 { trial / norm } else { trial };
         let plastic = 1.5f64.sqrt() * slip * direction;
-        new[..4].copy_from_slice((Vector4::from_column_slice(&old[..4]) + plastic).as_slice());
-        new[4] = before + slip;
+        *PLASTIC.of_mut(new) = (Vector4::from(*PLASTIC.of(old)) + plastic).into();
+        HARDENED.set(new, before + slip);
         let stress = left * trial + bulk * volume * one;
         let part = if slip > 0.0 { 6.0 * shear * shear * (slip / q - 1.0 / slope) } else { 0.0 };
         // ∂σ by the strains of F's columns (11, 21, 12, 22), and back to P's
@@ -85,9 +87,10 @@ impl Material for VonMises {
         let hardened = |equivalent: f64| 0.5 * self.hardening * equivalent * equivalent;
         let first = Matrix2::new(stress[0], stress[3], stress[3], stress[1]);
         let tangent = Matrix4::from_columns(&[0, 1, 2, 3].map(varied));
-        let mut response = MaterialResponse::new(first, tangent, stored + hardened(new[4]));
-        response.stress_zz = stress[2];
-        response.dissipation = left * q * slip - (hardened(new[4]) - hardened(before));
+        let mut response = MaterialResponse::new(first, tangent, stored + hardened(before + slip));
+        response.dissipation = left * q * slip - (hardened(before + slip) - hardened(before));
+        let mut response = BulkResponse::from(response);
+        response.stress[4] = stress[2] * f.determinant();
         Ok(response)
     }
 }
@@ -103,7 +106,7 @@ fn law() -> VonMises {
 fn answer(f: Matrix2<f64>, old: &[f64]) -> (MaterialResponse, Vec<f64>) {
     let mut new = vec![0.0; old.len()];
     let response = law().respond(&with!(Straining::new(f, old), dt: 1.0), &mut new);
-    (response.expect("an answer"), new)
+    (response.expect("an answer").into(), new)
 }
 
 /// Elastic, loading further, loading across, unloading: the tangent is that of what was computed, and symmetric.
@@ -183,6 +186,6 @@ fn a_body_yields_and_what_it_refuses_is_cut() {
 fn an_initial_stress_hardens() {
     let mut variables = [0.0; 5];
     let stress = CauchyStress { xx: 0.5, yy: 0.5, zz: 0.5, xy: 0.4 };
-    law().initial_state(Vector2::zeros(), &stress, &mut variables);
+    law().begin(Vector2::zeros(), &stress, &mut variables).expect("it hardens for any");
     close("ε̄", variables[4], (3f64.sqrt() * 0.4 - STRENGTH) / HARDENING, 1e-15);
 }

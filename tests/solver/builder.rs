@@ -7,17 +7,21 @@ use crate::common::{
     self, Blocks, expression, finish_at, finished, floor, linear, model, model_at, neo_hookean, saint_venant_kirchhoff,
 };
 use fecontact::case::law_test;
-use fecontact::laws::bulk::{Material, MaterialDescription};
+use fecontact::laws::bulk::{
+    BodyLaw, BulkLaw, BulkResponse, Material, MaterialDescription, MaterialFailure, Sections, Straining, Surroundings,
+};
 use fecontact::laws::friction::{
     Coulomb, CoulombParameters, Description, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure,
     Sliding, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
 };
-use fecontact::mesh::gmsh;
+use fecontact::mesh::section::Section;
+use fecontact::mesh::{Mesh, gmsh};
 use fecontact::model::boundary::{Drive, Profile};
 use fecontact::model::builder::{
     Builder, Change, Checked, Components, Contact, DashpotLoad, Friction, IncrementSettings, Load, LoadStep,
     MasterSide, Place, SpringLoad, Support,
 };
+use fecontact::model::imposed::{InitialStress, Thermal};
 use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::{Damping, Model, NewtonSettings};
@@ -312,22 +316,17 @@ fn press() -> LoadStep {
 #[derive(Debug)]
 struct Doubled(Box<dyn Material>);
 
-impl Material for Doubled {
+impl BulkLaw for Doubled {
     fn description(&self) -> MaterialDescription<'_> {
         let own = self.0.description();
         MaterialDescription::new(0.0, 2.0 * own.p_wave_modulus, 2.0 * own.shear_modulus)
     }
 
-    fn respond(
-        &self,
-        straining: &fecontact::laws::bulk::Straining,
-        new: &mut [f64],
-    ) -> Result<fecontact::laws::bulk::MaterialResponse, fecontact::laws::bulk::MaterialFailure> {
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
         let mut response = self.0.respond(straining, new)?;
         response.stress *= 2.0;
         response.tangent *= 2.0;
         response.energy *= 2.0;
-        response.stress_zz *= 2.0;
         Ok(response)
     }
 }
@@ -345,6 +344,59 @@ fn materials_of_ones_own_serve() {
     assert!(largest > 1.0);
     let apart = common::distance(&own.last().reaction, &other.last().reaction);
     assert!(apart < 1e-12 * largest, "{apart:e} of {largest}");
+}
+
+/// A law of one section, which is there what it wraps: a law of a user.
+#[derive(Debug)]
+struct Of(Sections, Box<dyn Material>);
+
+impl BulkLaw for Of {
+    fn description(&self) -> MaterialDescription<'_> {
+        MaterialDescription { sections: self.0, ..self.1.description() }
+    }
+
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+        self.1.respond(straining, new)
+    }
+}
+
+/// A law that is asked for more than the sections it serves is refused with the place and the reason; one that finds the thickness of
+/// a plate itself is in a plate what the house makes of the law for all sections.
+#[test]
+fn laws_serve_in_their_sections_alone() {
+    let law = || neo_hookean(100.0, 0.3, 0.0);
+    let plate = Section::PlaneStress { thickness: 0.5 };
+    let block = |section: Section, law: Box<dyn Material>| {
+        let mesh = Blocks::default().rectangle("block", [2, 1], [1.0, 0.0], [3.0, 1.0]).mesh();
+        Model::builder(Mesh { section, ..mesh }).body("block", law).step(press().fix("block_bottom"))
+    };
+    let [heated, stressed] = [true, false].map(|heated| {
+        move |builder: Builder| match heated {
+            true => builder.thermal("block", Thermal::new(1e-3)),
+            false => builder.initial_stress("block", InitialStress::Geostatic { surface: 1.0, weight: 1.0, k0: 1.0 }),
+        }
+    });
+    for (section, of, [place, why]) in [
+        (Section::Axisymmetric, Sections::PlaneStrain, ["bodies.block.material", "hoop stretch"]),
+        (Section::Axisymmetric, Sections::Plate, ["bodies.block.material", "hoop stretch"]),
+        (Section::PlaneStrain, Sections::Plate, ["bodies.block.material", "is a law of plates"]),
+        (plate, Sections::PlaneStrain, ["bodies.block.material", "does not support plane stress"]),
+        (plate, Sections::AnyStretch, ["bodies.block.material", "does not support plane stress"]),
+    ] {
+        let told = block(section, Of(of, law()).into()).build().expect_err("another section").to_string();
+        assert!(told.contains(place) && told.contains(why), "{of:?}: {told}");
+    }
+    let alone = || block(Section::PlaneStrain, Of(Sections::PlaneStrain, law()).into());
+    assert!(alone().build().is_ok());
+    for (more, place) in [(heated(alone()), "bodies.block.thermal"), (stressed(alone()), "bodies.block.initial_stress")]
+    {
+        let told = more.build().expect_err("no stretch").to_string();
+        assert!(told.contains(place) && told.contains("out-of-plane stretch"), "{told}");
+    }
+    let own =
+        BodyLaw::new(law(), Surroundings { plate: true, ..Surroundings::default() }).expect("it serves in plates");
+    let [own, other] = [Of(Sections::Plate, own.into()).into(), law()].map(|law| finished(built(block(plate, law))));
+    assert_eq!(own.last().displacement, other.last().displacement);
 }
 
 /// Friction without any, which gives names to what it remembers and shows: a law of a user.

@@ -9,7 +9,7 @@ use fecontact::equations::sums::Dependence;
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::laws::bulk::{
-    Linear, Material, MaterialDescription, MaterialFailure, MaterialResponse, Straining, Viscoelastic,
+    BulkLaw, BulkResponse, Linear, Material, MaterialDescription, MaterialFailure, Straining, Viscoelastic,
     ViscoelasticConstants,
 };
 use fecontact::linear::system::Request;
@@ -22,7 +22,7 @@ use fecontact::model::element::Memory;
 use fecontact::model::imposed::InitialStress;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::{Damping, Model};
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{DMatrix, Matrix2, Vector2, Vector5};
 
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];
 
@@ -347,23 +347,24 @@ fn equal_elements_share_their_matrix() {
     }
 }
 
-/// P = P₀ + C:(F − 1), linear; its viscous stress is that of the trait, which turns with the body.
+/// P = P₀ + C:(F − 1), linear; its viscous stress is that of another stiffness.
 #[derive(Debug)]
 struct Own {
     law: Linear,
     initial: f64,
 }
 
-impl Material for Own {
+impl BulkLaw for Own {
     fn description(&self) -> MaterialDescription<'_> {
-        self.law.description()
+        let own = self.law.description();
+        MaterialDescription { viscous_modulus: Some(2.0 * own.p_wave_modulus), ..own }
     }
 
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
         let mut response = self.law.respond(straining, new)?;
         let initial = Matrix2::new(self.initial, 0.0, 0.0, -self.initial);
         response.energy += initial.dot(&(straining.deformation - Matrix2::identity()));
-        response.stress += initial;
+        response.stress += Vector5::new(initial.m11, 0.0, 0.0, initial.m22, 0.0);
         Ok(response)
     }
 }

@@ -37,6 +37,7 @@ use crate::equations::coupling::Layout;
 use crate::equations::sums::{TrialFailure, add_blocks};
 use crate::equations::trial::nodal;
 use crate::laws::bulk::Material;
+use crate::laws::bulk::components::{components, plane};
 use crate::linear::SparseMatrix;
 use crate::mesh::shape::ElementKind;
 use crate::model::element::Memory;
@@ -67,7 +68,9 @@ pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool 
     let Ok(response) = material.at_once(&deformation) else { return false };
     let elastic = response.tangent * Vector4::from_column_slice(rate.as_slice());
     let elastic = Matrix2::from_column_slice(elastic.as_slice());
-    (material.viscous_stress([&deformation, &rate]) - elastic).norm() <= 1e-12 * elastic.norm()
+    let motion = [&components(&deformation, 1.0), &components(&rate, 0.0)];
+    let viscous = plane(&material.description().viscous_stress(motion));
+    (viscous - elastic).norm() <= 1e-12 * elastic.norm()
 }
 
 /// Constant elements of a model.

@@ -1,21 +1,18 @@
-use super::isotropic::{Across, Invariants, StrainEnergy};
-use super::spatial::{ln_stretch, positive_stretch};
-use super::{
-    ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, PlaneStress, Spatial,
-    Straining, Stretched,
-};
+use super::components::{ln_stretch, positive_stretch};
+use super::isotropic::{Invariants, StrainEnergy};
+use super::{BulkLaw, BulkResponse, ElasticConstants, Lame, MaterialDescription, MaterialFailure, Straining};
 use crate::laws::parameter::InvalidParameter;
 
 /// Hencky's law: Kirchhoff stress proportional to the logarithmic strain.
 ///
 /// ```text
-/// W = G ‖ln V‖² + λ/2 (ln J)²,   ‖ln V‖² = (ln λ₁)² + (ln λ₂)²           (1)
-///   = (λ + G)/2 (ln J)² + G/2 d²,   d = ln(λ₁/λ₂)                        (2)
-/// sinh²(d/2) = x = m / (4J),   m = (λ₁ − λ₂)²                            (3)
-/// σ_zz = λ ln J / J                                                      (4)
+/// W = G ‖ln V‖² + λ/2 (ln J h)²,   ‖ln V‖² = (ln λ₁)² + (ln λ₂)² + (ln h)²                               (1)
+///   = (λ + G)/2 (ln J)² + G/2 d² + λ ln J ln h + (λ/2 + G) (ln h)²,   d = ln(λ₁/λ₂)                      (2)
+/// sinh²(d/2) = x = m / (4J),   m = (λ₁ − λ₂)²                                                            (3)
+/// h P₃₃ = λ (ln J + ln h) + 2G ln h                                                                      (4)
 /// ```
 ///
-/// with the principal stretches λ₁ ≥ λ₂. As a function of x, d² is analytic at x = 0,
+/// with the principal stretches λ₁ ≥ λ₂ in plane, J = λ₁ λ₂, and h = F₃₃ out of it. As a function of x, d² is analytic at x = 0,
 ///
 /// ```text
 /// ∂(d²)/∂x  =  4 a,       a = d / sinh d               → 1               (5)
@@ -40,68 +37,38 @@ impl Hencky {
     pub fn new(constants: &ElasticConstants) -> Result<Self, InvalidParameter> {
         Ok(Self { lame: constants.lame()?, density: constants.density })
     }
-
-    /// W and its derivatives in plane strain.
-    #[inline(always)]
-    fn energy(&self, invariants: &Invariants) -> StrainEnergy {
-        let Lame { lambda, shear } = self.lame;
-        let (jacobian, ln_j) = (invariants.jacobian, invariants.ln_jacobian());
-        let areal = lambda + shear;
-        let x = 0.25 * invariants.distortion / jacobian;
-        let ShearStrain { d, a, l } = ShearStrain::from_sinh_squared(x);
-        StrainEnergy {
-            w: 0.5 * (areal * ln_j * ln_j + shear * d * d),
-            w_m: 0.5 * shear * a / jacobian,
-            w_j: (areal * ln_j - 2.0 * shear * a * x) / jacobian,
-            w_mm: -0.25 * shear * a * a * l / jacobian.powi(2),
-            w_mj: shear * (a * a * l * x - 0.5 * a) / jacobian.powi(2),
-            w_jj: (areal * (1.0 - ln_j) + 4.0 * shear * (a * x - a * a * l * x * x)) / jacobian.powi(2),
-        }
-    }
 }
 
-impl Material for Hencky {
+impl BulkLaw for Hencky {
     fn description(&self) -> MaterialDescription<'_> {
         self.lame.description(self.density)
     }
 
-    fn plane_stress(&self) -> Option<Box<dyn Material>> {
-        Some(Box::new(PlaneStress::new(*self)))
-    }
-
-    fn spatial(&self) -> Option<&dyn Spatial> {
-        Some(self)
-    }
-
     #[inline(always)]
-    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        let invariants = Invariants::of(&straining.deformation)?;
-        let stress_zz = self.lame.lambda * invariants.ln_jacobian() / invariants.jacobian;
-        Ok(invariants.response(&self.energy(&invariants), stress_zz))
-    }
-}
-
-impl Spatial for Hencky {
-    /// ```text
-    /// W(h) = W(1) + λ ln J ln h + (λ/2 + G) (ln h)²
-    /// ```
-    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, MaterialFailure> {
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
         let h = positive_stretch(straining)?;
         let invariants = Invariants::of(&straining.deformation)?;
         let Lame { lambda, shear } = self.lame;
         let (jacobian, ln_j, ln_h) = (invariants.jacobian, invariants.ln_jacobian(), ln_stretch(h));
-        let mut energy = self.energy(&invariants);
-        energy.w += lambda * ln_j * ln_h + (0.5 * lambda + shear) * ln_h * ln_h;
-        energy.w_j += lambda * ln_h / jacobian;
-        energy.w_jj -= lambda * ln_h / jacobian.powi(2);
+        let areal = lambda + shear;
+        let x = 0.25 * invariants.distortion / jacobian;
+        let ShearStrain { d, a, l } = ShearStrain::from_sinh_squared(x);
         let kirchhoff = lambda * (ln_j + ln_h) + 2.0 * shear * ln_h;
-        let across = Across {
+        let energy = StrainEnergy {
+            w: 0.5 * (areal * ln_j * ln_j + shear * d * d)
+                + (lambda * ln_j * ln_h + (0.5 * lambda + shear) * ln_h * ln_h),
+            w_m: 0.5 * shear * a / jacobian,
+            w_j: (areal * ln_j - 2.0 * shear * a * x) / jacobian + lambda * ln_h / jacobian,
             w_h: kirchhoff / h,
+            w_mm: -0.25 * shear * a * a * l / jacobian.powi(2),
+            w_mj: shear * (a * a * l * x - 0.5 * a) / jacobian.powi(2),
+            w_jj: (areal * (1.0 - ln_j) + 4.0 * shear * (a * x - a * a * l * x * x)) / jacobian.powi(2)
+                - lambda * ln_h / jacobian.powi(2),
             w_mh: 0.0,
             w_jh: lambda / (jacobian * h),
             w_hh: (self.lame.constrained_modulus() - kirchhoff) / (h * h),
         };
-        Ok(invariants.stretched(invariants.response(&energy, 0.0), &across))
+        Ok(invariants.response(&energy))
     }
 }
 

@@ -1,11 +1,11 @@
-//! Isotropic laws in plane strain: functions of two invariants of F.
+//! Isotropic laws: functions of two invariants of F in plane, and of the stretch h = F₃₃ out of it.
 
 use nalgebra::{Matrix2, Vector4};
 
-use super::spatial::OutOfPlane;
-use super::{MaterialFailure, MaterialResponse, Stretched, cofactor, positive_jacobian};
+use super::components::{components, moduli};
+use super::{BulkResponse, MaterialFailure, cofactor, positive_jacobian};
 
-/// The two invariants of an isotropic law in plane strain, and their derivatives.
+/// The two invariants in plane, and their derivatives.
 ///
 /// ```text
 /// J = λ₁ λ₂ = det F                       ∂J/∂F = cof F                          (1)
@@ -25,19 +25,15 @@ pub(super) struct Invariants {
     deviation: Matrix2<f64>,
 }
 
-/// W(m, J) and its derivatives.
+/// W(m, J, h) and its derivatives.
 pub(super) struct StrainEnergy {
     pub w: f64,
     pub w_m: f64,
     pub w_j: f64,
+    pub w_h: f64,
     pub w_mm: f64,
     pub w_mj: f64,
     pub w_jj: f64,
-}
-
-/// Derivatives of W(m, J, h) by the stretch h out of plane, J being that in plane.
-pub(super) struct Across {
-    pub w_h: f64,
     pub w_mh: f64,
     pub w_jh: f64,
     pub w_hh: f64,
@@ -59,16 +55,17 @@ impl Invariants {
         if self.volume_strain.abs() < 0.5 { self.volume_strain.ln_1p() } else { self.jacobian.ln() }
     }
 
-    /// Stress and tangent of the law with energy W(m, J), by the chain rule.
+    /// Stress and tangent of the law with energy W(m, J, h), by the chain rule.
     ///
     /// ```text
-    /// P = 2 W_m D + W_J cof F                                                            (3)
+    /// P = 2 W_m D + W_J cof F,   P₃₃ = W_h                                               (3)
     /// A = 2 W_m ∂D/∂F + W_J ∂cof F/∂F                                                    (4)
     ///     + 4 W_mm D ⊗ D + 2 W_mJ (D ⊗ cof F + cof F ⊗ D) + W_JJ cof F ⊗ cof F
+    /// ∂P/∂h = 2 W_mh D + W_Jh cof F,   ∂P₃₃/∂h = W_hh                                    (5)
     /// ```
     #[inline(always)]
-    pub(super) fn response(&self, energy: &StrainEnergy, stress_zz: f64) -> MaterialResponse {
-        let StrainEnergy { w, w_m, w_j, w_mm, w_mj, w_jj } = *energy;
+    pub(super) fn response(&self, energy: &StrainEnergy) -> BulkResponse {
+        let StrainEnergy { w, w_m, w_j, w_h, w_mm, w_mj, w_jj, w_mh, w_jh, w_hh } = *energy;
         let stress = 2.0 * w_m * self.deviation + w_j * self.cofactor;
 
         let d = Vector4::from_column_slice(self.deviation.as_slice());
@@ -82,18 +79,7 @@ impl Invariants {
             tangent[(i, i)] += 2.0 * w_m;
             tangent[(i, 3 - i)] += sign * of_cofactor;
         }
-        MaterialResponse { stress, tangent, energy: w, stress_zz, dissipation: 0.0 }
-    }
-
-    /// The in-plane response at the stretch h, and its out-of-plane part.
-    ///
-    /// ```text
-    /// P₃₃ = W_h,   ∂P/∂h = 2 W_mh D + W_Jh cof F,   ∂P₃₃/∂h = W_hh                       (5)
-    /// ```
-    pub(super) fn stretched(&self, plane: MaterialResponse, across: &Across) -> Stretched {
-        let Across { w_h, w_mh, w_jh, w_hh } = *across;
-        let coupling = 2.0 * w_mh * self.deviation + w_jh * self.cofactor;
-        let coupling = Vector4::from_column_slice(coupling.as_slice());
-        Stretched::new(plane.stress, plane.tangent, OutOfPlane { stress: w_h, coupling, stiffness: w_hh }, plane.energy)
+        let coupling = 2.0 * w_mh * d + w_jh * c;
+        BulkResponse::new(components(&stress, w_h), moduli(&tangent, &coupling, &coupling, w_hh), w)
     }
 }

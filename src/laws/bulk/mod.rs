@@ -10,44 +10,37 @@
 //! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
 //! beside a Maxwell arm that relaxes. Laws that yield stand in [`plasticity`].
 //!
-//! Laws are written in plane strain, F₃₃ = 1. One that also covers an out-of-plane stretch is [`Spatial`], and can be
-//! that of a ring; [`PlaneStress`] is such a law in a plate, [`Imposed`] one in a body with an initial stress or a
-//! temperature, and [`Undrained`] one whose pores hold a fluid.
+//! A law is a [`BulkLaw`], in a file of its own with its equations on top: F and P have five components each, those in plane and that out
+//! of it. So it serves in plane strain, F₃₃ = 1, and in rings; [`BodyLaw`] puts it into a plate, under an initial stress, heats it, and
+//! fills its pores with a fluid. [`Material`] is what elements ask of a law, and [`MaterialDescription`] has what damping makes of it.
 //!
-//! A law may remember some numbers of its own at every quadrature point. They are handled like the state of friction: the
-//! answer to an increment is a pure function of what was committed, and what it leaves is a second value.
-//!
-//! Damping of the Kelvin–Voigt kind adds a stress proportional to the rate of strain, τ being a time:
-//!
-//! ```text
-//! P_v = τ F (C:Ė),   Ė = sym(Fᵀ Ḟ),   C:Ė = λ tr(Ė) 1 + 2 G Ė                                  (1)
-//! ```
-//!
-//! It turns with the body and does not resist a rotation. In small strains it is τ times the elastic stress of the rate
-//! of strain: the stiffness-proportional part of Rayleigh's damping.
+//! A law may remember some numbers of its own at every quadrature point, by names ([`Slot`]). They are handled like the state of friction:
+//! the answer to an increment is a pure function of what was committed, and what it leaves is a second value.
 
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use nalgebra::{Matrix2, Matrix4, Vector2};
+use nalgebra::{Matrix2, Matrix5, Vector2, Vector5};
 use thiserror::Error;
 
+mod body;
+pub(crate) mod components;
+mod damping;
 mod hencky;
-mod imposed;
 mod isotropic;
 mod linear;
+mod material;
 mod neo_hookean;
 mod parameters;
 pub mod plasticity;
 mod saint_venant_kirchhoff;
 mod slots;
-pub(crate) mod spatial;
-mod undrained;
 mod viscoelastic;
 
+pub use body::{BodyLaw, INITIAL_STRESS, PORE_PRESSURE, PoreFluid, Surroundings, TEMPERATURE};
 pub use hencky::Hencky;
-pub use imposed::{INITIAL_STRESS, Imposed, TEMPERATURE};
 pub use linear::Linear;
+pub use material::{Material, MaterialResponse};
 pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
 pub use plasticity::{
@@ -57,31 +50,50 @@ pub use plasticity::{
 };
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use slots::Slot;
-pub use spatial::{PlaneStress, Spatial, Stretched};
-pub use undrained::{PORE_PRESSURE, Undrained};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
-/// Response of a law at the end of an increment; it writes its new variables itself.
+/// Response of a law at the end of an increment; it writes its new variables itself. Components are 11, 21, 12, 22, 33.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
-pub struct MaterialResponse {
-    /// P: first Piola–Kirchhoff stress, in plane part [F/L²]
-    pub stress: Matrix2<f64>,
-    /// ∂P_iJ/∂F_kL at row i + 2J, column k + 2L (column-major order of the 2×2 matrices) [F/L²]
-    pub tangent: Matrix4<f64>,
+pub struct BulkResponse {
+    /// P: first Piola–Kirchhoff stress [F/L²]
+    pub stress: Vector5<f64>,
+    /// ∂P/∂F [F/L²]
+    pub tangent: Matrix5<f64>,
     /// W: stored energy per reference volume [F/L²]
     pub energy: f64,
-    /// σ_zz: out-of-plane Cauchy stress [F/L²]
-    pub stress_zz: f64,
     /// Energy dissipated in the increment per reference volume [F/L²]
     pub dissipation: f64,
+    /// F₃₃ of a law that finds it itself, as that of a [plate](Sections::Plate) does
+    pub free_stretch: Option<f64>,
 }
 
-impl MaterialResponse {
-    /// P, ∂P/∂F and W of a law that has neither out-of-plane stress nor dissipation, unless these fields are set.
-    pub fn new(stress: Matrix2<f64>, tangent: Matrix4<f64>, energy: f64) -> Self {
-        Self { stress, tangent, energy, stress_zz: 0.0, dissipation: 0.0 }
+impl BulkResponse {
+    /// P, ∂P/∂F and W of a law without dissipation, unless this field is set.
+    #[inline(always)]
+    pub fn new(stress: Vector5<f64>, tangent: Matrix5<f64>, energy: f64) -> Self {
+        Self { stress, tangent, energy, dissipation: 0.0, free_stretch: None }
+    }
+}
+
+/// Sections of bodies that a law serves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Sections {
+    /// Plane strain alone: the law answers to F₃₃ = 1
+    PlaneStrain,
+    /// Plates alone: the law finds F₃₃ itself, whatever it is asked at
+    Plate,
+    /// All but plates; it can be that of a ring, or of a body with an initial stress, a temperature or a fluid in its pores
+    AnyStretch,
+    /// All of them
+    All,
+}
+
+impl Sections {
+    /// Whether the law answers to any F₃₃.
+    pub const fn any_stretch(self) -> bool {
+        matches!(self, Self::AnyStretch | Self::All)
     }
 }
 
@@ -95,6 +107,8 @@ pub struct MaterialDescription<'a> {
     pub p_wave_modulus: f64,
     /// G: shear modulus of the undeformed material [F/L²]
     pub shear_modulus: f64,
+    /// λ + 2G of [damping](Self::viscous_stress) by stiffness, where it is another than the P-wave modulus [F/L²]
+    pub viscous_modulus: Option<f64>,
     /// Whether ∂P/∂F is the same at every F
     pub is_linear: bool,
     /// Whether ∂P/∂F is symmetric, as it is where P has a potential: half of the tangent is the mirror image of the other
@@ -107,20 +121,23 @@ pub struct MaterialDescription<'a> {
     pub flow: Option<Flow>,
     /// Why results depend on the mesh, of a law of which they do
     pub concern: Option<&'a str>,
-    /// Whether an initial stress is the law's own, which [`Material::initial_state`] makes it remember; it stands beside the law
-    /// ([`Imposed`]) otherwise
+    /// Whether an initial stress is the law's own, which [`BulkLaw::begin`] makes it remember; it stands beside the law ([`BodyLaw`])
+    /// otherwise
     pub holds_initial_stress: bool,
     /// Names of what the law shows besides stress, at a point in any state
     pub shown: &'a [&'static str],
+    /// Sections that it serves
+    pub sections: Sections,
 }
 
 impl<'a> MaterialDescription<'a> {
-    /// An elastic law of the density ρ₀, λ + 2G and G.
+    /// An elastic law of the density ρ₀, λ + 2G and G, for all sections.
     pub const fn new(density: f64, p_wave_modulus: f64, shear_modulus: f64) -> Self {
         Self {
             density,
             p_wave_modulus,
             shear_modulus,
+            viscous_modulus: None,
             is_linear: false,
             is_symmetric: true,
             variables: &[],
@@ -129,6 +146,7 @@ impl<'a> MaterialDescription<'a> {
             concern: None,
             holds_initial_stress: false,
             shown: &[],
+            sections: Sections::All,
         }
     }
 
@@ -208,8 +226,8 @@ pub fn log_strain(deformation: &Matrix2<f64>, stretch: f64) -> [f64; 4] {
         share if share < 0.5 => 0.5 / middle * share.atanh() / share,
         _ => 0.5 * ((middle + radius) / area).ln() / radius,
     };
-    let mean = 0.5 * spatial::ln_stretch(area);
-    [mean + shear * apart, mean - shear * apart, spatial::ln_stretch(stretch), shear * b.m12]
+    let mean = 0.5 * components::ln_stretch(area);
+    [mean + shear * apart, mean - shear * apart, components::ln_stretch(stretch), shear * b.m12]
 }
 
 impl CauchyStress {
@@ -294,159 +312,98 @@ pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
 /// ```text
 /// (P, ∂P/∂F, variables, W, dissipation)₁ = law(variables₀; F₁, Δt)
 /// ```
-/// It is asked in plane strain. What it remembers it names in its [description](Self::description); an elastic law has no variables, and
-/// answers to F alone. An increment of no length leaves no time to relax.
-pub trait Material: Debug + Send + Sync {
+/// What it remembers it names in its [description](Self::description); an elastic law has no variables, and answers to F alone. An
+/// increment of no length leaves no time to relax.
+///
+/// The following example is a law with two constants. It is the material of a body as it is,
+/// `Builder::body("block", Blatz { shear: 2.0, density: 0.0 })`:
+///
+/// ```
+/// use fecontact::laws::bulk::{BulkLaw, BulkResponse, Material, MaterialDescription, MaterialFailure, Straining};
+/// use nalgebra::{Matrix2, Matrix5, Vector5};
+///
+/// /// Foamed rubber (Blatz & Ko), ν = ¼: W = G/2 (F:F + 2/J − 5), P = G (F − F⁻ᵀ/J) with J of all three stretches.
+/// #[derive(Debug)]
+/// struct Blatz {
+///     /// G [F/L²]
+///     shear: f64,
+///     /// ρ₀ [M/L³]
+///     density: f64,
+/// }
+///
+/// impl BulkLaw for Blatz {
+///     fn description(&self) -> MaterialDescription<'_> {
+///         MaterialDescription::new(self.density, 3.0 * self.shear, self.shear) // λ = G
+///     }
+///
+///     fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+///         let (f, h) = (straining.deformation, straining.stretch);
+///         let jacobian = f.determinant() * h;
+///         if !(jacobian > 0.0 && h > 0.0) {
+///             return Err(MaterialFailure::Inverted { jacobian });
+///         }
+///         let by = 1.0 / f.determinant();
+///         let all = Vector5::new(f.m11, f.m21, f.m12, f.m22, h);
+///         let inverse = Vector5::new(f.m22 * by, -f.m12 * by, -f.m21 * by, f.m11 * by, 1.0 / h); // F⁻ᵀ
+///         // ∂F⁻ᵀ_iJ/∂F_kL = −F⁻ᵀ_iL F⁻ᵀ_kJ
+///         let at = [(0, 0), (1, 0), (0, 1), (1, 1), (2, 2)];
+///         let of = |i: usize, j: usize| at.iter().position(|here| *here == (i, j)).map_or(0.0, |k| inverse[k]);
+///         let varied = Matrix5::from_fn(|row, column| of(at[row].0, at[column].1) * of(at[column].0, at[row].1));
+///         let tangent = Matrix5::identity() + (inverse * inverse.transpose() + varied) / jacobian;
+///         let energy = 0.5 * (all.norm_squared() + 2.0 / jacobian - 5.0);
+///         Ok(BulkResponse::new(self.shear * (all - inverse / jacobian), self.shear * tangent, self.shear * energy))
+///     }
+/// }
+///
+/// let law: Box<dyn Material> = Blatz { shear: 2.0, density: 0.0 }.into();
+/// let free = law.at_once(&Matrix2::identity())?;
+/// assert_eq!((free.stress, free.tangent[(0, 0)]), (Matrix2::zeros(), 6.0));
+/// # Ok::<(), MaterialFailure>(())
+/// ```
+pub trait BulkLaw: Debug + Send + Sync {
     /// Describes the law before anything is strained.
     fn description(&self) -> MaterialDescription<'_>;
 
     /// The answer to an increment, whose variables at the end are written over `new`.
     ///
     /// # Errors
-    /// [`MaterialFailure`] when det F is not positive, or the law's equations are not solved.
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure>;
-
-    /// The answers to an increment at several points, whose variables stand one behind the other. Compiled for each law, so that an
-    /// element calls it once.
-    ///
-    /// # Errors
-    /// As [`Material::respond`].
-    fn responses(
-        &self,
-        strainings: &[Straining],
-        new: &mut [f64],
-        responses: &mut [MaterialResponse],
-    ) -> Result<(), MaterialFailure> {
-        let count = new.len() / strainings.len();
-        for (k, (straining, response)) in strainings.iter().zip(responses).enumerate() {
-            *response = self.respond(straining, &mut new[k * count..(k + 1) * count])?;
-        }
-        Ok(())
-    }
-
-    /// The answer at once, of a body that has not been strained before. Compiled for each law, so that memory that a law does not
-    /// have costs nothing.
-    ///
-    /// # Errors
-    /// As [`Material::respond`].
-    fn at_once(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, MaterialFailure> {
-        let old = vec![0.0; self.description().variables.len()];
-        let straining = Straining::new(*deformation, &old);
-        self.respond(&straining, &mut old.clone())
-    }
-
-    /// The law in a plate, which has no out-of-plane stress; none unless it is known.
-    fn plane_stress(&self) -> Option<Box<dyn Material>> {
-        None
-    }
-
-    /// F₃₃ at F in plane, with the variables that the law remembers there: 1 in plane strain, the stretch of the thickness in a plate.
-    ///
-    /// # Errors
-    /// As [`Material::respond`].
-    fn stretch_across(&self, _deformation: &Matrix2<f64>, _old: &[f64]) -> Result<f64, MaterialFailure> {
-        Ok(1.0)
-    }
-
-    /// The law with an out-of-plane stretch, as rings have it; none unless it is known.
-    fn spatial(&self) -> Option<&dyn Spatial> {
-        None
-    }
+    /// [`MaterialFailure`] when det F or F₃₃ is not positive, or the law's equations are not solved.
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure>;
 
     /// Write what the law remembers before the first increment over `variables`, which are zero: at a reference position, in a body
-    /// with an initial stress.
-    fn initial_state(&self, _position: Vector2<f64>, _stress: &CauchyStress, _variables: &mut [f64]) {}
-
-    /// The law with the moduli that it has under a mean pressure p at the start, p being positive in compression; none where they do not
-    /// depend on it [F/L²]
-    fn at_pressure(&self, _pressure: f64) -> Option<Arc<dyn Material>> {
-        None
-    }
-
-    /// Whether a body of this law can have an initial stress.
+    /// with an initial stress. It is written whether or not the body can begin there.
     ///
     /// # Errors
-    /// Why it cannot, and what to do.
-    fn admits(&self, _stress: &CauchyStress) -> Result<(), InadmissibleStress> {
+    /// Why a body of this law cannot have this initial stress, and what to do.
+    fn begin(
+        &self,
+        _position: Vector2<f64>,
+        _stress: &CauchyStress,
+        _variables: &mut [f64],
+    ) -> Result<(), InadmissibleStress> {
         Ok(())
     }
 
     /// Write what it [shows](MaterialDescription::shown) where it remembers `straining.old`.
     ///
     /// # Errors
-    /// As [`Material::respond`].
+    /// As [`BulkLaw::respond`].
     fn show(&self, _straining: &Straining, _values: &mut [f64]) -> Result<(), MaterialFailure> {
         Ok(())
     }
 
-    /// P and W alone. Compiled for each law, so that the tangent that is not asked for costs nothing.
+    /// ln F₃₃ from which a plate's is searched, F₃₃ in `straining` being of no account: J^(−λ/(λ + 2G)), the solution of Hencky's law.
     ///
     /// # Errors
-    /// As [`Material::respond`].
-    fn stress(&self, deformation: &Matrix2<f64>) -> Result<(Matrix2<f64>, f64), MaterialFailure> {
-        self.at_once(deformation).map(|response| (response.stress, response.energy))
-    }
-
-    /// P times the volume at several points, written over `stresses`; returns ∫ W dV. Compiled for each law, so that an
-    /// element calls it once.
-    ///
-    /// # Errors
-    /// As [`Material::respond`].
-    fn stresses(
-        &self,
-        deformations: &[Matrix2<f64>],
-        volumes: &[f64],
-        stresses: &mut [Matrix2<f64>],
-    ) -> Result<f64, MaterialFailure> {
-        let mut energy = 0.0;
-        for ((deformation, &volume), stress) in deformations.iter().zip(volumes).zip(stresses) {
-            let (p, stored) = self.stress(deformation)?;
-            *stress = volume * p;
-            energy += volume * stored;
-        }
-        Ok(energy)
-    }
-
-    /// P_v/τ of (1) at F and Ḟ [F/(L² T)]
-    fn viscous_stress(&self, [deformation, rate]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
-        deformation * self.hooke(&(deformation.transpose() * rate))
-    }
-
-    /// Variation of P_v/τ with δF and δḞ.
-    fn viscous_variation(
-        &self,
-        [deformation, rate]: [&Matrix2<f64>; 2],
-        [varied, varied_rate]: [&Matrix2<f64>; 2],
-    ) -> Matrix2<f64> {
-        let strain = varied.transpose() * rate + deformation.transpose() * varied_rate;
-        varied * self.hooke(&(deformation.transpose() * rate)) + deformation * self.hooke(&strain)
-    }
-
-    /// C:sym(e) = λ tr(e) 1 + G (e + eᵀ)
-    fn hooke(&self, strain: &Matrix2<f64>) -> Matrix2<f64> {
+    /// [`MaterialFailure::Inverted`] when det F is not positive.
+    fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
         let own = self.description();
-        Matrix2::from_diagonal_element(own.lambda() * strain.trace())
-            + own.shear_modulus * (strain + strain.transpose())
+        Ok(-positive_jacobian(&straining.deformation)?.ln() * own.lambda() / own.p_wave_modulus)
     }
 
-    /// σ = P Fᵀ / J at F in plane strain, with the variables that the law remembers there.
-    ///
-    /// # Errors
-    /// As [`Material::respond`].
-    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
-        let now = Straining::new(*deformation, old);
-        // Compiled for each law: the tangent that is not asked for costs nothing.
-        let response = match old {
-            [] => self.respond(&now, &mut [])?,
-            old => self.respond(&now, &mut old.to_vec())?,
-        };
-        let sigma = response.stress * deformation.transpose() / deformation.determinant();
-        Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: response.stress_zz, xy: sigma.m12 })
-    }
-}
-
-impl<M: Material + 'static> From<M> for Box<dyn Material> {
-    fn from(material: M) -> Self {
-        Box::new(material)
+    /// The law with the moduli that it has under a mean pressure p at the start, p being positive in compression; none where they do not
+    /// depend on it [F/L²]
+    fn at_pressure(&self, _pressure: f64) -> Option<Arc<dyn Material>> {
+        None
     }
 }

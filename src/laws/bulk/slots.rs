@@ -1,5 +1,9 @@
 //! Places of named variables among those that a law remembers, so that no law counts how many stand before its own.
 
+use std::ops::Range;
+
+use super::MaterialDescription;
+
 /// N variables of a law, one behind the other.
 ///
 /// ```
@@ -67,5 +71,33 @@ impl Slot<1> {
     #[inline(always)]
     pub fn set(self, variables: &mut [f64], value: f64) {
         self.of_mut(variables)[0] = value;
+    }
+}
+
+/// Names of the variables of a law whose parts are known when it is made.
+#[derive(Debug, Default)]
+pub(super) struct Names {
+    pub names: Vec<&'static str>,
+}
+
+impl Names {
+    /// Append the names of a slot.
+    pub fn slot<const N: usize>(&mut self, names: [&'static str; N]) -> Slot<N> {
+        Slot { first: self.all(&names).start }
+    }
+
+    /// Append any number of names; returns their places.
+    pub fn all(&mut self, names: &[&'static str]) -> Range<usize> {
+        let first = self.names.len();
+        self.names.extend(names);
+        first..self.names.len()
+    }
+}
+
+impl MaterialDescription<'_> {
+    /// The variables of these names, which stand one behind the other, if the law has them.
+    pub fn slot<const N: usize>(&self, names: &[&str; N]) -> Option<Slot<N>> {
+        let first = self.variables.windows(N).position(|some| some == names)?;
+        Some(Slot { first })
     }
 }

@@ -1,11 +1,10 @@
-use nalgebra::{Matrix2, Vector4};
+use nalgebra::{Matrix2, Vector5};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::spatial::{OutOfPlane, Spatial, Stretched, positive_stretch};
+use super::components::{components, plane};
 use super::{
-    ElasticConstants, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse, NeoHookean, PlaneStress,
-    Straining,
+    BulkLaw, BulkResponse, ElasticConstants, Lame, MaterialDescription, MaterialFailure, NeoHookean, Slot, Straining,
 };
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
@@ -91,42 +90,24 @@ impl Viscoelastic {
 /// History: ε of the arm, and E.
 const VARIABLES: [&str; 8] =
     ["arm_xx", "arm_yy", "arm_xy", "arm_zz", "strain_xx", "strain_yy", "strain_xy", "strain_zz"];
+const ARM: Slot<4> = Slot::FIRST;
+const STRAIN: Slot<4> = Slot::after(ARM);
 
-/// A symmetric strain or stress: in plane, and out of plane.
-#[derive(Clone, Copy, Debug)]
-struct Tensor {
-    plane: Matrix2<f64>,
-    zz: f64,
+/// A strain from what is remembered of it: xx, yy, xy, zz.
+fn remembered([xx, yy, xy, zz]: [f64; 4]) -> Vector5<f64> {
+    Vector5::new(xx, xy, xy, yy, zz)
 }
 
-impl Tensor {
-    /// A tensor from its components xx, yy, xy, zz.
-    fn from(components: &[f64]) -> Self {
-        let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| components[k]);
-        Self { plane: Matrix2::new(xx, xy, xy, yy), zz }
-    }
-
-    fn components(self) -> [f64; 4] {
-        [self.plane.m11, self.plane.m22, self.plane.m12, self.zz]
-    }
-
-    fn combined(self, a: f64, other: Self, b: f64) -> Self {
-        Self { plane: a * self.plane + b * other.plane, zz: a * self.zz + b * other.zz }
-    }
-
-    fn dot(&self, other: &Self) -> f64 {
-        self.plane.dot(&other.plane) + self.zz * other.zz
-    }
+/// What is remembered of a strain.
+fn kept(strain: &Vector5<f64>) -> [f64; 4] {
+    [strain[0], strain[3], strain[2], strain[4]]
 }
 
 impl Lame {
     /// λ tr(ε) 1 + 2 G ε
-    fn stress(&self, strain: &Tensor) -> Tensor {
-        let mean = self.lambda * (strain.plane.trace() + strain.zz);
-        Tensor {
-            plane: Matrix2::from_diagonal_element(mean) + 2.0 * self.shear * strain.plane,
-            zz: mean + 2.0 * self.shear * strain.zz,
-        }
+    fn stress(&self, strain: &Vector5<f64>) -> Vector5<f64> {
+        let mean = self.lambda * (strain[0] + strain[3] + strain[4]);
+        Vector5::new(mean, 0.0, 0.0, mean, mean) + 2.0 * self.shear * strain
     }
 }
 
@@ -142,7 +123,7 @@ fn relaxation(x: f64) -> [f64; 3] {
     [decay, phi, lag]
 }
 
-impl Material for Viscoelastic {
+impl BulkLaw for Viscoelastic {
     fn description(&self) -> MaterialDescription<'_> {
         let behind = self.behind.description();
         let (modulus, shear) = (self.arm.constrained_modulus(), self.arm.shear);
@@ -150,62 +131,41 @@ impl Material for Viscoelastic {
             .remembering(&VARIABLES)
     }
 
-    fn plane_stress(&self) -> Option<Box<dyn Material>> {
-        Some(Box::new(PlaneStress::new(*self)))
-    }
-
-    fn spatial(&self) -> Option<&dyn Spatial> {
-        Some(self)
-    }
-
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        let Straining { deformation: f, stretch, dt, old, .. } = *straining;
-        let mut response = self.behind.at_stretch(&f, stretch)?;
-        let (arm, before) = (Tensor::from(&old[..4]), Tensor::from(&old[4..]));
+    /// ```text
+    /// ∂P/∂h = ∂P_∞/∂h + φ λ₁ h F,   ∂P₃₃/∂h = ∂P_∞,₃₃/∂h + H₃₃ + φ (λ₁ + 2G₁) h²            h = F₃₃
+    /// ```
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+        let Straining { deformation: f, stretch: h, dt, old, .. } = *straining;
+        let mut response = self.behind.respond(straining, &mut [])?;
+        let [arm, before] = [ARM, STRAIN].map(|slot| remembered(*slot.of(old)));
         // E by the displacement gradient D, which loses no digits when it is small: sym(D) + ½ DᵀD
         let d = f - Matrix2::identity();
-        let plane = 0.5 * (d + d.transpose() + d.transpose() * d);
-        let strain = Tensor { plane, zz: 0.5 * (stretch - 1.0) * (stretch + 1.0) };
+        let strain = components(&(0.5 * (d + d.transpose() + d.transpose() * d)), 0.5 * (h - 1.0) * (h + 1.0));
         let [decay, phi, lag] = relaxation(dt / self.tau);
-        let change = strain.combined(1.0, before, -1.0);
-        let after = arm.combined(decay, change, phi);
+        let change = strain - before;
+        let after = decay * arm + phi * change;
         let stress = self.arm.stress(&after);
-        let stored = |arm: &Tensor| 0.5 * arm.dot(&self.arm.stress(arm));
-        let work = self.arm.stress(&arm.combined(phi, change, lag)).dot(&change);
+        let stored = |arm: &Vector5<f64>| 0.5 * arm.dot(&self.arm.stress(arm));
+        let work = self.arm.stress(&(phi * arm + lag * change)).dot(&change);
         response.dissipation = work - (stored(&after) - stored(&arm));
-        new[..4].copy_from_slice(&after.components());
-        new[4..].copy_from_slice(&strain.components());
+        *ARM.of_mut(new) = kept(&after);
+        *STRAIN.of_mut(new) = kept(&strain);
 
-        response.stress += f * stress.plane;
+        response.stress += components(&(f * plane(&stress)), h * stress[4]);
         response.energy += stored(&after);
-        response.stress_zz += stretch * stress.zz / f.determinant();
         for column in 0..4 {
             let mut varied = Matrix2::zeros();
             varied[column] = 1.0;
             let strained = f.transpose() * varied;
-            let rate = Tensor { plane: 0.5 * phi * (strained + strained.transpose()), zz: 0.0 };
-            let by = varied * stress.plane + f * self.arm.stress(&rate).plane;
-            let total = response.tangent.column(column) + Vector4::from_column_slice(by.as_slice());
+            let rate = components(&(0.5 * phi * (strained + strained.transpose())), 0.0);
+            let by = varied * plane(&stress) + f * plane(&self.arm.stress(&rate));
+            let across = f[column] * (phi * self.arm.lambda * h);
+            let total = response.tangent.column(column) + components(&by, across);
             response.tangent.set_column(column, &total);
+            response.tangent[(column, 4)] += across;
         }
+        response.tangent[(4, 4)] += stress[4];
+        response.tangent[(4, 4)] += phi * self.arm.constrained_modulus() * h * h;
         Ok(response)
-    }
-}
-
-impl Spatial for Viscoelastic {
-    /// ```text
-    /// P₃₃ = P_∞,₃₃ + h H₃₃,   ∂P/∂h = ∂P_∞/∂h + φ λ₁ h F,   ∂P₃₃/∂h = ∂P_∞,₃₃/∂h + H₃₃ + φ (λ₁ + 2G₁) h²
-    /// ```
-    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
-        let h = positive_stretch(straining)?;
-        let MaterialResponse { stress, tangent, energy, dissipation, .. } = self.respond(straining, new)?;
-        let behind = Spatial::stretched(&self.behind, straining, &mut [])?;
-        let [_, phi, _] = relaxation(straining.dt / self.tau);
-        let held = self.arm.stress(&Tensor::from(&new[..4])).zz;
-        let f = Vector4::from_column_slice(straining.deformation.as_slice());
-        let coupling = behind.tangent.fixed_view::<4, 1>(0, 4) + f * (phi * self.arm.lambda * h);
-        let stiffness = behind.tangent[(4, 4)] + held + phi * self.arm.constrained_modulus() * h * h;
-        let across = OutOfPlane { stress: behind.stress[4] + h * held, coupling, stiffness };
-        Ok(Stretched { dissipation, ..Stretched::new(stress, tangent, across, energy) })
     }
 }

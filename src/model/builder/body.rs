@@ -13,7 +13,7 @@ use super::friction::{check_profile, defined};
 use super::groups;
 use super::groups::{TIMES, group, kind, some_of};
 use super::load_step::LoadStep;
-use crate::laws::bulk::{Imposed, Material, MaterialParameters, Undrained};
+use crate::laws::bulk::{self, BodyLaw, Material, MaterialParameters, Sections, Surroundings};
 use crate::mesh::section::Section;
 use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
@@ -88,12 +88,20 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             return Err(ModelError::new(place, message));
         };
         let law = at_initial_pressure(law, initial_stress.as_ref(), &mesh.nodes_of(group), mesh);
-        let material = with_imposed(law, initial_stress.as_ref(), *thermal, &place)?;
-        let material = match pore_fluid {
-            Some(fluid) => undrained(material, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?,
-            None => material,
+        check_imposed(&*law, initial_stress.is_some(), *thermal, &place)?;
+        if let Some(fluid) = pore_fluid {
+            check_fluid(&*law, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?;
+        }
+        check_section(&*law, *element == Formulation::FBar, mesh.section, &place)?;
+        let fluid = pore_fluid.as_ref();
+        let surroundings = Surroundings {
+            stressed: initial_stress.is_some(),
+            expansion: thermal.map(|thermal| thermal.expansion),
+            fluid: fluid.map(|fluid| bulk::PoreFluid { modulus: fluid.modulus(), cavitation: fluid.cavitation }),
+            plate: mesh.section.is_plate() && law.description().sections != Sections::Plate,
         };
-        let material = in_section(material, *element == Formulation::FBar, mesh.section, &place)?;
+        let material = BodyLaw::around(law, surroundings)
+            .ok_or_else(|| ModelError::new(format!("{place}.material"), NEEDS_STRETCH))?;
         check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.description().p_wave_modulus)?;
         check_damping(*damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
@@ -180,14 +188,8 @@ fn at_initial_pressure(
     if mean.is_finite() { law.at_pressure(mean).unwrap_or(law) } else { law }
 }
 
-/// Returns the law of a body whose pores hold a fluid.
-fn undrained(
-    law: Arc<dyn Material>,
-    fluid: &PoreFluid,
-    nodes: &[usize],
-    mesh: &Mesh,
-    place: &str,
-) -> Checked<Arc<dyn Material>> {
+/// Checks the fluid in the pores of a body.
+fn check_fluid(law: &dyn Material, fluid: &PoreFluid, nodes: &[usize], mesh: &Mesh, place: &str) -> Checked<()> {
     let PoreFluid { bulk_modulus, porosity, pressure, cavitation } = fluid;
     check_positive(&format!("{place}.bulk_modulus"), *bulk_modulus, " (2.2e9 Pa of water)")?;
     let message = format!("is {porosity}: it must be above 0 and below 1, e/(1 + e) of a void ratio e");
@@ -209,51 +211,44 @@ fn undrained(
     }
     let message = "is not for the material linear: take hencky, or leave it out";
     refuse_if(law.description().is_linear && cavitation.is_some(), format!("{place}.cavitation"), message)?;
-    let undrained = Undrained::new(law, fluid.modulus(), *cavitation);
-    Ok(Arc::new(undrained.ok_or_else(|| ModelError::new(place, NEEDS_STRETCH))?))
+    refuse_if(!law.description().sections.any_stretch(), place, NEEDS_STRETCH)
 }
 
-/// Returns the law of a body in a section.
-fn in_section(given: Arc<dyn Material>, f_bar: bool, section: Section, place: &str) -> Checked<Arc<dyn Material>> {
-    let refused = |key: &str, message: &str| Err(ModelError::new(format!("{place}.{key}"), message));
+/// Checks that a law serves in a section.
+fn check_section(law: &dyn Material, f_bar: bool, section: Section, place: &str) -> Checked<()> {
+    let (served, material) = (law.description().sections, format!("{place}.material"));
     match section {
-        Section::PlaneStress { .. } if f_bar => refused(
-            "element",
-            "f_bar is not needed in plane stress, where the thickness is free to change and elements do not lock for \
-             nu near 1/2: leave it out",
-        ),
-        Section::PlaneStress { .. } => match given.plane_stress() {
-            Some(law) => Ok(law.into()),
-            None => refused("material", "does not support plane stress: take another law, or plane strain"),
-        },
-        Section::Axisymmetric if given.spatial().is_none() => {
-            refused("material", "does not support the hoop stretch of axisymmetric bodies: take another law")
+        Section::PlaneStress { .. } => {
+            let message = "f_bar is not needed in plane stress, where the thickness is free to change and elements do not lock for \
+                           nu near 1/2: leave it out";
+            refuse_if(f_bar, format!("{place}.element"), message)?;
+            let message = "does not support plane stress: take another law, or plane strain";
+            refuse_if(!matches!(served, Sections::Plate | Sections::All), material, message)
         }
-        Section::Axisymmetric | Section::PlaneStrain | Section::Graded { .. } => Ok(given),
+        Section::Axisymmetric => {
+            let message = "does not support the hoop stretch of axisymmetric bodies: take another law";
+            refuse_if(!served.any_stretch(), material, message)
+        }
+        Section::PlaneStrain | Section::Graded { .. } => {
+            refuse_if(served == Sections::Plate, material, "is a law of plates: take plane stress")
+        }
     }
 }
 
 /// What is added to the deformation of a law must have an out-of-plane part.
 const NEEDS_STRETCH: &str = "needs a law with an out-of-plane stretch: take another material, or leave it out";
 
-/// Returns the law of a body with initial stress and thermal expansion.
-pub fn with_imposed(
-    given: Arc<dyn Material>,
-    stress: Option<&InitialStress>,
-    thermal: Option<Thermal>,
-    place: &str,
-) -> Checked<Arc<dyn Material>> {
+/// Checks what is imposed on a body: an initial stress and thermal expansion.
+fn check_imposed(law: &dyn Material, stressed: bool, thermal: Option<Thermal>, place: &str) -> Checked<()> {
     if let Some(Thermal { expansion, reference }) = thermal {
         check_finite(&format!("{place}.thermal.expansion"), [expansion])?;
         check_finite(&format!("{place}.thermal.reference"), [reference])?;
     }
-    let stressed = stress.is_some() && !given.description().holds_initial_stress;
-    if !stressed && thermal.is_none() {
-        return Ok(given);
-    }
-    let key = if stressed { "initial_stress" } else { "thermal" };
-    let imposed = Imposed::new(given, stressed, thermal.map(|thermal| thermal.expansion));
-    Ok(Arc::new(imposed.ok_or_else(|| ModelError::new(format!("{place}.{key}"), NEEDS_STRETCH))?))
+    let own = law.description();
+    let beside = stressed && !own.holds_initial_stress;
+    let key = if beside { "initial_stress" } else { "thermal" };
+    let alone = !own.sections.any_stretch() && (beside || thermal.is_some());
+    refuse_if(alone, format!("{place}.{key}"), NEEDS_STRETCH)
 }
 
 /// Checks an initial stress: finite throughout the body, ground below its surface, and no out-of-plane stress in plane stress.

@@ -289,8 +289,10 @@ pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
     for e in 0..model.solids.len() {
         let body = model.body_of(e);
         let in_plate = model.mesh.section.is_plate();
-        if body.initial_stress.is_none() && body.material.description().holds_initial_stress {
-            body.material.admits(&CauchyStress::default()).map_err(|why| {
+        let law = body.material.description();
+        let mut variables = vec![0.0; law.variables.len()];
+        if body.initial_stress.is_none() && law.holds_initial_stress {
+            body.material.begin(Vector2::zeros(), &CauchyStress::default(), &mut variables).map_err(|why| {
                 let place = format!("bodies.{}.initial_stress", body.name);
                 ModelError::new(place, format!("is missing, and the body {why}"))
             })?;
@@ -301,7 +303,7 @@ pub fn start_under_stresses(model: &mut Model) -> Checked<()> {
             let Some(stress) = &body.initial_stress else { continue };
             let [xx, yy, xy, zz] = stress.at(at, in_plate);
             let stress = CauchyStress { xx, yy, zz, xy };
-            body.material.admits(&stress).map_err(|why| {
+            body.material.begin(at, &stress, &mut variables).map_err(|why| {
                 let place = format!("bodies.{}.initial_stress", body.name);
                 ModelError::new(place, format!("at {} it {why}", vector(at)))
             })?;

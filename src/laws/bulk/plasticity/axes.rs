@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Matrix4, Matrix5, Vector3, Vector4, Vector5};
 
 use super::{Returned, series};
 use crate::laws::bulk::MaterialFailure;
+use crate::laws::bulk::components::moduli;
 
 /// The axes of b = F C_p⁻¹ Fᵀ, two in plane and one across it.
 #[derive(Clone, Copy, Debug)]
@@ -124,12 +125,8 @@ impl Axes {
         if spins {
             across -= inverse * (self.strains.x - self.strains.y) * d[(2, 3)] * spin(&self.deformation);
         }
-        let mut tangent = Matrix5::zeros();
-        tangent.fixed_view_mut::<4, 4>(0, 0).copy_from(&self.moduli_in_plane(found, spins));
-        tangent.fixed_view_mut::<4, 1>(0, 4).copy_from(&by_across);
-        tangent.fixed_view_mut::<1, 4>(4, 0).copy_from(&across.transpose());
-        tangent[(4, 4)] = inverse * inverse * (d[(2, 2)] - found.stress[2]);
-        tangent
+        let stiffness = inverse * inverse * (d[(2, 2)] - found.stress[2]);
+        moduli(&self.moduli_in_plane(found, spins), &by_across, &across, stiffness)
     }
 
     /// The part of these moduli in plane:
@@ -138,7 +135,7 @@ impl Axes {
     /// ∂P_iJ/∂F_kL = (A D Bᵀ)_iJkL − P_iL F⁻¹_Jk
     /// ```
     #[inline(always)]
-    pub fn moduli_in_plane(&self, found: &Returned, spins: bool) -> Matrix4<f64> {
+    fn moduli_in_plane(&self, found: &Returned, spins: bool) -> Matrix4<f64> {
         let (d, of_stress, of_strain) = (&found.tangent, self.of_stress(), self.of_strain());
         let by_strain = |column: usize| combined(&of_stress, [d[(0, column)], d[(1, column)], d[(3, column)]]);
         let stiff = [by_strain(0), by_strain(1), by_strain(3)];

@@ -25,12 +25,11 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use nalgebra::{Matrix4, Matrix5, Vector2, Vector3, Vector4};
-use pulp::{Arch, NullaryFnOnce};
 
-use super::spatial::{Stretched, plane, positive_stretch};
+use super::components::positive_stretch;
 use super::{
-    CauchyStress, Flow, InadmissibleStress, Lame, Material, MaterialDescription, MaterialFailure, MaterialResponse,
-    PlaneStress, Slot, Spatial, Straining, positive_jacobian,
+    BulkLaw, BulkResponse, CauchyStress, Flow, InadmissibleStress, Lame, Material, MaterialDescription,
+    MaterialFailure, Sections, Slot, Straining, positive_jacobian,
 };
 use crate::laws::parameter::{InvalidParameter, require_not_negative};
 use crate::laws::text::number;
@@ -456,63 +455,26 @@ impl<L: ReturnMap> Elastoplastic<L> {
     }
 }
 
-/// An increment at some points in plane strain. It is compiled for vectors as long as the processor has them, and with tangents and
-/// without, so that those that are not wanted cost nothing.
-struct InPlane<'a, L, const TANGENT: bool> {
-    law: &'a Elastoplastic<L>,
-    strainings: &'a [Straining<'a>],
-    new: &'a mut [f64],
-    responses: &'a mut [MaterialResponse],
-}
-
-impl<L: ReturnMap, const TANGENT: bool> NullaryFnOnce for InPlane<'_, L, TANGENT> {
-    type Output = Result<(), MaterialFailure>;
+impl<L: ReturnMap> BulkLaw for Elastoplastic<L> {
+    fn description(&self) -> MaterialDescription<'_> {
+        let own = self.law.description();
+        MaterialDescription {
+            is_symmetric: own.is_associated && own.tensors == 0,
+            flow: Some(own.flow),
+            concern: self.concern.as_deref(),
+            holds_initial_stress: true,
+            shown: &self.shown,
+            sections: if own.in_plates { Sections::All } else { Sections::AnyStretch },
+            ..self.moduli.description(self.density).remembering(&self.names)
+        }
+    }
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
-        let Self { law, strainings, new, responses } = self;
-        let points = strainings.iter().zip(new.chunks_exact_mut(law.names.len()));
-        for ((straining, new), response) in points.zip(responses) {
-            // 1 is written out, so that products with it are known as such.
-            let straining = &Straining { stretch: 1.0, ..*straining };
-            let (axes, found, [energy, dissipation]) = law.answer(straining, new)?;
-            let stress = axes.first_piola_kirchhoff(&found.stress);
-            response.stress = plane(&stress);
-            response.stress_zz = stress[4] / straining.deformation.determinant();
-            (response.energy, response.dissipation) = (energy, dissipation);
-            if TANGENT {
-                response.tangent = axes.moduli_in_plane(&found, law.spins());
-            }
-        }
-        Ok(())
-    }
-}
-
-/// An increment at a point with an out-of-plane stretch, compiled alike.
-struct InSpace<'a, L, const TANGENT: bool> {
-    law: &'a Elastoplastic<L>,
-    straining: &'a Straining<'a>,
-    new: &'a mut [f64],
-}
-
-impl<L: ReturnMap, const TANGENT: bool> NullaryFnOnce for InSpace<'_, L, TANGENT> {
-    type Output = Result<Stretched, MaterialFailure>;
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        let Self { law, straining, new } = self;
-        let (axes, found, [energy, dissipation]) = law.answer(straining, new)?;
-        let tangent = if TANGENT { axes.moduli(&found, law.spins()) } else { Matrix5::zeros() };
-        Ok(Stretched { stress: axes.first_piola_kirchhoff(&found.stress), tangent, energy, dissipation })
-    }
-}
-
-impl<L: ReturnMap> Spatial for Elastoplastic<L> {
-    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
-        match straining.tangent {
-            true => Arch::new().dispatch(InSpace::<_, true> { law: self, straining, new }),
-            false => Arch::new().dispatch(InSpace::<_, false> { law: self, straining, new }),
-        }
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+        let (axes, found, [energy, dissipation]) = self.answer(straining, new)?;
+        let stress = axes.first_piola_kirchhoff(&found.stress);
+        let tangent = if straining.tangent { axes.moduli(&found, self.spins()) } else { Matrix5::zeros() };
+        Ok(BulkResponse { dissipation, ..BulkResponse::new(stress, tangent, energy) })
     }
 
     /// Returns the stretch that leaves a plate without out-of-plane stress if it does not yield in the increment.
@@ -523,28 +485,6 @@ impl<L: ReturnMap> Spatial for Elastoplastic<L> {
         let Lame { lambda, shear } = self.moduli;
         Ok(-lambda / (lambda + 2.0 * shear) * areal - 0.5 * zz.ln_1p())
     }
-}
-
-impl<L: ReturnMap> Material for Elastoplastic<L> {
-    fn description(&self) -> MaterialDescription<'_> {
-        let own = self.law.description();
-        MaterialDescription {
-            is_symmetric: own.is_associated && own.tensors == 0,
-            flow: Some(own.flow),
-            concern: self.concern.as_deref(),
-            holds_initial_stress: true,
-            shown: &self.shown,
-            ..self.moduli.description(self.density).remembering(&self.names)
-        }
-    }
-
-    fn plane_stress(&self) -> Option<Box<dyn Material>> {
-        self.law.description().in_plates.then(|| Box::new(PlaneStress::new(self.clone())) as Box<dyn Material>)
-    }
-
-    fn spatial(&self) -> Option<&dyn Spatial> {
-        Some(self)
-    }
 
     fn at_pressure(&self, pressure: f64) -> Option<Arc<dyn Material>> {
         match elasticity_at(&self.law, pressure) {
@@ -553,37 +493,16 @@ impl<L: ReturnMap> Material for Elastoplastic<L> {
         }
     }
 
-    fn admits(&self, stress: &CauchyStress) -> Result<(), InadmissibleStress> {
-        self.law.begin(stress, &mut vec![0.0; self.names.len() - STRESS.end()])
-    }
-
-    fn initial_state(&self, _: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
+    fn begin(&self, _: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) -> Result<(), InadmissibleStress> {
         let (tensor, history) = (Vector4::from(stress.components()), STRESS.behind_mut(variables));
-        let _ = self.law.begin(stress, history);
+        let begun = self.law.begin(stress, history);
         let strain = self.law.elasticity(history).strain(&tensor);
         let stored = self.stored(&strain, history);
         let [xx, yy, zz, xy] = axes::exponential_less_one(&(2.0 * strain)).into();
         *PLASTIC.of_mut(variables) = [xx, yy, xy, zz];
         AT_START.set(variables, stored);
         *STRESS.of_mut(variables) = tensor.into();
-    }
-
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
-        let mut response = [MaterialResponse::default()];
-        self.responses(std::slice::from_ref(straining), new, &mut response)?;
-        Ok(response[0])
-    }
-
-    fn responses(
-        &self,
-        strainings: &[Straining],
-        new: &mut [f64],
-        responses: &mut [MaterialResponse],
-    ) -> Result<(), MaterialFailure> {
-        match strainings.iter().any(|straining| straining.tangent) {
-            true => Arch::new().dispatch(InPlane::<_, true> { law: self, strainings, new, responses }),
-            false => Arch::new().dispatch(InPlane::<_, false> { law: self, strainings, new, responses }),
-        }
+        begun
     }
 
     fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {

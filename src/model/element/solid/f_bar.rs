@@ -25,7 +25,7 @@ use nalgebra::{Matrix5, Vector2, Vector5};
 
 use super::SolidElement;
 use super::ring::{At, inverse_transpose, jacobian};
-use crate::laws::bulk::{CauchyStress, MaterialFailure, Stretched};
+use crate::laws::bulk::{BulkResponse, CauchyStress, MaterialFailure};
 use crate::model::element::Formulation;
 
 /// Quadrature points and dofs of the element, a Q4.
@@ -125,11 +125,11 @@ impl Mean<'_> {
     /// the stored and the dissipated energy.
     pub fn respond(
         &self,
-        mut law: impl FnMut(usize, &Vector5<f64>) -> Result<Stretched, MaterialFailure>,
+        mut law: impl FnMut(usize, &Vector5<f64>) -> Result<BulkResponse, MaterialFailure>,
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], MaterialFailure> {
-        let mut answers = [Stretched::default(); POINTS];
+        let mut answers = [BulkResponse::default(); POINTS];
         for ((k, now), answer) in self.points.iter().enumerate().zip(&mut answers) {
             *answer = law(k, &now.seen)?;
         }
@@ -154,7 +154,7 @@ impl Mean<'_> {
     /// δu·K·du = ∫ [δF:M:dF + α dh + δh β + c δh dh] dV,   M_iJkL = r² Ā_iJkL + m (v − ⟨v⟩) F⁻¹_Li F⁻¹_Jk
     /// α = r δF:(Ā:F̄ + P̄),   β = r (F̄:Ā + P̄):dF,   c = F̄:Ā:F̄ + w
     /// ```
-    fn add_tangent(&self, answers: &[Stretched; POINTS], tangent: &mut [f64]) {
+    fn add_tangent(&self, answers: &[BulkResponse; POINTS], tangent: &mut [f64]) {
         let share = self.points.map(|now| now.volume / self.volume);
         // n, and ⟨n⟩, of each dof
         let change = self.points.map(|now| now.at.along(&now.inverse_transpose));
@@ -163,7 +163,7 @@ impl Mean<'_> {
         let beyond: [f64; POINTS] = array::from_fn(|k| works[k] - self.points[k].initial);
         let mean_beyond: f64 = (0..POINTS).map(|k| share[k] * beyond[k]).sum();
         for (k, (now, answer)) in self.points.iter().zip(answers).enumerate() {
-            let Stretched { stress, tangent: moduli, .. } = answer;
+            let BulkResponse { stress, tangent: moduli, .. } = answer;
             let h: [f64; DOFS] = array::from_fn(|dof| self.exponent * (mean[dof] - change[k][dof]));
             let [by_seen, of_seen] = [moduli * now.seen, moduli.tr_mul(&now.seen)];
             let own = now.volume * (now.seen.dot(&by_seen) + works[k]);

@@ -1,13 +1,14 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4 and reduced integration for Q8.
 //!
-//! This file contains the viscous stress of a damped body as well, and elements with internal variables or an unsymmetric tangent;
-//! `f_bar.rs` contains F-bar, `ring.rs` axisymmetry, `stress.rs` the stress and the reference geometry of elements, `volume.rs` their mean volume
+//! This file contains elements with internal variables or an unsymmetric tangent as well; `viscous.rs` contains the viscous stress of a
+//! damped body, `f_bar.rs` F-bar, `ring.rs` axisymmetry, `stress.rs` the stress and the reference geometry of elements, `volume.rs` their mean volume
 //! change, `birth.rs` elements that come later.
 
 mod birth;
 mod f_bar;
 mod ring;
 mod stress;
+mod viscous;
 mod volume;
 
 use std::array;
@@ -16,8 +17,8 @@ use nalgebra::{Matrix2, Matrix4, Vector2, Vector5};
 use pulp::{Arch, NullaryFnOnce};
 
 use super::Formulation;
-use crate::laws::bulk::spatial::{components, plane};
-use crate::laws::bulk::{Material, MaterialFailure, MaterialResponse, Straining, Stretched};
+use crate::laws::bulk::components::{components, plane};
+use crate::laws::bulk::{BulkResponse, Material, MaterialFailure, MaterialResponse, Straining};
 use crate::mesh::shape::ElementKind;
 
 /// A solid element: its reference geometry at the quadrature points.
@@ -170,7 +171,7 @@ impl SolidElement {
     ) -> Result<f64, MaterialFailure> {
         let u = &*self.since_birth(u);
         if let Some(mean) = self.mean(u)? {
-            let answer = |_, seen: &Vector5<f64>| material.at_once(&plane(seen)).map(Stretched::from);
+            let answer = |_, seen: &Vector5<f64>| material.at_once(&plane(seen)).map(BulkResponse::from);
             return mean.respond(answer, force, Some(tangent)).map(|[energy, _]| energy);
         }
         let (gradients, volumes) = (self.gradients.as_chunks::<N>().0, &self.volumes);
@@ -240,60 +241,6 @@ fn write_blocks<const N: usize, const SYMMETRIC: bool>(blocks: &[[[[f64; 2]; 2];
     }
 }
 
-impl SolidElement {
-    /// Nodal forces at displacements `u` and velocities `v` of a viscous stress with the retardation time τ (Kelvin–Voigt),
-    /// with the element's own gradients, F-bar or not.
-    pub fn viscous_forces(
-        &self,
-        material: &dyn Material,
-        tau: f64,
-        [u, v]: [&[Vector2<f64>]; 2],
-        forces: &mut [Vector2<f64>],
-    ) {
-        if self.hoop.is_some() {
-            return self.ring_viscous_forces(material, tau, [u, v], forces);
-        }
-        let u = &*self.since_birth(u);
-        forces.fill(Vector2::zeros());
-        for (gradients, volume) in self.points() {
-            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
-            let stress = tau * volume * material.viscous_stress([&deformation, &rate]);
-            forces.iter_mut().zip(gradients).for_each(|(force, gradient)| *force += stress * gradient);
-        }
-    }
-
-    /// Derivative of the viscous forces with respect to `u`, column by column, where the velocity of each dof varies by the
-    /// factor `dvelocity` with its displacement.
-    pub fn viscous_tangent(
-        &self,
-        material: &dyn Material,
-        tau: f64,
-        [u, v]: [&[Vector2<f64>]; 2],
-        dvelocity: &[f64],
-        tangent: &mut [f64],
-    ) {
-        if self.hoop.is_some() {
-            return self.ring_viscous_tangent(material, tau, [u, v], dvelocity, tangent);
-        }
-        let u = &*self.since_birth(u);
-        tangent.fill(0.0);
-        let n = 2 * u.len();
-        for (gradients, volume) in self.points() {
-            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
-            for (dof, (column, dvelocity)) in tangent.chunks_exact_mut(n).zip(dvelocity).enumerate() {
-                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
-                let stress = material.viscous_variation([&deformation, &rate], [&varied, &(*dvelocity * varied)]);
-                add_force(gradients, &(tau * volume * stress), column);
-            }
-        }
-    }
-}
-
-/// Ḟ = Σ_a v_a ⊗ ∂N_a/∂X
-fn rate_gradient(gradients: &[Vector2<f64>], v: &[Vector2<f64>]) -> Matrix2<f64> {
-    v.iter().zip(gradients).fold(Matrix2::zeros(), |sum, (v, gradient)| sum + v * gradient.transpose())
-}
-
 /// Internal variables of an element's material over an increment: its variables at the first quadrature point, then at
 /// the second, …
 #[derive(Debug)]
@@ -360,9 +307,9 @@ impl SolidElement {
             strainings.iter_mut().zip(mean.seen()).for_each(|(straining, seen)| straining.deformation = plane(&seen));
         }
         let mut responses = [MaterialResponse::default(); M];
-        material.responses(&strainings[..points], new, &mut responses[..points])?;
+        material.in_plane(&strainings[..points], new, &mut responses[..points])?;
         if let Some(mean) = mean {
-            return mean.respond(|k, _| Ok(Stretched::from(responses[k])), force, tangent);
+            return mean.respond(|k, _| Ok(BulkResponse::from(responses[k])), force, tangent);
         }
         let (volumes, responses) = (&self.volumes, &responses[..points]);
         Ok(Arch::new().dispatch(Gathered::<N, SYMMETRIC> { gradients, volumes, responses, force, tangent }))

@@ -8,13 +8,13 @@
 use nalgebra::{Vector2, Vector5};
 
 use super::{Memory, SolidElement};
-use crate::laws::bulk::spatial::{components, plane};
-use crate::laws::bulk::{Material, MaterialFailure, Spatial, Straining, cofactor, positive_jacobian};
+use crate::laws::bulk::components::{components, plane};
+use crate::laws::bulk::{Material, MaterialFailure, Straining, cofactor, positive_jacobian};
 
 /// ∂N_a/∂X and N_a/R at a point; the latter are 0 in plane.
 #[derive(Clone, Copy, Default)]
 pub(super) struct At<'a> {
-    gradients: &'a [Vector2<f64>],
+    pub gradients: &'a [Vector2<f64>],
     hoop: &'a [f64],
 }
 
@@ -29,12 +29,12 @@ impl SolidElement {
         mut tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], MaterialFailure> {
         let u = &*self.since_birth(u);
-        let (law, count) = (spatial(material), material.description().variables.len());
-        let wanted = tangent.is_some();
+        let (count, wanted) = (material.description().variables.len(), tangent.is_some());
         if let Some(mean) = self.mean(u)? {
             let answer = |k: usize, seen: &Vector5<f64>| {
                 let own = k * count..(k + 1) * count;
-                law.stretched(&Straining { tangent: wanted, ..straining(seen, dt, &old[own.clone()]) }, &mut new[own])
+                let now = Straining { tangent: wanted, ..straining(seen, dt, &old[own.clone()]) };
+                material.in_space(&now, &mut new[own])
             };
             return mean.respond(answer, force, tangent);
         }
@@ -45,10 +45,8 @@ impl SolidElement {
         let [mut energy, mut dissipated] = [0.0; 2];
         for (k, (at, volume)) in self.everywhere().enumerate() {
             let own = k * count..(k + 1) * count;
-            let answer = law.stretched(
-                &Straining { tangent: wanted, ..straining(&at.deformation(u), dt, &old[own.clone()]) },
-                &mut new[own],
-            )?;
+            let now = Straining { tangent: wanted, ..straining(&at.deformation(u), dt, &old[own.clone()]) };
+            let answer = material.in_space(&now, &mut new[own])?;
             energy += volume * answer.energy;
             dissipated += volume * answer.dissipation;
             at.add_force(&(volume * answer.stress), force);
@@ -80,46 +78,6 @@ impl SolidElement {
         self.everywhere().map(|(at, _)| at.deformation(u)[4]).collect()
     }
 
-    /// Forces of a viscous stress with the retardation time τ.
-    pub(super) fn ring_viscous_forces(
-        &self,
-        material: &dyn Material,
-        tau: f64,
-        [u, v]: [&[Vector2<f64>]; 2],
-        forces: &mut [Vector2<f64>],
-    ) {
-        let u = &*self.since_birth(u);
-        let law = spatial(material);
-        let mut all = [0.0; 18];
-        for (at, volume) in self.everywhere() {
-            let stress = tau * volume * law.viscous([&at.deformation(u), &at.gradient(v)]);
-            at.add_force(&stress, &mut all[..2 * u.len()]);
-        }
-        forces.iter_mut().zip(all.chunks_exact(2)).for_each(|(force, own)| *force = Vector2::new(own[0], own[1]));
-    }
-
-    /// Derivative of the viscous forces with respect to `u`, column by column.
-    pub(super) fn ring_viscous_tangent(
-        &self,
-        material: &dyn Material,
-        tau: f64,
-        [u, v]: [&[Vector2<f64>]; 2],
-        dvelocity: &[f64],
-        tangent: &mut [f64],
-    ) {
-        let u = &*self.since_birth(u);
-        let law = spatial(material);
-        tangent.fill(0.0);
-        for (at, volume) in self.everywhere() {
-            let (deformation, rate) = (at.deformation(u), at.gradient(v));
-            for (dof, (column, dvelocity)) in tangent.chunks_exact_mut(2 * u.len()).zip(dvelocity).enumerate() {
-                let varied = at.variation(dof);
-                let stress = law.varied_viscous([&deformation, &rate], [&varied, &(*dvelocity * varied)]);
-                at.add_force(&(tau * volume * stress), column);
-            }
-        }
-    }
-
     /// Each quadrature point, in any section, and its volume.
     pub(super) fn everywhere(&self) -> impl Iterator<Item = (At<'_>, f64)> {
         let n = self.kind.nodes();
@@ -130,7 +88,7 @@ impl SolidElement {
 
 impl At<'_> {
     /// Σ_a v_a ⊗ ∂N_a/∂X, and Σ v_ax N_a/R
-    fn gradient(&self, v: &[Vector2<f64>]) -> Vector5<f64> {
+    pub fn gradient(&self, v: &[Vector2<f64>]) -> Vector5<f64> {
         let mut sum = Vector5::zeros();
         for ((v, gradient), hoop) in v.iter().zip(self.gradients).zip(self.hoop) {
             sum += Vector5::new(v.x * gradient.x, v.y * gradient.x, v.x * gradient.y, v.y * gradient.y, v.x * hoop);
@@ -181,8 +139,4 @@ pub(super) fn jacobian(f: &Vector5<f64>) -> Result<f64, MaterialFailure> {
 pub(super) fn inverse_transpose(f: &Vector5<f64>) -> Vector5<f64> {
     let plane = plane(f);
     components(&(cofactor(&plane) / plane.determinant()), 1.0 / f[4])
-}
-
-pub(super) fn spatial(material: &dyn Material) -> &dyn Spatial {
-    material.spatial().expect("bodies are checked when the model is built")
 }

@@ -6,9 +6,9 @@ use std::sync::OnceLock;
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector5};
 
-use super::ring::{spatial, straining};
+use super::ring::straining;
 use super::{SolidElement, deformation_gradient};
-use crate::laws::bulk::spatial::plane;
+use crate::laws::bulk::components::plane;
 use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, Straining, log_strain};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
@@ -28,13 +28,17 @@ impl SolidElement {
     ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
         let count = material.description().variables.len();
         let of = |(k, seen): (usize, &Vector5<f64>)| {
-            let old = &memory[k * count..(k + 1) * count];
-            match self.hoop {
-                Some(_) => spatial(material).cauchy(&straining(seen, 0.0, old)),
-                None => material.cauchy_stress(&plane(seen), old),
-            }
+            material.cauchy_stress(&self.straining(seen, &memory[k * count..(k + 1) * count]))
         };
         self.seen(u)?.iter().enumerate().map(of).collect()
+    }
+
+    /// Input of a law that is asked what it remembers.
+    fn straining<'a>(&self, seen: &Vector5<f64>, old: &'a [f64]) -> Straining<'a> {
+        match self.hoop {
+            Some(_) => straining(seen, 0.0, old),
+            None => Straining::new(plane(seen), old),
+        }
     }
 
     /// F at each quadrature point as the law sees it: F̄ of F-bar.
@@ -62,10 +66,7 @@ impl SolidElement {
         };
         let count = material.description().variables.len();
         let of = |(k, seen): (usize, &Vector5<f64>)| {
-            let across = match self.hoop {
-                Some(_) => seen[4],
-                None => material.stretch_across(&plane(seen), &memory[k * count..(k + 1) * count])?,
-            };
+            let across = material.stretch_across(&self.straining(seen, &memory[k * count..(k + 1) * count]))?;
             Ok(strain(&plane(seen), across))
         };
         self.seen(u)?.iter().enumerate().map(of).collect()
@@ -101,12 +102,7 @@ impl SolidElement {
         let (count, own) = (material.description().variables.len(), material.description().shown.len());
         let mut values = vec![0.0; own * self.quadrature_points()];
         for ((k, seen), values) in self.seen(u)?.iter().enumerate().zip(values.chunks_exact_mut(own.max(1))) {
-            let old = &memory[k * count..(k + 1) * count];
-            let now = match self.hoop {
-                Some(_) => straining(seen, 0.0, old),
-                None => Straining::new(plane(seen), old),
-            };
-            material.show(&now, values)?;
+            material.show(&self.straining(seen, &memory[k * count..(k + 1) * count]), values)?;
         }
         Ok(values)
     }
