@@ -45,6 +45,7 @@ fn surfaces(n: usize) -> Surfaces {
         in_time: None,
         initial: None,
         unseen: Vec::new(),
+        fades: None,
         modulus: 0.0,
         both: None,
         body: None,

@@ -565,6 +565,8 @@ class Contact(dict[str, Any]):
         along: Friction parameters that vary along the slave and in time
         area: Tributary area of each point of a point group as slave, including the thickness or the full turn;
             it is constant. Edges have lengths of their own [L for thickness 1, or L²]
+        bond: Bond of the surfaces beside friction: strength without pressure. With `adhesion`, or `cohesion` of
+            slip_weakening, it takes the `opening` over which that fades, and a `limit`
         dilatancy: Dilatancy: opening by plastic slip
         fluid_pressure: p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend
             on the run time t and on the reference position x, y of the slave. It acts on both surfaces wherever
@@ -623,6 +625,7 @@ class Contact(dict[str, Any]):
         master: Master,
         along: Mapping[str, Any] | Given = NOT_GIVEN,
         area: float | None | Given = NOT_GIVEN,
+        bond: Bond | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
         fluid_pressure: Profile | None | Given = NOT_GIVEN,
         friction: Friction | Given = NOT_GIVEN,
@@ -640,7 +643,7 @@ class Contact(dict[str, Any]):
         tied: bool | Given = NOT_GIVEN,
         wear: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
+        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
 
 
 class Plane(dict[str, Any]):
@@ -906,6 +909,40 @@ class Registered(dict[str, Any]):
         parameters: Mapping[str, float] | Given = NOT_GIVEN,
     ) -> None:
         super().__init__({"law": "registered", **_given({"name": name, "alpha_t": alpha_t, "parameters": parameters})})
+
+
+class Bond(dict[str, Any]):
+    """Bond of a contact, beside its friction: strength without pressure, in shear and in tension.
+
+    Args:
+        bonded: Whether surfaces that do not touch at the start are bonded as well, within the opening;
+            otherwise they have c_r alone once they meet
+        limit: τ_max: limit of the shear traction of friction and bond together, τ_max ≥ c; default: none [F/L²]
+        opening: δ: opening at which nothing is carried any more, neither shear nor tension, δ > 2 t/α_n; a
+            length of the interface. Default 4 c h/E of the softer side, with the longest edge h of the slave in
+            the mesh as read [L]
+        residual: c_r: what is left of it after the slip `slip`, or after an opening, once the surfaces meet
+            again, 0 ≤ c_r ≤ c; default c, and 0 where `slip` is given [F/L²]
+        slip: D: slip over which the strength falls from c to c_r, and the tension to 0; default: without end
+            [L]
+        strength: c: shear strength at zero pressure, beside that of friction, c > 0. Required, but with
+            `adhesion` and with the `cohesion` of slip_weakening, which have it already [F/L²]
+        tension: t: tensile strength, 0 ≤ t ≤ c/μ, with the coefficient μ that friction starts with; the
+            surfaces open by t/α_n before it is reached; default 0 [F/L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        bonded: bool | Given = NOT_GIVEN,
+        limit: float | None | Given = NOT_GIVEN,
+        opening: float | None | Given = NOT_GIVEN,
+        residual: float | None | Given = NOT_GIVEN,
+        slip: float | None | Given = NOT_GIVEN,
+        strength: float | None | Given = NOT_GIVEN,
+        tension: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"bonded": bonded, "limit": limit, "opening": opening, "residual": residual, "slip": slip, "strength": strength, "tension": tension}))
 
 
 class Dilatancy(dict[str, Any]):

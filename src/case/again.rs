@@ -169,9 +169,7 @@ impl Opened {
             };
             let [(_, highest), (_, lowest)] = friction.bounds()[..] else { continue };
             let allowed = lowest * (1.0 - SAME)..=highest * (1.0 + SAME);
-            let mu = |(point, contact): (&SlavePoint, &ContactState)| {
-                pair.observed(point, "mu", &contact.friction, state.time)
-            };
+            let mu = |(point, contact): (&SlavePoint, &ContactState)| pair.observed(point, "mu", contact, state.time);
             let of_law = ["mu_s", "mu_k"].iter().any(|name| input.along.parameters.contains_key(*name));
             let varies = of_law || !input.along.law.is_empty();
             if let Some(mu) = pair.points.iter().zip(states).map(mu).find(|mu| !varies && !allowed.contains(mu)) {

@@ -12,7 +12,7 @@ use serde_json::{Map, Number, Value};
 use super::CaseError;
 use super::file::Case;
 use super::read;
-use super::resolved::resolved;
+use super::resolved::{keep_openings, resolved};
 use crate::contact::pair::ContactPair;
 use crate::mesh::Mesh;
 use crate::mesh::names::nearest;
@@ -111,6 +111,7 @@ impl Differentiated<'_> {
     /// The model with another value at a place.
     fn with(&self, keys: &[Key], value: f64, mesh: &Mesh) -> Result<Arc<Model>, String> {
         let mut document = self.document.clone();
+        keep_openings(&mut document, self.model);
         put(&mut document, keys, Number::from_f64(value).map_or(Value::Null, Value::Number));
         let refused =
             |place: &str, message: &str| format!("cannot be {value}, a little beside its value: {place}: {message}");

@@ -10,6 +10,7 @@
 use serde_json::Value;
 
 use super::file::{Amount, BlockInput, BlocksInput, Case, GradingInput, MeshSource, MiddleInput, evaluated};
+use super::resolved::keep_opening;
 use super::{CaseError, Written, build, build_on, mesh};
 use crate::mesh::{Block, Blocks, Grading, Group, MOST_ELEMENTS, Mesh};
 use crate::model::builder::{Checked, Load, LoadStep, ModelError, Place, nodes_at, refuse_if};
@@ -167,6 +168,10 @@ fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) 
     }
     for (given, step) in case.steps.iter_mut().zip(&model.steps) {
         refine_increments(given, step, 2.0_f64.powi(halvings.increments as i32));
+    }
+    // A length of the interface, not of its mesh
+    for pair in &model.contacts {
+        case.contacts.get_mut(&pair.name).into_iter().for_each(|contact| keep_opening(contact, pair));
     }
     (case.output.fields, case.output.report) = (false, false);
     // Values read from JSON can be written as JSON.

@@ -1,8 +1,9 @@
 //! Resolved case: every default filled in, with bitwise identical results.
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::file::Case;
+use crate::contact::pair::ContactPair;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::model::builder::{Contact, DefaultAlphaT, Friction, default_alpha_t};
@@ -23,6 +24,7 @@ pub fn resolved(case: &Case, model: &Model) -> String {
             if let Some(contact) = case.contacts.get_mut(&pair.name) {
                 let alpha_t = default_alpha_t(contact, model, &case.steps);
                 fill(contact, pair.alpha_n, chosen.as_ref(), alpha_t);
+                keep_opening(contact, pair);
             }
         }
     }
@@ -43,6 +45,27 @@ fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>, default: O
     }
     for choice in &mut contact.along.law {
         choice.friction = with_alpha_t(&choice.friction, default);
+    }
+}
+
+/// Writes the opening over which strength without pressure fades into a contact that leaves it open.
+pub(super) fn keep_opening(contact: &mut Contact, pair: &ContactPair) {
+    if let Some(cohesion) = pair.laws.iter().find_map(|law| law.cohesion.as_ref()) {
+        contact.bond.get_or_insert_default().opening = Some(cohesion.bond().opening());
+    }
+}
+
+/// Writes those openings into a document: they stay as other values vary.
+pub(super) fn keep_openings(document: &mut Value, model: &Model) {
+    for pair in &model.contacts {
+        let chosen = pair.fades.filter(|fades| fades.is_chosen);
+        let cohesion = chosen.and_then(|_| pair.laws.iter().find_map(|law| law.cohesion.as_ref()));
+        let contact = document.get_mut("contacts").and_then(|contacts| contacts.get_mut(&pair.name));
+        let (Some(cohesion), Some(contact)) = (cohesion, contact) else { continue };
+        if !contact["bond"].is_object() {
+            contact["bond"] = Value::Object(Map::new());
+        }
+        contact["bond"]["opening"] = cohesion.bond().opening().into();
     }
 }
 

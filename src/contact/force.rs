@@ -58,25 +58,27 @@ use crate::mesh::configuration::Configuration;
 /// Evaluation of a point's law: first its arguments, then the results of its response.
 #[derive(Debug)]
 pub struct PointEvaluation<'a> {
-    pair: &'a ContactPair,
+    pub(super) pair: &'a ContactPair,
     slave: &'a SlavePoint,
     /// Law of the increment
-    law: &'a ContactLaw,
-    old: &'a ContactState,
-    increment: PointIncrement,
-    place: PointPlace,
-    kinematics: &'a mut Kinematics,
+    pub(super) law: &'a ContactLaw,
+    pub(super) old: &'a ContactState,
+    pub(super) increment: PointIncrement,
+    pub(super) place: PointPlace,
+    pub(super) kinematics: &'a mut Kinematics,
     /// Total slip, including slip before closure [L]
-    whole: f64,
-    alpha_n: f64,
+    pub(super) whole: f64,
+    pub(super) alpha_n: f64,
     /// p if the surfaces open no further than at present [F/L²]
-    free: f64,
+    pub(super) free: f64,
     /// Additional pressure by the opening at p → 0 [F/L²]
     lift: f64,
     /// d/p of slip after closure; `None` where all slip counts [L³/F]
     compliance: Option<f64>,
+    /// δ over which the cohesion of the law fades, within which all slip counts [L]
+    fading: f64,
     /// p for which the law is asked, with the part of it that a fluid in the pores bears [F/L²]
-    asked: f64,
+    pub(super) asked: f64,
     /// Arguments of the law
     pub sliding: Sliding,
 }
@@ -98,7 +100,8 @@ impl<'a> PointEvaluation<'a> {
         let alpha_n = pair.normal_stiffness(increment.during.stiffening);
         let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
         let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
-        let apart = place.closes && !pair.tied && old.apart(pair.touch);
+        let fading = pair.fading(slave);
+        let apart = place.closes && !pair.tied && old.apart(pair.touch + fading);
         let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
         let whole = kinematics.slip;
         let mut loading = Self {
@@ -114,6 +117,7 @@ impl<'a> PointEvaluation<'a> {
             free,
             lift: 0.0,
             compliance,
+            fading,
             asked: 0.0,
             sliding,
         };
@@ -150,7 +154,7 @@ impl<'a> PointEvaluation<'a> {
     /// d at p → 0: a law has no response at 0, but near 0 it no longer changes.
     fn parting(&self) -> Result<f64, LawFailure> {
         let (old, slip) = (&self.old.friction, self.whole * self.counted(0.0).share);
-        let size = old.pressure + old.traction.abs() + (self.alpha_n + self.law.description.stiffness) * slip.abs();
+        let size = old.pressure + old.traction.abs() + (self.alpha_n + self.law.stiffness) * slip.abs();
         if size == 0.0 {
             return Ok(old.opening);
         }
@@ -174,10 +178,10 @@ impl<'a> PointEvaluation<'a> {
     /// derivative of the slip with respect to pressure.
     fn counted(&self, pressure: f64) -> Counted {
         let Some(compliance) = self.compliance else { return Counted { share: 1.0, dslip_dpressure: 0.0 } };
-        let (way, old_gap) = (compliance * pressure, self.old.clearance());
+        let (way, old_gap, within) = (compliance * pressure, self.old.clearance(), self.fading);
         Counted {
-            share: way / (old_gap + way),
-            dslip_dpressure: self.whole * compliance * old_gap / (old_gap + way).powi(2),
+            share: (within + way) / (old_gap + way),
+            dslip_dpressure: self.whole * compliance * (old_gap - within) / (old_gap + way).powi(2),
         }
     }
 
@@ -188,11 +192,18 @@ impl<'a> PointEvaluation<'a> {
     pub fn finish(mut self, answer: Answer, closed: &mut ClosedPoints) -> Result<ContactState, LawFailure> {
         let mut response = self.met(answer?);
         let PointPlace { gap, foot, closes, fluid, .. } = self.place;
+        if !closes && self.place.bonded {
+            return Ok(self.opened(response.state, closed));
+        }
         if !closes {
+            let torn = self.torn();
+            let lost = torn.map_or(0.0, |(_, lost)| lost);
+            response.state.dissipation += lost;
+            let bond = torn.map(|(bond, _)| bond);
             let length = closed.push_open(self.kinematics, fluid).unwrap_or(self.old.length);
             let parted =
                 ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, elastic_slip: 0.0, ..self.old.clone() };
-            return Ok(ContactState { friction: response.state, foot, gap, length, fluid, pores: 0.0, ..parted });
+            return Ok(ContactState { friction: response.state, foot, gap, length, fluid, pores: 0.0, bond, ..parted });
         }
         let (pressure, carried) = (self.agree(&mut response)?, self.asked);
         let (seen, [_, by_pressure]) = (self.effective(pressure)[0], self.effective(carried));
@@ -202,8 +213,9 @@ impl<'a> PointEvaluation<'a> {
         // tractions turn as its own do.
         let at_node = foot.is_some_and(|foot| foot.xi == 1.0) && self.increment.presumption.astride.is_some();
         let promised = self.increment.presumption.promised.filter(|_| !at_node);
+        let held = self.held();
         let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
-        let stiffness = law.description.stiffness;
+        let stiffness = law.stiffness;
         if increment.presumption.presume == Presume::Stick {
             response.state.traction = old.friction.traction + stiffness * sliding.slip;
             response.dtraction_dslip = stiffness;
@@ -221,16 +233,27 @@ impl<'a> PointEvaluation<'a> {
         if touches(pair, clearance, old, increment.presumption.presume) {
             response.dtraction_dslip = stiffness;
         }
+        let bond = held.map_or(0.0, |held| held.response.state.traction);
+        let limited = law.cohesion.is_some() && increment.presumption.presume != Presume::Stick;
+        let limited = limited && law.limit(&old.friction, &mut response, bond);
         kinematics.slip = sliding.slip;
         if kinematics.varied {
             let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
+            let lift = alpha * response.dopening_dslip;
+            if let Some(held) = held.filter(|_| !limited) {
+                let share = compliance.map_or(1.0, |_| counted.share);
+                closed.push_bond(kinematics, held.varies(compliance, [alpha, lift], share));
+            }
             let counted = compliance.map(|_| counted);
-            vary(kinematics, alpha, alpha * response.dopening_dslip, counted, closed);
+            vary(kinematics, alpha, lift, counted, closed);
         }
         let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
         let pores = pressure - seen;
-        closed.push(kinematics, &response, Beside { radiates, fluid, pores }, promised);
+        closed.push(kinematics, &response, Beside { radiates, fluid, pores, bond }, promised);
         let elastic_slip = pair.left_of_stick(law, old, response.state.traction);
+        if let Some(held) = held {
+            held.adds_to(&mut response.state, law.stiffness > 0.0);
+        }
         Ok(ContactState {
             friction: response.state,
             foot,
@@ -244,6 +267,7 @@ impl<'a> PointEvaluation<'a> {
             elastic_slip,
             fluid,
             pores,
+            bond: held.map(|held| held.response.state),
         })
     }
 
@@ -317,6 +341,8 @@ pub struct PointPlace {
     pub foot: Option<MasterPoint>,
     /// Whether it is closed, and has kinematics
     pub closes: bool,
+    /// Whether it may carry tractions where it is open; it has kinematics too
+    pub bonded: bool,
     /// p_w; if it is not 0, the point has kinematics too [F/L²]
     pub fluid: f64,
     /// p_w in the pores of the slave's bodies, at a closed point of a contact whose friction goes by it [F/L²]
@@ -338,13 +364,14 @@ pub fn place(
     let gap = slave.gap(projection.gap, increment.during.fading);
     let closes = closes(pair, slave, gap, old, increment);
     let fluid = pair.fluid_pressure(slave, x, increment.during.time);
-    if closes || fluid != 0.0 {
+    let bonded = pair.reaches(slave, gap, old, increment);
+    if closes || bonded || fluid != 0.0 {
         kinematics(slave, &pair.master, &projection, old.foot, x, k);
         if old.foot.is_none() {
             k.count_from(pair.master.rigid_body(), before, x);
         }
     }
-    PointPlace { gap, foot: Some(projection.foot), closes, fluid, pore_pressure: None }
+    PointPlace { gap, foot: Some(projection.foot), closes, bonded, fluid, pore_pressure: None }
 }
 
 /// Whether a point with this gap carries pressure or is presumed to.

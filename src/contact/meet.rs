@@ -100,14 +100,19 @@ impl ContactPair {
             let given = self.initial.as_ref().map(|initial| initial[k]);
             let InitialTraction { pressure: total, traction } = given.unwrap_or_default();
             let pressure = if self.pores.is_some() { effective(total, self.pore_pressure(k, x))[0] } else { total };
+            let law = self.law(slave);
+            let of_bond = law.share_of_bond(pressure, traction);
             let friction = match self.tied && met.is_none() {
                 true => FrictionState::default(),
-                false => self.law(slave).law.initial_state(pressure, traction),
+                false => law.law.initial_state(pressure, traction - of_bond),
             };
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
             let (gap, foot) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             let multiplier = if self.penetration.is_some() { total } else { 0.0 };
+            let touches = total > 0.0 || gap.is_some_and(|gap| gap <= self.touch);
+            let apart = (!touches).then(|| gap.unwrap_or(f64::INFINITY));
             ContactState {
+                bond: self.bond_at_start(slave, apart, of_bond),
                 elastic_slip: 0.0,
                 friction,
                 foot,
@@ -127,6 +132,7 @@ impl ContactPair {
     /// The states of all points while one of the sides is not there.
     pub fn apart(&self) -> Vec<ContactState> {
         let state = |slave: &SlavePoint| ContactState {
+            bond: self.bond_at_start(slave, Some(f64::INFINITY), 0.0),
             elastic_slip: 0.0,
             friction: self.law(slave).law.initial_state(0.0, 0.0),
             foot: None,

@@ -10,6 +10,7 @@
 //! right-handed. The gap g = (x_slave − x_m)·n is positive when open, the pressure p positive in compression, and
 //! the traction on the slave is t = p n − q s.
 
+mod bonded;
 pub mod depth;
 pub mod dual;
 pub mod force;

@@ -37,8 +37,10 @@ pub struct Closed<'a> {
     pub fluid: &'a [f64],
     /// p and q
     pub tractions: Tractions,
-    /// Whether the point is open and only a fluid acts
+    /// Whether the point is open, and a fluid or a bond acts
     pub is_open: bool,
+    /// Whether a bond acts over its gap
+    pub is_bonded: bool,
 }
 
 /// Actions at a point in addition to pressure and friction.
@@ -50,6 +52,8 @@ pub(super) struct Beside {
     pub fluid: f64,
     /// Part of the contact pressure that friction does not see
     pub pores: f64,
+    /// q_b of a bond
+    pub bond: f64,
 }
 
 impl Closed<'_> {
@@ -76,6 +80,8 @@ pub struct ClosedPoints {
     fluid: Vec<f64>,
     /// δ(t ℓ) of the current point, its two components
     rows: [Vec<f64>; 2],
+    /// δq_b of the current point; empty without a bond
+    bond: Vec<f64>,
 }
 
 /// Position of a closed point in the lists of nodes, rows and tangents.
@@ -83,6 +89,7 @@ pub struct ClosedPoints {
 struct Place {
     tractions: Tractions,
     is_open: bool,
+    is_bonded: bool,
     /// First node, and number of nodes
     nodes: [usize; 2],
     /// Start of its tangent
@@ -100,7 +107,7 @@ impl ClosedPoints {
 
     /// Returns the contribution of a point, if it is closed.
     pub fn get(&self, point: usize) -> Option<Closed<'_>> {
-        let Place { tractions, is_open, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
+        let Place { tractions, is_open, is_bonded, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
         let dofs = 2 * first..2 * (first + count);
         let varied =
             |values: &'_ [f64]| -> std::ops::Range<usize> { if values.is_empty() { 0..0 } else { dofs.clone() } };
@@ -114,6 +121,7 @@ impl ClosedPoints {
             fluid: self.fluid.get(dofs.clone()).unwrap_or_default(),
             tractions,
             is_open,
+            is_bonded,
         })
     }
 
@@ -127,10 +135,21 @@ impl ClosedPoints {
             self.push_dpressure(k, [0.0; 2]);
         }
         self.push(k, &FrictionResponse::default(), Beside { fluid, ..Beside::default() }, None);
-        if let Some(Some(place)) = self.points.last_mut() {
-            place.is_open = true;
-        }
+        self.leave_open(false);
         Some(k.length)
+    }
+
+    /// Marks the last point as an open one, with a bond or under the pressure of a fluid.
+    pub(super) fn leave_open(&mut self, is_bonded: bool) {
+        if let Some(Some(place)) = self.points.last_mut() {
+            (place.is_open, place.is_bonded) = (true, is_bonded);
+        }
+    }
+
+    /// Sets δq_b = a δg + b δΔu_t of the next point.
+    pub(super) fn push_bond(&mut self, k: &Kinematics, [by_gap, by_slip]: [f64; 2]) {
+        self.bond.clear();
+        self.bond.extend(k.dgap.iter().zip(&k.dslip).map(|(dgap, dslip)| dgap * by_gap + dslip * by_slip));
     }
 
     /// Adds a closed point: nodal forces of the traction and their derivative, which is exact unless tractions are predicted or
@@ -140,15 +159,16 @@ impl ClosedPoints {
         &mut self,
         k: &Kinematics,
         response: &FrictionResponse,
-        Beside { radiates, fluid, pores }: Beside,
+        Beside { radiates, fluid, pores, bond }: Beside,
         promised: Option<Tractions>,
     ) {
         let FrictionState { pressure, traction, .. } = response.state;
-        let tractions = Tractions { pressure: pressure + pores, traction };
+        let tractions = Tractions { pressure: pressure + pores, traction: traction + bond };
         let whole = |of: Tractions| Tractions { pressure: of.pressure + fluid, traction: of.traction + radiates[0] };
         self.points.push(Some(Place {
             tractions,
             is_open: false,
+            is_bonded: false,
             nodes: [self.nodes.len(), k.nodes.len() + k.behind.len()],
             tangent: self.tangent.len(),
         }));
@@ -192,13 +212,15 @@ impl ClosedPoints {
     }
 
     fn push_tangent(&mut self, k: &Kinematics, response: &FrictionResponse, damping: f64, promised: Tractions) {
-        let Self { tangent, dpressure, dtraction, rows, .. } = self;
+        let Self { tangent, dpressure, dtraction, rows, bond, .. } = self;
         let (dofs, all) = (2 * k.nodes.len(), 2 * (k.nodes.len() + k.behind.len()));
         let dpressure = &dpressure[dtraction.len()..];
         let first = dtraction.len();
         let by = |(dslip, dp): (&f64, &f64)| dslip * response.dtraction_dslip + dp * response.dtraction_dpressure;
         dtraction.extend(k.dslip.iter().zip(dpressure).map(by));
         dtraction.extend(k.dpores.iter().map(|dpores| -dpores * response.dtraction_dpressure));
+        dtraction[first..].iter_mut().zip(&*bond).for_each(|(dtraction, dbond)| *dtraction += dbond);
+        bond.clear();
         let dtraction = &dtraction[first..];
         let force = turned(k, promised);
         for (i, row) in rows.iter_mut().enumerate() {
@@ -304,7 +326,7 @@ impl ContactPair {
 
     /// Closed points with their kinematics and tractions.
     fn acting(&self, states: &[ContactState], x: &Configuration) -> Vec<Acting> {
-        let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].is_closed()).collect();
+        let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].acts()).collect();
         if closed.is_empty() {
             return Vec::new();
         }

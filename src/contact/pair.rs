@@ -34,7 +34,7 @@ pub use super::point::{ContactIncrement, Presumption};
 use super::pores::Pores;
 use super::small_sliding::SmallSliding;
 use super::surface::SlavePoint;
-use crate::laws::friction::{ContactLaw, Description, FrictionState, LawFailure, Regime, Sliding, observables};
+use crate::laws::friction::{Cohesion, ContactLaw, LawFailure, Regime, Sliding, observables};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::rigid::RigidBody;
 
@@ -88,12 +88,23 @@ pub struct ContactPair {
     pub unseen: Vec<SlavePoint>,
     /// G*: G/(1 − ν) of both sides, the stiffness against slip that varies along the interface; 0 without bodies [F/L²]
     pub modulus: f64,
+    /// What the opening is measured by over which strength without pressure fades, if there is any
+    pub fades: Option<Fades>,
     /// Body of the slave's edges at its first point; for a point group, the only body there, if there is one
     pub body: Option<usize>,
     /// Bodies of the slave and of the master
     pub bodies: [Vec<usize>; 2],
     /// Constant operators of the points in small sliding
     pub small: Option<SmallSliding>,
+}
+
+/// What the opening is measured by over which strength without pressure fades.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fades {
+    /// h/E: longest edge of the slave over the lower modulus of both sides [L³/F]
+    pub flexibility: f64,
+    /// Whether it was chosen by that, and not given
+    pub is_chosen: bool,
 }
 
 /// Nodes of both surfaces as points, and the slave as a master: what may enter the other side between the points of the slave.
@@ -197,8 +208,9 @@ impl ContactPair {
     }
 
     /// Observable of a point's law by name, for a state at a time; NaN where its parameters are invalid then.
-    pub fn observed(&self, slave: &SlavePoint, name: &str, state: &FrictionState, time: f64) -> f64 {
-        self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
+    pub fn observed(&self, slave: &SlavePoint, name: &str, state: &ContactState, time: f64) -> f64 {
+        let of_law = || self.ask_law(slave, [time, time], |law| law.observe(name, &state.friction));
+        self.observed_of_bond(slave, name, state).unwrap_or_else(|| of_law().unwrap_or(f64::NAN))
     }
 
     /// Open, stick or slip. Without friction nothing sticks: a closed point slips, at rest as well.
@@ -212,20 +224,28 @@ impl ContactPair {
     /// Largest gap and elastic slip of a closed point that the multipliers of a pass leave, over the ones allowed; 0 for the plain
     /// penalty.
     pub fn excess(&self, trial: &[ContactState]) -> [f64; 2] {
-        let closed = || trial.iter().filter(|state| state.is_closed());
-        let over = |allowed: Option<f64>, left: fn(&ContactState) -> f64| {
+        let acting = || trial.iter().filter(|state| state.acts());
+        let over = |allowed: Option<f64>, left: &dyn Fn(&ContactState) -> f64| {
             let Some(allowed) = allowed else { return 0.0 };
-            closed().map(|state| left(state).abs() / allowed).fold(0.0, f64::max)
+            acting().map(|state| left(state).abs() / allowed).fold(0.0, f64::max)
         };
-        [over(self.penetration, ContactState::clearance), over(self.stick, |state| state.elastic_slip)]
+        // The opening of an open point is short of its gap by what a multiplier presses.
+        let gap = |state: &ContactState| match state.is_closed() {
+            true => state.clearance(),
+            false => state.multiplier / self.alpha_n,
+        };
+        let slip = |state: &ContactState| {
+            state.bond.map_or(state.elastic_slip, |bond| state.elastic_slip.abs().max(bond.elastic_slip.abs()))
+        };
+        [over(self.penetration, &gap), over(self.stick, &slip)]
     }
 
     /// e = e₀ + (q − q₀)/α_t at the end of an increment that starts with the traction q₀; 0 for the plain penalty, and where
     /// elastic slip is a part of the law [L].
     pub fn left_of_stick(&self, law: &ContactLaw, old: &ContactState, traction: f64) -> f64 {
-        let Description { stiffness, stiffness_is_penalty, .. } = law.description;
+        let (stiffness, is_penalty) = (law.stiffness, law.stiffness > 0.0 && law.description.stiffness_is_penalty);
         match self.stick {
-            Some(_) if stiffness_is_penalty => old.elastic_slip + (traction - old.friction.traction) / stiffness,
+            Some(_) if is_penalty => old.elastic_slip + (traction - old.friction.traction) / stiffness,
             _ => 0.0,
         }
     }
@@ -308,7 +328,7 @@ impl ContactPair {
         dt: f64,
     ) -> Result<Option<Arrival>, LawFailure> {
         let pressure = now.friction.pressure;
-        if pressure <= 0.0 || !old.apart(self.touch) {
+        if pressure <= 0.0 || !old.apart(self.touch + self.fading(slave)) {
             return Ok(None);
         }
         let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;
@@ -320,7 +340,8 @@ impl ContactPair {
         };
         let mut doubt = 0.0f64;
         for slip in [now.slip, now.slip - free] {
-            doubt = doubt.max((respond(slip)?.state.traction - now.friction.traction).abs() * now.length);
+            let of_bond = self.bond_off(slave, [old, now], slip);
+            doubt = doubt.max((respond(slip)?.state.traction - now.friction.traction + of_bond).abs() * now.length);
         }
         if !self.law(slave).description.opening.is_empty() {
             let way = self.compliance_after_touch(true) * pressure;
@@ -342,7 +363,11 @@ impl ContactPair {
         let again = |(slave, (old, new)): (&SlavePoint, (&ContactState, &ContactState))| {
             let mut again = old.clone();
             again.multiplier = if self.penetration.is_some() { new.contact_pressure() } else { 0.0 };
-            again.friction.traction += self.law(slave).description.stiffness * new.elastic_slip;
+            let law = self.law(slave);
+            again.friction.traction += law.stiffness * new.elastic_slip;
+            if let (Some(Cohesion::Beside(law)), Some(again), Some(new)) = (&law.cohesion, &mut again.bond, &new.bond) {
+                again.traction += law.stiffness() * new.elastic_slip;
+            }
             again
         };
         points.map(again).collect()
@@ -350,11 +375,13 @@ impl ContactPair {
 
     /// Elastic part of the slip, q/α_t, or what of it multipliers leave; 0 for a frictionless contact [L].
     pub fn elastic_slip(&self, slave: &SlavePoint, state: &ContactState) -> f64 {
-        let Description { stiffness, stiffness_is_penalty, .. } = self.law(slave).description;
+        let ContactLaw { stiffness, description, .. } = self.law(slave);
+        let stiffness = *stiffness;
+        let is_penalty = description.stiffness_is_penalty;
         match stiffness > 0.0 {
-            true if stiffness_is_penalty && self.stick.is_some() => state.elastic_slip,
+            true if is_penalty && self.stick.is_some() => state.elastic_slip,
             true => state.friction.traction / stiffness,
-            false => 0.0,
+            false => self.elastic_slip_of_bond(slave, state),
         }
     }
 
@@ -478,8 +505,8 @@ pub fn field_values(pair: &ContactPair, states: &[ContactState], time: f64, dt: 
         let friction = &state.friction;
         match name {
             "gap" => state.gap,
-            "pressure" => friction.pressure,
-            "traction" => friction.traction,
+            "pressure" => friction.pressure - state.tension(),
+            "traction" => state.shear(),
             "slip" => friction.plastic_slip,
             "elastic_slip" => pair.elastic_slip(slave, state),
             "total_slip" => friction.plastic_slip + pair.elastic_slip(slave, state),
@@ -491,7 +518,7 @@ pub fn field_values(pair: &ContactPair, states: &[ContactState], time: f64, dt: 
                 Regime::Stick | Regime::Tied => 1.0,
                 Regime::Slip => 2.0,
             },
-            _ => pair.observed(slave, name, friction, time),
+            _ => pair.observed(slave, name, state, time),
         }
     };
     pair.points.iter().zip(states).map(value).collect()

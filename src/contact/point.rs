@@ -15,7 +15,7 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use crate::laws::friction::{FrictionState, Regime};
+use crate::laws::friction::{BondState, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::few::Few;
 use crate::mesh::shape;
@@ -246,6 +246,8 @@ pub struct ContactState {
     pub fluid: f64,
     /// Part of the contact pressure that the fluid in the pores of a body bears, beside that of friction's state [F/L²]
     pub pores: f64,
+    /// Memory of a bond beside friction, in a contact that has one
+    pub bond: Option<BondState>,
 }
 
 impl ContactState {
@@ -259,9 +261,29 @@ impl ContactState {
         self.friction.pressure + self.pores
     }
 
-    /// p and q + η v: tractions between the surfaces, friction and radiation damping together [F/L²]
+    /// q of friction and a bond together [F/L²]
+    pub fn shear(&self) -> f64 {
+        self.bond.map_or(self.friction.traction, |bond| self.friction.traction + bond.traction)
+    }
+
+    /// T of a bond [F/L²]
+    pub fn tension(&self) -> f64 {
+        self.bond.map_or(0.0, |bond| bond.tension)
+    }
+
+    /// p − T and q + η v: tractions between the surfaces, friction, a bond and radiation damping together [F/L²]
     pub fn tractions(&self) -> [f64; 2] {
-        [self.friction.pressure, self.friction.traction + self.radiation]
+        [self.friction.pressure - self.tension(), self.shear() + self.radiation]
+    }
+
+    /// Whether surfaces that are open carry tractions over their gap.
+    pub fn carries_open(&self) -> bool {
+        !self.is_closed() && (self.shear() != 0.0 || self.tension() != 0.0)
+    }
+
+    /// Whether any traction acts between the surfaces.
+    pub fn acts(&self) -> bool {
+        self.is_closed() || self.carries_open()
     }
 
     /// Whether a point is open by more than [`ContactPair::touch`](super::pair::ContactPair::touch).
@@ -363,7 +385,7 @@ pub struct Tractions {
 impl Tractions {
     /// Returns the tractions of a state, with all of its contact pressure.
     pub fn of(state: &ContactState) -> Self {
-        Self { pressure: state.contact_pressure(), traction: state.friction.traction }
+        Self { pressure: state.contact_pressure() - state.tension(), traction: state.shear() }
     }
 
     /// Scales both by one factor, so that the pressure does not exceed a limit.

@@ -333,5 +333,12 @@ fn averaged(
     let Some(Meeting { gap, foot }) = meeting else { return PointPlace::default() };
     let gap = slave.gap(gap, increment.during.fading);
     let fluid = pair.fluid_pressure(slave, x, increment.during.time);
-    PointPlace { gap, foot: Some(foot), closes: closes(pair, slave, gap, old, increment), fluid, pore_pressure: None }
+    PointPlace {
+        gap,
+        foot: Some(foot),
+        closes: closes(pair, slave, gap, old, increment),
+        bonded: pair.reaches(slave, gap, old, increment),
+        fluid,
+        pore_pressure: None,
+    }
 }

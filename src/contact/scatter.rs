@@ -68,7 +68,7 @@ impl Course {
             });
             least.sum::<f64>()
         };
-        let [p, q] = [alternates(&|state| state.friction.pressure), alternates(&|state| state.friction.traction)];
+        let [p, q] = [alternates(&|state| state.friction.pressure), alternates(&ContactState::shear)];
         if sum > 0.0 { (p.max(q) / count).sqrt() / (sum / count) } else { 0.0 }
     }
 }

@@ -5,8 +5,9 @@ use super::trial::Trial;
 use crate::contact::force::ContactState;
 use crate::contact::pair::{BadPressure, ContactIncrement, ContactPair, InitialTraction, Presumption};
 use crate::contact::response::{LastAnswers, PairResponse};
+use crate::contact::surface::SlavePoint;
 use crate::equations::sums::TrialFailure;
-use crate::laws::friction::Description;
+use crate::laws::friction::Cohesion;
 use crate::linear::system::Request;
 use crate::model::Model;
 
@@ -100,17 +101,21 @@ impl Springs {
         for (k, (point, state)) in pair.points.iter().zip(states).enumerate() {
             let length = state.length;
             let start = pair.initial.as_ref().map_or(InitialTraction::default(), |initial| initial[k]);
-            let Description { stiffness, stiffness_is_penalty, .. } = pair.law(point).description;
+            let law = pair.law(point);
+            let (stiffness, stiffness_is_penalty) = (law.stiffness, law.description.stiffness_is_penalty);
             let clearance = if state.is_closed() { state.clearance() } else { 0.0 };
             let normal = |clearance: f64| 0.5 * pair.alpha_n * clearance.powi(2);
             let tangential = |slip: f64| 0.5 * stiffness * slip.powi(2);
             let slip = pair.elastic_slip(point, state);
-            springs.stored += length * (normal(clearance) + tangential(slip));
+            let held_by_bond = of_bond(pair, point, state, 0.0);
+            springs.stored += length * (normal(clearance) + tangential(slip) + held_by_bond);
             if !state.is_closed() {
+                springs.changed += length * (tangential(slip) + held_by_bond);
                 continue;
             }
             let [given, held] = [pair.penetration, pair.stick].map(|allowed| allowed.is_none());
-            let [pressure, traction] = [start.pressure, start.traction];
+            let bonded = if held { law.share_of_bond(start.pressure, start.traction) } else { 0.0 };
+            let [pressure, traction] = [start.pressure, start.traction - bonded];
             let clearance = clearance + if given { pressure / pair.alpha_n } else { 0.0 };
             let slip = slip - if held && stiffness > 0.0 { traction / stiffness } else { 0.0 };
             let changed = [normal(clearance), tangential(slip)].map(|energy| length * energy);
@@ -119,11 +124,25 @@ impl Springs {
             if stiffness_is_penalty {
                 springs.numerical[1] += changed[1];
             }
+            let of_bond = length * of_bond(pair, point, state, bonded);
+            springs.changed += of_bond;
+            springs.numerical[1] += of_bond;
         }
         if pair.initial.is_none() {
             springs.changed = springs.stored;
         }
         springs
+    }
+}
+
+/// Energy stored in a bond beside friction, q_b²/2α_c + T w/2, with the traction since some start [F/L].
+fn of_bond(pair: &ContactPair, point: &SlavePoint, state: &ContactState, start: f64) -> f64 {
+    match (&pair.law(point).cohesion, state.bond) {
+        (Some(Cohesion::Beside(law)), Some(bond)) => {
+            let slip = pair.elastic_slip_of_bond(point, state) - start / law.stiffness();
+            0.5 * (law.stiffness() * slip * slip + bond.tension * bond.opening)
+        }
+        _ => 0.0,
     }
 }
 

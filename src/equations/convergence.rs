@@ -147,7 +147,7 @@ impl ConvergenceCriterion {
             let alpha_n = pair.normal_stiffness(trial.stiffening);
             for (point, (state, closed)) in responses.numbered() {
                 let edge = self.edges[k].at(point, state);
-                let stiffness = if closed.is_open { 0.0 } else { alpha_n };
+                let stiffness = if closed.is_open && !closed.is_bonded { 0.0 } else { alpha_n };
                 let squared = (stiffness * state.length).powi(2);
                 for (a, &node) in closed.nodes.iter().enumerate() {
                     // A node behind the surface has a part in friction, but bears no force of it.

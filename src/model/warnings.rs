@@ -11,7 +11,7 @@ use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::{BothSurfaces, ContactPair};
 use crate::contact::surface::{Segment, SlavePoint, Surface};
-use crate::laws::friction::{ContactLaw, Description};
+use crate::laws::friction::{Bond, ContactLaw, Description};
 use crate::mesh::shape::ElementKind;
 use crate::mesh::{Element, Mesh};
 use crate::model::method::{self, Chosen, Method};
@@ -34,8 +34,11 @@ impl Model {
                 false => Gaps::of(self, pair).warnings(),
             };
             let further = faces_away(self, pair).into_iter().chain(friction_of_total_pressure(self, pair));
-            let further =
-                further.chain(isolated_pressure(self, pair)).chain(facets_of_a_fit(self, pair)).chain(truncated(pair));
+            let further = further
+                .chain(isolated_pressure(self, pair))
+                .chain(facets_of_a_fit(self, pair))
+                .chain(truncated(pair))
+                .chain(fragile(pair));
             warnings
                 .into_iter()
                 .chain(further)
@@ -104,6 +107,39 @@ fn faces_away(model: &Model, pair: &ContactPair) -> Option<String> {
             number(at.y)
         )
     })
+}
+
+/// Least opening over which strength fades, over c h/E: below, an element at an end that opens gives way at once [-]
+const SNAPS: f64 = 1.5;
+
+/// Least slip over which a bond softens, over (c − c_r) h/E [-]
+const SNAPS_BACK: f64 = 4.0;
+
+/// Warns of strength without pressure that falls faster, over an opening or by slip, than an element follows.
+fn fragile(pair: &ContactPair) -> impl Iterator<Item = String> {
+    let flexibility = pair.fades.map_or(0.0, |fades| fades.flexibility);
+    let bonds: Vec<&Bond> = pair.laws.iter().filter_map(|law| Some(law.cohesion.as_ref()?.bond())).collect();
+    let least = |share: f64, of: fn(&Bond) -> [f64; 2]| {
+        let fast = bonds.iter().map(|bond| of(bond)).map(|[length, fall]| (length, share * fall * flexibility));
+        fast.filter(|(length, least)| length < least).max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let opening = least(SNAPS, |bond| [bond.opening(), bond.strength()]).map(|(opening, least)| {
+        format!(
+            "its strength without pressure fades over the opening {}, below 1.5 c h/E = {}: where an end of the contact opens, an element may \
+             give way at once, at which static steps stop; give a longer `bond.opening`, or finer edges, or take a step with inertia",
+            number(opening),
+            number(least)
+        )
+    });
+    let slip = least(SNAPS_BACK, |bond| [bond.slip(), bond.strength() - bond.residual()]).map(|(slip, least)| {
+        format!(
+            "its bond softens over the slip {}, below 4 (c − c_r) h/E = {}: an element may snap back as it slips, at which static steps stop; \
+             give a longer `bond.slip`, or finer edges, or take a step with inertia or `rupture`",
+            number(slip),
+            number(least)
+        )
+    });
+    opening.into_iter().chain(slip)
 }
 
 /// Coefficient of friction that stands for none in a law that goes by cohesion alone [-]

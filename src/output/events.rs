@@ -90,7 +90,7 @@ impl Mark {
     /// Slip, traction and work of a contact point.
     pub fn of(state: &ContactState) -> Self {
         let friction = &state.friction;
-        Self { slip: friction.plastic_slip, traction: friction.traction, work: friction.dissipation }
+        Self { slip: friction.plastic_slip, traction: state.shear(), work: friction.dissipation }
     }
 }
 
@@ -367,7 +367,7 @@ impl ContactPoints {
         }
         let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
         for ((point, (mark, rate)), (slave, state)) in points {
-            let observed = |name| pair.observed(slave, name, &state.friction, after.time);
+            let observed = |name| pair.observed(slave, name, state, after.time);
             let signal = match criterion.arrival {
                 None => rate.abs(),
                 Some(ArrivalInput::R(_)) => observed("R"),

@@ -215,11 +215,15 @@ fn contact_row(pair: &ContactPair, states: &[ContactState], x: Option<&Configura
     let (mut penetration, mut largest_elastic, mut elastic) = (0.0f64, 0.0f64, 0.0);
     for (point, state) in pair.points.iter().zip(states) {
         let (friction, length) = (&state.friction, state.length);
+        if !state.acts() {
+            continue;
+        }
+        let [pressure, traction] = state.tractions();
+        normal += length * pressure;
+        tangential += length * traction;
         if state.regime() == Regime::Open {
             continue;
         }
-        normal += length * friction.pressure;
-        tangential += length * state.tractions()[1];
         closed += length;
         slipping += if pair.regime(point, state) == Regime::Slip { length } else { 0.0 };
         slip += length * friction.plastic_slip;
@@ -240,7 +244,7 @@ fn contact_row(pair: &ContactPair, states: &[ContactState], x: Option<&Configura
 fn mean(pair: &ContactPair, states: &[ContactState], time: f64, name: &str) -> f64 {
     let (mut sum, mut closed) = (0.0, 0.0);
     for (point, state) in pair.points.iter().zip(states).filter(|(_, state)| state.regime() != Regime::Open) {
-        sum += state.length * pair.observed(point, name, &state.friction, time);
+        sum += state.length * pair.observed(point, name, state, time);
         closed += state.length;
     }
     if closed > 0.0 { sum / closed } else { 0.0 }

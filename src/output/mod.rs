@@ -24,6 +24,7 @@ cfg_if::cfg_if! {
         pub mod history;
         pub mod instability;
         pub mod scattered;
+mod unpressed;
         pub mod store;
         pub mod law;
         pub mod newton_log;

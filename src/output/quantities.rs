@@ -257,14 +257,16 @@ pub const PLACE: [Quantity; 4] = [
 ];
 
 const GAP: Quantity = q("gap", LENGTH, "g: gap of the surfaces, positive when open");
-const PRESSURE: Quantity = q("pressure", STRESS, "p: contact pressure, positive in compression");
-const TRACTION: Quantity = q("traction", STRESS, "q: friction traction, resisting positive slip");
+const PRESSURE: Quantity =
+    q("pressure", STRESS, "p: contact pressure, positive in compression; negative where a bond pulls");
+const TRACTION: Quantity = q("traction", STRESS, "q: traction of friction and a bond, resisting positive slip");
 const SLIP: Quantity = q("slip", LENGTH, "plastic slip so far, positive along the tangent of the master");
 const ELASTIC_SLIP: Quantity = q("elastic_slip", LENGTH, "q/α_t");
 const TOTAL_SLIP: Quantity = q("total_slip", LENGTH, "plastic and elastic slip, slip + q/α_t");
 const SLIP_RATE: Quantity =
     q("slip_rate", VELOCITY, "plastic slip since the increment or row before over the time since");
-const RATIO: Quantity = q("R", NONE, "|q|/(μ p): traction over its peak; 0 without friction");
+const RATIO: Quantity =
+    q("R", NONE, "|q|/(μ p): traction of friction over its peak; of a bond without friction beside it |q|/s; else 0");
 const MU: Quantity = q("mu", NONE, "μ: peak friction coefficient available now; 0 without friction");
 const STRUCTURE: Quantity = q("structure", NONE, "1/R*: degree of structure; 1 where a law has none");
 const STATE: Quantity =
@@ -279,11 +281,16 @@ pub const IN_FRAMES: [Quantity; 11] =
 pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
 
 /// Quantities at the points of some contacts, in both; names of other internal variables and observables come from their law.
-pub const OF_SOME: [Quantity; 4] = [
+pub const OF_SOME: [Quantity; 5] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
     q("dilation", LENGTH, "opening by dilatancy"),
     q("wear", LENGTH, "depth of wear"),
     q("fluid_pressure", STRESS, "p_w: pressure of the fluid, in addition to the contact pressure"),
+    q(
+        "bond",
+        NONE,
+        "1 − κ: what is left of a bond's strength above its residual, and of its tension; 1 before any damage",
+    ),
 ];
 
 /// Names of quantities of the store in earlier versions, with their present names.

@@ -18,6 +18,7 @@ use super::depths;
 use super::few_edges::FewEdges;
 use super::instability::Instability;
 use super::scattered::Scattered;
+use super::unpressed::Unpressed;
 use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Shape};
 use crate::contact::pair::ContactPair;
@@ -68,6 +69,8 @@ pub struct Warnings {
     scattered: Scattered,
     /// Contacts that are closed on few edges
     few_edges: FewEdges,
+    /// Shear that open points carry
+    unpressed: Unpressed,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -115,6 +118,7 @@ impl Observer for Warnings {
         self.coarse.record(model, attempt, state, &x);
         self.scattered.record(model, attempt, state);
         self.few_edges.record(model, attempt, state, &x);
+        self.unpressed.record(model, state);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
@@ -162,6 +166,7 @@ impl Observer for Warnings {
         self.list.extend(self.coarse.tell());
         self.list.extend(self.scattered.tell());
         self.list.extend(self.few_edges.tell());
+        self.list.extend(self.unpressed.tell());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()
@@ -250,7 +255,7 @@ impl Warnings {
         if self.closed.contains(&number) || pair.is_own() {
             return;
         }
-        if states.iter().any(ContactState::is_closed) {
+        if states.iter().any(ContactState::acts) {
             self.closed.insert(number);
             self.open.remove(&number);
             return;

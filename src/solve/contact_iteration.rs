@@ -403,7 +403,8 @@ impl Slipping {
         let slip = friction.plastic_increment;
         let slips = friction.regime == Regime::Slip;
         // A point closed only by a prediction has a negative pressure.
-        let strength = (friction.traction / friction.pressure).abs() * (promised.pressure - state.pores);
+        let of_bond = state.bond.map_or(0.0, |bond| bond.traction.abs());
+        let strength = (friction.traction / friction.pressure).abs() * (promised.pressure - state.pores) + of_bond;
         // A point that slips below its strength would also slip with these tractions, unless they are far lower or the slip
         // abates.
         let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };

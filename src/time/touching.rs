@@ -109,7 +109,7 @@ impl Touching {
             let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.time, new.dt);
             let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
             let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
-            let force = |state: &ContactState| state.contact_pressure().hypot(state.friction.traction) * state.length;
+            let force = |state: &ContactState| state.contact_pressure().hypot(state.shear()) * state.length;
             self.forces[k] = self.forces[k].max(new.contacts[k].iter().map(force).sum());
             let all: f64 = arrivals.iter().map(|arrival| arrival.doubt).sum();
             if all > 0.0 {

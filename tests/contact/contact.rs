@@ -78,6 +78,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         truncated: BTreeMap::new(),
         initial: None,
         unseen: Vec::new(),
+        fades: None,
         modulus: 0.0,
         both: None,
         body: None,
@@ -223,6 +224,7 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
 fn committed(friction: FrictionState, foot: MasterPoint, gap: f64) -> ContactState {
     let (foot, slip, radiation, radiated) = (Some(foot), 0.0, 0.0, 0.0);
     ContactState {
+        bond: None,
         friction,
         foot,
         length: 1.0,
@@ -623,6 +625,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
                 let old = vec![
                     ContactState {
+                        bond: None,
                         friction,
                         foot,
                         length: 1.0,
@@ -785,6 +788,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         let before = Configuration::new(&x, &aside);
         let friction = pair.laws[0].law.initial_state(0.0, 0.0);
         let old = ContactState {
+            bond: None,
             friction,
             foot: None,
             length: 1.0,
@@ -1054,6 +1058,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
     let old = ContactState {
+        bond: None,
         friction: pressed,
         foot: Some(MasterPoint { segment: 0, xi: 0.9 }),
         length: 1.0,
@@ -1286,4 +1291,60 @@ fn a_search_from_any_segment_finds_the_first_of_the_nearest() {
             }
         }
     }
+}
+
+/// Points that are open and carry shear and tension, and bonds at closed ones, whatever slip counts: the tangent is that of differences.
+#[test]
+fn tangent_equals_differences_over_a_gap() {
+    use fecontact::laws::friction::{BondParameters, BondState, BondSurfaces, ContactLaw};
+    let (edges, mut x) = wavy();
+    let bonded = |law: &str, bond: BondParameters| -> ContactLaw {
+        let law = serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("in range");
+        ContactLaw::from(law).bonded(&bond, BondSurfaces::new(1000.0, 700.0, 0.0)).expect("in range")
+    };
+    let own = BondParameters::default().opening(0.3);
+    let beside = BondParameters::new(20.0).residual(12.0).opening(0.3);
+    let laws = [
+        (r#"{"law": "adhesion", "strength": 15}"#, own, "own"),
+        (r#"{"law": "slip_weakening", "mu_s": 0.4, "mu_d": 0.2, "D_c": 0.1, "cohesion": 15}"#, own, "own, weakening"),
+        (FRICTIONLESS, beside, "alone"),
+        (COULOMB, beside.slip(0.5).tension(8.0), "beside"),
+        (COULOMB, beside.slip(0.5).tension(8.0).limit(21.0), "limited"),
+        (SUPER, beside.slip(0.5), "beside super/subloading"),
+    ];
+    let (mut open, mut closed) = (0, 0);
+    for lifted in [0.0, 0.12] {
+        x[6..].iter_mut().for_each(|slave| slave.y += lifted);
+        for (law, bond, what) in laws {
+            let points = gauss_points(&[vec![6, 7], vec![7, 8]], 3);
+            let plain = pair(points, Master::Mesh(Surface::new(&edges)), COULOMB);
+            let pair = ContactPair { laws: vec![Arc::new(bonded(law, bond))], radiation: 150.0, ..plain };
+            for k in 0..pair.points.len() {
+                for (back, gap) in [(1e-4, -0.02), (0.01, -0.02), (0.3, -0.02), (-0.3, 0.02), (0.02, 0.1), (0.3, 0.6)] {
+                    let start = pair.laws[0].law.initial_state(0.0, 0.0);
+                    let friction = match gap < 0.0 {
+                        true => FrictionState { traction: 2.0, pressure: 20.0, ..start },
+                        false if bond == own && gap < 0.3 => FrictionState { traction: 2.0, ..start },
+                        false => start,
+                    };
+                    let old = pulled(&pair, k, &x, back, friction, gap);
+                    let memory = BondState {
+                        traction: if gap < 0.3 { 3.0 } else { 0.0 },
+                        opened: f64::max(0.05, gap).min(0.2),
+                        opening: gap.max(0.0),
+                        slip: 0.02,
+                        ..BondState::default()
+                    };
+                    let old = ContactState { bond: (bond != own).then_some(memory), ..old };
+                    let (state, contribution) = evaluate(&pair, k, &old, &x);
+                    if contribution.is_none() {
+                        continue;
+                    }
+                    *(if state.is_closed() { &mut closed } else { &mut open }) += 1;
+                    check_tangent(&pair, k, &old, &x, &format!("{what}, slip {back} from {gap}, lifted {lifted}"));
+                }
+            }
+        }
+    }
+    assert!(open > 50 && closed > 50, "{open} open and {closed} closed points were tested");
 }

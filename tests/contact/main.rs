@@ -4,6 +4,7 @@
 mod common;
 
 mod along;
+mod bonds;
 mod contact;
 mod corners;
 mod faces;

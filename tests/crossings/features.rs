@@ -57,6 +57,7 @@ pub const SLOTS: &[Slot] = &[
     ("varying", &[("no", 4), ("by_place", 1), ("in_time", 2), ("by_part", 1), ("random", 1)]),
     ("dilatancy", &[("no", 6), ("free", 1), ("limited", 1), ("structure", 1)]),
     ("wear", OPTION),
+    ("bond", &[("no", 14), ("shear", 1), ("softens", 1), ("pulls", 1), ("limited", 1)]),
     ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1), ("by_place", 1), ("of_bodies", 1)]),
     ("radiation", &[("no", 6), ("given", 1), ("of_bodies", 1)]),
     ("shrink_fit", OPTION),
@@ -226,6 +227,13 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &["friction:coulomb", "friction:slip_weakening", "friction:rate_and_state", "friction:registered"],
         "only super/subloading friction has structure",
     ),
+    (
+        &["bond"],
+        &["friction:adhesion", "friction:prescribed", "friction:registered"],
+        "the cohesion of the law itself, or none",
+    ),
+    (&["bond"], &["master:itself", "shrink_fit"], "surfaces that lie apart or overlap at first"),
+    (&["bond:limited"], &["dilatancy", "wear"], "slip at the limit neither opens nor wears"),
     (&["dilatancy", "wear"], &["shrink_fit"], "an overlap that wears away while it is brought in"),
     (
         &["massless"],
@@ -309,6 +317,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &[
             "dilatancy",
             "wear",
+            "bond",
             "fluid",
             "press:pressure",
             "press:plate",

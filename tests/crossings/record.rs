@@ -325,6 +325,7 @@ fn form(column: &str, header: &[&str]) -> Form {
         "slip_fraction" | "contact_length" => Form::Scalar(Kind::Share),
         "mean_slip" | "mean_elastic_slip" => Form::Signed(Kind::Length),
         "max_penetration" | "max_elastic_slip" | "mean_dilation" | "mean_wear" => Form::Scalar(Kind::Length),
+        "mean_bond" => Form::Scalar(Kind::Share),
         "mean_theta" => Form::Scalar(Kind::Time),
         "mean_slipped" => Form::Signed(Kind::Length),
         "ux" | "edge_ux" => Form::Vector(Kind::Length),
@@ -455,6 +456,7 @@ fn point_entries(simulation: &Simulation, ways: &Ways) -> Vec<Entry> {
         "theta",
         "dilation",
         "wear",
+        "bond",
     ];
     let mut entries = Vec::new();
     for pair in &simulation.model().contacts {

@@ -18,6 +18,7 @@ mod common;
 mod strokes;
 
 mod adhesion;
+mod bond;
 mod bulk;
 mod cam_clay;
 mod comparison_laws;

@@ -10,10 +10,10 @@ use serde_json::Value;
 use crate::case::file::Case;
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::LITTLE_TURN;
-use crate::laws::friction::{Dilatancy, Onset};
+use crate::laws::friction::{Bond, Cohesion, Dilatancy, Onset};
 use crate::model::Model;
 use crate::model::boundary::Profile;
-use crate::model::builder::{Contact, InitialTractions, MasterSide, default_over, regime, tangential_over};
+use crate::model::builder::{Contact, FADES, InitialTractions, MasterSide, default_over, regime, tangential_over};
 use crate::model::method::{Chosen, Method};
 use crate::model::scheme::Regime;
 use crate::model::text::{count, number, vector};
@@ -145,6 +145,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         lines.push(format!("on part of the interface: {}", parameters(&choice.friction, "law", &["alpha_t"])));
         lines.extend(vary(&choice.along));
     }
+    lines.extend(strength(pair));
     lines.extend(onset(pair));
     if pair.radiation > 0.0 {
         lines.push(format!("radiation damping η = {} in static steps", number(pair.radiation)));
@@ -184,6 +185,28 @@ fn onset(pair: &ContactPair) -> Option<String> {
     let heals = over(|law| law.half_healed);
     let heals = heals.map_or("no healing".into(), |time| format!("half recovers in {time}"));
     Some(format!("rapid slip after a long hold: {rises}{fresh}, {falls}; {heals}"))
+}
+
+/// Strength without pressure, and the opening over which it fades.
+fn strength(pair: &ContactPair) -> Option<String> {
+    let fades = pair.fades?;
+    let bonds = || pair.laws.iter().filter_map(|law| law.cohesion.as_ref()).map(Cohesion::bond);
+    let of = |value: fn(&Bond) -> f64| range(bonds().map(value).collect::<Vec<_>>().into_iter());
+    let chosen = if fades.is_chosen {
+        format!("{} c h/E of the softer side, h the slave's longest edge", number(FADES))
+    } else {
+        "given".into()
+    };
+    let softens = || bonds().all(|bond| bond.slip().is_finite());
+    let further = [
+        (bonds().any(|bond| bond.residual() < bond.strength()), format!(", residual {}", of(Bond::residual))),
+        (softens(), format!(", softens within the slip {}", of(Bond::slip))),
+        (bonds().any(|bond| bond.tension() > 0.0), format!(", tension {}", of(Bond::tension))),
+        (bonds().all(|bond| bond.limit().is_finite()), format!(", shear of at most {}", of(Bond::limit))),
+    ];
+    let further: String = further.into_iter().filter(|(is, _)| *is).map(|(_, what)| what).collect();
+    let (strength, opening) = (of(Bond::strength), of(Bond::opening));
+    Some(format!("strength without pressure {strength}{further}; fades over the opening {opening} ({chosen})"))
 }
 
 /// Dilatancy, wear, and fluid pressure.

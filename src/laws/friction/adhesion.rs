@@ -104,6 +104,10 @@ impl FrictionLaw for Adhesion {
         (name == "R").then(|| state.traction.abs() / self.strength)
     }
 
+    fn cohesion(&self) -> f64 {
+        self.strength
+    }
+
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         Some(self)
     }

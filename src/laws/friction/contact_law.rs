@@ -4,6 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::bond::{Bond, BondParameters, BondSurfaces};
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
@@ -185,14 +186,37 @@ impl Offsets {
     }
 }
 
+/// Strength without pressure at the points of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub enum Cohesion {
+    /// That of the friction law itself: where the surfaces are open it goes on, and fades
+    Own(Bond),
+    /// A bond beside friction, with a traction of its own
+    Beside(Bond),
+}
+
+impl Cohesion {
+    /// The bond, of either kind.
+    pub fn bond(&self) -> &Bond {
+        match self {
+            Self::Own(bond) | Self::Beside(bond) => bond,
+        }
+    }
+}
+
 /// Friction of contact points: response of the law, followed by the change of the opening by its slip.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct ContactLaw {
     /// The law
     pub law: Box<dyn FrictionLaw>,
-    /// Description of the law, with the parts of the opening varied by the offsets
+    /// Description of the law, with the parts of the opening varied by the offsets, and a bond beside it
     pub description: Description,
+    /// α_t of the law alone [F/L³]
+    pub stiffness: f64,
+    /// Strength without pressure
+    pub cohesion: Option<Cohesion>,
     offsets: Offsets,
 }
 
@@ -204,7 +228,8 @@ impl<L: FrictionLaw + 'static> From<L> for ContactLaw {
 
 impl From<Box<dyn FrictionLaw>> for ContactLaw {
     fn from(law: Box<dyn FrictionLaw>) -> Self {
-        Self { description: law.description(), law, offsets: Offsets::default() }
+        let description = law.description();
+        Self { stiffness: description.stiffness, description, law, cohesion: None, offsets: Offsets::default() }
     }
 }
 
@@ -239,6 +264,76 @@ impl ContactLaw {
         Ok(Self { description: Description { opening: offsets.names(), ..law.description }, offsets, ..law })
     }
 
+    /// Lets the strength of the law at zero pressure fade over an opening; a law without any gets a bond beside it.
+    ///
+    /// # Errors
+    /// Returns [`InvalidParameter`] named by its key, such as `bond.tension`, if one is out of range.
+    pub fn bonded(mut self, parameters: &BondParameters, surfaces: BondSurfaces) -> Result<Self, InvalidParameter> {
+        let own = self.law.cohesion();
+        let is_penalty = self.description.stiffness_is_penalty;
+        let alpha_c = if is_penalty || surfaces.alpha_c.is_nan() { self.stiffness } else { surfaces.alpha_c };
+        let surfaces = BondSurfaces { alpha_c, ..surfaces };
+        if parameters.strength.is_none() {
+            self.cohesion = Some(Cohesion::Own(Bond::of_law(own, parameters, surfaces)?));
+            return Ok(self);
+        }
+        let Description { starting_coefficient, released_above, least_coefficient, .. } = self.description;
+        let mu = starting_coefficient.or(released_above.map(|[_, mu]| mu)).or(least_coefficient).unwrap_or(0.0);
+        let bond = Bond::new(parameters, BondSurfaces { mu, ..surfaces })?;
+        let description = &mut self.description;
+        description.stiffness += bond.stiffness();
+        description.bond = bond.strength();
+        if let Some([cohesion, _]) = &mut description.released_above {
+            *cohesion += bond.strength();
+        }
+        if description.is_frictionless {
+            description.is_frictionless = false;
+            description.stiffness_is_penalty = true;
+            description.starting_coefficient = None;
+            description.released_above = Some([bond.strength(), 0.0]);
+            description.least_coefficient = Some(0.0);
+        }
+        self.cohesion = Some(Cohesion::Beside(bond));
+        Ok(self)
+    }
+
+    /// Part of an initial traction under a pressure that a bond beside friction has, in proportion to the strengths [F/L²].
+    pub fn share_of_bond(&self, pressure: f64, traction: f64) -> f64 {
+        let Some(Cohesion::Beside(bond)) = &self.cohesion else { return 0.0 };
+        let Description { starting_coefficient, released_above, .. } = self.law.description();
+        let mu = starting_coefficient.or(released_above.map(|[_, mu]| mu)).or(self.description.least_coefficient);
+        bond.share(traction, mu.unwrap_or(0.0) * pressure)
+    }
+
+    /// Largest initial |q| of a point without previous slip under the pressure p, of friction and a bond together; infinite where an
+    /// excess is released by slip, and without a limit [F/L²].
+    pub fn starting_limit(&self, pressure: f64) -> f64 {
+        let limit = self.cohesion.map_or(f64::INFINITY, |cohesion| cohesion.bond().limit());
+        self.description.starting_limit(pressure).min(limit)
+    }
+
+    /// Limits the traction of friction and a bond together: what exceeds the limit is slip of friction, which neither renews nor weakens
+    /// it. Returns whether it is limited.
+    pub fn limit(&self, old: &FrictionState, response: &mut FrictionResponse, bond: f64) -> bool {
+        let limit = self.cohesion.map_or(f64::INFINITY, |cohesion| cohesion.bond().limit());
+        let state = &mut response.state;
+        let (total, was) = (state.traction + bond, state.traction);
+        if total.abs() <= limit || total.is_nan() {
+            return false;
+        }
+        let sign = total.signum();
+        state.traction = sign * limit - bond;
+        let further = if self.stiffness > 0.0 { (was - state.traction) / self.stiffness } else { 0.0 };
+        state.plastic_increment += further;
+        state.plastic_slip += further;
+        let above = (sign * old.traction).min(sign * was).max(sign * state.traction);
+        let mean = 0.5 * (above + sign * state.traction);
+        state.dissipation = old.dissipation + mean * (sign * state.plastic_increment).max(0.0);
+        state.regime = super::Regime::Slip;
+        (response.dtraction_dslip, response.dtraction_dpressure) = (0.0, 0.0);
+        true
+    }
+
     /// Response to an increment, see [`FrictionLaw::respond`].
     ///
     /// # Errors
@@ -260,7 +355,7 @@ impl ContactLaw {
         if self.offsets == Offsets::default() {
             return answer;
         }
-        self.offsets.moved(&*self.law, old, sliding, answer?, self.description.stiffness)
+        self.offsets.moved(&*self.law, old, sliding, answer?, self.stiffness)
     }
 
     /// Value of an observable in a state, or its default if the law does not define it: NaN for an additional one.

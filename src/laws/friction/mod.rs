@@ -14,6 +14,7 @@
 //! from traction and state also implement [`RateLaw`].
 
 mod adhesion;
+mod bond;
 mod confinement;
 mod contact_law;
 mod coulomb;
@@ -34,9 +35,10 @@ use std::fmt::Debug;
 use thiserror::Error;
 
 pub use adhesion::{Adhesion, AdhesionParameters};
+pub use bond::{Bond, BondParameters, BondResponse, BondState, BondSurfaces};
 pub(crate) use confinement::{Bracket, MOST_ANSWERS, Opened};
 pub use confinement::{Confined, Confinement};
-pub use contact_law::{Beyond, ContactLaw, Dilatancy, Offsets};
+pub use contact_law::{Beyond, Cohesion, ContactLaw, Dilatancy, Offsets};
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
 pub use parameters::{FrictionParameters, RegisteredParameters, register};
@@ -230,6 +232,11 @@ pub trait FrictionLaw: Debug + Send + Sync {
         None
     }
 
+    /// c of its strength c + μ p while surfaces are in contact: at points of a contact it fades as they open; 0 for most laws [F/L²]
+    fn cohesion(&self) -> f64 {
+        0.0
+    }
+
     /// Slip rate under a given traction, for laws that define one.
     fn rates(&self) -> Option<&dyn RateLaw> {
         None
@@ -270,6 +277,8 @@ pub struct Description {
     pub takes_means: bool,
     /// Largest initial |q|/p of a point without previous slip; `None` for a law that releases an excess by slip [-]
     pub starting_coefficient: Option<f64>,
+    /// Strength at zero pressure of a bond beside the law: 0 without one [F/L²]
+    pub bond: f64,
     /// c and μ of the strength c + μ p at the start of a law that releases an excess over it by slip; `None` for laws without
     /// [F/L²], [-]
     pub released_above: Option<[f64; 2]>,
@@ -297,7 +306,7 @@ impl Description {
     /// Largest initial |q| of a point without previous slip under the pressure p; infinite for a law that releases an excess by
     /// slip [F/L²]
     pub fn starting_limit(&self, pressure: f64) -> f64 {
-        self.starting_coefficient.map_or(f64::INFINITY, |coefficient| coefficient * pressure)
+        self.starting_coefficient.map_or(f64::INFINITY, |coefficient| coefficient * pressure + self.bond)
     }
 
     /// Uniqueness bound: pressure above which the rate problem may have several solutions, α_t/weakening, if there is one; in increments that

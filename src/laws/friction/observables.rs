@@ -11,8 +11,11 @@ pub const ALWAYS: [(&str, f64); 3] = [("R", 0.0), ("mu", 0.0), ("structure", 1.0
 /// Parts of an opening in the output.
 const OF_OPENING: [&str; 2] = ["dilation", "wear"];
 
+/// What is left of a bond beside a law.
+const BOND: &str = "bond";
+
 /// Names of other outputs at contact points, not available to laws.
-const TAKEN: [&str; 28] = [
+const TAKEN: [&str; 29] = [
     "time",
     "contact",
     "line",
@@ -39,6 +42,7 @@ const TAKEN: [&str; 28] = [
     "dtraction_dslip",
     "dtraction_dpressure",
     "evaluations",
+    BOND,
     OF_OPENING[0],
     OF_OPENING[1],
 ];
@@ -96,7 +100,10 @@ fn check_each(names: &[&str]) -> Result<(), InvalidNames> {
 #[doc(hidden)]
 pub fn further<'a>(laws: impl IntoIterator<Item = &'a Description>) -> Vec<&'static str> {
     let mut names = Vec::new();
-    for name in laws.into_iter().flat_map(|law| law.observables().iter().chain(law.opening)) {
+    for name in laws
+        .into_iter()
+        .flat_map(|law| law.observables().iter().chain(law.opening).chain((law.bond > 0.0).then_some(&BOND)))
+    {
         if ALWAYS.iter().all(|(always, _)| always != name) && !names.contains(name) {
             names.push(*name);
         }

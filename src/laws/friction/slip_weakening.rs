@@ -262,6 +262,10 @@ impl FrictionLaw for SlipWeakening {
         }
     }
 
+    fn cohesion(&self) -> f64 {
+        self.cohesion
+    }
+
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         Some(self)
     }

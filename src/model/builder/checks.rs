@@ -137,6 +137,8 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     let why =
         "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with radiation_damping";
     refuse_if(pair.holds_fluid(), "fluid_pressure", why)?;
+    let why = "is not for quasi_dynamic steps, which ignore openings: leave it out, or take static steps with radiation_damping";
+    refuse_if(pair.laws.iter().any(|law| law.cohesion.is_some()), "bond", why)?;
     let opening = pair.laws.iter().find_map(|law| law.description.opening.first());
     let key = if opening == Some(&"wear") { "wear" } else { "dilatancy" };
     let why = "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out";

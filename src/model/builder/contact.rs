@@ -9,7 +9,7 @@ use super::friction::{Along, Friction, check_in_time};
 use super::groups::{self, TIMES};
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
-use crate::laws::friction::{Dilatancy, FrictionParameters};
+use crate::laws::friction::{BondParameters, Dilatancy, FrictionParameters};
 use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::model::boundary::Profile;
@@ -77,6 +77,9 @@ pub struct Contact {
     #[serde(default = "Friction::tie", skip_serializing_if = "Friction::is_tie")]
     #[schemars(with = "FrictionParameters")]
     pub friction: Friction,
+    /// Bond of the surfaces beside friction: strength without pressure. With `adhesion`, or `cohesion` of slip_weakening, it takes the
+    /// `opening` over which that fades, and a `limit`
+    pub bond: Option<BondParameters>,
     /// Dilatancy: opening by plastic slip
     pub dilatancy: Option<Dilatancy>,
     /// k of Archard's law: the surfaces wear by dw = k p × plastic slip, in either direction of slip; k is the wear
@@ -297,6 +300,7 @@ impl Contact {
             massless: false,
             tied: false,
             friction: friction.into(),
+            bond: None,
             dilatancy: None,
             wear: None,
             radiation_damping: Radiation::default(),
@@ -359,6 +363,9 @@ setters! { contact: Contact;
     /// Selects small sliding: every point keeps its projection, the weights of both sides, its normal and its length
     /// ([`crate::contact::small_sliding`]).
     small_sliding() { contact.sliding = SlidingRange::Small; }
+
+    /// Bonds the surfaces, beside friction; or sets the opening over which the cohesion of friction fades.
+    bond(bond: BondParameters) { contact.bond = Some(bond); }
 
     /// Sets dilatancy: opening by plastic slip.
     dilatancy(dilatancy: Dilatancy) { contact.dilatancy = Some(dilatancy); }
@@ -520,6 +527,7 @@ pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
         ("stick", contact.stick.is_some()),
         ("shrink_fit", contact.shrink_fit),
         ("massless", contact.massless),
+        ("bond", contact.bond.is_some()),
         ("dilatancy", contact.dilatancy.is_some()),
         ("wear", contact.wear.is_some()),
         ("radiation_damping", contact.radiation_damping != Radiation::OfBodies(false)),

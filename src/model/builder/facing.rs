@@ -8,6 +8,8 @@
 use nalgebra::Vector2;
 
 use super::contact::Contact;
+use super::error::Checked;
+use super::groups::edges;
 use crate::mesh::Edge;
 use crate::model::Model;
 
@@ -67,4 +69,11 @@ fn distance(one: [Vector2<f64>; 2], other: [Vector2<f64>; 2]) -> f64 {
     };
     let ends = other.map(|point| from(one, point)).into_iter().chain(one.map(|point| from(other, point)));
     ends.fold(f64::INFINITY, f64::min)
+}
+
+/// Edges of a contact on the bodies that face each other.
+pub fn facing<'a>(place: &str, contact: &Contact, model: &'a Model) -> Checked<Facing<'a>> {
+    let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
+    let master = contact.master_group().map(|group| edges(&model.mesh, group, &format!("{place}.master")));
+    Ok(Facing::of(contact, slave, master.transpose()?.unwrap_or_default(), model))
 }

@@ -11,11 +11,12 @@ use serde::de::{MapAccess, Visitor};
 use serde::ser::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::besides::Besides;
 use super::error::{Checked, ModelError, refuse_if};
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
-    AdhesionParameters, Beyond, ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, Offsets,
+    AdhesionParameters, Beyond, ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure,
     PrescribedSlipParameters, RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, Tie,
     observables,
 };
@@ -117,7 +118,7 @@ impl Friction {
         self
     }
 
-    /// Returns the laws of a contact, with the offsets of its surfaces; and for each slave point the number of its law, shared
+    /// Returns the laws of a contact, with what it adds to them; and for each slave point the number of its law, shared
     /// by points with the same values.
     pub(super) fn laws(
         &self,
@@ -125,7 +126,7 @@ impl Friction {
         points: &mut [SlavePoint],
         mesh: &Mesh,
         default: Option<DefaultAlphaT>,
-        offsets: Offsets,
+        besides: Besides,
     ) -> Checked<Laws> {
         for Region { positive: Named { name, profile }, .. } in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
@@ -147,7 +148,7 @@ impl Friction {
             let (number, friction) = chosen;
             let values = friction.varying.iter().map(|named| named.value(at, place));
             let drawn = values.collect::<Checked<Vec<_>>>()?;
-            let values = friction.in_range(&drawn, default.map(|default| default.of_law), offsets);
+            let values = friction.in_range(&drawn, default.map(|default| default.of_law), besides);
             for (named, _) in friction.varying.iter().zip(drawn.iter().zip(&values)).filter(|(_, (was, is))| was != is)
             {
                 *truncated.entry(named.name.clone()).or_default() += 1;
@@ -165,10 +166,10 @@ impl Friction {
             let first = first.map(|Named { name, .. }| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let default_alpha_t = default.map(|default| default.of(|alpha_t| (friction.law)(&values, alpha_t)));
             let law = friction.law(&values, default_alpha_t, place, first)?;
-            let law = ContactLaw::with_offsets(law, offsets).map_err(|InvalidParameter { name, value, allowed }| {
+            let law = besides.of(law).map_err(|InvalidParameter { name, value, allowed }| {
                 ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
             })?;
-            varying.push(friction.in_time(at, &values, default_alpha_t, offsets));
+            varying.push(friction.in_time(at, &values, default_alpha_t, besides));
             laws.push(Arc::new(law));
         }
         let varies = all().flat_map(|friction| &friction.varying).any(|named| named.profile.depends_on_time());
@@ -179,10 +180,10 @@ impl Friction {
 
     /// Returns the values with those of random fields truncated to the range of the law: where the law does not take them, the
     /// nearest ones that it takes, one after another from the means of all, because the range of one may depend on others.
-    fn in_range(&self, drawn: &[f64], alpha_t: Option<f64>, offsets: Offsets) -> Vec<f64> {
+    fn in_range(&self, drawn: &[f64], alpha_t: Option<f64>, besides: Besides) -> Vec<f64> {
         let fits = |values: &[f64]| {
             let law = (self.law)(values, alpha_t.unwrap_or(1.0));
-            law.is_ok_and(|law| ContactLaw::with_offsets(law, offsets).is_ok())
+            law.is_ok_and(|law| besides.of(law).is_ok())
         };
         let mean = |named: &Named| match &named.profile {
             Profile::Random(field) => Some(field.mean),
@@ -214,7 +215,7 @@ impl Friction {
     }
 
     /// Returns the time-dependent law at a place, where its parameters have these values at the start.
-    fn in_time(&self, at: Vector2<f64>, values: &[f64], alpha_t: Option<f64>, offsets: Offsets) -> InTime {
+    fn in_time(&self, at: Vector2<f64>, values: &[f64], alpha_t: Option<f64>, besides: Besides) -> InTime {
         let there = |(named, value): (&Named, &f64)| match named.profile.depends_on_time() {
             true => named.profile.clone(),
             false => Profile::Constant(*value),
@@ -224,7 +225,7 @@ impl Friction {
             at,
             law: self.law.clone(),
             alpha_t: alpha_t.unwrap_or(f64::NAN),
-            offsets,
+            besides,
         }
     }
 
@@ -394,8 +395,8 @@ struct InTime {
     law: Arc<LawAt>,
     /// Default α_t [F/L³]
     alpha_t: f64,
-    /// Dilatancy and wear of its surfaces
-    offsets: Offsets,
+    /// What its contact adds
+    besides: Besides,
 }
 
 impl InTime {
@@ -418,10 +419,10 @@ impl InTime {
             None
         };
         let law = law.ok_or(LawFailure::Undefined { time })?;
-        if let Some(Beyond { key, rate, least }) = self.offsets.beyond(&law.description()) {
+        if let Some(Beyond { key, rate, least }) = self.besides.offsets.beyond(&law.description()) {
             return Err(LawFailure::Dilates { time, key, rate, least });
         }
-        ContactLaw::with_offsets(law, self.offsets).map_err(|_| LawFailure::Undefined { time })
+        self.besides.of(law).map_err(|_| LawFailure::Undefined { time })
     }
 }
 

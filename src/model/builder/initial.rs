@@ -123,12 +123,13 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
     for (k, (point, InitialTraction { pressure: total, traction })) in pair.points.iter().zip(&initial).enumerate() {
         let law = pair.law(point);
         let pressure = effective(*total, pair.pore_pressure(k, &undeformed))[0];
-        let limit = law.description.starting_limit(pressure);
+        let limit = law.starting_limit(pressure);
         if traction.abs() > limit * (1.0 + WRITTEN) {
             let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
             let [is, limit] = apart([traction.abs(), limit]);
+            let beside = if law.description.bond > 0.0 { "bond.strength + " } else { "" };
             let message = format!(
-                "is {}{is} at {}: it exceeds the initial strength, mu p = {limit} with mu = {mu} and p = {}",
+                "is {}{is} at {}: it exceeds the initial strength, {beside}mu p = {limit} with mu = {mu} and p = {}",
                 sign(*traction),
                 vector(position(point, &model.mesh)),
                 number(pressure)

@@ -45,7 +45,9 @@ macro_rules! setters {
 }
 
 mod agreement;
+mod besides;
 mod body;
+mod bond;
 mod checks;
 mod contact;
 mod error;
@@ -68,6 +70,7 @@ mod unconstrained;
 mod unseen;
 
 pub use body::{BodyInput, BulkLaw, PointMassInput};
+pub use bond::FADES;
 pub use contact::{Contact, FluidPressure, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_positive, refuse_if};

@@ -45,9 +45,11 @@
 
 use std::collections::BTreeSet;
 
+use super::besides::Besides;
+use super::bond::{bond, fades};
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
-use super::facing::Facing;
+use super::facing::{Facing, facing};
 use super::friction::{DefaultAlphaT, Laws};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
@@ -90,11 +92,18 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     }
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model, regime)?;
     let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
+    let besides = Besides { offsets, bond: None };
     let structure = contact.initial.as_ref().and_then(|initial| initial.structure.as_ref());
     contact::check_has_friction(contact, &place)?;
     let friction = friction::friction(&contact.friction, &contact.along, structure, &place)?;
-    let Laws { at_start: laws, in_time, truncated } =
-        friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
+    let mut found = friction.laws(&place, &mut points, &model.mesh, alpha_t, besides)?;
+    let alpha_c = alpha_t.map_or(f64::NAN, |default| default.penalty);
+    let bond = bond(&place, contact, &found.at_start, [alpha_n, alpha_c], model)?;
+    if bond.is_some() {
+        found = friction.laws(&place, &mut points, &model.mesh, alpha_t, Besides { bond, ..besides })?;
+    }
+    let fades = bond.map(|_| fades(&place, contact, alpha_n, model)).transpose()?;
+    let Laws { at_start: laws, in_time, truncated } = found;
     for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
@@ -122,6 +131,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         modulus: modulus(contact, model),
         both: unseen::both_surfaces(contact, model, outline),
         small: None,
+        fades,
         master,
     };
     if contact.tied {
@@ -531,13 +541,6 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
     let softest = master.into_iter().map(modulus).fold(f64::INFINITY, f64::min);
     let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
     Ok(Some(slave.iter().map(|edge| stiffness(edge)).sum::<f64>() / slave.len() as f64))
-}
-
-/// Edges of a contact on the bodies that face each other.
-fn facing<'a>(place: &str, contact: &Contact, model: &'a Model) -> Checked<Facing<'a>> {
-    let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
-    let master = contact.master_group().map(|group| edges(&model.mesh, group, &format!("{place}.master")));
-    Ok(Facing::of(contact, slave, master.transpose()?.unwrap_or_default(), model))
 }
 
 /// Depth of the element at an edge [L].

@@ -74,6 +74,19 @@ impl Writer<'_> {
         if self.has("wear") {
             contact["wear"] = json!(2e-3 / frame.stress);
         }
+        if self.has("bond") {
+            let mut bond = json!({"strength": self.write(Kind::Stress, 1.0), "opening": self.write(Kind::Length, 0.01), "bonded": true});
+            match draft.of("bond") {
+                "softens" => {
+                    bond["slip"] = json!(self.write(Kind::Length, 0.05));
+                    bond["residual"] = json!(self.write(Kind::Stress, 0.25));
+                }
+                "pulls" => bond["tension"] = json!(self.write(Kind::Stress, 0.5)),
+                "limited" => bond["limit"] = json!(self.write(Kind::Stress, 2.0)),
+                _ => {}
+            }
+            contact["bond"] = bond;
+        }
         match draft.of("radiation") {
             "given" => {
                 contact["radiation_damping"] = json!(300.0 * frame.stress * frame.time / frame.length * self.duration())
@@ -149,7 +162,7 @@ impl Writer<'_> {
                 law
             }
             "slip_weakening" => {
-                json!({"mu_s": 0.6, "mu_d": 0.4, "D_c": self.write(Kind::Length, 0.02), "cohesion": self.write(Kind::Stress, if further { 0.5 } else { 0.0 })})
+                json!({"mu_s": 0.6, "mu_d": 0.4, "D_c": self.write(Kind::Length, 0.02), "cohesion": self.write(Kind::Stress, if further && !self.has("bond") { 0.5 } else { 0.0 })})
             }
             "rate_and_state" => {
                 let mut law = json!({"f_0": 0.5, "V_0": 1e-3 * f.unit(Kind::Velocity) / duration, "a": 0.012, "b": self.pick("b", &[0.008, 0.015]), "D_c": self.write(Kind::Length, 0.004), "evolution": if further { "slip" } else { "ageing" }});

@@ -72,7 +72,7 @@ pub(super) fn resultants(base: &Base) -> Outcome {
 /// Without friction whatever is closed slips.
 pub(super) fn slips(base: &Base) -> Outcome {
     let draft = base.draft;
-    if !draft.is("friction", "frictionless") || !base.has_ended_well() {
+    if !draft.is("friction", "frictionless") || draft.has("bond") || !base.has_ended_well() {
         return Outcome::Idle;
     }
     let closed = |(_, row): &&(f64, Vec<Entry>)| {

@@ -60,6 +60,7 @@ pub(super) fn simple(draft: &Draft) -> Option<Draft> {
         "varying",
         "dilatancy",
         "wear",
+        "bond",
         "fluid",
         "radiation",
         "shrink_fit",

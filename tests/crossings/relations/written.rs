@@ -135,7 +135,10 @@ pub(super) fn axis_told(base: &Base) -> Outcome {
 /// Friction whose numbers are expressions of the time that stay the same, but were others at the very start.
 pub(super) fn told_in_time(base: &Base) -> Outcome {
     let draft = base.draft;
-    if draft.is("friction", "frictionless") || draft.is("friction", "prescribed") || !base.has_ended_well() {
+    // The opening over which a cohesion fades goes by what it is at the start.
+    let fades =
+        draft.is("friction", "adhesion") || draft.is("friction", "slip_weakening") && draft.has("further_parameters");
+    if fades || draft.is("friction", "frictionless") || draft.is("friction", "prescribed") || !base.has_ended_well() {
         return Outcome::Idle;
     }
     let record = base.run(&Ways { told_in_time: true, ..base.ways.clone() });
