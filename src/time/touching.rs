@@ -3,7 +3,7 @@
 //! - A point that was open at the start of an increment has slipped in part before closure. That part lies between zero and its
 //!   value had the previous motion continued until closure; the uncertainty of friction caused by it, summed over the points of
 //!   a contact, must not exceed 2 % of the contact force. With 5 % a ring that rolls in a bore takes
-//!   half the solves, and the shear of pressed cylinders alternates nine times as much from point to point. Where surfaces slide at the friction limit anyway, nothing is
+//!   three fifths of the solves, and the shear of pressed cylinders alternates nine times as much from point to point. Where surfaces slide at the friction limit anyway, nothing is
 //!   uncertain. Where surfaces dilate, the opening by slip after closure is uncertain, too: they do not dilate in the increment
 //!   in which they close (`contact/force.rs`).
 //! - Otherwise the increment is subdivided: up to the predicted closure if nothing of the contact was closed before, else
