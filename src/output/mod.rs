@@ -4,6 +4,7 @@ mod csv;
 mod depths;
 mod frames;
 pub mod results;
+mod unpressed;
 
 // The writers of these files are internal to the program.
 cfg_if::cfg_if! {
@@ -24,7 +25,6 @@ cfg_if::cfg_if! {
         pub mod history;
         pub mod instability;
         pub mod scattered;
-mod unpressed;
         pub mod store;
         pub mod law;
         pub mod newton_log;
