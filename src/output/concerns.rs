@@ -1,5 +1,5 @@
-//! What may be wrong at a single point of a contact: deep penetration, a pressure above the uniqueness bound of its law, an edge that does
-//! not resolve a slip front, dilatancy that does work, and ways beyond the range of small sliding.
+//! What may be wrong at a single point of a contact: a pressure above the uniqueness bound of its law, an edge that does not resolve a slip
+//! front, dilatancy that does work, and ways beyond the range of small sliding.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +11,6 @@ use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
 use crate::model::text::apart;
 
-/// Penetration that causes a warning, as a fraction of the slave's edge.
-const DEEP: f64 = 0.01;
-
 /// Process zone of linearly slip-weakening friction, divided by G*/(p |dμ/dδ|). Source: Palmer & Rice (1973), Proc. R. Soc. A
 /// 332, 527; Day et al. (2005), J. Geophys. Res. 110, B12307.
 const PROCESS_ZONE: f64 = 9.0 * std::f64::consts::PI / 32.0;
@@ -21,7 +18,7 @@ const PROCESS_ZONE: f64 = 9.0 * std::f64::consts::PI / 32.0;
 /// Kinds of warnings about a contact or a body, each issued once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Kind {
-    /// A slave point penetrates the master
+    /// Slave points penetrate the master
     DeepPenetration,
     /// A master node penetrates the slave
     DeepMasterNode,
@@ -65,22 +62,17 @@ pub fn concerns(
     contact: &ContactState,
     x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
-    let (gap, pressure) = (contact.clearance(), contact.friction.pressure);
-    let share = point.edge_length(x).map(|edge| -gap / edge);
-    let deep = share.filter(|share| *share > DEEP).map(|share| {
-        let percent = 100.0 * share;
-        format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
-    });
+    let pressure = contact.friction.pressure;
     let law = pair.ask_law(point, [time, time], |law| law.description).ok();
     let slid = contact.friction.plastic_increment.abs();
     let limit = law.filter(|law| slid >= law.unique_slip).and_then(|law| law.uniqueness_limit());
     let limit = limit.filter(|limit| pressure > *limit);
     let several = limit.map(|limit| several_answers(pressure, limit));
-    let deep = deep.map(|message| (Kind::DeepPenetration, message));
     let yields = yields_work(&old.friction, &contact.friction).map(|message| (Kind::YieldsWork, message));
     let coarse =
         law.and_then(|law| unresolved(pair, point, &law, contact, x)).map(|message| (Kind::Unresolved, message));
-    deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse).chain(yields)
+    let several = several.map(|message| (Kind::SeveralAnswers, message));
+    several.into_iter().chain(coarse).chain(yields)
 }
 
 /// Fraction of the friction work that round-off may return in an increment.

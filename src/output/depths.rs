@@ -1,15 +1,41 @@
-//! Warnings about rigid masters inside bodies, between the points at which contact is evaluated.
+//! Warnings about surfaces deep in each other: at the points of a contact by its penalty, and rigid masters inside bodies between them.
 
 use nalgebra::Vector2;
 
 use crate::contact::depth::{Depth, Inside};
+use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::ContactPair;
+use crate::contact::surface::SlavePoint;
 use crate::mesh::configuration::Configuration;
 use crate::model::text::apart;
 
-/// Smallest reported depth, as a fraction of the slave's edge.
+/// Smallest reported depth of a single place, as a fraction of the slave's edge.
 const DEEP: f64 = 0.05;
+/// Smallest reported mean of the penetrations of a contact's points, as fractions of their edges.
+const DEEP_IN_THE_MEAN: f64 = 0.01;
+
+/// The deepest closed point of a contact with a warning, if it is deep, or all are in the mean Σ F d/h / Σ F of penetrations d over edges h,
+/// by the normal forces F of the points. At the corner of a block, where the elastic pressure is singular, no penalty makes d small.
+pub fn penetrates(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, String)> {
+    let closed = pair.points.iter().zip(states).filter(|(_, state)| state.is_closed());
+    let (mut force, mut sum) = (0.0, 0.0);
+    let mut deepest: Option<(f64, &SlavePoint, f64)> = None;
+    for (point, state) in closed {
+        let Some(edge) = point.edge_length(x) else { continue };
+        let share = -state.clearance() / edge;
+        let own = state.friction.pressure * state.length;
+        (force, sum) = (force + own, sum + own * share);
+        if deepest.is_none_or(|(most, ..)| share > most) {
+            deepest = Some((share, point, -state.clearance()));
+        }
+    }
+    let (share, point, depth) = deepest?;
+    (share > DEEP || sum > DEEP_IN_THE_MEAN * force).then(|| {
+        let percent = 100.0 * share;
+        (point.at(x), format!("the penetration {depth:.3e} is {percent:.1} % of the slave's edge; raise alpha_n"))
+    })
+}
 
 /// The deepest place of a rigid master and the slave in each other, with a warning, if it is deep.
 pub fn rigid_inside(pair: &ContactPair, x: &Configuration) -> Option<(Vector2<f64>, String)> {

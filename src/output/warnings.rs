@@ -121,6 +121,12 @@ impl Observer for Warnings {
         self.unpressed.record(model, state);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
+            if !self.given.contains(&(number, Kind::DeepPenetration))
+                && let Some((at, message)) = depths::penetrates(pair, states, &x)
+            {
+                self.given.insert((number, Kind::DeepPenetration));
+                self.list.push(format!("{}: {message}", place(pair, at, state.time)));
+            }
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
             for (point, (old, contact)) in points.filter(|(_, (_, new))| new.is_closed()) {
                 for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {

@@ -388,6 +388,33 @@ fn a_deep_point_is_told() {
     assert_eq!(deep(1e5), Vec::<String>::new());
 }
 
+/// A block of rough ends under pressure, whose corners are singular: they alone are deep by more than a hundredth, which no penalty mends, and
+/// nothing is told. A softer penalty lets all points in.
+#[test]
+fn singular_corners_are_not_taken_for_a_soft_penalty() {
+    let pressed = |alpha_n: f64| {
+        let part = |body: &str, corners: Value, columns: usize, sides: Value| json!({"body": body, "corners": corners, "elements": [columns, 12], "sides": sides});
+        let case = json!({
+            "mesh": {"blocks": [part("ground", json!([[-1, -1], [2, -1], [2, 0], [-1, 0]]), 90, json!(["bottom", null, "top", null])),
+                                part("block", json!([[0, 0], [1, 0], [1, 0.4], [0, 0.4]]), 30, json!(["base", null, "upper", null]))]},
+            "bodies": {"ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}, "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}},
+            "contacts": {"base": {"slave": "base", "master": "top", "method": "node_to_segment", "friction": {"law": "coulomb", "mu": 0.5}, "normal": {"alpha_n": alpha_n}}},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "upper", "ux": 0, "uy": -0.01}]}],
+        });
+        let told = warnings(&case).into_iter().filter(|told| told.contains("the penetration")).count();
+        let run = crate::common::finish(&case);
+        let x = run.model.configuration(&run.last().displacement);
+        let points = run.model.contacts[0].points.iter().zip(&run.last().contacts[0]);
+        let shares: Vec<f64> =
+            points.filter_map(|(point, state)| Some(-state.clearance() / point.edge_length(&x)?)).collect();
+        (shares, told)
+    };
+    let (shares, told) = pressed(6e4);
+    assert!(shares[0] > 0.01 && shares[15] < 0.01 && told == 0, "{shares:?}, {told}");
+    let (shares, told) = pressed(2e4);
+    assert!(shares[15] > 0.01 && shares[0] < 0.05 && told == 1, "{shares:?}, {told}");
+}
+
 /// A fault under quasi-dynamic steps takes small sliding alone: where it has slid far, no other is advised.
 #[test]
 fn a_fault_that_slides_far_in_cycles_is_not_sent_to_finite_sliding() {
