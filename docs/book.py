@@ -1,4 +1,4 @@
-"""Checks every relative link of the documentation and the length of the guide's pages, and makes a book of it: python3 docs/book.py [--check] [OUT].
+"""Checks every relative link of the documentation, and makes a book of it: python3 docs/book.py [--check] [OUT].
 
 Pages lie where they are read in the repository: below docs/, beside cases and benches, in the root. The book (mdBook, `cargo install
 mdbook`) is made of copies that lie alike, so that the same links hold in both. A page that is missing in docs/SUMMARY.md, a link or a
@@ -17,10 +17,8 @@ ROOT = pathlib.Path(__file__).parent.parent
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^ *```.*?^ *```", re.M | re.S)
 EQUATION = re.compile(r"^```math\n(.*?)^```", re.M | re.S)
-# Words of a page of the guide, its tables and examples included.
-LONGEST = 900
 # Pages of the book beside those below docs/.
-BESIDE = ["README.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "CHANGELOG.md", "python/README.md", "benches/README.md"]
+BESIDE = ["README.md", "README.ja.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "CHANGELOG.md", "python/README.md", "benches/README.md"]
 
 
 def pages():
@@ -50,7 +48,7 @@ def targets(page):
 
 
 def wrong():
-    """What is wrong with the links and lengths of all pages."""
+    """What is wrong with the links of all pages."""
     listed = {path for _, path, _ in targets(pathlib.Path("docs/SUMMARY.md"))}
     for page in pages():
         if (ROOT / page).resolve() not in listed and page.name != "SUMMARY.md":
@@ -60,9 +58,6 @@ def wrong():
                 yield f"{page}: {link} does not exist"
             elif heading and path.suffix == ".md" and heading not in headings(path.read_text()):
                 yield f"{page}: {link}: there is no such heading"
-        words = len((ROOT / page).read_text().split())
-        if page.is_relative_to("docs/guide") and words > LONGEST:
-            yield f"{page} has {words} words, and a page of the guide has {LONGEST} at most"
 
 
 def typeset(text):

@@ -1,4 +1,4 @@
-"""Writes docs/reference/case_file.md and the tables of docs/reference/outputs.md: python3 docs/reference.py [--check] [PROGRAM].
+"""Writes docs/reference/case_file.md, case.schema.json and the tables of outputs.md there: python3 docs/reference.py [--check] [PROGRAM].
 
 There is no second truth: keys, types, defaults, units and descriptions are those of `fecontact schema`, names, units and meanings of
 results those of `fecontact schema results`. With --check nothing is written, and the exit code is 1 where a committed page is
@@ -13,11 +13,12 @@ import sys
 
 PAGE = pathlib.Path(__file__).parent / "reference" / "case_file.md"
 RESULTS = PAGE.with_name("outputs.md")
+SCHEMA = PAGE.with_name("case.schema.json")
 HEAD = """# The case file
 
 Written by `docs/reference.py` from the JSON Schema that the program prints (`fecontact schema`, `fecontact schema law`); not to be edited.
-Editors and validators take the schema itself. A key without *required* may be left out. Units stand in brackets: L length, F force, T
-time, M mass; any consistent set will do.
+Editors and validators take [the schema itself](case.schema.json) ([how](../guide/writing_cases.md)). A key without *required* may be left out. Units
+stand in brackets: L length, F force, T time, M mass; any consistent set will do. Any object may have a `"note"`, text for readers.
 """
 
 
@@ -124,7 +125,8 @@ def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--check"]
     program = arguments[0] if arguments else "target/release/fecontact"
     of = {kind: json.loads(subprocess.check_output([program, "schema", kind])) for kind in ("case", "law", "results")}
-    pages = {PAGE: written(of["case"], of["law"]), RESULTS: with_quantities(RESULTS.read_text(), of["results"])}
+    pages = {PAGE: written(of["case"], of["law"]), RESULTS: with_quantities(RESULTS.read_text(), of["results"]),
+             SCHEMA: json.dumps(of["case"], ensure_ascii=False, indent=1) + "\n"}
     for file, page in pages.items():
         if "--check" not in sys.argv:
             file.write_text(page)

@@ -1,11 +1,11 @@
 //! The command line: prints the error, sets the exit code.
 
-use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
-use fecontact::cli::{self, Failure, Input, Options, Study, defect};
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
+use fecontact::cli::{self, Failure, Input, Options, Study, Template, defect};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
@@ -17,78 +17,100 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Write a short case that runs, to begin with
+    #[command(after_help = "Example: fecontact init wall && fecontact run wall.json")]
+    Init {
+        /// Kind of case
+        #[arg(value_enum)]
+        kind: Template,
+        /// The file to write [default: <kind>.json]
+        file: Option<PathBuf>,
+    },
     /// Run a case; results go to a folder
+    #[command(after_help = "Example: fecontact run block.json --out out/block")]
     Run {
         /// The case file (JSON)
         case: PathBuf,
         /// Folder of the results [default: out/<case name>]
-        #[arg(long)]
+        #[arg(short, long)]
         out: Option<PathBuf>,
         /// Threads [default: all cores]
-        #[arg(long)]
+        #[arg(short, long)]
         threads: Option<usize>,
         /// Print warnings and the last line only
-        #[arg(long)]
+        #[arg(short, long)]
         quiet: bool,
         /// Resume from the last checkpoint in the folder, to results bitwise identical to those of an uninterrupted run; begin
         /// anew where this case's own run has left none yet
-        #[arg(long)]
+        #[arg(short, long)]
         resume: bool,
     },
     /// Check a case and its mesh, and print the case as interpreted; solve nothing
+    #[command(after_help = "Example: fecontact check block.json")]
     Check {
         /// The case file (JSON)
         case: PathBuf,
         /// Print the case with every default filled in instead: it gives bitwise identical results; its paths are relative to the case file
-        #[arg(long)]
+        #[arg(short, long)]
         resolved: bool,
     },
-    /// Run a case with elements and increments that are halved again and again, and tell how sure a number of it is
+    /// Run a case with elements and increments that are halved again and again, and give error bars of its numbers
+    #[command(after_help = "Example: fecontact converge block.json --measure base.tangential_force:max")]
     Converge {
         /// The case file (JSON)
         case: PathBuf,
         /// Column of the history or the probes, or one over another (COLUMN/COLUMN), and what is taken of it: COLUMN:max, COLUMN:min, COLUMN:end or
         /// COLUMN:mean (over time), in a step alone COLUMN:max@STEP; may be given several times
-        #[arg(long, required = true)]
+        #[arg(short, long, required = true)]
         measure: Vec<String>,
         /// Number of runs, 3 or more; the first is the case as it is
-        #[arg(long, default_value_t = 3)]
+        #[arg(short, long, default_value_t = 3)]
         levels: usize,
+        /// Fraction of a number by which it may change from level to level without an order; larger changes that do not become smaller end with
+        /// exit code 1
+        #[arg(short, long, default_value_t = cli::WITHIN)]
+        within: f64,
         /// Folder of the results, with a folder for each run [default: out/<case name>]
-        #[arg(long)]
+        #[arg(short, long)]
         out: Option<PathBuf>,
         /// Threads [default: all cores]
-        #[arg(long)]
+        #[arg(short, long)]
         threads: Option<usize>,
     },
     /// Drive a friction law on its own along a path of slip, pressure and time
+    #[command(after_help = "Example: fecontact law cases/law/steady.json")]
     Law {
         /// The test (JSON)
         test: PathBuf,
         /// Folder of the results [default: out/<test name>]
-        #[arg(long)]
+        #[arg(short, long)]
         out: Option<PathBuf>,
     },
-    // The command only names its replacement.
-    #[command(hide = true, disable_help_flag = true)]
-    Plot {
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        anything: Vec<OsString>,
-    },
     /// Write one HTML page of results for a browser; several folders are overlaid
+    #[command(after_help = "Example: fecontact report out/coarse out/fine --out both.html")]
     Report {
         /// Folders of results, of finished or active runs
         #[arg(required = true)]
         folders: Vec<PathBuf>,
         /// The page [default: report.html in the folder of the results, out/report.html for several]
-        #[arg(long)]
+        #[arg(short, long)]
         out: Option<PathBuf>,
     },
     /// Print the JSON Schema of the case file or of a law test, or the quantities of results
+    #[command(after_help = "Example: fecontact schema > case.schema.json")]
     Schema {
         /// Schema to print
         #[arg(value_enum, default_value_t = Input::Case)]
         of: Input,
+    },
+    /// Print the completions of a shell
+    #[command(
+        after_help = "Example: fecontact completions bash > ~/.local/share/bash-completion/completions/fecontact"
+    )]
+    Completions {
+        /// The shell
+        #[arg(value_enum)]
+        shell: Shell,
     },
 }
 
@@ -108,14 +130,19 @@ fn run() -> Result<(), Failure> {
         Err(help) => return cli::print(&help.render().to_string()),
     };
     match command {
+        Command::Init { kind, file } => cli::init(kind, file),
         Command::Run { case, out, threads, quiet, resume } => cli::run(&case, Options { out, threads, quiet, resume }),
         Command::Check { case, resolved } => cli::check(&case, resolved),
-        Command::Converge { case, measure: measures, levels, out, threads } => {
-            cli::converge(&case, Study { measures, levels, out, threads })
+        Command::Converge { case, measure: measures, levels, within, out, threads } => {
+            cli::converge(&case, Study { measures, levels, within, out, threads })
         }
         Command::Law { test, out } => cli::law(&test, out),
-        Command::Plot { .. } => Err(cli::plot()),
         Command::Report { folders, out } => cli::report(&folders, out),
         Command::Schema { of } => cli::schema(of),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Arguments::command(), "fecontact", &mut script);
+            cli::print(&String::from_utf8_lossy(&script))
+        }
     }
 }

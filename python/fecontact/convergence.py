@@ -27,6 +27,7 @@ class Convergence:
         bar: error bar of the value of the last run; None if it does not converge.
         by_increments: fraction of the last difference that is due to the increments, the rest being due to the mesh; None if nothing
             differs, or explicit increments follow from the mesh.
+        settled: whether it has no error bar, but has changed by less than asked from level to level.
         verdict: the same in words.
     """
 
@@ -36,6 +37,7 @@ class Convergence:
     extrapolated: float | None
     bar: float | None
     by_increments: float | None
+    settled: bool
     verdict: str
 
     @property
@@ -54,7 +56,12 @@ class Convergence:
 
 
 def converge(
-    case: Case, measure: str, levels: int = 3, out: str | os.PathLike[str] | None = None, threads: int | None = None
+    case: Case,
+    measure: str,
+    levels: int = 3,
+    out: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    within: float = 1e-3,
 ) -> Convergence:
     """Run a case as it is, then with elements and increments that are halved again and again, and judge a number of these runs: its
     observed order, its extrapolated value, its error bar, or that it does not converge. The finest mesh with the increments of the level
@@ -69,6 +76,7 @@ def converge(
         levels: number of runs, 3 or more; the last three count.
         out: folder of the results, with a folder ``level_k`` for each run, and ``level_k_longer_increments``; default: a temporary one.
         threads: number of threads of a run.
+        within: fraction of the number by which it may change from level to level without an order (``settled``).
 
     Raises:
         CaseError: the case is invalid, or a group of nodes in its mesh stands for a side.
@@ -93,5 +101,5 @@ def converge(
         if finest.document != longer.document:
             other = measured(f"level_{levels - 1}_longer_increments", longer)
             by_increments = _native.fraction_of_increments(values, other["value"])
-    order, extrapolated, bar, verdict = _native.judge(values)
-    return Convergence(measure, pd.DataFrame(rows), order, extrapolated, bar, by_increments, verdict)
+    order, extrapolated, bar, settled, verdict = _native.judge(values, within)
+    return Convergence(measure, pd.DataFrame(rows), order, extrapolated, bar, by_increments, settled, verdict)

@@ -35,7 +35,7 @@ class Body(dict[str, Any]):
     """A body.
 
     Args:
-        material: Bulk law
+        material: Bulk law. Text is the name of a law in `materials`
         damping: Damping of the body in dynamic steps; default: none
         element: Element formulation
         initial_stress: Stress of the undeformed body at the start; default: none
@@ -46,7 +46,7 @@ class Body(dict[str, Any]):
     def __init__(
         self,
         *,
-        material: Material,
+        material: Material | str,
         damping: Damping | Given = NOT_GIVEN,
         element: Formulation | Given = NOT_GIVEN,
         initial_stress: InitialStress | None | Given = NOT_GIVEN,
@@ -576,7 +576,7 @@ class Contact(dict[str, Any]):
             run raises is 0 at t = 0. The pressure is prescribed: there is no flow. "of_bodies" takes it from
             the pores of the slave's bodies (`pore_fluid`), whose total stress the contact carries: friction
             goes by what p_w leaves of it. Not for quasi_dynamic steps [F/L²]
-        friction: Friction law; only surfaces that are tied have none
+        friction: Friction law; only surfaces that are tied have none. Text is the name of a law in `frictions`
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
             point is then measured, throughout the run, relative to the gap at which this pressure acts in its
             initial position
@@ -628,7 +628,7 @@ class Contact(dict[str, Any]):
         bond: Bond | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
         fluid_pressure: Profile | None | Given = NOT_GIVEN,
-        friction: Friction | Given = NOT_GIVEN,
+        friction: Friction | str | Given = NOT_GIVEN,
         initial: Initial | None | Given = NOT_GIVEN,
         massless: bool | Given = NOT_GIVEN,
         method: Method | None | Given = NOT_GIVEN,
@@ -720,7 +720,7 @@ class LawChoice(dict[str, Any]):
 
     Args:
         where: The law applies where this expression is positive
-        friction: Friction law
+        friction: Friction law. Text is the name of a law in `frictions`
         along: Parameters that vary along the slave and in time, by name
     """
 
@@ -728,7 +728,7 @@ class LawChoice(dict[str, Any]):
         self,
         *,
         where: Profile,
-        friction: Friction,
+        friction: Friction | str,
         along: Mapping[str, Profile] | Given = NOT_GIVEN,
     ) -> None:
         super().__init__(_given({"where": where, "friction": friction, "along": along}))
@@ -1780,12 +1780,16 @@ class CaseKeys(TypedDict, total=False):
     bodies: Mapping[str, Body]
     # Contacts by a name of your choice
     contacts: Mapping[str, Contact]
+    # Laws by names of your choice, which may stand for them wherever the case has a `friction`
+    frictions: Mapping[str, Friction]
     # Places of values by which the history is differentiated (gradients.csv): "contacts.base.friction.mu_k",
     # "bodies.block.material.E", "steps.drag.supports[0].uy". The derivatives are those of the run with its
     # increments as they are; not for explicit and quasi-dynamic steps, nor where a step may become explicit
     gradients: Sequence[str]
     # Initial velocity [x, y] of whole bodies; supported nodes follow their supports
     initial_velocity: Mapping[str, Vector]
+    # Laws by names of your choice, which may stand for them wherever the case has a `material`
+    materials: Mapping[str, Material]
     # Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given
     # in place: blocks divided into elements, or node by node
     mesh: Mesh | MeshSource

@@ -96,15 +96,15 @@ pub fn measured(folder: PathBuf, measure: &str) -> PyResult<f64> {
     measure.parse().and_then(|measure: Measure| measure.of(&folder)).map_err(PyValueError::new_err)
 }
 
-/// Order, extrapolated value and error bar, where there are any, and the verdict in words.
-type Judged = (Option<f64>, Option<f64>, Option<f64>, String);
+/// Order, extrapolated value and error bar, where there are any, whether the numbers are settled without, and the verdict in words.
+type Judged = (Option<f64>, Option<f64>, Option<f64>, bool, String);
 
-/// Order, extrapolated value, error bar and verdict of numbers of runs that are refined alike.
+/// Order, extrapolated value, error bar, whether they are settled without one, and verdict of numbers of runs that are refined alike.
 #[pyfunction]
-pub fn judge(values: Vec<f64>) -> PyResult<Judged> {
-    let Convergence { order, extrapolated, bar, verdict, .. } =
-        convergence::judge(&values).map_err(PyValueError::new_err)?;
-    Ok((order, extrapolated, bar, verdict))
+pub fn judge(values: Vec<f64>, within: f64) -> PyResult<Judged> {
+    let Convergence { order, extrapolated, bar, settled, verdict, .. } =
+        convergence::judge(&values, within).map_err(PyValueError::new_err)?;
+    Ok((order, extrapolated, bar, settled, verdict))
 }
 
 /// The fraction of the last difference that is due to the increments, if there is any: `longer` is the number of the finest mesh with the

@@ -9,7 +9,8 @@
 //! F is 1.25 where p is within 0.2 of a whole number from 1 to 4, as it is where the solution is smooth and the mesh fine enough, otherwise 3.
 //! Where p is above 4.5 the last difference is small by chance, and where differences alternate there is no p: the error bar is three
 //! times the last difference, and not less than a quarter of the one before. Where the last difference is not the smaller one, or p is below ½, the
-//! number does not converge, as far as these meshes can tell.
+//! number does not converge, as far as these meshes can tell, unless all differences are within what is asked of them: then there is
+//! neither an order nor an error bar, and no failure either.
 //!
 //! The finest mesh with the increments of the level before, f₂₃, divides the last difference: |f₃ − f₂₃| is that of the increments,
 //! |f₂₃ − f₂| that of the mesh.
@@ -22,6 +23,7 @@ use std::str::FromStr;
 use serde::Serialize;
 
 use crate::model::Model;
+use crate::model::text::number;
 use crate::output::report::table::Columns;
 use crate::output::{history, probes};
 
@@ -166,6 +168,8 @@ pub struct Convergence {
     pub extrapolated: Option<f64>,
     /// Error bar of the last number; `None` if they do not converge
     pub bar: Option<f64>,
+    /// Whether they do not converge, but differ by less than asked
+    pub settled: bool,
     /// In words
     pub verdict: String,
 }
@@ -193,20 +197,41 @@ const SAFETY: [f64; 2] = [1.25, 3.0];
 /// Least fraction of the difference before the last that an error bar without an order is.
 const LEAST: f64 = 0.25;
 
-/// Judges three or more numbers, the coarsest first.
+/// Differences, as fractions of the numbers, within which they count as settled where nothing else is asked.
+pub const WITHIN: f64 = 1e-3;
+
+/// Judges three or more numbers, the coarsest first; those that do not converge count as settled if their last differences are `within` this
+/// fraction of the largest.
 ///
 /// # Errors
 /// Returns a message if there are fewer, or one is not finite.
-pub fn judge(values: &[f64]) -> Result<Convergence, String> {
+pub fn judge(values: &[f64], within: f64) -> Result<Convergence, String> {
     let [.., first, second, last] = *values else {
         return Err(format!("there are {} numbers: an order takes {FEWEST} levels", values.len()));
     };
     if let Some(bad) = values.iter().find(|value| !value.is_finite()) {
         return Err(format!("{bad} is no number that can converge"));
     }
+    let judged = of_three([first, second, last]);
+    let most = (second - first).abs().max((last - second).abs());
+    let largest = [first, second, last].into_iter().map(f64::abs).fold(0.0, f64::max);
+    let settled = judged.bar.is_none() && most <= within * largest;
+    let changed = || format!("changed by less than {} %; no order can be measured", number(100.0 * within));
+    let verdict = if settled { changed() } else { judged.verdict };
+    Ok(Convergence { values: values.to_vec(), settled, verdict, ..judged })
+}
+
+/// Judges the last three numbers.
+fn of_three(values: [f64; 3]) -> Convergence {
+    let [first, second, last] = values;
     let [before, after] = [second - first, last - second];
-    let judged = |order, extrapolated, bar, verdict: String| {
-        Ok(Convergence { values: values.to_vec(), order, extrapolated, bar, verdict })
+    let judged = |order, extrapolated, bar, verdict: String| Convergence {
+        values: values.to_vec(),
+        order,
+        extrapolated,
+        bar,
+        settled: false,
+        verdict,
     };
     let least = ROUND_OFF * first.abs().max(last.abs());
     if before.abs().max(after.abs()) <= least {
@@ -222,7 +247,7 @@ pub fn judge(values: &[f64]) -> Result<Convergence, String> {
     }
     let by_difference = (SAFETY[1] * after.abs()).max(LEAST * before.abs());
     if before * after <= 0.0 {
-        let verdict = "converges, to and fro; the bar follows from the differences".into();
+        let verdict = "converges, with differences of alternating sign; the bar follows from the differences".into();
         return judged(None, Some(last), Some(by_difference), verdict);
     }
     let order = (before / after).log2();

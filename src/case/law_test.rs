@@ -108,7 +108,7 @@ const WRITTEN: f64 = 1e-6;
 
 /// Returns the JSON Schema of a law test.
 pub fn schema() -> Value {
-    schema_of::<LawTestInput>()
+    schema_of::<LawTestInput>("law")
 }
 
 /// Reads a law test.

@@ -2,6 +2,7 @@
 //! ([`file`]); run by [`job`].
 
 mod again;
+mod by_name;
 pub mod convergence;
 mod error;
 pub mod file;
@@ -16,6 +17,7 @@ mod report;
 mod resolved;
 mod schema;
 pub mod units;
+mod words;
 
 use std::path::{Path, PathBuf};
 
@@ -37,7 +39,7 @@ pub use resolved::resolved;
 /// # Errors
 /// Returns [`CaseError`] if the file cannot be read or is not a case.
 pub fn read(path: &Path) -> Result<Case, CaseError> {
-    read::read(path)
+    Written::read(path).map(|written| written.case)
 }
 
 /// Reads a case from its text; `path` is used in messages and for relative paths.
@@ -45,7 +47,7 @@ pub fn read(path: &Path) -> Result<Case, CaseError> {
 /// # Errors
 /// The same as for [`read()`].
 pub fn from_text(text: &str, path: &Path) -> Result<Case, CaseError> {
-    read::read_text(text, path)
+    Written::from_text(text, path).map(|written| written.case)
 }
 
 /// Reads the mesh of a case, checks everything, and builds the model. `path` is the case file.
@@ -142,7 +144,7 @@ pub fn blocks_from_text(text: &str) -> Result<Mesh, CaseError> {
 
 /// Returns the JSON Schema of a case file.
 pub fn schema() -> Value {
-    schema::schema_of::<Case>()
+    schema::of_case()
 }
 
 /// A case as written in a file or by a program.
@@ -150,7 +152,7 @@ pub fn schema() -> Value {
 pub struct Written {
     /// its file, or a path for messages
     pub path: PathBuf,
-    /// the case as JSON
+    /// the case as JSON, without notes and with each law where it is used
     pub document: Value,
     /// the case
     pub case: Case,
@@ -162,7 +164,7 @@ impl Written {
     /// # Errors
     /// Returns [`CaseError`] if the file cannot be read or is not a case.
     pub fn read(path: &Path) -> Result<Self, CaseError> {
-        let (document, case) = read::read_document(path)?;
+        let (document, case) = read::read_document(path, by_name::with_laws)?;
         Ok(Self { path: path.to_owned(), document, case })
     }
 
@@ -171,7 +173,7 @@ impl Written {
     /// # Errors
     /// The same as for [`Written::read`].
     pub fn from_text(text: &str, path: &Path) -> Result<Self, CaseError> {
-        let (document, case) = read::read_document_text(text, path)?;
+        let (document, case) = read::read_document_text(text, path, by_name::with_laws)?;
         Ok(Self { path: path.to_owned(), document, case })
     }
 }

@@ -3,6 +3,8 @@
 //! The text first becomes a JSON document, in which no key may occur twice; the document becomes a `Case` or a
 //! `LawTestInput`, and errors are reported with their place.
 //!
+//! A `"note"`, text in any object, and `"$schema"` are for readers and editors: they leave the document first.
+//!
 //! Lists of the document are not accepted as objects: serde's derived types would take a list as values of their keys in order.
 //!
 //! serde's errors are translated into the terms of a case file.
@@ -35,7 +37,7 @@ const TAGS: [&str; 2] = ["model", "law"];
 /// # Errors
 /// Returns [`CaseError`] if the file cannot be read or is invalid.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
-    read_document(path).map(|(_, input)| input)
+    read_document(path, |_| Ok(())).map(|(_, input)| input)
 }
 
 /// Reads the text of a file; `path` is used in messages.
@@ -43,24 +45,35 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
 /// # Errors
 /// The same as for [`read`].
 pub fn read_text<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, CaseError> {
-    read_document_text(text, path).map(|(_, input)| input)
+    read_document_text(text, path, |_| Ok(())).map(|(_, input)| input)
 }
 
-/// Returns the JSON document of a file, and its value.
+/// Returns the JSON document of a file without its notes, made plain by `prepare`, and its value.
 ///
 /// # Errors
-/// The same as for [`read`].
-pub fn read_document<T: DeserializeOwned>(path: &Path) -> Result<(Value, T), CaseError> {
+/// The same as for [`read`], and those of `prepare`.
+pub fn read_document<T: DeserializeOwned>(path: &Path, prepare: Prepare) -> Result<(Value, T), CaseError> {
     let text = text(path).map_err(|complaint| complaint.in_file(path))?;
-    read_document_text(&text, path)
+    read_document_text(&text, path, prepare)
 }
+
+/// What makes a document plain before it is read.
+pub type Prepare = fn(&mut Value) -> Result<(), ModelError>;
 
 /// Returns the same as [`read_document`], from the text instead of the file.
 ///
 /// # Errors
-/// The same as for [`read`].
-pub fn read_document_text<T: DeserializeOwned>(text: &str, path: &Path) -> Result<(Value, T), CaseError> {
-    let read = document(text).and_then(|document| Ok((input(&document)?, document)));
+/// The same as for [`read_document`].
+pub fn read_document_text<T: DeserializeOwned>(
+    text: &str,
+    path: &Path,
+    prepare: Prepare,
+) -> Result<(Value, T), CaseError> {
+    let read = document(text).and_then(|mut document| {
+        take_notes(&mut document);
+        prepare(&mut document)?;
+        Ok((input(&document)?, document))
+    });
     read.map(|(input, document)| (document, input)).map_err(|complaint| complaint.in_file(path))
 }
 
@@ -86,6 +99,32 @@ fn text(path: &Path) -> Result<String, ModelError> {
         true => Err(complain("is empty; a case is a JSON object, as `fecontact schema` describes")),
         false => Ok(text.into()),
     }
+}
+
+/// The key of a remark, text in any object.
+pub const NOTE: &str = "note";
+
+/// The key by which editors find the schema.
+pub const SCHEMA: &str = "$schema";
+
+/// Takes what is for readers and editors alone out of a document: notes, and the reference to its schema.
+fn take_notes(document: &mut Value) {
+    fn take(value: &mut Value) {
+        match value {
+            Value::Object(object) => {
+                if object.get(NOTE).is_some_and(Value::is_string) {
+                    object.remove(NOTE);
+                }
+                object.values_mut().for_each(take);
+            }
+            Value::Array(list) => list.iter_mut().for_each(take),
+            _ => {}
+        }
+    }
+    if let Some(object) = document.as_object_mut().filter(|object| object.get(SCHEMA).is_some_and(Value::is_string)) {
+        object.remove(SCHEMA);
+    }
+    take(document);
 }
 
 fn document(text: &str) -> Result<Value, ModelError> {
@@ -390,6 +429,10 @@ fn unknown(message: &str) -> String {
     let name = quoted.next().unwrap_or_default();
     let known: Vec<&str> = quoted.collect();
     let name = clipped(name);
+    if let Some(here) = super::words::here(&name, &known) {
+        let others = if known.is_empty() { String::new() } else { format!(". Known are `{}`", known.join("`, `")) };
+        return format!("`{name}` is not known here: {here}{others}");
+    }
     match known.is_empty() {
         true => format!("`{name}` is not known here: leave it out, this object takes no further keys"),
         false => not_known(&name, &known),

@@ -22,6 +22,8 @@ pub struct Study {
     pub measures: Vec<String>,
     /// number of runs
     pub levels: usize,
+    /// fraction of a number within which changes need no order
+    pub within: f64,
     /// folder of the results
     pub out: Option<PathBuf>,
     /// number of threads
@@ -33,13 +35,18 @@ pub struct Study {
 /// # Errors
 /// Returns [`Failure`] if the case or a measure is invalid, a run stopped, or a number does not converge.
 pub fn converge(path: &Path, study: Study) -> Result<(), Failure> {
-    let Study { measures, levels, out, threads } = study;
+    let Study { measures, levels, within, out, threads } = study;
     use_threads(threads)?;
     let refused = |message: String| Failure::BadInput(format!("--measure: {message}"));
     let read = measures.iter().map(|measure| measure.parse::<Measure>().map_err(refused));
     let read = read.collect::<Result<Vec<_>, _>>()?;
     if levels < FEWEST {
         return Err(Failure::BadInput(format!("--levels: is {levels}: an order takes {FEWEST} or more")));
+    }
+    if !(0.0..1.0).contains(&within) {
+        return Err(Failure::BadInput(format!(
+            "--within: is {within}: must be a fraction of the number, from 0 to less than 1"
+        )));
     }
     let place = out.unwrap_or_else(|| default_folder(path));
     let (written, interrupt) = (Written::read(path)?, Interrupt::watch());
@@ -68,12 +75,12 @@ pub fn converge(path: &Path, study: Study) -> Result<(), Failure> {
     let longer = if has_longer { measured(&format!("level_{last}_longer_increments"), longer)? } else { Vec::new() };
     let fractions = values.iter().zip(&longer).map(|(values, longer)| fraction_of_increments(values, *longer));
     let fractions: Vec<Option<f64>> = fractions.chain(std::iter::repeat(None)).take(read.len()).collect();
-    let judged = values.iter().map(|values| judge(values).map_err(Failure::Stopped));
+    let judged = values.iter().map(|values| judge(values, within).map_err(Failure::Stopped));
     let judged = judged.collect::<Result<Vec<_>, _>>()?;
     for ((measure, judged), fraction) in measures.iter().zip(&judged).zip(fractions) {
         print(&format!("{measure}: {}\n", told(judged, fraction)))?;
     }
-    let fails = measures.iter().zip(&judged).find(|(_, judged)| judged.bar.is_none());
+    let fails = measures.iter().zip(&judged).find(|(_, judged)| judged.bar.is_none() && !judged.settled);
     fails.map_or(Ok(()), |(measure, judged)| Err(Failure::Stopped(format!("{measure} {}", judged.verdict))))
 }
 

@@ -4,6 +4,7 @@
 mod say;
 mod converge;
 mod failure;
+mod init;
 mod interrupt;
 mod place;
 pub mod progress;
@@ -16,10 +17,12 @@ use clap::ValueEnum;
 
 pub use self::converge::{Study, converge};
 pub use self::failure::Failure;
+pub use self::init::{Template, init};
 use self::place::{claim, default_folder};
 pub use self::run::{Options, run};
 pub use self::say::{print, say};
 use self::threads::use_threads;
+pub use crate::case::convergence::WITHIN;
 pub use crate::case::job::defect;
 use crate::case::{self, Opened, Written, law_test, units};
 use crate::mesh::section::Section;
@@ -110,15 +113,6 @@ fn conclude_law(report: &LawReport, folder: &Path) {
         say!("warning: {warning}");
     }
     say!("results in {}", folder.display());
-}
-
-/// Returns the message of the removed command `fecontact plot`, with its replacement.
-pub fn plot() -> Failure {
-    Failure::BadInput(
-        "`fecontact plot` is gone: `fecontact report DIR…` writes a page whose pictures are saved as SVG, PNG and CSV; from Python, \
-         `fecontact.plot.friction(fecontact.Result.open(DIR))` and the functions beside it draw them"
-            .into(),
-    )
 }
 
 /// Implements `fecontact report`.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use fecontact::case::convergence::{Convergence, Measure, judge};
+use fecontact::case::convergence::{Convergence, Measure, WITHIN, judge};
 use fecontact::case::{self, Halvings, Written};
 use fecontact::mesh::{Group, InlineMesh, Mesh};
 use fecontact::model::Model;
@@ -49,7 +49,7 @@ fn the_bar_of_a_tube_holds_its_closed_form() {
     assert!(said.contains("level 2: 64 elements, 8 increments"), "{said}");
     let line = said.lines().find_map(|line| line.strip_prefix("bore.ux:end: ")).expect("the values");
     let values: Vec<f64> = line.split(", ").map(|value| value.parse().expect("a number")).collect();
-    let Convergence { order, extrapolated, bar, .. } = judge(&values).expect("three numbers");
+    let Convergence { order, extrapolated, bar, .. } = judge(&values, WITHIN).expect("three numbers");
     let (order, extrapolated, bar) = (order.expect("an order"), extrapolated.expect("a value"), bar.expect("a bar"));
     let error = (values[2] - exact).abs();
     assert!((1.8..2.2).contains(&order), "{order}");
@@ -204,10 +204,10 @@ fn other_meshes_are_refined_as_blocks_are() {
     assert!(blocks.iter().zip(&nodes).all(|(a, b)| (a - b).abs() < 1e-13 * a.abs()), "{blocks:?} and {nodes:?}");
 }
 
-/// Orders, extrapolations and bars of sequences that are known: 1 + 2^(−p k), sequences to and fro, and those that do not converge.
+/// Orders, extrapolations and bars of sequences that are known: 1 + 2^(−p k), sequences whose differences alternate, and those that do not converge.
 #[test]
 fn sequences_are_judged() {
-    let of = |values: [f64; 3]| judge(&values).expect("three numbers");
+    let of = |values: [f64; 3]| judge(&values, WITHIN).expect("three numbers");
     let power = |p: f64| of([1.0, 0.0, -1.0].map(|k: f64| 1.0 + (p * (k - 2.0)).exp2()));
     for (p, factor) in [(0.6, 3.0), (1.0, 1.25), (1.5, 3.0), (2.0, 1.25), (3.9, 1.25)] {
         let judged = power(p);
@@ -225,9 +225,18 @@ fn sequences_are_judged() {
         let judged = of(diverging);
         assert!(judged.bar.is_none() && judged.extrapolated.is_none() && judged.verdict.contains("does not converge"));
     }
+    // Changes within a thousandth that do not become smaller are no failure, and no order either.
+    for settled in [[0.34599, 0.34598, 0.34601], [-2.0, -2.0, -2.0019]] {
+        let judged = of(settled);
+        assert!(judged.settled && judged.bar.is_none() && judged.order.is_none());
+        assert!(judged.verdict.contains("no order can be measured"), "{}", judged.verdict);
+        assert!(!judge(&settled, 1e-5).expect("three numbers").settled);
+    }
+    assert!(of([0.34599, 0.34598, 0.34601]).verdict.starts_with("changed by less than 0.1 %"));
+    assert!(!of([1.0, 1.0, 1.1]).settled && !of([1.0, 0.9999, 0.99995]).settled);
     let same = of([3.0, 3.0 + 1e-12, 3.0]);
     assert!(same.verdict.contains("does not change") && same.bar.expect("a bar") <= 1e-7);
-    assert!(judge(&[1.0, 2.0]).is_err() && judge(&[1.0, 2.0, f64::NAN]).is_err());
+    assert!(judge(&[1.0, 2.0], WITHIN).is_err() && judge(&[1.0, 2.0, f64::NAN], WITHIN).is_err());
 }
 
 /// What is taken of a history, of one column over another, and in a step alone; names may have the signs that part these.
@@ -291,7 +300,7 @@ fn a_probe_stays_where_it_is() {
     assert_eq!(said[0], said[1]);
     let line = said[0].lines().find_map(|line| line.strip_prefix("wall.ux:end: ")).expect("the values");
     let values: Vec<f64> = line.split(", ").map(|value| value.parse().expect("a number")).collect();
-    let bar = judge(&values).expect("three numbers").bar.expect("a bar");
+    let bar = judge(&values, WITHIN).expect("three numbers").bar.expect("a bar");
     assert!((values[2] - exact).abs() < bar && bar < 1e-3 * exact, "{values:?} ± {bar:e}, {exact}");
     let refused = |case: &Value, place: &str| {
         write("off.json", case);

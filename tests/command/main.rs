@@ -5,10 +5,12 @@ mod common;
 #[path = "../common/delayed.rs"]
 mod delayed;
 
+mod by_name;
 mod committed;
 mod converge;
 mod convergence;
 mod gradients;
+mod init;
 mod input;
 mod law;
 mod layout;
@@ -16,6 +18,7 @@ mod many;
 mod mutations;
 mod outputs;
 mod progress;
+mod readme;
 mod report;
 mod resolved;
 mod results;

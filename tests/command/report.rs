@@ -407,17 +407,6 @@ fn stale_figures_are_removed() {
     assert!(!out.join("friction.svg").exists() && out.join("slip.svg").exists());
 }
 
-#[test]
-fn plot_says_what_to_use_instead() {
-    for arguments in [&["plot"][..], &["plot", "out/blocks", "--out", "figures"], &["plot", "--help"]] {
-        let told = fecontact(arguments);
-        assert_eq!(told.status.code(), Some(2), "{arguments:?}");
-        assert!(told.stdout.is_empty());
-        assert_eq!(stderr(&told).lines().count(), 1, "{}", stderr(&told));
-        assert!(["fecontact report", "fecontact.plot"].iter().all(|what| stderr(&told).contains(what)));
-    }
-}
-
 /// Attempts that were given up are those of which `newton.csv` says so: an accepted one is none, although the run ended after it
 /// without a solve, and another attempt at the same increment followed.
 #[test]
