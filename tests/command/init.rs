@@ -26,7 +26,7 @@ fn a_case_to_begin_with_runs() {
             "{}",
             stderr(&written)
         );
-        let committed = common::repository(&format!("cases/templates/{file}"));
+        let committed = common::repository(format!("cases/templates/{file}"));
         assert_eq!(std::fs::read(folder.path().join(&file)).unwrap(), std::fs::read(committed).unwrap());
         let again = fecontact(&folder, &["init", kind]);
         assert_eq!(again.status.code(), Some(2));
