@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use fecontact::cli::{self, Failure, Input, Options, Study, Template, defect};
+use fecontact::cli::{self, Failure, Input, Options, Reduced, Stability, Study, Template, defect};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
@@ -77,6 +77,30 @@ enum Command {
         #[arg(short, long)]
         threads: Option<usize>,
     },
+    /// Divide strengths at the end of a case by a factor until nothing stands any more
+    #[command(after_help = "Example: fecontact safety slope.json --body soil")]
+    Safety {
+        /// The case file (JSON)
+        case: PathBuf,
+        /// Body whose strength is divided; may be given several times [default: all bodies and contacts with a strength]
+        #[arg(short, long = "body")]
+        body: Vec<String>,
+        /// Contact whose strength is divided; may be given several times
+        #[arg(short, long = "contact")]
+        contact: Vec<String>,
+        /// Largest distance between the factor that stands and the one that fails
+        #[arg(short, long, default_value_t = 0.01)]
+        within: f64,
+        /// Largest factor that is tried
+        #[arg(long, default_value_t = 10.0)]
+        most: f64,
+        /// Folder of the results, with a folder for each factor [default: out/<case name>]
+        #[arg(short, long)]
+        out: Option<PathBuf>,
+        /// Threads [default: all cores]
+        #[arg(short, long)]
+        threads: Option<usize>,
+    },
     /// Drive a friction law on its own along a path of slip, pressure and time
     #[command(after_help = "Example: fecontact law cases/law/steady.json")]
     Law {
@@ -135,6 +159,9 @@ fn run() -> Result<(), Failure> {
         Command::Check { case, resolved } => cli::check(&case, resolved),
         Command::Converge { case, measure: measures, levels, within, out, threads } => {
             cli::converge(&case, Study { measures, levels, within, out, threads })
+        }
+        Command::Safety { case, body: bodies, contact: contacts, within, most, out, threads } => {
+            cli::safety(&case, Stability { reduced: Reduced { bodies, contacts }, within, most, out, threads })
         }
         Command::Law { test, out } => cli::law(&test, out),
         Command::Report { folders, out } => cli::report(&folders, out),

@@ -91,6 +91,11 @@ impl Opened {
         Ok(Self { taken_over, resumes: true, ..Self::new(path, document, case, Some(checkpoint)) })
     }
 
+    /// Opens a case whose run goes on after the steps taken over, from an end for which its caller answers.
+    pub(super) fn going_on(path: &Path, document: Value, case: Case, taken_over: usize) -> Self {
+        Self { taken_over, ..Self::new(path, document, case, None) }
+    }
+
     fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Self {
         let files = document["mesh"].as_array().map_or(slice::from_ref(&document["mesh"]), Vec::as_slice);
         let inputs = files.iter().filter_map(Value::as_str).map(|mesh| beside(path, mesh)).collect();

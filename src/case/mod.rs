@@ -15,6 +15,7 @@ mod read;
 mod refined;
 mod report;
 mod resolved;
+pub mod safety;
 mod schema;
 pub mod units;
 mod words;

@@ -99,6 +99,9 @@ pub struct Step {
     /// bodies that this step adds or removes
     #[doc(hidden)]
     pub changed: Vec<usize>,
+    /// whether the laws are weaker than those of the step before: the forces that they no longer bear decrease to zero over the step
+    #[doc(hidden)]
+    pub relaxes: bool,
     /// reaction that ends the step early
     #[doc(hidden)]
     pub until: Option<Until>,

@@ -35,7 +35,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     model.ties.gather(2, &mut state.force);
     // The reaction of a released support has become a load.
     step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
-    if !step.changed.is_empty() {
+    if !step.changed.is_empty() || step.relaxes {
         change_bodies(model, step, &mut state, work)?;
     }
     launch(model, step, &mut state);
@@ -62,7 +62,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     Ok(state)
 }
 
-/// Lets bodies come or go without a jump: what the forces change by fades over the step. Nodes that only absent bodies have come to
+/// Lets bodies come or go, or laws change, without a jump: what the forces change by fades over the step. Nodes that only absent bodies have come to
 /// rest. The energy that bodies bring or take counts as external work, as does that of temperatures that jump with them.
 fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
     model.bear(step, state).map_err(|(e, share)| IncrementFailure::Start(TrialFailure::narrow(model, e, share)))?;

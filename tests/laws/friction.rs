@@ -199,6 +199,29 @@ fn what_the_parameters_mean_is_what_the_law_does() {
     }
 }
 
+/// Rest with n above 1 spreads over decades of time: μ = μ_s (1 − [y₀^(1−n) + (n − 1) ξ t/μ_s]^(−1/(n−1))), y₀ = 1 − μ₀/μ_s, in one increment
+/// and in many; while ln(1 + t/t_c) ≪ n − 1 it gains ln 10 (μ_s − μ₀)/(n − 1) a decade, t_c = μ_s y₀^(1−n)/((n − 1) ξ).
+#[test]
+fn rest_heals_by_decades() {
+    for (n, time, exact) in [(2.0, 1e3, 0.342_857_1), (5.0, 1e3, 0.236_700_7), (5.0, 1e6, 0.366_370_9)] {
+        let law = law(&with!(PAPER.integration(Integration::Controlled), n: n));
+        let weak = law.initial_state(PRESSURE, 0.0).with_variables([0.2]);
+        assert_close(mu_of(&respond(&law, &weak, 0.0, PRESSURE, time).state), exact, 1e-7, "one increment");
+        assert_close(mu_of(&loaded_from(&law, weak, time, 50)), exact, 1e-7, "fifty");
+    }
+    let n = 60.0;
+    let law = law(&with!(PAPER.integration(Integration::Controlled), n: n));
+    let weak = law.initial_state(PRESSURE, 0.0).with_variables([0.2]);
+    let begins = 0.4 * 0.5_f64.powf(1.0 - n) / ((n - 1.0) * 0.002);
+    let [first, last] = [1e2, 1e5].map(|times| mu_of(&respond(&law, &weak, 0.0, PRESSURE, times * begins).state));
+    assert_close((last - first) / 3.0, 10_f64.ln() * 0.2 / (n - 1.0), 0.15 * 10_f64.ln() * 0.2 / (n - 1.0), "a decade");
+}
+
+/// The state after a rest in equal increments.
+fn loaded_from(law: &SuperSubloading, state: FrictionState, time: f64, count: usize) -> FrictionState {
+    (0..count).fold(state, |state, _| respond(law, &state, 0.0, PRESSURE, time / count as f64).state)
+}
+
 #[test]
 fn ageing_at_rest_converges_to_its_closed_forms() {
     for n in [1.0, 2.0, 0.5] {

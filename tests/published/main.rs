@@ -16,4 +16,5 @@ mod limit_loads;
 mod paper;
 mod published;
 mod rupture;
+mod safety;
 mod slip_front;

@@ -151,7 +151,11 @@ impl Job {
         Ok(Self { damage, begins_anew, ..Self::claim(opened, model, saved, place)? })
     }
 
-    fn claim(opened: Opened, model: Arc<Model>, saved: Option<SavedRun>, place: &Path) -> Result<Self, Refused> {
+    /// Locks the results folder of a model, whose run begins anew or with a saved one.
+    ///
+    /// # Errors
+    /// Returns [`Refused::Folder`] if the folder cannot be used.
+    pub fn claim(opened: Opened, model: Arc<Model>, saved: Option<SavedRun>, place: &Path) -> Result<Self, Refused> {
         let inputs: Vec<PathBuf> = opened.inputs.iter().cloned().chain([opened.path.clone()]).collect();
         let outputs = files(&opened.case, &model);
         let folder = Folder::claim(place, &inputs, &outputs, opened.resumes())?;

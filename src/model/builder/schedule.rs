@@ -119,6 +119,7 @@ impl Schedule<'_> {
             damping: self.damping.clone(),
             absent: self.stages.absent(),
             changed,
+            relaxes: false,
             until: None,
             temperatures: prescribed_temperatures(&self.temperatures),
             stabilization,
