@@ -70,6 +70,7 @@
 //! | [`solve`] | Newton's method; detection of unconstrained rigid-body modes |
 //! | [`equations`] | residual and tangent of a model at a trial displacement; energies |
 //! | [`model`] | bodies, contacts, steps, supports and loads; the state; [`model::builder`]: a model from code |
+//! | [`bars`] | trusses and beams, alone or bonded to the body they lie in |
 //! | [`contact`] | surfaces, search, projection, mortar, forces of contact pairs |
 //! | [`linear`] | sparse matrices and their factors |
 //! | [`mesh`] | nodes, elements, groups, shape functions |
@@ -142,6 +143,7 @@ pub mod run;
 // The rooms behind the published ones: open to the program, its tests and benches alone.
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
+        pub mod bars;
         pub mod case;
         pub mod contact;
         pub mod equations;
@@ -149,6 +151,7 @@ cfg_if::cfg_if! {
         pub mod solve;
         pub mod time;
     } else {
+        mod bars;
         mod case;
         mod contact;
         mod equations;

@@ -94,6 +94,7 @@ fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
         periodic: given.periodic,
         plates: given.plates,
         rigid_bodies: given.rigid_bodies.into_iter().collect(),
+        bars: given.bars.into_iter().collect(),
         contacts: given.contacts.into_iter().map(contact).collect(),
         velocities: given.initial_velocity.into_iter().collect(),
         steps: given.steps,

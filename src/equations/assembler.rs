@@ -23,7 +23,7 @@ use crate::equations::solids::{LinearizedSolids, SolidForces, Solids};
 use crate::equations::sums::{Sums, TrialFailure};
 use crate::equations::term::{self, Term};
 use crate::equations::trial::Trial;
-use crate::equations::{contacts, damping, links, loads, supports};
+use crate::equations::{bars, contacts, damping, links, loads, supports};
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
 use crate::model::Model;
@@ -35,6 +35,8 @@ pub struct Assembler {
     layout: Layout,
     /// Whether each body is absent; empty if all are there
     absent: Vec<bool>,
+    /// Whether each bar is absent; empty if all are there
+    bars_absent: Vec<bool>,
     /// Elements that came into a deformed model
     births: Arc<Births>,
     solids: Solids,
@@ -59,11 +61,11 @@ pub struct Assembler {
 }
 
 /// Terms that depend on the displacements only, in every scheme.
-const OF_PLACE: [Term; 3] = [Term::Solids, Term::Interfaces, Term::Loads];
+const OF_PLACE: [Term; 4] = [Term::Solids, Term::Interfaces, Term::Bars, Term::Loads];
 
 /// Terms that also depend on velocities, which in implicit schemes follow from the displacements.
-const OF_PLACE_AND_MOTION: [Term; 6] =
-    [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
+const OF_PLACE_AND_MOTION: [Term; 7] =
+    [Term::Solids, Term::Interfaces, Term::Bars, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
 
 /// The displacement at which terms are evaluated, and the velocity where viscous forces of the bodies are evaluated with them.
 #[derive(Clone, Copy)]
@@ -98,6 +100,7 @@ impl Assembler {
             model: model.clone(),
             layout: Layout::new(model, term::skew(model)),
             absent: Vec::new(),
+            bars_absent: Vec::new(),
             births,
             evolving: Evolving::new(model, solids.constant(), |_| true, &born),
             solids,
@@ -106,7 +109,7 @@ impl Assembler {
             damping_mass: None,
             weight: supports::weight(model),
             magnitudes: vec![0.0; model.dofs()],
-            equilibrium: ConvergenceCriterion::new(model, |_| true),
+            equilibrium: ConvergenceCriterion::new(model, |_| true, None),
             responses: Vec::new(),
             answered: Vec::new(),
             evaluation: Evaluation::default(),
@@ -122,7 +125,10 @@ impl Assembler {
     /// Turns to the bodies that are there in a step, as they came.
     fn attend(&mut self, Trial { step, old, .. }: Trial) {
         let births = &old.step_start.births;
-        if self.absent == step.absent && (Arc::ptr_eq(&self.births, births) || self.births == *births) {
+        if self.absent == step.absent
+            && self.bars_absent == step.bars.absent
+            && (Arc::ptr_eq(&self.births, births) || self.births == *births)
+        {
             return;
         }
         let model = &self.model;
@@ -130,10 +136,11 @@ impl Assembler {
         let are_there = |e: usize| step.has(model.body_of_element[e]);
         self.solids = Solids::new(model, are_there, &born);
         self.evolving = Evolving::new(model, self.solids.constant(), are_there, &born);
-        self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body));
+        self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body), Some(step));
         (self.mass, self.damping_mass) = (None, None);
         self.evaluation.memory.clear();
         (self.absent, self.births) = (step.absent.clone(), births.clone());
+        self.bars_absent.clone_from(&step.bars.absent);
     }
 
     /// The current coupling of nodes.
@@ -382,6 +389,7 @@ impl Assembler {
             damping,
             stabilization,
             memory,
+            bars: bar_states,
             strain_energy,
             dissipated,
             plastic,
@@ -412,6 +420,12 @@ impl Assembler {
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
                 Term::Interfaces => contacts::add(responses, &mut sums),
+                Term::Bars => {
+                    let found = bars::add(model, trial, u, bar_states, &mut sums);
+                    *strain_energy += found.stored;
+                    *plastic += found.plastic;
+                    *heating += found.jacked;
+                }
                 Term::Loads => {
                     loads::add(model, trial, u, loads, &mut sums)?;
                     contacts::add_fluids(model, responses, loads);
@@ -435,12 +449,12 @@ impl Assembler {
 
     /// Combines forces, inertia, velocities, accelerations and reactions to the residual of the scheme.
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
-        let Self { model, layout, mass, absent, evaluation, magnitudes, .. } = self;
+        let Self { model, layout, mass, absent, bars_absent, evaluation, magnitudes, .. } = self;
         let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
         let held = links::relieved(model, u, force);
         reactions.clear();
         reactions.extend(trial.step.supports.iter().map(|support| support.at.of(&held)));
-        let found = || inertia::mass(model, layout, absent);
+        let found = || inertia::mass(model, layout, [absent, bars_absent]);
         let mass = trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(found));
         let Some((mass, mut inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
             [velocity, acceleration].into_iter().for_each(|rates| *rates = vec![0.0; u.len()]);
@@ -553,8 +567,8 @@ impl Assembler {
 
     /// Returns the mass matrix on the current pattern.
     pub fn mass(&mut self) -> &SparseMatrix {
-        let Self { model, layout, mass, absent, .. } = self;
-        mass.get_or_insert_with(|| inertia::mass(model, layout, absent))
+        let Self { model, layout, mass, absent, bars_absent, .. } = self;
+        mass.get_or_insert_with(|| inertia::mass(model, layout, [absent, bars_absent]))
     }
 
     /// Returns the tangent of one term alone, without supports; see [`Term::dependence`].

@@ -16,7 +16,7 @@
 //! subtracted from each other.
 
 use super::trial::Trial;
-use super::{links, supports};
+use super::{bars, links, supports};
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
@@ -80,7 +80,7 @@ pub(super) struct ConvergenceCriterion {
 
 impl ConvergenceCriterion {
     /// That of the bodies that are there.
-    pub(super) fn new(model: &Model, is_there: impl Fn(usize) -> bool) -> Self {
+    pub(super) fn new(model: &Model, is_there: impl Fn(usize) -> bool, step: Option<&Step>) -> Self {
         let count = model.mesh.nodes.len();
         let mut stiffness = vec![[0.0; 3]; count];
         let mut lone = vec![true; count];
@@ -101,6 +101,13 @@ impl ConvergenceCriterion {
                 stiffness[node][2] += viscous * viscous;
             }
         }
+        bars::stiffness(model, step, |node, [strained, moved]| {
+            let node = model.ties.original(node);
+            stiffness[node][0] += strained;
+            stiffness[node][1] += moved;
+        });
+        bars::own_nodes(model).flatten().for_each(|&node| lone[node] = false);
+        let bars = bars::own_nodes(model).map(|own| BalancedSet { nodes: own.clone(), contact: None });
         let of_body =
             |body: &Body| BalancedSet { nodes: model.ties.originals(body.nodes.iter().copied()), contact: None };
         let there = model.bodies.iter().enumerate().filter(|(body, _)| is_there(*body));
@@ -112,7 +119,7 @@ impl ConvergenceCriterion {
         let surfaces = model.contacts.iter().enumerate().map(of_contact);
         let lone = (0..count).filter(|&node| lone[node]).map(|node| BalancedSet { nodes: vec![node], contact: None });
         Self {
-            parts: bodies.chain(surfaces).chain(lone).collect(),
+            parts: bodies.chain(bars).chain(surfaces).chain(lone).collect(),
             stiffness,
             dampings: model.bodies.iter().map(|body| body.damping).collect(),
             edges: model.contacts.iter().map(|pair| ContactEdges::of(pair, &model.mesh.undeformed())).collect(),

@@ -106,13 +106,16 @@ impl Layout {
         changes
     }
 
-    /// Couples the nodes of all elements, loads and groups, and finds every element's blocks in the new pattern.
+    /// Couples the nodes of all elements, loads, bars and groups, and finds every element's blocks in the new pattern.
     fn set(&mut self) {
         let groups = &self.coupling.clone().groups;
         let model = &*self.model.clone();
         let elements = model.mesh.elements.iter().map(|element| &element.nodes[..]);
         let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
-        let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
+        let of_bars: Vec<&[usize]> = model.bars.iter().flat_map(|bar| bar.groups()).collect();
+        let others =
+            edges.map(|edge| &edge[..]).chain(of_bars.iter().copied()).chain(groups.iter().map(|group| &group[..]));
+        let all = elements.chain(others);
         let tied = self.tied(all.clone());
         let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
         let skew = self.all_skew(&pattern);

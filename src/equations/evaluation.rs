@@ -14,7 +14,8 @@
 
 use std::ops::Range;
 
-use super::{contacts, damping, links};
+use super::{bars, contacts, damping, links};
+use crate::bars::BarState;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::friction::Regime;
@@ -43,13 +44,15 @@ pub struct Evaluation {
     pub contacts: Vec<Vec<ContactState>>,
     /// Internal variables of the materials at the end of the trial
     pub memory: Vec<f64>,
-    /// ∫ W dV [F·L]
+    /// states of the bars at the end of the trial
+    pub bars: Vec<BarState>,
+    /// ∫ W dV, and what bars store [F·L]
     pub strain_energy: f64,
     /// Viscous dissipation of the materials in the increment [F·L]
     pub dissipated: f64,
     /// Plastic dissipation of the materials in the increment [F·L]
     pub plastic: f64,
-    /// Work of the temperature change in the increment [F·L]
+    /// Work of the temperature change, and of jacks on bars, in the increment [F·L]
     pub heating: f64,
 }
 
@@ -133,7 +136,7 @@ impl Flows {
             work: loaded + driven + fitted,
             damping: driven - damped + relaxed(model, step, old, u),
             stabilization: damping::stabilization_dissipated(step, times, way),
-            friction: contacts::dissipated(&old.contacts, &found.contacts),
+            friction: contacts::dissipated(&old.contacts, &found.contacts) + bars::dissipated(&found.bars),
             radiated: contacts::radiated(&old.contacts, &found.contacts),
         }
     }

@@ -4,7 +4,7 @@
 //!
 //! Velocities and accelerations at a trial displacement follow from the scheme and the supports.
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::coupling::Layout;
 use super::links::{self, Turning, blend};
@@ -20,15 +20,23 @@ pub(super) fn dependence(step: &Step) -> Dependence {
     if step.scheme.coefficients().is_some() { Dependence::StepSize } else { Dependence::Nothing }
 }
 
-/// Returns the mass matrix on the current pattern: consistent in the elements, except those of absent bodies, and point
-/// masses on the diagonal.
-pub(super) fn mass(model: &Model, layout: &Layout, absent: &[bool]) -> SparseMatrix {
+/// Returns the mass matrix on the current pattern: consistent in the elements, except those of absent bodies, point
+/// masses on the diagonal, and bars, whose masses are those of their vertices.
+pub(super) fn mass(model: &Model, layout: &Layout, [absent, bars_absent]: [&[bool]; 2]) -> SparseMatrix {
     let share = |body: usize| if absent.get(body) == Some(&true) { 0.0 } else { 1.0 };
     let mut mass = elements(model, layout, share);
     for point in &model.point_masses {
         let nodes = point.nodes.iter().map(|&node| layout.original(node));
         let dofs = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
         dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
+    }
+    let there = |k: usize| bars_absent.get(k) != Some(&true);
+    for (_, bar) in model.bars.iter().enumerate().filter(|(k, bar)| there(*k) && bar.mass > 0.0) {
+        for (vertex, own) in bar.vertices.iter().zip(bar.masses()) {
+            let weights = DVector::from_column_slice(&vertex.weights);
+            let both = (&weights * weights.transpose() * own).kronecker(&DMatrix::identity(2, 2));
+            add_blocks(&mut mass, &layout.blocks_between(&vertex.nodes), both.as_slice(), vertex.nodes.len());
+        }
     }
     for body in &model.mesh.rigid_bodies {
         mass.add_diagonal(2 * body.turning, body.turning_mass());

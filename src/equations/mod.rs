@@ -16,6 +16,7 @@
 //! |---|---|---|
 //! | `solids` | stress of the bodies | strain energy |
 //! | [`interfaces`] | contact and friction | energy in penalties, friction, shrink fits |
+//! | [`bars`] | trusses and beams | strain energy, energy of bond, friction, yielding |
 //! | `loads` | −loads, springs, initial stress | work |
 //! | [`damping`] | dashpots, absorbing sides | damping, work of drivers |
 //! | [`damping`] | stabilizing dashpots | a part of damping |
@@ -25,6 +26,7 @@
 //! | [`links`] | the equations of follower nodes, and rigid platens in motion | none |
 
 pub mod assembler;
+pub mod bars;
 pub mod condensed;
 pub mod contacts;
 mod convergence;

@@ -13,13 +13,14 @@ use crate::linear::system::System;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
-/// w: the largest stiffness of the materials and springs, or of the contacts in a model of points only [F/L].
+/// w: the largest stiffness of the materials, springs and bars, or of the contacts in a model of points only [F/L].
 pub(super) fn weight(model: &Model) -> f64 {
     let solids = std::iter::once(model.stiffness());
     let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
+    let bars = model.bars.iter().flat_map(|bar| bar.segments.iter().map(|segment| bar.ea / segment.length));
     let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
     let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);
-    largest(&mut solids.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
+    largest(&mut solids.chain(springs).chain(bars)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
 }
 
 /// Dofs whose equation in a step is not one of forces: supported ones, copies, followers, and lengths of platens.

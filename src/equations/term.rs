@@ -2,7 +2,7 @@
 
 use super::coupling::Skew;
 use super::sums::Dependence;
-use super::{contacts, damping, inertia, links, loads, solids, supports};
+use super::{bars, contacts, damping, inertia, links, loads, solids, supports};
 use crate::model::{Model, Step};
 
 /// A term of the equations.
@@ -12,6 +12,8 @@ pub enum Term {
     Solids,
     /// Contact and friction
     Interfaces,
+    /// Trusses and beams
+    Bars,
     /// Loads, springs, initial stress, released supports
     Loads,
     /// Dashpots and absorbing sides
@@ -26,14 +28,23 @@ pub enum Term {
 
 impl Term {
     /// All terms, in the order in which they are added.
-    pub const ALL: [Self; 7] =
-        [Self::Solids, Self::Interfaces, Self::Loads, Self::Dampers, Self::Stabilization, Self::Damping, Self::Inertia];
+    pub const ALL: [Self; 8] = [
+        Self::Solids,
+        Self::Interfaces,
+        Self::Bars,
+        Self::Loads,
+        Self::Dampers,
+        Self::Stabilization,
+        Self::Damping,
+        Self::Inertia,
+    ];
 
     /// Dependence of its tangent in a step of a model.
     pub fn dependence(self, model: &Model, step: &Step) -> Dependence {
         match self {
             Self::Solids => solids::dependence(model),
             Self::Interfaces => contacts::dependence(model),
+            Self::Bars => bars::dependence(model),
             Self::Loads => loads::dependence(step),
             Self::Dampers => damping::damper_dependence(step),
             Self::Stabilization => damping::stabilization_dependence(step),

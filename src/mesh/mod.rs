@@ -11,6 +11,7 @@ pub mod gmsh;
 mod inline;
 mod several;
 mod transfinite;
+mod within;
 
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
@@ -112,6 +113,9 @@ pub struct Mesh {
     /// Rigid bodies, whose nodes belong to no element
     #[doc(hidden)]
     pub rigid_bodies: Vec<RigidBody>,
+    /// Number of nodes of bars that belong to no element: the last ones
+    #[doc(hidden)]
+    pub bar_nodes: usize,
 }
 
 impl Mesh {
@@ -162,10 +166,10 @@ impl Mesh {
         nodes
     }
 
-    /// Number of nodes excluding those of rigid bodies, which come last.
+    /// Number of nodes excluding those of rigid bodies and of bars, which come last.
     #[doc(hidden)]
     pub fn own_nodes(&self) -> usize {
-        self.nodes.len() - self.rigid_bodies.iter().map(|body| body.nodes().len()).sum::<usize>()
+        self.nodes.len() - self.bar_nodes - self.rigid_bodies.iter().map(|body| body.nodes().len()).sum::<usize>()
     }
 
     /// Returns the rigid body of this name.

@@ -1,4 +1,4 @@
-//! Parts of a model that act on each other: by elements, contacts, ties and platens. What serves numerics, such as the round-off
+//! Parts of a model that act on each other: by elements, contacts, bars, ties and platens. What serves numerics, such as the round-off
 //! that forces and displacements may have, goes by the part where it is asked for: other parts have no say in it.
 
 use std::ops::Range;
@@ -35,6 +35,7 @@ impl CoupledParts {
         model.mesh.elements.iter().for_each(|element| join(&mut element.nodes.iter().copied()));
         model.contacts.iter().for_each(|pair| join(&mut pair.nodes()));
         model.ties.pairs().iter().for_each(|&(copy, original)| join(&mut [copy, original].into_iter()));
+        model.bars.iter().flat_map(|bar| bar.groups()).for_each(|group| join(&mut group.iter().copied()));
         model.mesh.rigid_bodies.iter().for_each(|body| join(&mut body.nodes().into_iter()));
         for follower in &model.linkage.followers {
             join(&mut follower.leaders.iter().map(|(leader, _)| *leader).chain([follower.node]));

@@ -1,6 +1,7 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
 pub(crate) mod balance;
+mod bars;
 mod body;
 pub mod boundary;
 pub mod builder;
@@ -47,11 +48,14 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::bars::Bar;
 use crate::contact::pair::ContactPair;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::ties::Ties;
 use crate::mesh::{Element, Mesh};
 use aids::Aids;
+#[doc(hidden)]
+pub use bars::BarsInStep;
 pub use body::{Body, Damping, Memories, PointMass};
 use boundary::Loads;
 use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
@@ -133,6 +137,9 @@ pub struct Model {
     /// layout of the internal variables of all elements in [`State::memory`]
     #[doc(hidden)]
     pub memories: Memories,
+    /// trusses and beams
+    #[doc(hidden)]
+    pub bars: Vec<Bar>,
     /// contact pairs
     #[doc(hidden)]
     pub contacts: Vec<ContactPair>,
@@ -268,6 +275,7 @@ impl Model {
             reaction: zero.clone(),
             contacts: self.contacts.iter().map(|pair| self.first_states(pair)).collect(),
             memory: self.initial_memory(),
+            bars: self.first_bars(),
             last_increment: None,
             step_start: Arc::new(StepStart {
                 displacement: zero.clone(),

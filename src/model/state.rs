@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bars::BarState;
 use crate::contact::force::ContactState;
 
 /// The accepted state at the end of an increment.
@@ -41,6 +42,9 @@ pub struct State {
     /// Internal variables of the materials, element by element ([`crate::model::Memories`])
     #[doc(hidden)]
     pub memory: Vec<f64>,
+    /// One per bar
+    #[doc(hidden)]
+    pub bars: Vec<BarState>,
     /// Displacement increment of the last increment of this step; `None` at its start, and after explicit increments
     #[doc(hidden)]
     pub last_increment: Option<LastIncrement>,
@@ -84,6 +88,8 @@ impl State {
             vectors.map(|(own, _)| own);
         let mut contacts = self.contacts;
         contacts.clone_from(&other.contacts);
+        let mut bars = self.bars;
+        bars.clone_from(&other.bars);
         let (last_increment, step_start) = (other.last_increment.clone(), other.step_start.clone());
         let Self { time, increment, dt, energy, .. } = *other;
         Self {
@@ -99,6 +105,7 @@ impl State {
             reaction,
             contacts,
             memory,
+            bars,
             last_increment,
             step_start,
             energy,

@@ -14,6 +14,7 @@
 
 use nalgebra::Vector2;
 
+use super::bars::BarsInStep;
 use super::body::Damping;
 use super::boundary::{Amplitude, Loads, Span};
 use super::imposed::Temperature;
@@ -102,6 +103,9 @@ pub struct Step {
     /// whether the laws are weaker than those of the step before: the forces that they no longer bear decrease to zero over the step
     #[doc(hidden)]
     pub relaxes: bool,
+    /// bars: which are there, and which are stressed
+    #[doc(hidden)]
+    pub bars: BarsInStep,
     /// reaction that ends the step early
     #[doc(hidden)]
     pub until: Option<Until>,
@@ -163,6 +167,11 @@ impl Step {
     /// Whether a contact acts: the bodies of both sides are there.
     pub fn joins(&self, pair: &ContactPair) -> bool {
         self.absent.is_empty() || pair.bodies.iter().flatten().all(|&body| self.has(body))
+    }
+
+    /// Whether it adds or removes a body or a bar, or has weaker laws.
+    pub fn changes_anything(&self) -> bool {
+        self.relaxes || !(self.changed.is_empty() && self.bars.changed.is_empty())
     }
 
     /// Whether it adds or removes a side of a contact.

@@ -2,7 +2,7 @@
 //! audit is updated.
 
 use crate::equations::evaluation::Flows;
-use crate::equations::{Evaluation, contacts};
+use crate::equations::{Evaluation, bars, contacts};
 use crate::model::state::State;
 use crate::model::{Model, Step};
 
@@ -28,6 +28,7 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     std::mem::swap(&mut state.damping, &mut found.damping);
     std::mem::swap(&mut state.contacts, &mut found.contacts);
     std::mem::swap(&mut state.memory, &mut found.memory);
+    std::mem::swap(&mut state.bars, &mut found.bars);
     (state.dt, state.time) = (time - state.time, time);
     state.increment += 1;
 }
@@ -45,7 +46,7 @@ pub fn heat(step: &Step, found: &Evaluation, state: &mut State) {
 /// Updates kinetic and contact energy at the end of an increment; at the start of a run the energy balance begins with them.
 pub fn take_stock(model: &Model, kinetic: f64, state: &mut State) {
     state.energy.kinetic = kinetic;
-    state.energy.contact_elastic = contacts::stored(model, &state.contacts);
+    state.energy.contact_elastic = contacts::stored(model, &state.contacts) + bars::bonded(&state.bars);
     if state.increment == 0 {
         state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
     }

@@ -14,7 +14,7 @@ use super::increment::kinetic;
 use crate::equations::Trial;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::{hold, tie, turn};
-use crate::equations::{contacts, links};
+use crate::equations::{bars, contacts, links};
 use crate::linear;
 use crate::model::scheme::{Scheme, start_acceleration, start_velocity};
 use crate::model::state::State;
@@ -35,7 +35,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     model.ties.gather(2, &mut state.force);
     // The reaction of a released support has become a load.
     step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
-    if !step.changed.is_empty() || step.relaxes {
+    if step.changes_anything() {
         change_bodies(model, step, &mut state, work)?;
     }
     launch(model, step, &mut state);
@@ -44,8 +44,9 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
         keep_to_supports(model, step, dt, &mut state);
         let is_new = rests(old) || old.is_of_explicit() || !step.launch.is_empty();
         let mut anew = if is_new { vec![true; model.mesh.nodes.len()] } else { jumps(step, old, &state, work)? };
-        let nodes = step.changed.iter().flat_map(|&body| &model.bodies[body].nodes);
-        nodes.for_each(|&node| anew[model.ties.original(node)] = true);
+        let nodes = step.changed.iter().flat_map(|&body| model.bodies[body].nodes.clone());
+        let of_bars = step.bars.changed.iter().flat_map(|&bar| model.bars[bar].nodes());
+        nodes.chain(of_bars).for_each(|node| anew[model.ties.original(node)] = true);
         start_dynamics(model, step, anew, &mut state, work)?;
     } else {
         state.stop();
@@ -56,7 +57,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     if state.increment == 0 {
         let kinetic = kinetic(step, &state, work);
         take_stock(model, kinetic, &mut state);
-    } else if !step.launch.is_empty() || !step.changed.is_empty() || old.is_of_explicit() {
+    } else if !step.launch.is_empty() || step.changes_anything() || old.is_of_explicit() {
         moves_anew(step, &mut state, work);
     }
     Ok(state)
@@ -67,10 +68,12 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
     model.bear(step, state).map_err(|(e, share)| IncrementFailure::Start(TrialFailure::narrow(model, e, share)))?;
     model.forget(step, state);
+    model.change_bars(step, state);
     let mut now = state.clone();
     evaluate_forces(step, &mut now, work)?;
     let mut fading: Vec<f64> = now.force.iter().zip(&state.force).map(|(new, old)| new - old).collect();
-    for node in model.idle_nodes(&step.absent) {
+    let idle_nodes = [model.idle_nodes(&step.absent), model.idle_bar_nodes(&step.bars.absent)];
+    for node in idle_nodes.into_iter().flatten() {
         let dofs = 2 * node..2 * node + 2;
         [&mut fading, &mut state.force, &mut state.reaction, &mut state.velocity, &mut state.acceleration]
             .into_iter()
@@ -89,7 +92,8 @@ fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Works
         }
     }
     let evaluation = &work.assembler.evaluation;
-    let [strain, contact] = [evaluation.strain_energy, contacts::stored(model, &state.contacts)];
+    let [strain, contact] =
+        [evaluation.strain_energy, contacts::stored(model, &state.contacts) + bars::bonded(&state.bars)];
     let energy = &mut state.energy;
     energy.external_work += strain - energy.strain + contact - energy.contact_elastic;
     (energy.strain, energy.contact_elastic) = (strain, contact);

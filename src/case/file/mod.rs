@@ -14,7 +14,7 @@ use crate::mesh::InlineMesh;
 use crate::mesh::section::Section;
 use crate::model::NewtonSettings;
 use crate::model::builder::{
-    BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, Place, PointMassInput, RigidBodyInput,
+    BarInput, BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, Place, PointMassInput, RigidBodyInput,
 };
 use crate::model::written::Written;
 use blocks::MeshKeys;
@@ -61,6 +61,9 @@ pub struct Case {
     /// the path, `ux`, `uy` and `angle`, 0 where it is fixed; free components move under contact and loads on the name
     #[serde(default)]
     pub rigid_bodies: BTreeMap<String, RigidBodyInput>,
+    /// Trusses, beams, anchors and geogrids by a name of your choice
+    #[serde(default)]
+    pub bars: BTreeMap<String, BarInput>,
     /// Contacts by a name of your choice
     #[serde(default)]
     pub contacts: BTreeMap<String, Contact>,

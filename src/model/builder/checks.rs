@@ -77,6 +77,11 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
         return refused(name, key, message);
     }
     let Some(Step { name: step, .. }) = model.steps.iter().find(|step| step.may_be_explicit()) else { return Ok(()) };
+    if let Some(bar) = model.bars.first() {
+        let message =
+            format!("bars are not for the explicit step `{step}`, nor for `rupture`: make it static or implicit");
+        return Err(ModelError::new(format!("bars.{}", bar.name), message));
+    }
     if let Some(contact) = contacts.iter().find(|contact| contact.massless) {
         let message = format!("the explicit step `{step}` needs the mass of every node: leave it out");
         return refused(&contact.name, "massless", message);
@@ -115,6 +120,10 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
         }
         let message = "are not for quasi_dynamic steps: drive the side by supports";
         refuse_if(!(model.plates.is_empty() && model.linkage.is_empty()), "plates", message)?;
+        if let Some(bar) = model.bars.first() {
+            let message = "is not for quasi_dynamic steps: take static steps with radiation_damping";
+            return Err(ModelError::new(format!("bars.{}", bar.name), message));
+        }
         if let Some(body) = model.mesh.rigid_bodies.first() {
             let message = "is not for quasi_dynamic steps: leave it out, and move the body by supports";
             return Err(ModelError::new(format!("rigid_bodies.{}", body.name), message));

@@ -111,9 +111,13 @@ impl Builder {
         for (body, _) in &self.rigid_bodies {
             check_name("rigid_bodies", body)?;
         }
+        for (bar, _) in &self.bars {
+            check_name("bars", bar)?;
+        }
         check_line("title", &self.title)?;
         check_once("contacts", self.contacts.iter().map(|contact| &contact.name))?;
         check_once("bodies", self.bodies.iter().map(|(name, _)| name))?;
+        check_once("bars", self.bars.iter().map(|(name, _)| name))?;
         check_once("rigid_bodies", self.rigid_bodies.iter().map(|(name, _)| name))?;
         check_once("point_masses", self.point_masses.iter().map(|(name, _)| name))?;
         let Some(name) = &self.unknown else { return Ok(()) };

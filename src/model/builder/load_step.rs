@@ -61,15 +61,20 @@ pub struct LoadStep {
     /// the reference position x, y and the run time t
     #[serde(default)]
     pub temperature: BTreeMap<String, BodyTemperature>,
-    /// Bodies taken away at the start of this step, as in an excavation. The forces that they exerted on the rest remain
+    /// Bodies and bars taken away at the start of this step, as in an excavation. The forces that they exerted on the rest remain
     /// as loads that fade linearly to zero over the step
     #[serde(default)]
     pub remove: Vec<String>,
-    /// Bodies that come at the start of this step and are absent before, such as a wall. They come without strain in the
+    /// Bodies and bars that come at the start of this step and are absent before, such as a wall or an anchor. A bar comes without
+    /// force between its points as they are then. They come without strain in the
     /// place that their nodes have then, at rest under their `initial_stress`, if any; that and their weight grow in
     /// linearly over the step
     #[serde(default)]
     pub add: Vec<String>,
+    /// Bars that are stressed in this step, by name: the force N to which a jack brings the whole bar linearly over the step; with the
+    /// end of the step its length is locked [F]
+    #[serde(default)]
+    pub prestress: BTreeMap<String, f64>,
     /// Supports; inherited, and replaced where the same group and direction is named again. A support released by null
     /// ends at once in dynamic and explicit steps; in a static step, also while `rupture` makes it explicit, its
     /// reaction remains as a force that fades linearly over the step

@@ -45,6 +45,8 @@ macro_rules! setters {
 }
 
 mod agreement;
+mod bar;
+mod bars;
 mod besides;
 mod body;
 mod bond;
@@ -69,6 +71,7 @@ pub(crate) mod thickness;
 mod unconstrained;
 mod unseen;
 
+pub use bar::{BarBond, BarEnd, BarInput, Embedding};
 pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use bond::FADES;
 pub use contact::{Contact, FluidPressure, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
@@ -110,6 +113,7 @@ pub struct Builder {
     pub(crate) periodic: Vec<[String; 2]>,
     pub(crate) plates: Vec<LoadingPlateInput>,
     pub(crate) rigid_bodies: Vec<(String, RigidBodyInput)>,
+    pub(crate) bars: Vec<(String, BarInput)>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) velocities: Vec<(String, [f64; 2])>,
     pub(crate) steps: Vec<LoadStep>,
@@ -183,6 +187,9 @@ setters! { builder: Builder;
     free_rigid_body(name: impl Into<String>, reference: [f64; 2], inertia: f64) {
         builder.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
     }
+
+    /// Adds a bar: a truss or a beam.
+    bar(name: impl Into<String>, bar: BarInput) { builder.bars.push((name.into(), bar)); }
 
     /// Adds a contact.
     contact(contact: Contact) { builder.contacts.push(contact); }
@@ -261,6 +268,7 @@ impl Builder {
         self.check_names()?;
         checks::check_section(&self.mesh)?;
         rigid::add_bodies(&self.rigid_bodies, &self.contacts, &mut self.mesh)?;
+        let laid = bars::lay(&self.bars, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
         let mut model = Model {
@@ -276,6 +284,7 @@ impl Builder {
             point_masses: Vec::new(),
             body_of_element,
             solids,
+            bars: Vec::new(),
             contacts: Vec::new(),
             methods: Vec::new(),
             steps: Vec::new(),
@@ -285,6 +294,7 @@ impl Builder {
             requests: OutputRequests { interval: requests::checked_interval(self.interval)?, ..Default::default() },
         };
         initial::start_under_stresses(&mut model)?;
+        model.bars = bars::bars(&self.bars, laid, &model)?;
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.plates = rigid::plates(&self.plates, &model.mesh)?;
         model.ties = rigid::ties(&self.periodic, &model.plates, &model.mesh)?;

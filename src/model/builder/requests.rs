@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,6 @@ use super::groups::{Place, body, group, nodes_at};
 use super::schedule::MOST_INCREMENTS;
 use crate::mesh::Group;
 use crate::mesh::boxes::{Box2, Tree};
-use crate::mesh::shape::ElementKind;
 use crate::model::{Model, Probe, Step, WatchedSet};
 
 /// A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; positions are undeformed ones.
@@ -37,15 +36,6 @@ pub struct Gauge {
     /// Body of the point, required where two bodies touch
     pub body: Option<String>,
 }
-
-/// Tolerance of element coordinates for points outside of an element by round-off.
-const OUTSIDE: f64 = 1e-6;
-
-/// Maximum number of Newton iterations for the coordinates of a point.
-const ITERATIONS: usize = 30;
-
-/// Margin of the bounding box of an element's nodes for curved sides, as a fraction of its size.
-const BULGE: f64 = 0.3;
 
 /// Maximum number of points of a line.
 const MOST: usize = 100_000;
@@ -96,7 +86,7 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
         return Ok(Vec::new());
     }
     let (mut probes, mut taken) = (Vec::new(), BTreeSet::new());
-    let reaches = Tree::new((0..model.solids.len()).map(|element| reach(model, element)));
+    let reaches = Tree::new((0..model.solids.len()).map(|element| model.mesh.reach(element)));
     for gauge in gauges {
         let place = format!("probes.{}", gauge.name);
         check_name(&place, &gauge.name)?;
@@ -105,7 +95,7 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
             let message = format!("there is a probe `{name}` already: rename one");
             refuse_if(!taken.insert(name.clone()), &place, message)?;
             let is_meant = |e: &usize| body.is_none_or(|body| model.body_of_element[*e] == body);
-            let within = |e: usize| Some((e, coordinates(model, e, at)?));
+            let within = |e: usize| Some((e, model.mesh.coordinates(e, at)?));
             let near = reaches.meeting(&Box2 { low: at, high: at });
             let found: Vec<(usize, [f64; 2])> = near.into_iter().filter(is_meant).filter_map(within).collect();
             let bodies: BTreeSet<usize> = found.iter().map(|(e, _)| model.body_of_element[*e]).collect();
@@ -121,44 +111,6 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
         }
     }
     Ok(probes)
-}
-
-/// Bounding box of all points of an element.
-fn reach(model: &Model, element: usize) -> Box2 {
-    let nodes = model.mesh.elements[element].nodes.iter().map(|&node| model.mesh.nodes[node]);
-    let own = Box2::around(nodes).unwrap_or(Box2 { low: Vector2::zeros(), high: Vector2::zeros() });
-    own.wider(BULGE * own.size().max())
-}
-
-/// (ξ, η) of a position in an element, if it lies there.
-///
-/// ```text
-/// Σ N_a(ξ, η) X_a = X                     Newton's method from the centre; positions relative to the first node
-/// ```
-fn coordinates(model: &Model, element: usize, place: Vector2<f64>) -> Option<[f64; 2]> {
-    let element = &model.mesh.elements[element];
-    let (kind, origin) = (element.kind, model.mesh.nodes[element.nodes[0]]);
-    let nodes: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| model.mesh.nodes[node] - origin).collect();
-    let place = place - origin;
-    let mut at = Vector2::from(kind.centre());
-    for _ in 0..ITERATIONS {
-        let x: Vector2<f64> = nodes.iter().zip(kind.values(at.into())).map(|(x, n)| x * n).sum();
-        let slopes = kind.derivatives(at.into());
-        let map: Matrix2<f64> = nodes.iter().zip(slopes).map(|(x, d)| x * Vector2::from(d).transpose()).sum();
-        let step = map.try_inverse()? * (place - x);
-        at += step;
-        if step.norm() < 1e-3 * OUTSIDE {
-            return is_inside(kind, at).then_some(at.into());
-        }
-    }
-    None
-}
-
-fn is_inside(kind: ElementKind, at: Vector2<f64>) -> bool {
-    match kind.corners() {
-        3 => at.x >= -OUTSIDE && at.y >= -OUTSIDE && at.x + at.y <= 1.0 + OUTSIDE,
-        _ => at.amax() <= 1.0 + OUTSIDE,
-    }
 }
 
 fn outside(model: &Model, at: Vector2<f64>, body: Option<&str>) -> String {

@@ -4,16 +4,20 @@ use super::error::{Checked, ModelError, refuse_if};
 use super::groups;
 use super::load_step::{LoadStep, Support};
 use crate::contact::pair::ContactPair;
-use crate::model::Model;
 use crate::model::boundary::{Drive, Span};
 use crate::model::scheme::Scheme;
 use crate::model::support::Prescribed;
+use crate::model::{BarsInStep, Model};
 
 /// Which bodies are there, step by step.
 pub struct Stages<'m> {
     model: &'m Model,
     /// Whether each body is absent
     absent: Vec<bool>,
+    /// Whether each bar is absent
+    bars_absent: Vec<bool>,
+    /// Bars that the step adds or removes
+    bars_changed: Vec<usize>,
     /// Whether a step has begun
     has_begun: bool,
 }
@@ -25,15 +29,22 @@ impl<'m> Stages<'m> {
             let first = given.iter().find(|step| step.add.contains(name) || step.remove.contains(name));
             first.is_some_and(|step| step.add.contains(name))
         };
-        Self { model, absent: model.bodies.iter().map(|body| comes(&body.name)).collect(), has_begun: false }
+        let absent = model.bodies.iter().map(|body| comes(&body.name)).collect();
+        let bars_absent = model.bars.iter().map(|bar| comes(&bar.name)).collect();
+        Self { model, absent, bars_absent, bars_changed: Vec::new(), has_begun: false }
     }
 
     /// Goes on to the next step; returns the bodies that it adds or removes.
     pub fn step(&mut self, given: &LoadStep, scheme: Scheme, place: &str) -> Checked<Vec<usize>> {
         let mut changed = Vec::new();
+        self.bars_changed.clear();
         for (key, names, comes) in [("remove", &given.remove, false), ("add", &given.add, true)] {
             for (k, name) in names.iter().enumerate() {
                 let place = format!("{place}.{key}[{k}]");
+                if let Some(bar) = self.model.bars.iter().position(|bar| bar.name == *name) {
+                    self.change_bar(bar, comes, &place)?;
+                    continue;
+                }
                 let body = groups::body(self.model, name, &place)?;
                 let message = "comes or goes twice in this step: name it once";
                 refuse_if(changed.contains(&body), &place, format!("`{name}` {message}"))?;
@@ -64,6 +75,72 @@ impl<'m> Stages<'m> {
         Ok(changed)
     }
 
+    /// Lets a bar come or go.
+    fn change_bar(&mut self, bar: usize, comes: bool, place: &str) -> Checked<()> {
+        let name = &self.model.bars[bar].name;
+        let message = "comes or goes twice in this step: name it once";
+        refuse_if(self.bars_changed.contains(&bar), place, format!("`{name}` {message}"))?;
+        let message = if comes { "is there already" } else { "is not there in this step" };
+        refuse_if(self.bars_absent[bar] != comes, place, format!("`{name}` {message}: check the steps before"))?;
+        let message = "the first step begins with the bars as they are: let the bar come or go in the next";
+        refuse_if(!self.has_begun, place, message)?;
+        self.bars_absent[bar] = !comes;
+        self.bars_changed.push(bar);
+        Ok(())
+    }
+
+    /// What the step does with bars.
+    pub fn bars(&self, given: &LoadStep, place: &str) -> Checked<BarsInStep> {
+        let Self { model, bars_absent, .. } = self;
+        let idle = model.idle_nodes(&self.absent);
+        for (bar, _) in model.bars.iter().zip(bars_absent).filter(|(_, absent)| !**absent) {
+            let is_away = |name: &&String| {
+                model.bodies.iter().zip(&self.absent).any(|(body, absent)| body.name == **name && *absent)
+            };
+            let has_idle = bar.nodes().into_iter().any(|node| idle.binary_search(&model.ties.original(node)).is_ok());
+            let away = bar.bodies.iter().find(is_away).map_or("a body", |name| name.as_str());
+            let message = format!(
+                "the bar `{}` is joined to {away}, which is not there in this step: let the bar come later, or go as well",
+                bar.name
+            );
+            refuse_if(has_idle || bar.bodies.iter().any(|name| is_away(&name)), place, message)?;
+        }
+        let mut jacks = Vec::new();
+        for (name, &force) in &given.prestress {
+            let place = format!("{place}.prestress.{name}");
+            let bar = model.bars.iter().position(|bar| bar.name == *name).ok_or_else(|| {
+                let known: Vec<&str> = model.bars.iter().map(|bar| bar.name.as_str()).collect();
+                ModelError::new(&place, format!("there is no bar `{name}`; the bars are {}", known.join(", ")))
+            })?;
+            let of = &model.bars[bar];
+            refuse_if(!force.is_finite(), &place, format!("is {force}: must be a finite number"))?;
+            refuse_if(bars_absent[bar], &place, "is not there in this step: add it first")?;
+            let message = format!("is {force}, beyond the `limit` {} of the bar", of.limit);
+            refuse_if(force.abs() > of.limit, &place, message)?;
+            let message = "lies in a body, where no one force acts along it: stress its free length, a bar of its own that is joined to its end";
+            refuse_if(
+                !of.grips.is_empty() || of.vertices[1..of.vertices.len() - 1].iter().any(|v| v.nodes.len() > 1),
+                &place,
+                message,
+            )?;
+            let message = "and `until` cannot be combined: the step would end before the force is reached";
+            refuse_if(given.until.is_some(), &place, message)?;
+            jacks.push((bar, force));
+        }
+        let absent = if bars_absent.contains(&true) { bars_absent.clone() } else { Vec::new() };
+        let mut changed = self.bars_changed.clone();
+        changed.sort_unstable();
+        Ok(BarsInStep { absent, changed, jacks })
+    }
+
+    /// Nodes that only absent bodies and bars have.
+    fn idle(&self) -> Vec<usize> {
+        let mut idle = self.model.idle_nodes(&self.absent);
+        idle.extend(self.model.idle_bar_nodes(&self.bars_absent));
+        idle.sort_unstable();
+        idle
+    }
+
     /// Whether each body is absent; empty if all are there.
     pub fn absent(&self) -> Vec<bool> {
         if self.absent.contains(&true) { self.absent.clone() } else { Vec::new() }
@@ -71,7 +148,7 @@ impl<'m> Stages<'m> {
 
     /// The supports of a step, with the nodes held that only absent bodies have.
     pub fn held(&self, supports: Vec<Prescribed>, span: Span) -> Vec<Prescribed> {
-        let idle = self.model.idle_nodes(&self.absent);
+        let idle = self.idle();
         let mut all: Vec<Prescribed> =
             supports.into_iter().filter(|support| idle.binary_search(&support.at.node()).is_err()).collect();
         let dofs = groups::dofs_of(&idle);
@@ -82,7 +159,7 @@ impl<'m> Stages<'m> {
 
     /// Refuses a support that a step gives to absent bodies alone.
     pub fn check_supports(&self, given: &[Support], place: &str) -> Checked<()> {
-        let idle = self.model.idle_nodes(&self.absent);
+        let idle = self.idle();
         for (k, support) in given.iter().enumerate() {
             let place = format!("{place}.supports[{k}].on");
             let nodes = groups::nodes_at(&self.model.mesh, &support.on, &place)?;

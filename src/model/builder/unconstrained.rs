@@ -25,6 +25,9 @@ use nalgebra::{DVector, Vector2, Vector3};
 use super::error::{Checked, ModelError};
 use super::load_step::LoadStep;
 use super::rigid;
+use crate::bars::segment::Segment;
+use crate::bars::turn::Turn;
+use crate::bars::vectors::{Vectors, turned};
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::Surface;
@@ -55,6 +58,8 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Checked<()> {
     let rigid = model.contacts.iter().filter_map(|pair| pair.master.rigid_body()).flat_map(RigidBody::nodes);
     let points = model.contacts.iter().flat_map(ContactPair::slave_nodes).chain(rigid);
     points.for_each(|node| constrained[2 * node..2 * node + 2].fill(true));
+    let of_bars = model.bars.iter().enumerate().filter(|(bar, _)| step.bars.has(*bar)).flat_map(|(_, bar)| bar.nodes());
+    of_bars.for_each(|node| constrained[2 * node..2 * node + 2].fill(true));
     let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
     follow.for_each(|(_, dof)| constrained[dof] = true);
     for (node, d) in constraints(step) {
@@ -85,11 +90,17 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
     model.mesh.rigid_bodies.iter().for_each(|body| carried[body.turning] = body.inertia > 0.0);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
     let constrained = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
+    let heavy = model.bars.iter().filter(|bar| bar.mass > 0.0).flat_map(|bar| &bar.own);
+    heavy.for_each(|&node| carried[node] = true);
     let massless = |node: &usize| !(carried[*node] || constrained(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
         let message = format!("is 0, but {why}: give a density");
         return Err(ModelError::new(format!("bodies.{}.material.density", body.name), message));
+    }
+    if let Some(bar) = model.bars.iter().find(|bar| bar.own.iter().any(massless)) {
+        let message = format!("is 0, but {why}: give the mass per length");
+        return Err(ModelError::new(format!("bars.{}.mass", bar.name), message));
     }
     let free = (0..model.mesh.nodes.len()).find(massless);
     let rigid = free.and_then(|node| model.mesh.rigid_bodies.iter().find(|body| body.nodes().contains(&node)));
@@ -119,7 +130,9 @@ const NAMED: f64 = 0.1;
 fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
     let still: Vec<(usize, &Step)> =
         model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()).collect();
-    still.chunk_by(|(_, a), (_, b)| a.absent == b.absent).try_for_each(|alike| check_floating_in(alike, given, model))
+    still
+        .chunk_by(|(_, a), (_, b)| a.absent == b.absent && a.bars.absent == b.bars.absent)
+        .try_for_each(|alike| check_floating_in(alike, given, model))
 }
 
 /// The same for steps with the same bodies.
@@ -235,6 +248,8 @@ struct Parts<'m> {
     /// list of parts
     parts: Vec<Part>,
     model: &'m Model,
+    /// whether each bar is absent; empty if all are there
+    bars_absent: Vec<bool>,
     /// parts of each node: more than one for a hinge
     of_node: Vec<Vec<usize>>,
 }
@@ -259,7 +274,7 @@ impl<'m> Parts<'m> {
         for pair in model.contacts.iter().filter(|pair| step.joins(pair) && matches!(pair.master, Master::Rigid(_))) {
             pair.slave_nodes().flat_map(|node| &of_node[node]).for_each(|&part| parts[part].on_rigid = true);
         }
-        Self { parts, model, of_node }
+        Self { parts, model, bars_absent: step.bars.absent.clone(), of_node }
     }
 
     /// Names of the bodies of a part, or of its node.
@@ -299,6 +314,7 @@ impl<'m> Parts<'m> {
             };
             rows.extend(follower.dofs().map(row));
         }
+        rows.extend(self.of_bars());
         // The leaders of a rotating platen keep their distance.
         let apart = |&[a, b]: &[usize; 2]| (self.model.mesh.nodes[b] - self.model.mesh.nodes[a]).normalize();
         rows.extend(
@@ -309,6 +325,29 @@ impl<'m> Parts<'m> {
                 .map(|plate| self.row(&[(plate[1], apart(plate)), (plate[0], -apart(plate))])),
         );
         rows
+    }
+
+    /// Equations of bars: their segments keep their length and their angles, and bond keeps their place.
+    fn of_bars(&self) -> Vec<Row> {
+        let row = |vectors: &Vectors, d: [Vector2<f64>; 2]| {
+            let terms = vectors.terms().map(|(node, share)| (node, d[0] * share[0] + d[1] * share[1]));
+            self.row(&terms.collect::<Vec<_>>())
+        };
+        let none = Vector2::zeros();
+        let there =
+            self.model.bars.iter().enumerate().filter(|(bar, _)| !self.bars_absent.get(*bar).copied().unwrap_or(false));
+        there
+            .flat_map(|(_, bar)| {
+                let along = |segment: &Segment| row(&segment.vectors, [segment.vectors.at[0].normalize(), none]);
+                let turn = |turn: &Turn| {
+                    let slope = |e: Vector2<f64>| turned(e) * (turn.length / e.norm_squared());
+                    row(&turn.vectors, [-slope(turn.vectors.at[0]), slope(turn.vectors.at[1])])
+                };
+                let grips = bar.grips.iter().flat_map(|grip| AXES.map(|d| row(&grip.vectors, [d, none])));
+                let segments = bar.segments.iter().map(along);
+                segments.chain(bar.turns.iter().map(turn)).chain(grips).collect::<Vec<_>>()
+            })
+            .collect()
     }
 
     /// Intrinsic constraints of a part: in axisymmetry all motions except the axial one, and the rotation of a node.

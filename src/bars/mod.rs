@@ -1,0 +1,203 @@
+//! Bars: trusses, beams, anchors and geogrids along a polyline of vertices.
+//!
+//! A vertex is a node, or a point of a body that moves with the nodes of its element. What a bar exerts follows from vectors that are
+//! linear in the displacements of nodes ([`vectors`]), so that shared nodes, points of bodies, clamped ends and bond need no
+//! constraints:
+//!
+//! ```text
+//! e = x_b − x_a                                            a segment, between two vertices
+//! N = EA (ε − ε_l),   ε = (|e| − l)/l                       ([`segment`]), l: its length when it came
+//! M = EI (θ − θ₀)/l_m                                       ([`turn`]), θ: angle between two segments
+//! q(s), k_n v along and across a segment                   ([`grip`]), at points that lie in a body
+//! ```
+//! This is the discrete elastic rod in the plane: the edges are straight, rotations are as large as they come, all forces derive
+//! from energies of invariants, so that momentum and angular momentum are kept and tangents are symmetric, and errors are of second
+//! order in the length of a segment. The angle itself, not a function of it, is taken for the curvature: under constant moment the
+//! rotations are exact then.
+
+pub mod grip;
+pub mod segment;
+pub mod turn;
+pub mod vectors;
+
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+use grip::{Grip, GripState};
+use segment::{Segment, SegmentState};
+use turn::{Turn, TurnState};
+use vectors::{Answer, Vertex};
+
+/// A bar.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bar {
+    /// name
+    pub name: String,
+    /// EA: axial stiffness [F]
+    pub ea: f64,
+    /// EI: bending stiffness, 0 for a truss [F L²]
+    pub ei: f64,
+    /// Largest |N|; infinite without one [F]
+    pub limit: f64,
+    /// mass per length [M/L]
+    pub mass: f64,
+    /// vertices along it
+    pub vertices: Vec<Vertex>,
+    /// segments, between one vertex and the next
+    pub segments: Vec<Segment>,
+    /// angles between segments, and at clamped ends
+    pub turns: Vec<Turn>,
+    /// points that are bonded to a body
+    pub grips: Vec<Grip>,
+    /// bodies that it is joined to
+    pub bodies: Vec<String>,
+    /// nodes that belong to it alone
+    pub own: Vec<usize>,
+}
+
+/// State of a bar.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BarState {
+    /// whether it is there
+    pub is_there: bool,
+    /// that of each segment
+    pub segments: Vec<SegmentState>,
+    /// that of each angle
+    pub turns: Vec<TurnState>,
+    /// that of each bonded point
+    pub grips: Vec<GripState>,
+    /// stored by stretching and bending [F·L]
+    pub strain: f64,
+    /// stored by bond [F·L]
+    pub bonded: f64,
+    /// dissipated by yielding in the last increment [F·L]
+    pub plastic: f64,
+    /// dissipated by bond in the last increment [F·L]
+    pub friction: f64,
+    /// work of the jack in the last increment [F·L]
+    pub jacked: f64,
+}
+
+impl Bar {
+    /// Length of the polyline at the start [L].
+    pub fn length(&self) -> f64 {
+        self.segments.iter().map(|segment| segment.length).sum()
+    }
+
+    /// Position of each vertex along the polyline at the start [L].
+    pub fn places(&self) -> Vec<f64> {
+        let ends = self.segments.iter().scan(0.0, |sum, segment| {
+            *sum += segment.length;
+            Some(*sum)
+        });
+        std::iter::once(0.0).chain(ends).collect()
+    }
+
+    /// Masses of the vertices: half of those of the segments on both sides [M].
+    pub fn masses(&self) -> Vec<f64> {
+        let mut masses = vec![0.0; self.vertices.len()];
+        for (k, segment) in self.segments.iter().enumerate() {
+            let half = 0.5 * self.mass * segment.length;
+            masses[k] += half;
+            masses[k + 1] += half;
+        }
+        masses
+    }
+
+    /// Groups of nodes that it couples.
+    pub fn groups(&self) -> impl Iterator<Item = &[usize]> {
+        let segments = self.segments.iter().map(|segment| segment.vectors.nodes());
+        let turns = self.turns.iter().map(|turn| turn.vectors.nodes());
+        let grips = self.grips.iter().map(|grip| grip.vectors.nodes());
+        segments.chain(turns).chain(grips).chain(self.vertices.iter().map(|vertex| &vertex.nodes[..]))
+    }
+
+    /// All nodes that it acts on, ascending.
+    pub fn nodes(&self) -> Vec<usize> {
+        let mut nodes: Vec<usize> = self.groups().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// State of a bar without forces that comes at displacements.
+    pub fn born(&self, u: &[f64]) -> BarState {
+        BarState {
+            is_there: true,
+            segments: self.segments.iter().map(|segment| segment.born(u)).collect(),
+            turns: self.turns.iter().map(|turn| turn.born(u)).collect(),
+            grips: self.grips.iter().map(|grip| grip.born(u)).collect(),
+            ..BarState::default()
+        }
+    }
+
+    /// State of a bar that is not there.
+    pub fn absent(&self, u: &[f64]) -> BarState {
+        BarState { is_there: false, ..self.born(u) }
+    }
+
+    /// Evaluates the bar at displacements: `add` takes the nodes, forces and tangent of each part. A jack sets the force of all
+    /// segments to a value.
+    pub fn respond(
+        &self,
+        old: &BarState,
+        u: &[f64],
+        jack: Option<f64>,
+        mut add: impl FnMut(&[usize], &Answer, &vectors::Vectors),
+    ) -> BarState {
+        let mut state = BarState { is_there: true, ..BarState::default() };
+        for (segment, old) in self.segments.iter().zip(&old.segments) {
+            let (answer, found) = segment.respond(self, old, u, jack);
+            add(segment.vectors.nodes(), &answer, &segment.vectors);
+            state.strain += found.stored;
+            state.plastic += found.plastic;
+            state.jacked += found.jacked;
+            state.segments.push(found.state);
+        }
+        for (turn, old) in self.turns.iter().zip(&old.turns) {
+            let (answer, found, stored) = turn.respond(self.ei, old, u);
+            add(turn.vectors.nodes(), &answer, &turn.vectors);
+            state.strain += stored;
+            state.turns.push(found);
+        }
+        for (grip, old) in self.grips.iter().zip(&old.grips) {
+            let (answer, found) = grip.respond(old, u);
+            add(grip.vectors.nodes(), &answer, &grip.vectors);
+            state.bonded += found.stored;
+            state.friction += found.dissipated;
+            state.grips.push(found.state);
+        }
+        state
+    }
+
+    /// Displacement of a vertex.
+    pub fn displacement(&self, vertex: usize, u: &[f64]) -> Vector2<f64> {
+        self.vertices[vertex].displacement(u)
+    }
+
+    /// M at every vertex [F·L].
+    pub fn moments(&self, state: &BarState) -> Vec<f64> {
+        let mut moments = vec![0.0; self.vertices.len()];
+        self.turns.iter().zip(&state.turns).for_each(|(turn, state)| moments[turn.vertex] = state.moment);
+        moments
+    }
+
+    /// Q of every segment, dM/ds [F].
+    pub fn shears(&self, state: &BarState) -> Vec<f64> {
+        let moments = self.moments(state);
+        self.segments.iter().enumerate().map(|(k, of)| (moments[k + 1] - moments[k]) / of.length).collect()
+    }
+
+    /// Traction of the bond and slip at every vertex: force per length of the bar on the body, mean of both sides [F/L], [L].
+    pub fn bond_at_vertices(&self, state: &BarState) -> Vec<[f64; 2]> {
+        let mut sums = vec![[0.0; 3]; self.vertices.len()];
+        for (grip, state) in self.grips.iter().zip(&state.grips) {
+            let sum = &mut sums[grip.vertex];
+            sum[0] += grip.length * state.bond.traction;
+            sum[1] += grip.length * state.slip;
+            sum[2] += grip.length;
+        }
+        let mean = |[q, s, length]: [f64; 3]| if length > 0.0 { [q / length, s / length] } else { [0.0; 2] };
+        sums.into_iter().map(mean).collect()
+    }
+}

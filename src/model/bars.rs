@@ -1,0 +1,63 @@
+//! Bars in the steps of a model: which are there, and which are stressed by a jack.
+
+use super::state::State;
+use super::{Model, Step};
+use crate::bars::BarState;
+
+/// What a step does with bars.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[doc(hidden)]
+pub struct BarsInStep {
+    /// whether each bar is absent; empty if all are there
+    pub absent: Vec<bool>,
+    /// bars that this step adds or removes
+    pub changed: Vec<usize>,
+    /// forces to which jacks bring bars over the step, by bar [F]
+    pub jacks: Vec<(usize, f64)>,
+}
+
+impl BarsInStep {
+    /// Whether a bar is there.
+    pub fn has(&self, bar: usize) -> bool {
+        !self.absent.get(bar).copied().unwrap_or(false)
+    }
+
+    /// Force of a jack at a time of the step, on the way from the force at an earlier one [F].
+    pub fn jack(&self, bar: usize, before: &BarState, share: f64) -> Option<f64> {
+        let (_, target) = self.jacks.iter().find(|(jacked, _)| *jacked == bar)?;
+        let force = before.segments.first().map_or(0.0, |segment| segment.force);
+        Some(force + (target - force) * share)
+    }
+}
+
+#[doc(hidden)]
+impl Model {
+    /// States of the bars at the start of a run.
+    pub fn first_bars(&self) -> Vec<BarState> {
+        let zero = vec![0.0; self.dofs()];
+        let is_there = |bar: usize| self.steps.first().is_none_or(|step| step.bars.has(bar));
+        let of = |(k, bar): (usize, &crate::bars::Bar)| if is_there(k) { bar.born(&zero) } else { bar.absent(&zero) };
+        self.bars.iter().enumerate().map(of).collect()
+    }
+
+    /// Lets bars come, without forces where they are, and go.
+    pub fn change_bars(&self, step: &Step, state: &mut State) {
+        for &k in &step.bars.changed {
+            let (bar, u) = (&self.bars[k], &state.displacement);
+            state.bars[k] = if step.bars.has(k) { bar.born(u) } else { bar.absent(u) };
+        }
+    }
+
+    /// Nodes that only absent bars have, ascending.
+    pub fn idle_bar_nodes(&self, absent: &[bool]) -> Vec<usize> {
+        let of = |is_absent: bool| {
+            let all = self.bars.iter().enumerate();
+            all.filter(move |(k, _)| absent.get(*k).copied().unwrap_or(false) == is_absent).map(|(_, bar)| bar)
+        };
+        let mut idle: Vec<usize> = of(true).flat_map(|bar| &bar.own).copied().collect();
+        let used: Vec<usize> = of(false).flat_map(|bar| bar.nodes()).collect();
+        idle.retain(|node| !used.contains(node));
+        idle.sort_unstable();
+        idle
+    }
+}
