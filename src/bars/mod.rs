@@ -15,12 +15,12 @@
 //! order in the length of a segment. The angle itself, not a function of it, is taken for the curvature: under constant moment the
 //! rotations are exact then.
 
+pub mod fields;
 pub mod grip;
 pub mod segment;
 pub mod turn;
 pub mod vectors;
 
-use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use grip::{Grip, GripState};
@@ -168,36 +168,5 @@ impl Bar {
             state.grips.push(found.state);
         }
         state
-    }
-
-    /// Displacement of a vertex.
-    pub fn displacement(&self, vertex: usize, u: &[f64]) -> Vector2<f64> {
-        self.vertices[vertex].displacement(u)
-    }
-
-    /// M at every vertex [F·L].
-    pub fn moments(&self, state: &BarState) -> Vec<f64> {
-        let mut moments = vec![0.0; self.vertices.len()];
-        self.turns.iter().zip(&state.turns).for_each(|(turn, state)| moments[turn.vertex] = state.moment);
-        moments
-    }
-
-    /// Q of every segment, dM/ds [F].
-    pub fn shears(&self, state: &BarState) -> Vec<f64> {
-        let moments = self.moments(state);
-        self.segments.iter().enumerate().map(|(k, of)| (moments[k + 1] - moments[k]) / of.length).collect()
-    }
-
-    /// Traction of the bond and slip at every vertex: force per length of the bar on the body, mean of both sides [F/L], [L].
-    pub fn bond_at_vertices(&self, state: &BarState) -> Vec<[f64; 2]> {
-        let mut sums = vec![[0.0; 3]; self.vertices.len()];
-        for (grip, state) in self.grips.iter().zip(&state.grips) {
-            let sum = &mut sums[grip.vertex];
-            sum[0] += grip.length * state.bond.traction;
-            sum[1] += grip.length * state.slip;
-            sum[2] += grip.length;
-        }
-        let mean = |[q, s, length]: [f64; 3]| if length > 0.0 { [q / length, s / length] } else { [0.0; 2] };
-        sums.into_iter().map(mean).collect()
     }
 }

@@ -33,7 +33,8 @@ const STENCILS: [&[(f64, f64)]; 3] =
     [&[(-1.0, -0.5), (1.0, 0.5)], &[(1.0, 2.0), (2.0, -0.5)], &[(-1.0, -2.0), (-2.0, 0.5)]];
 
 /// Parts of a case whose values act on its run without changing mesh, increments or output.
-const PARTS: [&str; 7] = ["section", "bodies", "point_masses", "rigid_bodies", "contacts", "initial_velocity", "steps"];
+const PARTS: [&str; 8] =
+    ["section", "bodies", "point_masses", "rigid_bodies", "bars", "contacts", "initial_velocity", "steps"];
 
 /// Those among them that change the forces of bodies.
 const OF_BODIES: [&str; 2] = ["section", "bodies"];

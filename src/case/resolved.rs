@@ -3,10 +3,11 @@
 use serde_json::{Map, Value};
 
 use super::file::Case;
+use crate::bars::Bar;
 use crate::contact::pair::ContactPair;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
-use crate::model::builder::{Contact, DefaultAlphaT, Friction, default_alpha_t};
+use crate::model::builder::{BarInput, Contact, DefaultAlphaT, Friction, default_alpha_t};
 use crate::model::method::{Chosen, Method};
 
 /// Returns the case of a model as the text of a file, with the defaults chosen by the model: scheme and increments of every
@@ -28,8 +29,26 @@ pub fn resolved(case: &Case, model: &Model) -> String {
             }
         }
     }
+    for bar in &model.bars {
+        if let Some(input) = case.bars.get_mut(&bar.name).filter(|_| case.begin_with.is_none()) {
+            fill_bar(input, bar);
+        }
+    }
     // Values read from JSON can be written as JSON.
     serde_json::to_string_pretty(&case).unwrap_or_default()
+}
+
+/// Segments and penalties of a bar along one line, which are the same all along it.
+fn fill_bar(input: &mut BarInput, bar: &Bar) {
+    if input.points.len() != 2 {
+        return;
+    }
+    input.segments = Some(bar.segments.len());
+    let bond = input.embedded.as_mut().and_then(|embedded| embedded.bond.as_mut());
+    let (Some(bond), Some(first)) = (bond, bar.grips.first()) else { return };
+    if bar.grips.iter().all(|grip| grip.normal == first.normal && grip.bond == first.bond) {
+        (bond.stiffness, bond.normal) = (Some(first.bond.stiffness()), Some(first.normal));
+    }
 }
 
 fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>, default: Option<DefaultAlphaT>) {

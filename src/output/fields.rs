@@ -1,4 +1,4 @@
-//! `solid.pvd`, `contact.pvd` and `points.pvd`: frames for ParaView, one VTU file per frame. A frame is listed shortly after it
+//! `solid.pvd`, `contact.pvd`, `bars.pvd` and `points.pvd`: frames for ParaView, one VTU file per frame. A frame is listed shortly after it
 //! is complete, and removed from the list before it is deleted: the list is valid at any moment of a run.
 //!
 //! Disk space is checked before a frame is written.
@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::csv::failed;
-use super::frames::{Shown, contact_frame, points_frame, solid_frame};
+use super::frames::{Shown, bars_frame, contact_frame, points_frame, solid_frame};
 use super::gradients::Motions;
 use super::recovery::NodalRecovery;
 use super::vtu::Grid;
@@ -123,7 +123,12 @@ impl Fields {
     /// Returns [`Error::Output`] if the disk space is insufficient.
     pub fn reopen(folder: &Path, model: Arc<Model>, frames: Frames, motions: Motions) -> Result<Self, Error> {
         let (frames_of, rows) = (frames, 0);
-        let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
+        let names = [
+            ("solid", true),
+            ("contact", !model.contacts.is_empty()),
+            ("bars", !model.bars.is_empty()),
+            ("points", frames_of.points),
+        ];
         let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
         let collection = |name: &&'static str| Collection::create(folder, name, frames_of);
         let collections = names.iter().map(collection).collect::<Result<_, _>>()?;
@@ -278,6 +283,7 @@ impl Collection {
                 let recovery = self.recovery.get_or_insert_with(|| NodalRecovery::new(model));
                 solid_frame(model, shown, recovery, self.derived, &mut self.grid);
             }
+            "bars" => bars_frame(model, shown, &mut self.grid),
             "points" => points_frame(model, shown, self.derived, &mut self.grid),
             _ => contact_frame(model, shown, &mut self.grid),
         }

@@ -13,7 +13,7 @@ use super::{checkpoint, files, gradients, report, store};
 use crate::run::error::Error;
 
 /// Files written by the commands; a name that ends in `/` is a folder of numbered frames.
-const KNOWN: [&str; 19] = [
+const KNOWN: [&str; 21] = [
     "history.csv",
     "newton.csv",
     "slip_map.csv",
@@ -30,6 +30,8 @@ const KNOWN: [&str; 19] = [
     GRADIENTS,
     "contact.pvd",
     "contact/",
+    "bars.pvd",
+    "bars/",
     checkpoint::NEWEST,
     checkpoint::PREVIOUS,
     report::FILE,

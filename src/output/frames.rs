@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use super::gradients::MotionBy;
 use super::recovery::{NodalRecovery, shown_names};
 use super::vtu::{CellType, Grid, cell_type};
+use crate::bars::fields::{AT_POINTS, OF_SEGMENTS};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
 use crate::contact::pair::ContactPair;
@@ -70,6 +71,35 @@ pub fn solid_frame(
 fn hide_absent(model: &Model, state: &State, bodies: &[usize], grid: &mut Grid) {
     if model.changes_bodies() {
         grid.hide(bodies.iter().map(|&body| !state.has(body)));
+    }
+}
+
+/// Fills the grid of the bars: a line to a segment.
+pub fn bars_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
+    let bars = || model.bars.iter().zip(&state.bars);
+    grid.begin(|| {
+        let (mut points, mut lines) = (Vec::new(), Vec::new());
+        for bar in &model.bars {
+            let first = points.len();
+            points.extend(bar.vertices.iter().map(|vertex| vertex.at));
+            lines.extend((0..bar.segments.len()).map(|k| (CellType::Line, vec![first + k, first + k + 1])));
+        }
+        (points, lines)
+    });
+    let moved = bars().flat_map(|(bar, _)| bar.vertices.iter().map(|vertex| vertex.displacement(&state.displacement)));
+    grid.vectors("displacement", &moved.flat_map(|u| [u.x, u.y]).collect::<Vec<_>>());
+    let values = |name: &str| bars().flat_map(|(bar, state)| bar.field(state, name).unwrap_or_default()).collect();
+    for name in AT_POINTS {
+        let all: Vec<f64> = values(name);
+        grid.at_points(name, 1, all.into_iter());
+    }
+    for name in OF_SEGMENTS {
+        let all: Vec<f64> = values(name);
+        grid.numbers_at_cells(name, all.into_iter());
+    }
+    grid.at_cells("bar", model.bars.iter().enumerate().flat_map(|(k, bar)| bar.segments.iter().map(move |_| k as i32)));
+    if bars().any(|(_, state)| !state.is_there) || model.steps.iter().any(|step| !step.bars.absent.is_empty()) {
+        grid.hide(bars().flat_map(|(bar, state)| bar.segments.iter().map(|_| !state.is_there)));
     }
 }
 

@@ -11,9 +11,11 @@ use super::csv;
 use super::csv::{Rows, Sheet, Table};
 use super::friction_history::FrictionHistory;
 use super::quantities::{
-    BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, PLASTIC, Quantity, RADIATED, RESULTANT, RIGID,
+    BAR, BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, PLASTIC, Quantity, RADIATED, RESULTANT, RIGID,
     SCATTER, WATCHED, names,
 };
+use crate::bars::fields::Summary;
+use crate::bars::{Bar, BarState};
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
@@ -90,6 +92,7 @@ impl Rows for HistoryRows {
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &[SCATTER])));
         header.extend(model.mesh.rigid_bodies.iter().flat_map(|body| of(&body.name, &RIGID)));
         header.extend(yields(model).then(|| PLASTIC.name.into()));
+        header.extend(model.bars.iter().flat_map(|bar| of(&bar.name, &BAR)));
         let undeformed = model.mesh.undeformed();
         let rows = Self {
             observed,
@@ -175,6 +178,7 @@ impl HistoryRows {
             row.extend([body.angle(&x), body.radius * state.reaction[2 * body.turning]]);
         }
         row.extend(yields(model).then_some(state.energy.plastic_dissipation));
+        row.extend(model.bars.iter().zip(&state.bars).flat_map(|(bar, state)| bar_row(bar, state)));
         row
     }
 }
@@ -191,9 +195,16 @@ fn radiates(model: &Model) -> bool {
     model.contacts.iter().any(|pair| pair.radiation > 0.0)
 }
 
-/// Whether some body yields, and the energies have a column for it.
+/// Forces of a bar, and its bond.
+fn bar_row(bar: &Bar, state: &BarState) -> [f64; BAR.len()] {
+    let Summary { ends, axial, moment, shear, slip, slipping } = bar.summary(state);
+    [ends[0], ends[1], axial[0], axial[1], moment, shear, slip, slipping]
+}
+
+/// Whether some body or bar yields, and the energies have a column for it.
 fn yields(model: &Model) -> bool {
-    model.bodies.iter().any(|body| body.material.description().flow.is_some())
+    model.bars.iter().any(|bar| bar.limit.is_finite())
+        || model.bodies.iter().any(|body| body.material.description().flow.is_some())
 }
 
 fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {

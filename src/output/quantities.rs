@@ -58,6 +58,9 @@ const MOMENTUM: Unit = unit("momentum", [1, 0, 1]);
 const SPIN: Unit = unit("angular_momentum", [1, 1, 1]);
 const STIFFNESS: Unit = unit("stiffness_per_area", [1, -3, 0]);
 
+/// F/L, of what acts along a line
+const LINE_FORCE: Unit = WORK_PER_AREA;
+
 /// All units of results.
 pub const LABELLED: [Unit; 13] = [
     LENGTH,
@@ -196,6 +199,30 @@ pub const WATCHED: [Quantity; 4] = [
 pub const RIGID: [Quantity; 2] = [
     q("angle", ANGLE, "rotation about the reference point, counter-clockwise [rad]"),
     q("moment", ENERGY, "reaction moment about the reference point where it is now, counter-clockwise"),
+];
+
+/// Forces of a bar, and its bond.
+pub const BAR: [Quantity; 8] = [
+    q("axial_start", FORCE, "N of its first segment, positive in tension"),
+    q("axial_end", FORCE, "N of its last segment"),
+    q("axial_min", FORCE, "smallest N along it"),
+    q("axial_max", FORCE, "largest N along it"),
+    q("moment_max", ENERGY, "largest |M| along it"),
+    q("shear_max", FORCE, "largest |Q| along it"),
+    q("bond_slip_max", LENGTH, "largest slip of its bond"),
+    q("slipping", NONE, "share of its bonded length that slipped for good in the increment"),
+];
+
+/// Quantities of bars in frames: at their points, then of their segments.
+pub const BAR_FRAMES: [Quantity; 8] = [
+    q("moment", ENERGY, "M, positive where the bar bends to its left"),
+    q("slip", LENGTH, "motion of the bar along itself relative to the body that it lies in"),
+    q("bond_shear", LINE_FORCE, "shear of the bond per length of the bar, on the body"),
+    q("bond_normal", LINE_FORCE, "force across the bar per length, on the body, positive to its left"),
+    q("axial_force", FORCE, "N of a segment, positive in tension"),
+    q("shear_force", FORCE, "Q of a segment, −dM/ds"),
+    q("yielding", NONE, "1 where N is at the limit, 0 elsewhere"),
+    q("bar", NONE, "number of the bar of a segment"),
 ];
 
 /// Resultant of a contact on its slave.
@@ -471,7 +498,7 @@ const INTEGRATION_POINTS: [Quantity; 10] = [
 pub type Group = (&'static str, &'static [Quantity]);
 
 /// All quantities by their files, in the order of their columns.
-pub const ALL: [(&str, &[Group]); 12] = [
+pub const ALL: [(&str, &[Group]); 13] = [
     (
         "history.csv",
         &[
@@ -489,6 +516,7 @@ pub const ALL: [(&str, &[Group]); 12] = [
             ("CONTACT", &[SCATTER]),
             ("RIGID", &RIGID),
             ("", &[PLASTIC]),
+            ("BAR", &BAR),
         ],
     ),
     ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),
@@ -502,6 +530,7 @@ pub const ALL: [(&str, &[Group]); 12] = [
             ("", &[q("contact", NONE, "number of the contact of a line")]),
         ],
     ),
+    ("bars.pvd", &[("", &[SOLID[0]]), ("", &BAR_FRAMES)]),
     ("points.pvd", &[("", &INTEGRATION_POINTS), ("", &OF_YIELDING)]),
     ("probes.csv", &[("", &[INCREMENT[0]]), ("PROBE", &PROBE), ("PROBE", &[HOOP])]),
     (

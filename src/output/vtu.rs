@@ -38,6 +38,8 @@ const LEVEL: u8 = 1;
 pub enum CellType {
     /// a point
     Vertex = 1,
+    /// a straight line between two points
+    Line = 3,
     /// a line through some points
     PolyLine = 4,
     /// T3
@@ -123,6 +125,12 @@ impl Grid {
     /// Adds integers at the cells.
     pub fn at_cells(&mut self, name: &str, values: impl Iterator<Item = i32>) {
         array(&mut self.values[1], Head { kind: "Int32", name, components: 1 }, values.map(i32::to_le_bytes));
+    }
+
+    /// Adds numbers at the cells.
+    pub fn numbers_at_cells(&mut self, name: &str, values: impl Iterator<Item = f64>) {
+        let values = values.map(|value| (value as f32).to_le_bytes());
+        array(&mut self.values[1], Head { kind: "Float32", name, components: 1 }, values);
     }
 
     /// Hides cells, in the array by which VTK leaves them out of pictures and filters.

@@ -4,6 +4,8 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::simulation::Simulation;
+use crate::bars::fields::{AT_POINTS, OF_SEGMENTS};
+use crate::bars::{Bar, BarState};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
 use crate::contact::pair::ContactPair;
@@ -28,6 +30,22 @@ pub enum Unknown {
         /// requested name
         name: String,
         /// contacts of the model
+        known: String,
+    },
+    /// The model has no such bar.
+    #[error("there is no bar `{name}`; there are {known}")]
+    Bar {
+        /// requested name
+        name: String,
+        /// bars of the model
+        known: String,
+    },
+    /// Bars have no such field.
+    #[error("bars have no field `{name}`; they have {known}")]
+    BarField {
+        /// requested name
+        name: String,
+        /// fields of bars
         known: String,
     },
     /// Contacts have no such field.
@@ -102,6 +120,35 @@ impl Simulation {
             return Err(Unknown::Field { name: field.into(), known: names.join(", ") });
         }
         Ok(pair::field_values(pair, states, self.state().time, self.state().dt, field))
+    }
+
+    /// Returns a quantity of a bar: of its points `moment`, `slip`, `bond_shear` and `bond_normal`, or of its segments `axial_force`,
+    /// `shear_force` and `yielding`.
+    ///
+    /// # Errors
+    /// Returns [`Unknown`] if the model has no such bar or bars have no such quantity.
+    pub fn bar_field(&self, bar: &str, field: &str) -> Result<Vec<f64>, Unknown> {
+        let (own, state) = self.bar(bar)?;
+        let known = || AT_POINTS.into_iter().chain(OF_SEGMENTS).collect::<Vec<_>>().join(", ");
+        own.field(state, field).ok_or_else(|| Unknown::BarField { name: field.into(), known: known() })
+    }
+
+    /// Returns the positions of the points of a bar, in their order [L].
+    ///
+    /// # Errors
+    /// Returns [`Unknown::Bar`] if the model has no such bar.
+    pub fn bar_positions(&self, bar: &str) -> Result<Vec<Vector2<f64>>, Unknown> {
+        let (own, _) = self.bar(bar)?;
+        let u = &self.state().displacement;
+        Ok(own.vertices.iter().map(|vertex| vertex.at + vertex.displacement(u)).collect())
+    }
+
+    fn bar(&self, name: &str) -> Result<(&Bar, &BarState), Unknown> {
+        let mut bars = self.model().bars.iter().zip(&self.state().bars);
+        bars.find(|(bar, _)| bar.name == name).ok_or_else(|| Unknown::Bar {
+            name: name.into(),
+            known: self.model().bars.iter().map(|bar| bar.name.as_str()).collect::<Vec<_>>().join(", "),
+        })
     }
 
     /// Returns the positions of the slave points of a contact, in their order [L].

@@ -6,6 +6,8 @@ mod common;
 #[path = "../common/grids.rs"]
 mod grids;
 
+mod bars;
+mod bars_in_steps;
 mod blocks;
 mod boundary;
 mod builder;

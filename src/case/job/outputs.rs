@@ -33,6 +33,9 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
         if !model.contacts.is_empty() {
             files.extend(["contact.pvd", "contact/"]);
         }
+        if !model.bars.is_empty() {
+            files.extend(["bars.pvd", "bars/"]);
+        }
         if case.output.points {
             files.extend(["points.pvd", "points/"]);
         }

@@ -10,6 +10,7 @@ use nalgebra::Vector2;
 use steps::{steps, watched};
 
 use super::file::{Case, MeshSource};
+use crate::bars::Bar;
 use crate::laws::bulk::MaterialParameters;
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
@@ -45,6 +46,7 @@ pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
         ("plates", plates(case, model)),
         ("points", point_masses(case, model)),
         ("rigid", rigid_bodies(case)),
+        ("bars", bars(model)),
         ("contacts", contacts(case, model)),
         ("steps", steps(case, model)),
         ("newton", vec![newton(case)]),
@@ -216,6 +218,21 @@ fn rigid_bodies(case: &Case) -> Vec<String> {
         format!("{name}: reference point {}{inertia}", vector(*reference))
     };
     case.rigid_bodies.iter().map(row).collect()
+}
+
+fn bars(model: &Model) -> Vec<String> {
+    let row = |bar: &Bar| {
+        let kind = if bar.ei > 0.0 { format!("beam, EI {}", number(bar.ei)) } else { "truss".into() };
+        let limit = if bar.limit.is_finite() { format!(", yields at {}", number(bar.limit)) } else { String::new() };
+        let bonds = bar.grips.first().map_or(String::new(), |grip| {
+            let strength = grip.bond.strength();
+            let strength = if strength < f64::MAX { format!(", strength {}", number(strength)) } else { String::new() };
+            format!("; bond stiffness {}{strength}, normal {}", number(grip.bond.stiffness()), number(grip.normal))
+        });
+        let (length, parts) = (number(bar.length()), count(bar.segments.len(), "segment"));
+        [bar.name.clone(), format!("{kind}, EA {}{limit}; length {length}, {parts}{bonds}", number(bar.ea))]
+    };
+    aligned(&model.bars.iter().map(row).collect::<Vec<_>>())
 }
 
 fn point_masses(case: &Case, model: &Model) -> Vec<String> {

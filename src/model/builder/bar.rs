@@ -44,7 +44,7 @@ pub struct BarInput {
 #[schemars(rename = "BarEnd")]
 #[non_exhaustive]
 pub struct BarEnd {
-    /// Body in which the end lies, or another bar with a point there: it is joined to that point
+    /// Body in which the end lies, another bar with a point there, or a group of points of the mesh: it is joined to that point
     pub on: Option<String>,
     /// Whether a beam keeps its angle there: to the body or bar that it is joined to, otherwise in space. Default: a hinge
     #[serde(default)]

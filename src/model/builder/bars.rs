@@ -371,6 +371,11 @@ fn joined_to<'l>(
         let message = format!("there is no body and no bar `{name}`: name one, or leave `on` out for a free end");
         return Err(ModelError::new(place, message));
     }
+    if let Some(Group::Nodes(nodes)) = mesh.groups.get(name) {
+        let node = nodes.iter().copied().find(|node| (mesh.nodes[*node] - at).norm() <= near);
+        let message = format!("`{name}` has no point at ({}, {}), where this end is", at.x, at.y);
+        return node.map(|node| Vertex::node(node, at)).ok_or_else(|| ModelError::new(place, message));
+    }
     let host = Bodies::of(std::slice::from_ref(name), mesh, place)?.host(at, place)?;
     bodies.insert(host.body.clone());
     Ok(vertex(mesh, &host, at, near))
@@ -395,6 +400,9 @@ fn clamp<'l>(
         let far = |two: &&[Vertex]| (two[0].at - at).norm().min((two[1].at - at).norm());
         let segment = bar.vertices.windows(2).min_by(|a, b| far(a).total_cmp(&far(b)));
         return Ok(segment.map_or(Linear::fixed(edge.at), |two| Linear::between(&two[0], &two[1])));
+    }
+    if let Some(Group::Nodes(_)) = mesh.groups.get(name) {
+        return Ok(Linear::fixed(edge.at));
     }
     let host = Bodies::of(std::slice::from_ref(name), mesh, "")?.host(at, "")?;
     let slopes = mesh.gradients(host.element, host.at).unwrap_or_default();

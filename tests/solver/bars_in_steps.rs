@@ -1,0 +1,280 @@
+//! Bars in steps: stressed by jacks, coming and going, in motion, resumed; an anchored wall; input that is refused.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::common::{Blocks, Finished, close, distance, finish, refusal};
+use crate::simulation::check;
+
+/// A rod of length 2 between two points, the right one of which moves as the steps say.
+fn rod(bar: Value, steps: Value) -> Value {
+    let mut all = json!({"points": [[0, 0], [2, 0]], "ea": 100, "start": {"on": "left"}, "end": {"on": "right"}});
+    all.as_object_mut().expect("a bar").extend(bar.as_object().expect("keys").clone());
+    json!({"mesh": {"nodes": [[0, 0], [2, 0]], "points": {"left": [0], "right": [1]}}, "bars": {"rod": all}, "steps": steps})
+}
+
+fn hold(on: &str, x: Value) -> Value {
+    json!({"on": on, "ux": x, "uy": 0})
+}
+
+fn force(run: &Finished, time: f64) -> f64 {
+    run.at(time).bars[0].segments[0].force
+}
+
+/// Between fixed points a jack raises the force to P and stores P²l/2EA; then the length is locked, and a motion δ adds EA δ/l.
+#[test]
+fn a_jack_locks_a_force_in() {
+    let steps = json!([
+        {"name": "wait", "duration": 1, "dt": {"initial": 0.5}, "supports": [hold("left", json!(0)), hold("right", json!(0.01))]},
+        {"name": "stress", "duration": 1, "dt": {"initial": 0.25}, "prestress": {"rod": 7}},
+        {"name": "pull", "duration": 1, "supports": [hold("right", json!(0.03))]},
+    ]);
+    let run = finish(&rod(json!({}), steps));
+    close("before", force(&run, 1.0), 0.5, 1e-12);
+    close("on the way", force(&run, 1.5), 3.75, 1e-12);
+    close("locked off", force(&run, 2.0), 7.0, 1e-12);
+    close("reaction", run.reaction("right", run.at(2.0))[0], 7.0, 1e-12);
+    close("pulled", force(&run, 3.0), 8.0, 1e-12);
+    close("stored", run.at(2.0).energy.strain, 7.0 * 7.0 * 2.0 / 200.0, 1e-12);
+    for state in &run.states {
+        close("energy", state.energy.error(), 0.0, 1e-12);
+    }
+}
+
+/// A bar yields at its limit; what it loses is dissipated, and it unloads elastically.
+#[test]
+fn a_bar_yields_at_its_limit() {
+    let steps = json!([
+        {"name": "pull", "duration": 1, "dt": {"initial": 0.1}, "supports": [hold("left", json!(0)), hold("right", json!(0.1))]},
+        {"name": "push", "duration": 1, "supports": [hold("right", json!(0.0))]},
+    ]);
+    let run = finish(&rod(json!({"limit": 2.0}), steps));
+    close("yields", force(&run, 1.0), 2.0, 1e-12);
+    close("dissipated", run.at(1.0).energy.plastic_dissipation, 2.0 * (0.1 - 0.04), 1e-12);
+    // From 0.1 on it unloads by 100/2 per length, and yields in compression from 0.1 − 0.08 on.
+    close("unloads", force(&run, 1.5), 2.0 - 50.0 * 0.05, 1e-12);
+    close("yields again", force(&run, 2.0), -2.0, 1e-12);
+    assert!(run.last().energy.error().abs() < 0.02, "{}", run.last().energy.error());
+}
+
+/// A bar that comes in a later step has no force where its points are then, and one that goes takes its force with it over the step.
+#[test]
+fn bars_come_and_go() {
+    let support = |x: f64| json!([hold("left", json!(0)), hold("right", json!(x))]);
+    let steps = json!([
+        {"name": "wait", "duration": 1, "dt": {"initial": 0.5}, "supports": support(0.5)},
+        {"name": "build", "duration": 1, "add": ["rod"], "supports": support(0.6)},
+        {"name": "let go", "duration": 1, "remove": ["rod"]},
+    ]);
+    let run = finish(&rod(json!({}), steps));
+    close("absent", force(&run, 1.0), 0.0, 0.0);
+    close("stretched since it came", force(&run, 2.0), 100.0 * 0.1 / 2.5, 1e-12);
+    close("holds half", run.reaction("right", run.at(2.5))[0], 2.0, 1e-12);
+    close("gone", run.reaction("right", run.last())[0], 0.0, 1e-12);
+    assert!(!run.last().bars[0].is_there && run.last().energy.strain == 0.0);
+    for state in &run.states {
+        close("energy", state.energy.error(), 0.0, 1e-12);
+    }
+}
+
+/// A cantilever swings with 1.8751² √(EI/m L⁴) (Euler–Bernoulli), and keeps its energy.
+#[test]
+fn a_cantilever_swings_at_its_frequency() {
+    let omega = 1.875_104_f64.powi(2) * (3.0_f64 / 0.5).sqrt();
+    let period = 2.0 * PI / omega;
+    let bar =
+        json!({"points": [[0, 0], [1, 0]], "ea": 1e5, "ei": 3, "mass": 0.5, "start": {"on": "wall", "clamped": true}});
+    let case = json!({"mesh": {"nodes": [[0, 0]], "points": {"wall": [0]}}, "bars": {"beam": bar}, "watch": ["beam_end"], "steps": [
+        {"name": "bend", "duration": 1, "dt": {"initial": 1.0}, "supports": [hold("wall", json!(0))],
+            "loads": [{"on": "beam_end", "force": {"y": 0.01}}]},
+        {"name": "swing", "duration": 2.0 * period, "scheme": "newmark", "dt": {"initial": period / 100.0},
+            "loads": [{"on": "beam_end", "force": {"y": {"table": [[0, 0.0], [100, 0.0]]}}}]},
+    ]});
+    let run = finish(&case);
+    let tip = 2 * run.nodes("beam_end")[0] + 1;
+    let path: Vec<(f64, f64)> = run
+        .states
+        .iter()
+        .filter(|state| state.time > 1.0)
+        .map(|state| (state.time - 1.0, state.displacement[tip]))
+        .collect();
+    let crossings: Vec<f64> = path
+        .windows(2)
+        .filter(|two| two[0].1 * two[1].1 < 0.0)
+        .map(|two| two[0].0 + (two[1].0 - two[0].0) * two[0].1 / (two[0].1 - two[1].1))
+        .collect();
+    close("quarter of a period", crossings[0], 0.25 * period, 0.03 * period);
+    close("half a period", (crossings[2] - crossings[0]) / 2.0, 0.5 * period, 0.006 * period);
+    let energy = &run.last().energy;
+    close("energy", energy.error(), 0.0, 1e-4 * energy.supplied());
+}
+
+/// Ground with a wall that shares no nodes with it, an anchor of a free length and a grouted one, in all kinds of steps.
+fn anchored(scheme: Value) -> Value {
+    let mesh = Blocks::default().rectangle("soil", [6, 4], [0.0, 0.0], [6.0, 4.0]).rectangle(
+        "wall",
+        [1, 4],
+        [-0.3, 0.0],
+        [0.0, 4.0],
+    );
+    let material = json!({"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 0.01});
+    json!({"mesh": mesh.json(), "bodies": {"soil": {"material": material}, "wall": {"material": material}},
+    "bars": {
+        "tendon": {"points": [[-0.3, 3], [2, 2]], "ea": 60, "mass": 0.01, "start": {"on": "wall"}, "end": {"on": "grout"}},
+        "grout": {"points": [[2, 2], [5, 0.7]], "ea": 60, "ei": 2, "mass": 0.02, "limit": 2, "segments": 6,
+            "embedded": {"in": ["soil"], "bond": {"strength": 0.8, "residual": 0.4, "slip": 0.1, "stiffness": 50}}},
+        "late": {"points": [[1, 3.5], [4, 3.5]], "ea": 40, "mass": 0.02, "embedded": {"in": ["soil"]}},
+    },
+    "contacts": {"back": {"slave": "wall_right", "master": "soil_left", "friction": {"law": "coulomb", "mu": 0.3}}},
+    "steps": [
+        {"name": "rest", "duration": 1, "dt": {"initial": 0.5}, "supports": [hold("soil_bottom", json!(0)), hold("wall_bottom", json!(0))]},
+        {"name": "stress", "duration": 1, "prestress": {"tendon": 1}, "add": ["late"]},
+        {"name": "load", "duration": 1, "scheme": scheme, "dt": {"initial": 0.25}, "loads": [{"on": "wall_left", "force": {"x": -0.4}}]},
+        {"name": "cut", "duration": 1, "remove": ["tendon"]},
+    ]})
+}
+
+/// Increments that are dropped and repeated, and runs that resume from saved states, have the same bits; so have other numbers of threads.
+#[test]
+fn bars_are_resumed_bit_by_bit() {
+    for scheme in [json!("static"), json!("newmark")] {
+        check(&anchored(scheme), Path::new("test.json"));
+    }
+    let runs = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| finish(&anchored(json!("static"))))
+    });
+    assert!(runs[0].last() == runs[1].last());
+}
+
+/// The forces of a grouted anchor in the steps above: the tendon has its force, the grout takes it up by bond, and energies balance.
+#[test]
+fn an_anchor_holds_a_wall() {
+    let run = finish(&anchored(json!("static")));
+    let [stressed, loaded] = [run.at(2.0), run.at(3.0)];
+    close("tendon", stressed.bars[0].segments[0].force, 1.0, 1e-12);
+    assert!(loaded.bars[0].segments[0].force > 1.2, "{}", loaded.bars[0].segments[0].force);
+    let grout = &run.model.bars[1];
+    let taken: f64 =
+        grout.grips.iter().zip(&stressed.bars[1].grips).map(|(grip, state)| grip.length * state.bond.traction).sum();
+    // The tendon pulls the grout back along nearly its own direction.
+    let [tendon, own] = [[2.3, -1.0], [3.0, -1.3]].map(|v: [f64; 2]| nalgebra::Vector2::from(v).normalize());
+    close("bond", -taken, tendon.dot(&own), 0.02);
+    assert!(run.last().energy.error().abs() < 0.01 * run.last().energy.supplied());
+}
+
+/// What bars say of input that they cannot take: key, value and remedy.
+#[test]
+fn bad_bars_are_refused_by_name() {
+    let with = |bar: Value| {
+        let mesh = Blocks::default().rectangle("soil", [4, 2], [0.0, 0.0], [4.0, 2.0]);
+        let mut case = json!({"mesh": mesh.json(), "bodies": {"soil": {"material": {"model": "linear", "E": 1, "nu": 0.3, "density": 1}}},
+            "bars": {"bar": {"points": [[1, 1], [3, 1]], "ea": 1, "embedded": {"in": ["soil"]}}},
+            "steps": [{"name": "step", "duration": 1, "supports": [hold("soil_bottom", json!(0))]}]});
+        for (path, value) in bar.as_object().expect("keys") {
+            *case.pointer_mut(path).unwrap_or_else(|| panic!("{path}")) = value.clone();
+        }
+        case
+    };
+    let bar = |more: Value| {
+        let mut bar = json!({"points": [[1, 1], [3, 1]], "ea": 1});
+        bar.as_object_mut().expect("a bar").extend(more.as_object().expect("keys").clone());
+        with(json!({"/bars/bar": bar}))
+    };
+    let bond = |bond: Value| bar(json!({"embedded": {"in": ["soil"], "bond": bond}}));
+    let cases = [
+        (
+            bar(json!({"points": [[1, 1], [5, 1]], "segments": 4, "embedded": {"in": ["soil"]}})),
+            "bars.bar.embedded.in: the point (5, 1) lies outside of `soil`; the nearest node of it is at (4, 1)",
+        ),
+        (
+            bar(json!({"start": {"on": "soil"}, "points": [[1, 3], [3, 1]]})),
+            "bars.bar.start.on: the point (1, 3) lies outside of `soil`",
+        ),
+        (bar(json!({"start": {"on": "rock"}})), "bars.bar.start.on: there is no body and no bar `rock`"),
+        (bar(json!({"start": {"clamped": true}})), "bars.bar.start.clamped: a truss is hinged at its ends"),
+        (bar(json!({"ea": 0})), "bars.bar.ea: is 0: must be positive"),
+        (bar(json!({"ei": -1})), "bars.bar.ei: is -1: must be zero or positive"),
+        (bar(json!({"segments": 3})), "bars.bar.segments: a truss divided into segments is a chain that folds"),
+        (bar(json!({"points": [[1, 1]]})), "bars.bar.points: is one point"),
+        (bar(json!({"points": []})), "bars.bar: give either `points`, two or more, or `on`"),
+        (bar(json!({"points": [[1, 1], [1, 1]]})), "bars.bar.points[1]: is the point before it"),
+        (bar(json!({"points": [], "on": "soil"})), "bars.bar.on: `soil` is a group of solid elements, not of lines"),
+        (bond(json!({"residual": 1})), "bars.bar.embedded.bond.residual: belongs to a `strength`"),
+        (
+            bond(json!({"strength": 1, "residual": 2})),
+            "bars.bar.embedded.bond.residual: is 2: it must lie between zero and `strength`",
+        ),
+        (
+            bond(json!({"strength": 1, "slip": 0.1, "stiffness": 5})),
+            "bars.bar.embedded.bond.slip: is 0.1: the strength would fall faster",
+        ),
+        (bond(json!({"normal": 0})), "bars.bar.embedded.bond.normal: is 0: must be positive"),
+        (with(json!({"/steps/0/duration": 1, "/bars/bar/ea": 2})).clone(), ""),
+    ];
+    for (case, words) in cases.iter().filter(|(_, words)| !words.is_empty()) {
+        let said = refusal(case);
+        assert!(said.contains(words), "{said}\nis not\n{words}");
+    }
+    let mut cases: Vec<(Value, &str)> = Vec::new();
+    let mut case = with(json!({}));
+    case["steps"][0]["scheme"] = json!("explicit");
+    cases.push((case, "bars.bar: bars are not for the explicit step `step`"));
+    let mut case = with(json!({}));
+    case["section"] = json!("axisymmetric");
+    cases.push((case, "bars.bar: a bar in rings would be a shell"));
+    let mut case = with(json!({}));
+    case["steps"][0]["prestress"] = json!({"bar": 1});
+    cases.push((case, "steps[0].prestress.bar: lies in a body"));
+    let mut case = with(json!({}));
+    case["steps"][0]["prestress"] = json!({"tie": 1});
+    cases.push((case, "steps[0].prestress.tie: there is no bar `tie`; the bars are bar"));
+    let mut case = with(json!({}));
+    case["steps"][0]["add"] = json!(["bar"]);
+    cases.push((case, "steps[0].add[0]: the first step begins with the bars as they are"));
+    let mut case = with(json!({}));
+    case["bars"]["soil"] = case["bars"]["bar"].clone();
+    cases.push((case, "bars.soil: is a group of the mesh as well"));
+    let mut case = bar(json!({"start": {"on": "soil"}, "end": {"on": "soil"}, "ei": 1}));
+    case["steps"][0]["scheme"] = json!("newmark");
+    cases.push((case, "bars.bar.mass: is 0, but the dynamic step `step` (steps[0]) needs a mass"));
+    for (case, words) in &cases {
+        let said = refusal(case);
+        assert!(said.contains(words), "{said}\nis not\n{words}");
+    }
+}
+
+/// A free bar is said to move before the run.
+#[test]
+fn a_loose_bar_is_found_before_the_run() {
+    let mesh = Blocks::default().rectangle("soil", [4, 2], [0.0, 0.0], [4.0, 2.0]);
+    let case = json!({"mesh": mesh.json(), "bodies": {"soil": {"material": {"model": "linear", "E": 1, "nu": 0.3}}},
+        "bars": {"post": {"points": [[1, 1], [1, 4]], "ea": 1, "start": {"on": "soil"}}},
+        "steps": [{"name": "step", "duration": 1, "supports": [hold("soil_bottom", json!(0))]}]});
+    let said = refusal(&case);
+    assert!(said.contains("can move freely") && said.contains("post"), "{said}");
+}
+
+/// A bar that moves with the ground stiffens it as much as a bar on the same nodes does.
+#[test]
+fn a_bar_without_slip_is_a_bar_on_the_nodes() {
+    let run = |bar: Value| {
+        let mesh = Blocks::default().rectangle("soil", [4, 2], [0.0, 0.0], [4.0, 2.0]);
+        finish(
+            &json!({"mesh": mesh.json(), "bodies": {"soil": {"material": {"model": "neo_hookean", "E": 10, "nu": 0.3}}}, "bars": {"bar": bar},
+            "steps": [{"name": "step", "duration": 1, "dt": {"initial": 0.5}, "supports": [hold("soil_left", json!(0))],
+                "loads": [{"on": "soil_right", "force": {"y": -0.2}}]}]}),
+        )
+    };
+    let inside =
+        run(json!({"points": [[0, 2], [4, 2]], "ea": 30, "ei": 2, "segments": 4, "embedded": {"in": ["soil"]}}));
+    let top = run(json!({"on": "soil_top", "ea": 30, "ei": 2}));
+    assert!(distance(&inside.last().displacement, &top.last().displacement) < 1e-12);
+    let force = |run: &Finished| {
+        run.last().bars[0].segments.iter().fold(0.0_f64, |most, segment| most.max(segment.force.abs()))
+    };
+    close("N", force(&inside), force(&top), 1e-10);
+    assert!(force(&top) > 0.1);
+}
