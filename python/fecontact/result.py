@@ -286,6 +286,11 @@ class Fields(Sequence[Any]):
         return Fields(self._folder, "contact")
 
     @property
+    def bars(self) -> Fields:
+        """Grids of the bars: a line to each segment."""
+        return Fields(self._folder, "bars")
+
+    @property
     def points(self) -> Fields:
         """Grids of the integration points."""
         return Fields(self._folder, "points")

@@ -122,6 +122,33 @@ class ContactFields(Mapping[str, Array]):
         return np.array(self._native.contact_force(self._name))
 
 
+class BarFields(Mapping[str, Array]):
+    """Current fields of a bar by name; each is computed on demand, and so a copy.
+
+    At its points ``moment`` [F L], ``slip`` [L], ``bond_shear``, ``bond_normal`` [F/L], of its segments ``axial_force``, ``shear_force``
+    [F] and ``yielding``.
+    """
+
+    ALWAYS = ("moment", "slip", "bond_shear", "bond_normal", "axial_force", "shear_force", "yielding")
+
+    def __init__(self, native: _native.Simulation, name: str) -> None:
+        self._native, self._name = native, name
+
+    def __getitem__(self, field: str) -> Array:
+        return self._native.bar_field(self._name, a_name(field, "field", "bars"))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.ALWAYS)
+
+    def __len__(self) -> int:
+        return len(self.ALWAYS)
+
+    @property
+    def position(self) -> Array:
+        """Positions of the points of the bar, shape (points, 2) [L]; a copy."""
+        return self._native.bar_positions(self._name)
+
+
 class Simulation:
     """A run as an iterator over its increments; supports and loads can be changed between them.
 
@@ -210,6 +237,11 @@ class Simulation:
     def contacts(self) -> dict[str, ContactFields]:
         """Contacts by name, with their current fields."""
         return {name: ContactFields(self._native, name) for name in self._native.contacts}
+
+    @property
+    def bars(self) -> dict[str, BarFields]:
+        """Bars by name, with their current fields."""
+        return {name: BarFields(self._native, name) for name in self._native.bars}
 
     def lead(self, group: str, *, ux: float | None = None, uy: float | None = None, by: float) -> None:
         """Move the supports of a group linearly from their current position to a displacement, and hold them there to the end of the

@@ -137,6 +137,12 @@ impl Simulation {
         self.with(|under_way| Ok(under_way.run.model().contacts.iter().map(|pair| pair.name.clone()).collect()))
     }
 
+    /// Names of the bars.
+    #[getter]
+    fn bars(&self) -> PyResult<Vec<String>> {
+        self.with(|under_way| Ok(under_way.run.model().bars.iter().map(|bar| bar.name.clone()).collect()))
+    }
+
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.with(|under_way| {
             let nodes = &under_way.run.model().mesh.nodes;
@@ -171,6 +177,16 @@ impl Simulation {
 
     fn contact_positions<'py>(&self, py: Python<'py>, contact: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let at = self.with(|under_way| under_way.run.contact_positions(contact).map_err(unknown))?;
+        Ok(Array2::from_shape_fn((at.len(), 2), |(point, i)| at[point][i]).into_pyarray(py))
+    }
+
+    fn bar_field<'py>(&self, py: Python<'py>, bar: &str, field: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let values = self.with(|under_way| under_way.run.bar_field(bar, field).map_err(unknown))?;
+        Ok(values.into_pyarray(py))
+    }
+
+    fn bar_positions<'py>(&self, py: Python<'py>, bar: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let at = self.with(|under_way| under_way.run.bar_positions(bar).map_err(unknown))?;
         Ok(Array2::from_shape_fn((at.len(), 2), |(point, i)| at[point][i]).into_pyarray(py))
     }
 

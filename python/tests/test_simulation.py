@@ -54,6 +54,21 @@ def test_contact_fields(document: dict[str, Any]) -> None:
         simulation.reaction("block_to")
 
 
+def test_bar_fields() -> None:
+    rod = {"points": [[0, 0], [2, 0]], "ea": 100, "start": {"on": "left"}, "end": {"on": "right"}}
+    steps = [{"name": "pull", "duration": 1, "supports": [{"on": "left", "ux": 0, "uy": 0}, {"on": "right", "ux": 0.1, "uy": 0}]}]
+    mesh = {"nodes": [[0, 0], [2, 0]], "points": {"left": [0], "right": [1]}}
+    simulation = fc.Simulation({"mesh": mesh, "bars": {"rod": rod}, "steps": steps})
+    for _ in simulation:
+        pass
+    own = simulation.bars["rod"]
+    np.testing.assert_allclose(own["axial_force"], [5.0])
+    np.testing.assert_allclose(own.position, [[0, 0], [2.1, 0]])
+    assert set(own) == {"moment", "slip", "bond_shear", "bond_normal", "axial_force", "shear_force", "yielding"}
+    with pytest.raises(LookupError, match="bars have no field `axial`; they have moment"):
+        own["axial"]
+
+
 def test_saved_runs_go_on_to_the_same_bits(document: dict[str, Any], result: fc.Result, tmp_path: Path) -> None:
     case = fc.Case(document)
     simulation = fc.Simulation(case)

@@ -5,14 +5,16 @@
 //! f = ℓ (q ∂s + k_n v ∂v)                                   q(s): the law of bonds, per length of the bar
 //! ∂s = t·∂d + (d·n) ∂α,   ∂v = n·∂d − (d·t) ∂α              α: angle of the segment
 //! ```
+//! With μ the strength of the bond is c + μ p and c_r + μ p, p: pressure of the body across the bar at the start of an increment, in which
+//! it stays.
 //! The point of the body is the one where the bar was when it came: slip is small against the elements. s₀ and v₀ are what it was
 //! apart then. Points are the ends of segments (trapezoidal rule), which keeps stiff bond from oscillating along the bar.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::vectors::{Answer, Vectors, bending_of_angle, turned};
-use crate::laws::friction::{Bond, BondState};
+use crate::laws::friction::{Bond, BondParameters, BondState, BondSurfaces};
 
 /// A bonded point.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +27,10 @@ pub struct Grip {
     pub element: usize,
     /// ℓ: length of the bar that belongs to it [L]
     pub length: f64,
-    /// law along the bar, forces per length of the bar
+    /// law along the bar, forces per length of the bar, without pressure
     pub bond: Bond,
+    /// μ times the thickness of the body [L]
+    pub mu: f64,
     /// k_n [F/L²]
     pub normal: f64,
 }
@@ -64,8 +68,27 @@ impl Grip {
         GripState { natural: [d.dot(&t), d.dot(&turned(t))], bond: self.bond.start(None, 0.0), ..GripState::default() }
     }
 
-    /// Evaluates it at displacements.
-    pub fn respond(&self, old: &GripState, u: &[f64]) -> (Answer, Gripped) {
+    /// The law under a pressure of the body.
+    fn under(&self, pressure: f64) -> Bond {
+        let friction = self.mu * pressure.max(0.0);
+        if friction == 0.0 {
+            return self.bond;
+        }
+        let mut parameters = BondParameters::new(self.bond.strength() + friction);
+        parameters.residual = Some(self.bond.residual() + friction);
+        parameters.slip = Some(self.bond.slip()).filter(|slip| slip.is_finite());
+        let stiffness = self.bond.stiffness();
+        // Softening is as steep as without friction, which was checked.
+        Bond::new(&parameters, BondSurfaces::new(stiffness, stiffness, 0.0)).unwrap_or(self.bond)
+    }
+
+    /// Unit normal of the bar, to its left.
+    pub fn normal_direction(&self, u: &[f64]) -> Vector2<f64> {
+        turned((self.vectors.at[1] + self.vectors.ways(u)[1]).normalize())
+    }
+
+    /// Evaluates it at displacements, under a pressure of the body.
+    pub fn respond(&self, old: &GripState, u: &[f64], pressure: f64) -> (Answer, Gripped) {
         let [d, edge] = self.vectors.ways(u);
         let e = self.vectors.at[1] + edge;
         let size = e.norm();
@@ -73,7 +96,7 @@ impl Grip {
         let n = turned(t);
         let (along, across) = (d.dot(&t), d.dot(&n));
         let (slip, apart) = (along - old.natural[0], across - old.natural[1]);
-        let found = self.bond.respond(&old.bond, 0.0, slip - old.slip, false);
+        let found = self.under(pressure).respond(&old.bond, 0.0, slip - old.slip, false);
         let (q, p) = (self.length * found.state.traction, self.length * self.normal * apart);
         let slope = n / size;
         // ∂s and ∂v by d and e
@@ -81,7 +104,7 @@ impl Grip {
         let by_apart = [n, slope * -along];
         let turn = slope * slope.transpose();
         let bent = bending_of_angle(e);
-        let crossed = |of: nalgebra::Vector2<f64>| -> Matrix2<f64> { of * slope.transpose() };
+        let crossed = |of: Vector2<f64>| -> Matrix2<f64> { of * slope.transpose() };
         // second derivatives of s and v, by d and e and by e twice
         let of_slip = [crossed(n), bent * across - turn * along];
         let of_apart = [-crossed(t), -bent * along - turn * across];

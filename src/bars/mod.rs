@@ -104,6 +104,24 @@ impl Bar {
         masses
     }
 
+    /// Bounds of the stiffness at its nodes, by Gershgorin's theorem: the sum of a row of a part, in magnitude.
+    pub fn bounds(&self, mut add: impl FnMut(usize, f64)) {
+        let mut of = |vectors: &vectors::Vectors, stiffness: f64, slopes: [f64; 2]| {
+            let size = |shares: [f64; 2]| (shares[0] * slopes[0]).abs() + (shares[1] * slopes[1]).abs();
+            let total: f64 = vectors.terms().map(|(_, shares)| size(shares)).sum();
+            vectors.terms().for_each(|(node, shares)| add(node, stiffness * size(shares) * total));
+        };
+        for segment in &self.segments {
+            of(&segment.vectors, self.ea / segment.length, [1.0, 0.0]);
+        }
+        for turn in &self.turns {
+            of(&turn.vectors, self.ei / turn.length, turn.vectors.at.map(|e| 1.0 / e.norm()));
+        }
+        for grip in &self.grips {
+            of(&grip.vectors, grip.length * grip.bond.stiffness().max(grip.normal), [1.0, 0.0]);
+        }
+    }
+
     /// Groups of nodes that it couples.
     pub fn groups(&self) -> impl Iterator<Item = &[usize]> {
         let segments = self.segments.iter().map(|segment| segment.vectors.nodes());
@@ -137,12 +155,13 @@ impl Bar {
     }
 
     /// Evaluates the bar at displacements: `add` takes the nodes, forces and tangent of each part. A jack sets the force of all
-    /// segments to a value.
+    /// segments to a value; `pressures` are those of the body at the bonded points, if they count.
     pub fn respond(
         &self,
         old: &BarState,
         u: &[f64],
         jack: Option<f64>,
+        pressures: &[f64],
         mut add: impl FnMut(&[usize], &Answer, &vectors::Vectors),
     ) -> BarState {
         let mut state = BarState { is_there: true, ..BarState::default() };
@@ -160,8 +179,9 @@ impl Bar {
             state.strain += stored;
             state.turns.push(found);
         }
-        for (grip, old) in self.grips.iter().zip(&old.grips) {
-            let (answer, found) = grip.respond(old, u);
+        for (k, (grip, old)) in self.grips.iter().zip(&old.grips).enumerate() {
+            let pressure = pressures.get(k).copied().unwrap_or(0.0);
+            let (answer, found) = grip.respond(old, u, pressure);
             add(grip.vectors.nodes(), &answer, &grip.vectors);
             state.bonded += found.stored;
             state.friction += found.dissipated;

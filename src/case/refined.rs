@@ -3,6 +3,7 @@
 //! ```text
 //! n → 2 n                            elements along both sides of a block; of other meshes every element becomes four ([`Mesh::divided`])
 //! g → g^((2n − 1)/(2n − 2))          their grading, last size over first: neighbours differ by the root of what they did
+//! n → 2 n                            segments of bars that are divided
 //! dt → dt/2,  error → error/4        increments, and the error allowed in one, which is of second order in them
 //! ```
 //! What the case leaves open has the default of the finer mesh; `alpha_n` then grows with 1/h.
@@ -172,6 +173,10 @@ fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) 
     // A length of the interface, not of its mesh
     for pair in &model.contacts {
         case.contacts.get_mut(&pair.name).into_iter().for_each(|contact| keep_opening(contact, pair));
+    }
+    for bar in &model.bars {
+        let divided = case.bars.get_mut(&bar.name).filter(|input| input.segments.is_some() || input.is_free_beam());
+        divided.into_iter().for_each(|input| input.segments = Some(bar.segments.len() << halvings.mesh));
     }
     (case.output.fields, case.output.report) = (false, false);
     // Values read from JSON can be written as JSON.

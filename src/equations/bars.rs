@@ -2,7 +2,9 @@
 
 use super::sums::{Dependence, Sums};
 use super::trial::Trial;
-use crate::bars::BarState;
+use crate::bars::grip::Grip;
+use crate::bars::{Bar, BarState};
+use crate::laws::bulk::CauchyStress;
 use crate::model::{Model, Step};
 
 /// The tangent depends on the displacements, if there is any bar.
@@ -33,7 +35,8 @@ pub(super) fn add(model: &Model, trial: Trial, u: &[f64], states: &mut Vec<BarSt
             continue;
         }
         let jack = trial.step.bars.jack(k, old, share);
-        let state = bar.respond(old, u, jack, |nodes, answer, vectors| {
+        let pressures = pressures(model, trial, bar);
+        let state = bar.respond(old, u, jack, &pressures, |nodes, answer, vectors| {
             vectors.forces(answer, &mut force);
             sums.push(nodes, &force);
             if sums.tangent.is_some() {
@@ -47,6 +50,29 @@ pub(super) fn add(model: &Model, trial: Trial, u: &[f64], states: &mut Vec<BarSt
         states.push(state);
     }
     energies
+}
+
+/// Pressure of the bodies across a bar at its bonded points, at the start of an increment: mean over the element; empty where it does not
+/// count [F/L²].
+fn pressures(model: &Model, Trial { old, .. }: Trial, bar: &Bar) -> Vec<f64> {
+    if bar.grips.iter().all(|grip| grip.mu == 0.0) {
+        return Vec::new();
+    }
+    let pressure = |grip: &Grip| {
+        let e = grip.element;
+        let memory = model.memories.of(e, &old.memory);
+        let u = model.mesh.vectors(e, &old.displacement);
+        // Accepted states contain no element whose material law fails.
+        let stresses = model.solid(old, e).stresses(&*model.body_of(e).material, memory, &u).unwrap_or_default();
+        let n = grip.normal_direction(&old.displacement);
+        let across = |stress: &CauchyStress| {
+            let [xx, yy, _, xy] = stress.components();
+            -(n.x * n.x * xx + n.y * n.y * yy + 2.0 * n.x * n.y * xy)
+        };
+        let sum: f64 = stresses.iter().map(across).sum();
+        if stresses.is_empty() { 0.0 } else { sum / stresses.len() as f64 }
+    };
+    bar.grips.iter().map(pressure).collect()
 }
 
 /// Share of the rest of the step that an increment covers.

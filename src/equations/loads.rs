@@ -32,8 +32,7 @@ fn any(model: &Model, step: &Step) -> bool {
         && loads.springs.is_empty()
         && loads.moments.is_empty()
         && step.released.is_empty()
-        && step.changed.is_empty()
-        && !step.relaxes)
+        && !step.changes_anything())
 }
 
 /// Sums all loads in `loads`, and subtracts them from the forces.

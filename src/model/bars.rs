@@ -1,6 +1,7 @@
 //! Bars in the steps of a model: which are there, and which are stressed by a jack.
 
 use super::state::State;
+use super::text::number;
 use super::{Model, Step};
 use crate::bars::BarState;
 
@@ -45,6 +46,17 @@ impl Model {
         for &k in &step.bars.changed {
             let (bar, u) = (&self.bars[k], &state.displacement);
             state.bars[k] = if step.bars.has(k) { bar.born(u) } else { bar.absent(u) };
+        }
+    }
+
+    /// Name of a node outside all bodies: the bar that it belongs to, or its tag.
+    pub fn lone_name(&self, node: usize) -> String {
+        match self.bars.iter().find(|bar| bar.own.contains(&node)) {
+            Some(bar) => {
+                let x = self.mesh.nodes[node];
+                format!("the bar `{}` at ({}, {})", bar.name, number(x.x), number(x.y))
+            }
+            None => format!("node {}", self.mesh.node_tags[node]),
         }
     }
 

@@ -209,13 +209,8 @@ fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String
             let motion = MOTIONS[if node == body.turning { 2 } else { component }];
             return Some(format!("nothing resists the motion of the rigid body `{}` {motion}", body.name));
         }
-        let tag = model.mesh.node_tags[node];
         let motion = if along[0].abs() > along[1].abs() { MOTIONS[0] } else { MOTIONS[1] };
-        if let Some(bar) = model.bars.iter().find(|bar| bar.own.contains(&node)) {
-            let (name, x) = (&bar.name, model.mesh.nodes[node]);
-            return Some(format!("nothing resists the motion of the bar `{name}` {motion} at ({}, {})", x.x, x.y));
-        }
-        Some(format!("nothing resists the motion of node {tag} {motion}"))
+        Some(format!("nothing resists the motion of {} {motion}", model.lone_name(node)))
     })
 }
 

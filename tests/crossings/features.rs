@@ -65,6 +65,8 @@ pub const SLOTS: &[Slot] = &[
     ("stick", OPTION),
     // a body beside the block: part of it, tied to it, or one that comes or goes in the second stage
     ("flange", &[("no", 12), ("yes", 1), ("tied", 2), ("added", 2), ("removed", 2)]),
+    // a bar in the block: it moves with it, has bond, is stressed from point to point, or comes in the second stage
+    ("bar", &[("no", 12), ("moves", 1), ("bonded", 2), ("tendon", 1), ("late", 1)]),
     // the surfaces are the sides of a crack that ends where they share a node
     ("tip", &[("no", 12), ("yes", 1)]),
     ("tractions", &[("no", 8), ("given", 1), ("balanced", 1), ("of_bodies", 1)]),
@@ -389,6 +391,13 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &["scheme:wilson", "scheme:explicit", "then", "rupture", "velocity", "until", "press:plate", "plate"],
         "bodies come and go in implicit steps",
     ),
+    (
+        &["bar"],
+        &["section:rings_on_end", "section:rings_around", "scheme:quasi_dynamic"],
+        "a bar in rings would be a shell, and quasi-dynamic steps are linear",
+    ),
+    (&["bar:tendon"], &["until"], "a jack brings its force by the end of the step"),
+    (&["bar:late"], &["scheme:explicit", "then:explicit", "rupture"], "bars come and go in implicit steps"),
     (
         &["tip"],
         &[

@@ -74,12 +74,16 @@ pub struct BarBond {
     /// k: shear per length and slip before any slips for good; default: 100 (λ + 2G)/(length of a segment) of the body times its
     /// thickness, a penalty [F/L²]
     pub stiffness: Option<f64>,
-    /// c: shear strength per length; default: none, it never slips for good [F/L]
+    /// c: shear strength per length; default: 0 with `mu`, otherwise none: it never slips for good [F/L]
     pub strength: Option<f64>,
     /// c_r: what is left of it after the slip `slip`, 0 ≤ c_r ≤ c; default: c, and 0 where `slip` is given [F/L]
     pub residual: Option<f64>,
     /// D: slip over which the strength falls from c to c_r; default: it does not fall [L]
     pub slip: Option<f64>,
+    /// μ: what the strength grows by per pressure of the body across the bar (times the thickness of the body), that at the start of an
+    /// increment; twice a coefficient of friction where both faces rub. Default: 0 [-]
+    #[serde(default)]
+    pub mu: f64,
     /// k_n: force across the bar per length and distance; default: 100 (λ + 2G)/(length of a segment) of the body times its thickness
     /// [F/L²]
     pub normal: Option<f64>,
@@ -127,6 +131,12 @@ impl BarInput {
         Self { points: points.into(), ea, ..Self::default() }
     }
 
+    /// Whether it is a beam along points outside of bodies, divided by itself.
+    #[doc(hidden)]
+    pub fn is_free_beam(&self) -> bool {
+        self.ei > 0.0 && self.embedded.is_none() && self.on.is_none()
+    }
+
     /// Creates a truss on the nodes of a group of edges, with EA [F].
     pub fn on(group: impl Into<String>, ea: f64) -> Self {
         Self { on: Some(group.into()), ea, ..Self::default() }
@@ -145,6 +155,9 @@ setters! { bond: BarBond;
 
     /// Sets D [L].
     slip(slip: f64) { bond.slip = Some(slip); }
+
+    /// Sets μ [-].
+    mu(mu: f64) { bond.mu = mu; }
 
     /// Sets k_n [F/L²].
     normal(normal: f64) { bond.normal = Some(normal); }

@@ -196,7 +196,8 @@ fn check(name: &str, bar: &BarInput, mesh: &Mesh) -> Checked<()> {
 /// Checks a bond.
 fn check_bond(place: &str, bond: BarBond) -> Checked<()> {
     let at = |key: &str| format!("{place}.embedded.bond.{key}");
-    let BarBond { stiffness, strength, residual, slip, normal } = bond;
+    let BarBond { stiffness, strength, residual, slip, mu, normal } = bond;
+    check_not_negative(&at("mu"), mu)?;
     for (key, value) in [("stiffness", stiffness), ("strength", strength), ("slip", slip), ("normal", normal)] {
         check_positive(&at(key), value.unwrap_or(1.0), "")?;
     }
@@ -477,7 +478,11 @@ fn grip(name: &str, given: BarBond, (k, edge): (usize, &Linear), laid: &Laid, mo
     let penalty = PENALTY * model.body_of(host.element).material.description().p_wave_modulus * depth / size;
     let stiffness = given.stiffness.unwrap_or(penalty);
     let place = format!("bars.{name}.embedded.bond");
-    let mut parameters = BondParameters::new(given.strength.unwrap_or(f64::MAX));
+    let message =
+        "goes by the pressure of the body, which has a pore_fluid whose pressure would count: give `strength` instead";
+    refuse_if(given.mu > 0.0 && model.body_of(host.element).pore_fluid.is_some(), format!("{place}.mu"), message)?;
+    let otherwise = if given.mu > 0.0 { f64::MIN_POSITIVE } else { f64::MAX };
+    let mut parameters = BondParameters::new(given.strength.unwrap_or(otherwise));
     (parameters.residual, parameters.slip) = (given.residual, given.slip);
     if let (Some(strength), Some(slip)) = (given.strength, given.slip) {
         let least = (strength - given.residual.unwrap_or(0.0)) / stiffness;
@@ -492,5 +497,5 @@ fn grip(name: &str, given: BarBond, (k, edge): (usize, &Linear), laid: &Laid, mo
     let body = vertex(&model.mesh, host, bar.at, 0.0);
     let vectors = Vectors::new([&Linear::apart(&body, bar), edge]);
     let normal = given.normal.unwrap_or(penalty);
-    Ok(Grip { vectors, vertex: k, element: host.element, length: 0.5 * size, bond, normal })
+    Ok(Grip { vectors, vertex: k, element: host.element, length: 0.5 * size, bond, mu: given.mu * depth, normal })
 }

@@ -77,11 +77,6 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
         return refused(name, key, message);
     }
     let Some(Step { name: step, .. }) = model.steps.iter().find(|step| step.may_be_explicit()) else { return Ok(()) };
-    if let Some(bar) = model.bars.first() {
-        let message =
-            format!("bars are not for the explicit step `{step}`, nor for `rupture`: make it static or implicit");
-        return Err(ModelError::new(format!("bars.{}", bar.name), message));
-    }
     if let Some(contact) = contacts.iter().find(|contact| contact.massless) {
         let message = format!("the explicit step `{step}` needs the mass of every node: leave it out");
         return refused(&contact.name, "massless", message);

@@ -61,10 +61,7 @@ impl<'m> Stages<'m> {
         }
         self.has_begun = true;
         let by_masses = scheme.is_integrated_explicitly() || scheme.is_quasi_dynamic() || given.rupture.is_some();
-        if let Some(body) =
-            self.absent.iter().position(|absent| *absent).or(changed.first().copied()).filter(|_| by_masses)
-        {
-            let name = &self.model.bodies[body].name;
+        if let Some(name) = self.fleeting(&changed).filter(|_| by_masses) {
             let message = format!(
                 "`{name}` comes or goes, which explicit and quasi-dynamic steps, and `rupture`, cannot follow: make it static or implicit"
             );
@@ -73,6 +70,14 @@ impl<'m> Stages<'m> {
         self.check_contacts(&changed, place)?;
         changed.sort_unstable();
         Ok(changed)
+    }
+
+    /// Name of a body or bar that is absent, or comes or goes.
+    fn fleeting(&self, changed: &[usize]) -> Option<&str> {
+        let first =
+            |absent: &[bool], changed: &[usize]| absent.iter().position(|absent| *absent).or(changed.first().copied());
+        let body = first(&self.absent, changed).map(|body| self.model.bodies[body].name.as_str());
+        body.or_else(|| Some(self.model.bars[first(&self.bars_absent, &self.bars_changed)?].name.as_str()))
     }
 
     /// Lets a bar come or go.

@@ -281,7 +281,7 @@ impl<'m> Parts<'m> {
     fn names(&self, part: usize) -> Vec<String> {
         let Part { bodies, nodes, .. } = &self.parts[part];
         match bodies.is_empty() {
-            true => nodes.iter().map(|&node| format!("node {}", self.model.mesh.node_tags[node])).collect(),
+            true => nodes.iter().map(|&node| self.model.lone_name(node)).collect(),
             false => bodies.iter().map(|&body| format!("`{}`", self.model.bodies[body].name)).collect(),
         }
     }

@@ -4,7 +4,7 @@
 //! ```text
 //! Δt ≤ 2/ω,   ω² ≤ max over elements of (λ_e + max over its nodes of k/m)                                    (1)
 //! λ_e = ‖A⁴‖^¼ ≥ largest eigenvalue of A = M_e^-½ K_e M_e^-½                                                   (2)
-//! k: Σ |w_a| Σ |w_b| max(α_n, α_t) ℓ of the contact points at the node, and its springs                           (3)
+//! k: Σ |w_a| Σ |w_b| max(α_n, α_t) ℓ of the contact points at the node, its springs and bars likewise            (3)
 //! Δt² ω² + 2 Δt c ≤ 4   or   Δt ≤ 4/(c + √(c² + 4 ω²)),   c: (2) of the viscous K_e                          (4)
 //! ```
 //! (1) holds because the highest frequency of a sum of stiffnesses is bounded by those of its parts, each with its fraction of

@@ -235,6 +235,8 @@ impl Stability {
                 weights().for_each(|(node, w)| added[*node] += stiffness * w.abs() * total);
             }
         }
+        let there = model.bars.iter().enumerate().filter(|(bar, _)| step.bars.has(*bar));
+        there.for_each(|(_, bar)| bar.bounds(|node, stiffness| added[node] += stiffness));
         step.loads.springs.iter().for_each(|spring| added[spring.dof / 2] += spring.stiffness);
         model.ties.gather(1, added);
         model.ties.spread(1, added);

@@ -1,5 +1,6 @@
 //! The case of a draft, written in one of many ways that mean the same.
 
+mod bars;
 mod bodies;
 mod contacts;
 mod steps;
@@ -316,6 +317,9 @@ impl Writer<'_> {
         let rigid_bodies = self.rigid_bodies();
         if !rigid_bodies.is_empty() {
             case.insert("rigid_bodies".into(), rigid_bodies.into());
+        }
+        if self.has("bar") {
+            case.insert("bars".into(), self.bars());
         }
         case.insert("contacts".into(), self.contacts());
         case.insert("steps".into(), self.steps().into());

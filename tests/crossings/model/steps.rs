@@ -187,6 +187,7 @@ impl Writer<'_> {
                 if part == 0 {
                     self.of_stage(number, &mut step, &mut loads);
                 }
+                self.of_bars(number, [part, parts], &mut step);
                 if self.stabilized() && number == 0 && part == 0 || self.has("stabilize") {
                     step.insert("stabilize".into(), json!(1e-3));
                 }

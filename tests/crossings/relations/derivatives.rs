@@ -46,11 +46,12 @@ fn run(case: &Value) -> Option<TempDir> {
 }
 
 /// Parts of a case whose numbers act on its run.
-const PARTS: [&str; 7] = ["section", "bodies", "point_masses", "rigid_bodies", "contacts", "initial_velocity", "steps"];
+const PARTS: [&str; 8] =
+    ["section", "bodies", "point_masses", "rigid_bodies", "bars", "contacts", "initial_velocity", "steps"];
 
 /// Keys of numbers by which nothing is differentiated: of increments, and numbers of things.
-const NOT_VARIED: [&str; 9] =
-    ["duration", "dt", "until", "points", "seed", "safety", "interval", "penetration", "stick"];
+const NOT_VARIED: [&str; 10] =
+    ["segments", "duration", "dt", "until", "points", "seed", "safety", "interval", "penetration", "stick"];
 
 /// Every number of a part that is not 0, as pointers and with its key.
 fn numbers(value: &Value, at: &str, key: &str, found: &mut Vec<(String, String, f64)>) {

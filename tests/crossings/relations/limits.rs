@@ -78,6 +78,7 @@ pub(super) fn simple(draft: &Draft) -> Option<Draft> {
         "damping",
         "absorbing",
         "point_mass",
+        "bar",
         "further_parameters",
         "press",
         "friction",
