@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use fecontact::case::convergence::{self, Convergence, Measure};
 use fecontact::case::{self, CaseError, Halvings, Opened, Written, law_test};
 use fecontact::output::checkpoint::Checkpoint;
-use fecontact::output::quantities;
+use fecontact::output::named;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -120,7 +120,7 @@ pub fn schema(of: &str) -> PyResult<String> {
     match of {
         "case" => Ok(case::schema().to_string()),
         "law" => Ok(law_test::schema().to_string()),
-        "results" => Ok(quantities::schema().to_string()),
+        "results" => Ok(named::schema().to_string()),
         _ => Err(PyValueError::new_err(format!("there is no schema of `{of}`: give \"case\", \"law\" or \"results\""))),
     }
 }

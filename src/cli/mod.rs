@@ -31,7 +31,7 @@ use crate::case::{self, Opened, Written, law_test, units};
 use crate::mesh::section::Section;
 use crate::output::law::LawTable;
 use crate::output::summary::{self, About, Ending, LawSummary};
-use crate::output::{quantities, report};
+use crate::output::{named, report};
 use crate::run::error::Error;
 use crate::run::law::{Hold, LawReport, PathPoint};
 
@@ -140,7 +140,7 @@ pub fn schema(of: Input) -> Result<(), Failure> {
     let schema = match of {
         Input::Case => case::schema(),
         Input::Law => law_test::schema(),
-        Input::Results => quantities::schema(),
+        Input::Results => named::schema(),
     };
     print(&format!("{schema:#}\n"))
 }

@@ -60,13 +60,6 @@ pub struct Assembler {
     pub seconds: Seconds,
 }
 
-/// Terms that depend on the displacements only, in every scheme.
-const OF_PLACE: [Term; 4] = [Term::Solids, Term::Interfaces, Term::Bars, Term::Loads];
-
-/// Terms that also depend on velocities, which in implicit schemes follow from the displacements.
-const OF_PLACE_AND_MOTION: [Term; 7] =
-    [Term::Solids, Term::Interfaces, Term::Bars, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
-
 /// The displacement at which terms are evaluated, and the velocity where viscous forces of the bodies are evaluated with them.
 #[derive(Clone, Copy)]
 struct Motion<'a> {
@@ -299,7 +292,7 @@ impl Assembler {
         self.evaluation.damping.clear();
         let motion = Motion { u, v: None };
         let matrix = tangent.then_some(&mut system.tangent);
-        self.add(&OF_PLACE_AND_MOTION, trial, motion, responses, scaled.is_some(), matrix)?;
+        self.add(&Term::OF_PLACE_AND_MOTION, trial, motion, responses, scaled.is_some(), matrix)?;
         model.ties.gather(2, &mut self.evaluation.damping);
         model.linkage.gather(&mut self.evaluation.damping);
         if scaled.is_some() {
@@ -349,7 +342,7 @@ impl Assembler {
             let clock = Instant::now();
             assembler.attend(trial);
             assembler.solids.retard(trial.step);
-            assembler.add(&OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
+            assembler.add(&Term::OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
             if let Some(v) = v {
                 assembler.add_viscous([u, v]);
             }

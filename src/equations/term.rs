@@ -39,6 +39,13 @@ impl Term {
         Self::Inertia,
     ];
 
+    /// Terms that depend on the displacements only, in every scheme.
+    pub const OF_PLACE: [Self; 4] = [Self::Solids, Self::Interfaces, Self::Bars, Self::Loads];
+
+    /// Terms that also depend on velocities, which in implicit schemes follow from the displacements.
+    pub const OF_PLACE_AND_MOTION: [Self; 7] =
+        [Self::Solids, Self::Interfaces, Self::Bars, Self::Loads, Self::Dampers, Self::Stabilization, Self::Damping];
+
     /// Dependence of its tangent in a step of a model.
     pub fn dependence(self, model: &Model, step: &Step) -> Dependence {
         match self {

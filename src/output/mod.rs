@@ -4,6 +4,7 @@ mod csv;
 mod depths;
 mod frames;
 pub mod results;
+mod slid_bars;
 mod unpressed;
 
 // The writers of these files are internal to the program.
@@ -27,6 +28,7 @@ cfg_if::cfg_if! {
         pub mod scattered;
         pub mod store;
         pub mod law;
+        pub mod named;
         pub mod newton_log;
         pub mod probes;
         pub mod quantities;
@@ -54,6 +56,7 @@ cfg_if::cfg_if! {
         pub(crate) mod scattered;
         pub(crate) mod store;
         pub(crate) mod law;
+        pub(crate) mod named;
         pub(crate) mod newton_log;
         pub(crate) mod probes;
         pub(crate) mod quantities;

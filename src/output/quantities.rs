@@ -2,12 +2,10 @@
 //! and unit of each. Columns and arrays follow this order, readers of results identify quantities by it, and `fecontact schema
 //! results` prints it.
 //!
-//! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY` and `PROBE` stand
+//! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY`, `BAR` and `PROBE` stand
 //! for names of the case.
 
 use std::collections::BTreeMap;
-
-use serde_json::{Map, Value, json};
 
 /// A recorded quantity: a column of a table, or an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -571,49 +569,3 @@ pub const ALL: [(&str, &[Group]); 13] = [
     ),
     ("law.csv", &[("", &LAW), ("", &[OF_SOME[0], OF_SOME[1], OF_SOME[2], OPENED])]),
 ];
-
-/// Name of a quantity in charts.
-pub fn spoken(name: &str) -> String {
-    match name {
-        "mu" => "μ".into(),
-        "theta" => "θ".into(),
-        "structure" => "structure 1/R*".into(),
-        "pressure" => "pressure p".into(),
-        "traction" => "traction q".into(),
-        "state" => "state (0 open, 1 stick, 2 slip)".into(),
-        "von_mises" => "von Mises stress".into(),
-        "log_strain" => "logarithmic strain".into(),
-        "stretch_zz" => "stretch across the plane".into(),
-        _ => name.replace('_', " "),
-    }
-}
-
-/// All quantities by their files, as `fecontact schema results` prints them.
-pub fn schema() -> Value {
-    let shown = |(owner, of): (&str, &Quantity)| {
-        let Quantity { name, unit, meaning } = *of;
-        let whole = if owner.is_empty() { name.into() } else { format!("{owner}.{name}") };
-        let mut entry = json!({
-            "name": whole, "unit": unit.made_of(["F", "L", "T"]), "of": unit.name, "spoken": spoken(name), "meaning": meaning,
-        });
-        if let Some((former, _)) = FORMER.iter().find(|(_, now)| owner == "CONTACT" && *now == name) {
-            entry["formerly"] = json!(former);
-        }
-        entry
-    };
-    let of_group = |(owner, some): &Group| some.iter().map(|of| shown((owner, of))).collect::<Vec<_>>();
-    ALL.iter().map(|(file, groups)| (file.to_string(), groups.iter().flat_map(of_group).collect::<Value>())).collect()
-}
-
-/// Data for a page: labels of units by their names, and label and unit name of every quantity.
-pub fn labels(units: &BTreeMap<String, String>) -> Value {
-    let (mut of_units, mut quantities) = (Map::new(), Map::new());
-    // newton.csv counts slipping points under the name of a length.
-    for of in ALL.iter().filter(|(file, _)| *file != "newton.csv").flat_map(|(_, all)| *all).flat_map(|(_, some)| *some)
-    {
-        let label = of.unit.label(units, Unit::made_of).unwrap_or_default();
-        quantities.insert(of.name.into(), json!([label, spoken(of.name)]));
-        of_units.insert(of.unit.name.into(), json!(label));
-    }
-    json!({ "units": of_units, "quantities": quantities })
-}

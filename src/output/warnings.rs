@@ -18,6 +18,7 @@ use super::depths;
 use super::few_edges::FewEdges;
 use super::instability::Instability;
 use super::scattered::Scattered;
+use super::slid_bars::SlidBars;
 use super::unpressed::Unpressed;
 use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Shape};
@@ -71,6 +72,8 @@ pub struct Warnings {
     few_edges: FewEdges,
     /// Shear that open points carry
     unpressed: Unpressed,
+    /// Bars that have slipped far
+    slid_bars: SlidBars,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -119,6 +122,7 @@ impl Observer for Warnings {
         self.scattered.record(model, attempt, state);
         self.few_edges.record(model, attempt, state, &x);
         self.unpressed.record(model, state);
+        self.slid_bars.record(model, state);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             if !self.given.contains(&(number, Kind::DeepPenetration))
@@ -173,6 +177,7 @@ impl Observer for Warnings {
         self.list.extend(self.scattered.tell());
         self.list.extend(self.few_edges.tell());
         self.list.extend(self.unpressed.tell());
+        self.list.extend(self.slid_bars.tell());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()

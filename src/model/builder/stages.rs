@@ -122,12 +122,8 @@ impl<'m> Stages<'m> {
             refuse_if(bars_absent[bar], &place, "is not there in this step: add it first")?;
             let message = format!("is {force}, beyond the `limit` {} of the bar", of.limit);
             refuse_if(force.abs() > of.limit, &place, message)?;
-            let message = "lies in a body, where no one force acts along it: stress its free length, a bar of its own that is joined to its end";
-            refuse_if(
-                !of.grips.is_empty() || of.vertices[1..of.vertices.len() - 1].iter().any(|v| v.nodes.len() > 1),
-                &place,
-                message,
-            )?;
+            let message = "has bond, and no one force along it: stress its free length, a bar of its own that is joined to its end";
+            refuse_if(!of.grips.is_empty(), &place, message)?;
             let message = "and `until` cannot be combined: the step would end before the force is reached";
             refuse_if(given.until.is_some(), &place, message)?;
             jacks.push((bar, force));

@@ -18,7 +18,7 @@ use self::run::Run;
 pub use self::source::ReportError;
 use self::source::sources;
 use super::csv::failed;
-use super::{files, quantities};
+use super::{files, named};
 use table::Pack;
 
 /// Name of the page in a folder of results.
@@ -97,7 +97,7 @@ pub fn page(folders: &[PathBuf]) -> Result<String, ReportError> {
     let share = ROOM / sources.len().max(1);
     let runs: Vec<Value> = sources.iter().map(|source| Run::new(source, share).show(&mut pack)).collect();
     let units = sources.iter().flat_map(|source| source.about.units.clone()).collect();
-    let data = json!({ "version": env!("CARGO_PKG_VERSION"), "runs": runs, "labels": quantities::labels(&units) });
+    let data = json!({ "version": env!("CARGO_PKG_VERSION"), "runs": runs, "labels": named::labels(&units) });
     Ok(assembled(&data, &pack))
 }
 
