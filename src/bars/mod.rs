@@ -78,6 +78,14 @@ pub struct BarState {
     pub jacked: f64,
 }
 
+impl BarState {
+    /// Whether it has as many parts as a bar.
+    pub fn fits(&self, bar: &Bar) -> bool {
+        [self.segments.len(), self.turns.len(), self.grips.len()]
+            == [bar.segments.len(), bar.turns.len(), bar.grips.len()]
+    }
+}
+
 impl Bar {
     /// Length of the polyline at the start [L].
     pub fn length(&self) -> f64 {
@@ -93,8 +101,17 @@ impl Bar {
         std::iter::once(0.0).chain(ends).collect()
     }
 
+    /// Masses of its nodes: those of a vertex are shared by their weights, but for nodes without mass [M].
+    pub fn nodal_masses<'a>(&'a self, massless: &'a [bool]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.vertices.iter().zip(self.masses()).flat_map(move |(vertex, mass)| {
+            let share = |(node, weight): (usize, f64)| if massless[node] { 0.0 } else { weight.abs() };
+            let total: f64 = vertex.terms().map(share).sum();
+            vertex.terms().filter(move |_| total > 0.0).map(move |term| (term.0, mass * share(term) / total))
+        })
+    }
+
     /// Masses of the vertices: half of those of the segments on both sides [M].
-    pub fn masses(&self) -> Vec<f64> {
+    fn masses(&self) -> Vec<f64> {
         let mut masses = vec![0.0; self.vertices.len()];
         for (k, segment) in self.segments.iter().enumerate() {
             let half = 0.5 * self.mass * segment.length;
@@ -120,6 +137,12 @@ impl Bar {
         for grip in &self.grips {
             of(&grip.vectors, grip.length * grip.bond.stiffness().max(grip.normal), [1.0, 0.0]);
         }
+    }
+
+    /// Whether it has nodes of its own between its ends.
+    fn is_free_between(&self) -> bool {
+        let inner = &self.vertices[1..self.vertices.len() - 1];
+        inner.iter().any(|vertex| vertex.nodes.iter().any(|node| self.own.contains(node)))
     }
 
     /// Groups of nodes that it couples.
@@ -154,8 +177,8 @@ impl Bar {
         BarState { is_there: false, ..self.born(u) }
     }
 
-    /// Evaluates the bar at displacements: `add` takes the nodes, forces and tangent of each part. A jack sets the force of all
-    /// segments to a value; `pressures` are those of the body at the bonded points, if they count.
+    /// Evaluates the bar at displacements: `add` takes the nodes, forces and tangent of each part. A jack sets its
+    /// force to a value; `pressures` are those of the body at the bonded points, if they count.
     pub fn respond(
         &self,
         old: &BarState,
@@ -165,8 +188,10 @@ impl Bar {
         mut add: impl FnMut(&[usize], &Answer, &vectors::Vectors),
     ) -> BarState {
         let mut state = BarState { is_there: true, ..BarState::default() };
-        for (segment, old) in self.segments.iter().zip(&old.segments) {
-            let (answer, found) = segment.respond(self, old, u, jack);
+        // Between free nodes the force of the first segment is that of all others.
+        let jacked = if self.is_free_between() { 1 } else { self.segments.len() };
+        for (k, (segment, old)) in self.segments.iter().zip(&old.segments).enumerate() {
+            let (answer, found) = segment.respond(self, old, u, jack.filter(|_| k < jacked));
             add(segment.vectors.nodes(), &answer, &segment.vectors);
             state.strain += found.stored;
             state.plastic += found.plastic;

@@ -4,7 +4,7 @@
 //!
 //! Velocities and accelerations at a trial displacement follow from the scheme and the supports.
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::{DMatrix, Vector2};
 
 use super::coupling::Layout;
 use super::links::{self, Turning, blend};
@@ -21,7 +21,7 @@ pub(super) fn dependence(step: &Step) -> Dependence {
 }
 
 /// Returns the mass matrix on the current pattern: consistent in the elements, except those of absent bodies, point
-/// masses on the diagonal, and bars, whose masses are those of their vertices.
+/// masses and those of bars on the diagonal.
 pub(super) fn mass(model: &Model, layout: &Layout, [absent, bars_absent]: [&[bool]; 2]) -> SparseMatrix {
     let share = |body: usize| if absent.get(body) == Some(&true) { 0.0 } else { 1.0 };
     let mut mass = elements(model, layout, share);
@@ -32,10 +32,9 @@ pub(super) fn mass(model: &Model, layout: &Layout, [absent, bars_absent]: [&[boo
     }
     let there = |k: usize| bars_absent.get(k) != Some(&true);
     for (_, bar) in model.bars.iter().enumerate().filter(|(k, bar)| there(*k) && bar.mass > 0.0) {
-        for (vertex, own) in bar.vertices.iter().zip(bar.masses()) {
-            let weights = DVector::from_column_slice(&vertex.weights);
-            let both = (&weights * weights.transpose() * own).kronecker(&DMatrix::identity(2, 2));
-            add_blocks(&mut mass, &layout.blocks_between(&vertex.nodes), both.as_slice(), vertex.nodes.len());
+        for (node, own) in bar.nodal_masses(&model.massless) {
+            let node = layout.original(node);
+            [2 * node, 2 * node + 1].into_iter().for_each(|dof| mass.add_diagonal(dof, own));
         }
     }
     for body in &model.mesh.rigid_bodies {

@@ -68,12 +68,13 @@ impl Control {
             && self.coupling.fits(model.mesh.nodes.len())
     }
 
-    /// Whether the bodies that are absent in the step of a state are those of this model: steps appended since may tell of others.
+    /// Whether the bodies and bars that are absent in the step of a state are those of this model: steps appended since may tell of others.
     pub(super) fn has_bodies_of(&self, state: &State, model: &Model) -> bool {
         let is_absent = |absent: &[bool], body: usize| absent.get(body).copied().unwrap_or(false);
         let agrees = |step: &Step| {
             let there = &state.step_start.absent;
             (0..model.bodies.len()).all(|body| is_absent(there, body) == is_absent(&step.absent, body))
+                && state.bars.iter().enumerate().all(|(bar, own)| own.is_there == step.bars.has(bar))
         };
         // Between steps the state is that of the step before; within one it may still be, while no increment is accepted.
         let is_between = matches!(self.phase, Phase::Begin | Phase::Complete);
@@ -82,7 +83,7 @@ impl Control {
     }
 }
 
-/// Whether a state belongs to a model: the numbers of dofs, contact points and internal variables agree, and all projections
+/// Whether a state belongs to a model: the numbers of dofs, contact points, parts of bars and internal variables agree, and all projections
 /// lie on its masters.
 pub fn is_of(state: &State, model: &Model) -> bool {
     let State { displacement, velocity, acceleration, force, external, damping, reaction, .. } = state;
@@ -103,6 +104,8 @@ pub fn is_of(state: &State, model: &Model) -> bool {
         && state.memory.len() == model.memories.total()
         && state.contacts.len() == model.contacts.len()
         && state.contacts.iter().zip(&model.contacts).all(contact)
+        && state.bars.len() == model.bars.len()
+        && state.bars.iter().zip(&model.bars).all(|(own, bar)| own.fits(bar))
 }
 
 /// Slip monitored within a rupture.

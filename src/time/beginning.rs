@@ -35,8 +35,10 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     model.ties.gather(2, &mut state.force);
     // The reaction of a released support has become a load.
     step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
-    if step.changes_anything() {
+    if !step.changed.is_empty() {
         change_bodies(model, step, &mut state, work)?;
+    } else if !step.bars.changed.is_empty() {
+        change_bars(model, step, &mut state);
     }
     launch(model, step, &mut state);
     if step.scheme.is_dynamic() {
@@ -45,7 +47,8 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
         let is_new = rests(old) || old.is_of_explicit() || !step.launch.is_empty();
         let mut anew = if is_new { vec![true; model.mesh.nodes.len()] } else { jumps(step, old, &state, work)? };
         let nodes = step.changed.iter().flat_map(|&body| model.bodies[body].nodes.clone());
-        let of_bars = step.bars.changed.iter().flat_map(|&bar| model.bars[bar].nodes());
+        let heavy = step.bars.changed.iter().filter(|bar| model.bars[**bar].mass > 0.0);
+        let of_bars = heavy.flat_map(|&bar| model.bars[bar].nodes());
         nodes.chain(of_bars).for_each(|node| anew[model.ties.original(node)] = true);
         start_dynamics(model, step, anew, &mut state, work)?;
     } else {
@@ -106,6 +109,36 @@ fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Works
     }
     Arc::make_mut(&mut state.step_start).fading = fading;
     Ok(())
+}
+
+/// Lets bars come or go without a jump, where no body does: those that come have no force, those that go leave theirs to fade over the
+/// step, and with it the energy that they have stored.
+fn change_bars(model: &Model, step: &Step, state: &mut State) {
+    let mut fading = vec![0.0; model.dofs()];
+    let mut part = Vec::new();
+    for &k in step.bars.changed.iter().filter(|k| !step.bars.has(**k)) {
+        let (bar, old) = (&model.bars[k], &state.bars[k]);
+        bar.respond(old, &state.displacement, None, &[], |nodes, answer, vectors| {
+            vectors.forces(answer, &mut part);
+            for (node, force) in nodes.iter().zip(part.chunks_exact(2)) {
+                (0..2).for_each(|i| fading[2 * node + i] -= force[i]);
+            }
+        });
+        state.energy.external_work -= old.strain + old.bonded;
+        state.energy.strain -= old.strain;
+        state.energy.contact_elastic -= old.bonded;
+    }
+    model.ties.gather(2, &mut fading);
+    model.linkage.gather(&mut fading);
+    model.change_bars(step, state);
+    for node in model.idle_bar_nodes(&step.bars.absent) {
+        let dofs = 2 * node..2 * node + 2;
+        [&mut fading, &mut state.force, &mut state.reaction, &mut state.velocity, &mut state.acceleration]
+            .into_iter()
+            .for_each(|values| values[dofs.clone()].fill(0.0));
+    }
+    state.external.iter_mut().zip(&fading).for_each(|(external, fading)| *external += fading);
+    Arc::make_mut(&mut state.step_start).fading = fading;
 }
 
 /// Books changes of the kinetic energy by prescribed velocities, or by the end of mass lumping, as external work.

@@ -396,7 +396,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &["section:rings_on_end", "section:rings_around", "scheme:quasi_dynamic"],
         "a bar in rings would be a shell, and quasi-dynamic steps are linear",
     ),
-    (&["bar:tendon"], &["until"], "a jack brings its force by the end of the step"),
+    (&["bar:tendon"], &["until", "scheme:wilson"], "a jack brings its force by the end of the step, and no further"),
     (&["bar:late"], &["scheme:explicit", "then:explicit", "rupture"], "bars come and go in implicit steps"),
     (
         &["tip"],

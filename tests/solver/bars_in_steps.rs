@@ -357,3 +357,22 @@ fn an_anchored_wall_bears_the_active_pressure() {
     let needed = 20.0 / 3.0 * (4.0 - depth).powi(3) / 6.0 / 3.0;
     close("N", run.last().bars[1].segments[0].force, needed, 0.04 * needed);
 }
+
+/// A jack stresses a beam that is divided, and a tendon along points of a body, to the same force in all segments.
+#[test]
+fn a_jack_stresses_all_segments() {
+    let mesh = Blocks::default().rectangle("block", [4, 2], [0.0, 0.0], [4.0, 2.0]);
+    let steps = json!([{"name": "stress", "duration": 1, "dt": {"initial": 0.5}, "supports": [hold("block_bottom", json!(0))], "prestress": {"duct": 0.3, "beam": 0.2}},
+        {"name": "wait", "duration": 1}]);
+    let case = json!({"mesh": mesh.json(), "bodies": {"block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
+        "bars": {"duct": {"points": [[0.3, 1.6], [2, 0.7], [3.6, 1.5]], "ea": 50, "embedded": {"in": ["block"]}},
+            "beam": {"points": [[0.4, 1.9], [3.5, 1.8]], "ea": 50, "ei": 2, "segments": 5, "start": {"on": "block"}, "end": {"on": "block"}}},
+        "steps": steps});
+    let run = finish(&case);
+    for (bar, force, tolerance) in [(1, 0.3, 1e-12), (0, 0.2, 1e-4)] {
+        let states = &run.at(1.0).bars[bar].segments;
+        states.iter().for_each(|segment| close("N", segment.force, force, tolerance));
+        assert!(states.len() > 3);
+        close("at rest", run.last().bars[bar].segments[0].force, states[0].force, 1e-9);
+    }
+}

@@ -120,7 +120,7 @@ impl Schedule<'_> {
             absent: self.stages.absent(),
             changed,
             relaxes: false,
-            bars: self.stages.bars(given, place)?,
+            bars: self.stages.bars(given, scheme, place)?,
             until: None,
             temperatures: prescribed_temperatures(&self.temperatures),
             stabilization,

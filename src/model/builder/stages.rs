@@ -95,7 +95,7 @@ impl<'m> Stages<'m> {
     }
 
     /// What the step does with bars.
-    pub fn bars(&self, given: &LoadStep, place: &str) -> Checked<BarsInStep> {
+    pub fn bars(&self, given: &LoadStep, scheme: Scheme, place: &str) -> Checked<BarsInStep> {
         let Self { model, bars_absent, .. } = self;
         let idle = model.idle_nodes(&self.absent);
         for (bar, _) in model.bars.iter().zip(bars_absent).filter(|(_, absent)| !**absent) {
@@ -124,6 +124,8 @@ impl<'m> Stages<'m> {
             refuse_if(force.abs() > of.limit, &place, message)?;
             let message = "has bond, and no one force along it: stress its free length, a bar of its own that is joined to its end";
             refuse_if(!of.grips.is_empty(), &place, message)?;
+            let message = "is not for wilson, whose equilibrium lies beyond the end of increments: take another scheme";
+            refuse_if(scheme.theta() > 1.0, &place, message)?;
             let message = "and `until` cannot be combined: the step would end before the force is reached";
             refuse_if(given.until.is_some(), &place, message)?;
             jacks.push((bar, force));

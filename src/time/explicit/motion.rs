@@ -210,10 +210,7 @@ pub(super) fn masses(model: &Model) -> Vec<f64> {
         point.nodes.iter().for_each(|&node| mass[node] += point.mass);
     }
     for bar in &model.bars {
-        for (vertex, own) in bar.vertices.iter().zip(bar.masses()) {
-            let total: f64 = vertex.weights.iter().map(|weight| weight.abs()).sum();
-            vertex.terms().for_each(|(node, weight)| mass[node] += own * weight.abs() / total);
-        }
+        bar.nodal_masses(&model.massless).for_each(|(node, own)| mass[node] += own);
     }
     model.mesh.rigid_bodies.iter().for_each(|body| mass[body.turning] += body.turning_mass());
     model.ties.gather(1, &mut mass);

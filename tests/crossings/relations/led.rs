@@ -66,7 +66,7 @@ pub(super) fn begun_with(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     let record = run(&model::case(base.draft, &base.ways), &base.ways, Lead::Begun);
-    if base.draft.is("flange", "added") {
+    if base.draft.is("flange", "added") || base.draft.is("bar", "late") {
         return was_there(record);
     }
     if is_judged_by_energies(&record.ended) {
@@ -99,7 +99,7 @@ fn was_there(record: Record) -> Outcome {
         Ended::Stopped(_) => Outcome::Idle,
         ended => Outcome::Broken(Difference {
             share: f64::INFINITY,
-            place: format!("a body that was there comes, and the run ended {ended:?}"),
+            place: format!("a body or bar that was there comes, and the run ended {ended:?}"),
             values: [0.0; 2],
         }),
     }
@@ -112,7 +112,7 @@ pub(super) fn further(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     let record = run(&model::case(draft, &base.ways), &base.ways, Lead::Further);
-    if draft.is("flange", "added") && !draft.has("reversal") {
+    if (draft.is("flange", "added") || draft.is("bar", "late")) && !draft.has("reversal") {
         return was_there(record);
     }
     if is_judged_by_energies(&record.ended) {
