@@ -1,7 +1,6 @@
 //! Bars in the steps of a model: which are there, and which are stressed by a jack.
 
 use super::state::State;
-use super::text::number;
 use super::{Model, Step};
 use crate::bars::BarState;
 
@@ -52,10 +51,7 @@ impl Model {
     /// Name of a node outside all bodies: the bar that it belongs to, or its tag.
     pub fn lone_name(&self, node: usize) -> String {
         match self.bars.iter().find(|bar| bar.own.contains(&node)) {
-            Some(bar) => {
-                let x = self.mesh.nodes[node];
-                format!("the bar `{}` at ({}, {})", bar.name, number(x.x), number(x.y))
-            }
+            Some(bar) => format!("the bar `{}`", bar.name),
             None => format!("node {}", self.mesh.node_tags[node]),
         }
     }

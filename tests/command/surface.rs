@@ -197,7 +197,13 @@ fn cases() -> Vec<(&'static str, Value)> {
             "loads": [{"on": "block", "force": {"y": -98.1}}]}],
         "watch": ["block"]
     });
-    vec![("plain", plain), ("ring", ring), ("wet", wet), ("mass", mass)]
+    let rod = json!({"points": [[0, 0], [2, 0]], "ea": 100, "ei": 1, "limit": 50, "start": {"on": "left"}, "end": {"on": "right"}});
+    let bars = json!({
+        "mesh": {"nodes": [[0, 0], [2, 0]], "points": {"left": [0], "right": [1]}}, "bars": {"rod": rod},
+        "steps": [{"name": "pull", "duration": 1, "dt": {"initial": 0.5},
+            "supports": [{"on": "left", "ux": 0, "uy": 0}, {"on": "right", "ux": 0.1, "uy": 0}]}],
+    });
+    vec![("plain", plain), ("ring", ring), ("wet", wet), ("mass", mass), ("bars", bars)]
 }
 
 /// A test of every friction law that a case may name.

@@ -212,6 +212,7 @@ fn bad_bars_are_refused_by_name() {
             bond(json!({"strength": 1, "slip": 0.1, "stiffness": 5})),
             "bars.bar.embedded.bond.slip: is 0.1: the strength would fall faster",
         ),
+        (bar(json!({"embedded": {"in": []}})), "bars.bar.embedded.in: is empty: name the bodies"),
         (bond(json!({"normal": 0})), "bars.bar.embedded.bond.normal: is 0: must be positive"),
     ];
     for (case, words) in &cases {

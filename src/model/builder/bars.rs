@@ -186,6 +186,8 @@ fn check(name: &str, bar: &BarInput, mesh: &Mesh) -> Checked<()> {
         let moves = bar.embedded.as_ref().is_some_and(|embedded| embedded.bond.is_none());
         refuse_if(moves && end.on.is_some(), format!("{place}.{key}.on"), message)?;
     }
+    let is_nowhere = bar.embedded.as_ref().is_some_and(|embedded| embedded.bodies.is_empty());
+    refuse_if(is_nowhere, at("embedded.in"), "is empty: name the bodies in which the bar lies")?;
     let legs = bar.points.len().saturating_sub(1);
     let is_chain = bar.ei == 0.0 && bar.embedded.is_none() && bar.segments.is_some_and(|number| number > legs);
     let message = "a truss divided into segments is a chain that folds: leave `segments` out, or give `ei`";
@@ -475,7 +477,11 @@ fn grip(name: &str, given: BarBond, (k, edge): (usize, &Linear), laid: &Laid, mo
     let (host, bar) = (&laid.hosts[k], &laid.vertices[k]);
     let size = edge.at.norm();
     let depth = model.mesh.section.weight(bar.at);
-    let penalty = PENALTY * model.body_of(host.element).material.description().p_wave_modulus * depth / size;
+    // Along one line all are the same to the bit, as the resolved case tells them.
+    let straight = laid.vertices[laid.vertices.len() - 1].at - laid.vertices[0].at;
+    let even = straight.norm() / (laid.vertices.len() - 1) as f64;
+    let spacing = if (even - size).abs() <= SAME * size { even } else { size };
+    let penalty = PENALTY * model.body_of(host.element).material.description().p_wave_modulus * depth / spacing;
     let stiffness = given.stiffness.unwrap_or(penalty);
     let place = format!("bars.{name}.embedded.bond");
     let message =

@@ -65,10 +65,9 @@ pub struct LoadStep {
     /// as loads that fade linearly to zero over the step
     #[serde(default)]
     pub remove: Vec<String>,
-    /// Bodies and bars that come at the start of this step and are absent before, such as a wall or an anchor. A bar comes without
-    /// force between its points as they are then. They come without strain in the
-    /// place that their nodes have then, at rest under their `initial_stress`, if any; that and their weight grow in
-    /// linearly over the step
+    /// Bodies and bars that come at the start of this step and are absent before, such as a wall or an anchor. Bodies come without
+    /// strain in the place that their nodes have then, at rest under their `initial_stress`, if any; that and their weight
+    /// grow in linearly over the step. A bar comes without force between its points as they are then
     #[serde(default)]
     pub add: Vec<String>,
     /// Bars that are stressed in this step, by name: the force N to which a jack brings the whole bar linearly over the step; with the

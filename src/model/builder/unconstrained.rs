@@ -221,7 +221,8 @@ impl<'m> Groups<'m> {
     fn message(&self, group: &[usize], motion: &DVector<f64>) -> String {
         let moves = |k: usize| motion[k].abs() > NAMED * motion.amax();
         let moving = (0..group.len()).filter(|slot| (0..3).any(|i| moves(3 * slot + i)));
-        let names: Vec<String> = moving.flat_map(|slot| self.parts.names(group[slot])).collect();
+        let mut names: Vec<String> = moving.flat_map(|slot| self.parts.names(group[slot])).collect();
+        names.dedup();
         let words = ["along x", "along y", "in rotation"];
         let free: Vec<&str> =
             (0..3).filter(|i| (0..group.len()).any(|slot| moves(3 * slot + i))).map(|i| words[i]).collect();
