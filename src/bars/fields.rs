@@ -76,7 +76,7 @@ impl Bar {
             slipping += if state.slips { grip.length } else { 0.0 };
         }
         Summary {
-            ends: [forces().next().unwrap_or(0.0), forces().last().unwrap_or(0.0)],
+            ends: [forces().next().unwrap_or(0.0), forces().next_back().unwrap_or(0.0)],
             axial: [forces().fold(f64::INFINITY, f64::min), forces().fold(f64::NEG_INFINITY, f64::max)],
             moment: largest(self.moments(state)),
             shear: largest(self.shears(state)),
