@@ -51,8 +51,10 @@ pub struct Bar {
     pub grips: Vec<Grip>,
     /// bodies that it is joined to
     pub bodies: Vec<String>,
-    /// nodes that belong to it alone
+    /// nodes that belong to it alone, ascending
     pub own: Vec<usize>,
+    /// whether some of these are between its ends
+    pub is_free_between: bool,
 }
 
 /// State of a bar.
@@ -139,12 +141,6 @@ impl Bar {
         }
     }
 
-    /// Whether it has nodes of its own between its ends.
-    fn is_free_between(&self) -> bool {
-        let inner = &self.vertices[1..self.vertices.len() - 1];
-        inner.iter().any(|vertex| vertex.nodes.iter().any(|node| self.own.contains(node)))
-    }
-
     /// Groups of nodes that it couples.
     pub fn groups(&self) -> impl Iterator<Item = &[usize]> {
         let segments = self.segments.iter().map(|segment| segment.vectors.nodes());
@@ -189,7 +185,7 @@ impl Bar {
     ) -> BarState {
         let mut state = BarState { is_there: true, ..BarState::default() };
         // Between free nodes the force of the first segment is that of all others.
-        let jacked = if self.is_free_between() { 1 } else { self.segments.len() };
+        let jacked = if self.is_free_between { 1 } else { self.segments.len() };
         for (k, (segment, old)) in self.segments.iter().zip(&old.segments).enumerate() {
             let (answer, found) = segment.respond(self, old, u, jack.filter(|_| k < jacked));
             add(segment.vectors.nodes(), &answer, &segment.vectors);

@@ -50,7 +50,7 @@ impl Model {
 
     /// Name of a node outside all bodies: the bar that it belongs to, or its tag.
     pub fn lone_name(&self, node: usize) -> String {
-        match self.bars.iter().find(|bar| bar.own.contains(&node)) {
+        match self.bars.iter().find(|bar| bar.own.binary_search(&node).is_ok()) {
             Some(bar) => format!("the bar `{}`", bar.name),
             None => format!("node {}", self.mesh.node_tags[node]),
         }
@@ -63,8 +63,9 @@ impl Model {
             all.filter(move |(k, _)| absent.get(*k).copied().unwrap_or(false) == is_absent).map(|(_, bar)| bar)
         };
         let mut idle: Vec<usize> = of(true).flat_map(|bar| &bar.own).copied().collect();
-        let used: Vec<usize> = of(false).flat_map(|bar| bar.nodes()).collect();
-        idle.retain(|node| !used.contains(node));
+        let mut used: Vec<usize> = of(false).flat_map(|bar| bar.nodes()).collect();
+        used.sort_unstable();
+        idle.retain(|node| used.binary_search(node).is_err());
         idle.sort_unstable();
         idle
     }

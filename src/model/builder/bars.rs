@@ -457,6 +457,8 @@ fn bar(name: &str, input: &BarInput, laid: Laid, model: &Model) -> Checked<Bar> 
             }
         }
     }
+    let inner = laid.vertices[1..last].iter().flat_map(|vertex| &vertex.nodes);
+    let is_free_between = inner.into_iter().any(|node| laid.own.binary_search(node).is_ok());
     Ok(Bar {
         name: name.into(),
         ea: input.ea,
@@ -469,6 +471,7 @@ fn bar(name: &str, input: &BarInput, laid: Laid, model: &Model) -> Checked<Bar> 
         grips,
         bodies: laid.bodies.into_iter().collect(),
         own: laid.own,
+        is_free_between,
     })
 }
 
