@@ -140,7 +140,7 @@ fn of_bond(pair: &ContactPair, point: &SlavePoint, state: &ContactState, start: 
     match (&pair.law(point).cohesion, state.bond) {
         (Some(Cohesion::Beside(law)), Some(bond)) => {
             let slip = pair.elastic_slip_of_bond(point, state) - start / law.stiffness();
-            0.5 * (law.stiffness() * slip * slip + bond.tension * bond.opening)
+            0.5 * (law.stiffness() * slip * slip + bond.tension * (bond.opening - bond.rest))
         }
         _ => 0.0,
     }

@@ -196,6 +196,28 @@ fn what_lies_apart_is_bonded_if_it_is_said() {
     close("bonded over a gap of δ/10", slid(1e-3, true), 6.0 * 0.9 + 4.0, 1e-6);
 }
 
+/// What is bonded over a gap has no stress until it opens farther: a column of ν = 0 that is raised by u has σ = E (u − x)/H under
+/// t (1 − κ(w₀ + x)), with κ by the whole gap w₀ + x.
+#[test]
+fn a_bond_over_a_gap_pulls_once_it_opens_farther() {
+    let bond = json!({"strength": 10, "tension": 3, "opening": 0.01, "bonded": true});
+    let mut case = pushed(&frictionless(), &bond, &Value::Null);
+    case["bodies"]["b"]["material"]["nu"] = json!(0);
+    case["contacts"]["c"]["master"]["plane"]["point"] = json!([0, -2e-3]);
+    case["steps"] = json!([
+        {"name": "rest", "duration": 1e-3, "supports": [{"on": "top", "ux": 0, "uy": 0}, {"on": "left", "ux": 0}]},
+        {"name": "pull", "duration": 6e-3, "dt": {"initial": 5e-4}, "supports": [{"on": "top", "uy": {"rate": 1}}]}
+    ]);
+    let run = common::finish(&case);
+    let force = |time: f64| run.reaction("top", run.at(time))[1];
+    close("at rest", force(1e-3), 0.0, 1e-12);
+    let (u, stiff) = (5e-3, 2000.0 / 0.5);
+    let x = (stiff * u - 3.0 * 0.8) / (stiff - 3.0 / 0.01);
+    close("softening", force(6e-3), 3.0 * (1.0 - (2e-3 + x) / 0.01), 2e-3);
+    let energy = &run.last().energy;
+    close("balance", energy.error(), 0.0, 1e-4);
+}
+
 /// The opening is chosen once: the resolved case has it, and a finer mesh keeps it.
 #[test]
 fn the_opening_is_a_length_of_the_interface() {

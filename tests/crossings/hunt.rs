@@ -201,6 +201,7 @@ const ONCE_BROKEN: &[(u64, &str, &str)] = &[
         "dilatancy:limited friction:rate_and_state gauss_points:4 ground_element:q8 normal:augmented plate:rigid \
          press:dead_pressure spring:ground stress:components",
     ),
+    (24, "later", "approach:slanted bond:pulls flange:tied massless:yes scheme:wilson second_contact:yes"),
 ];
 
 #[test]

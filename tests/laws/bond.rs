@@ -5,13 +5,13 @@
 use super::random::Random;
 use crate::common::close;
 use fecontact::laws::friction::{
-    Bond, BondParameters, BondState, BondSurfaces, Coulomb, CoulombParameters, FrictionLaw, FrictionState, Sliding,
+    Bond, BondParameters, BondState, BondSurfaces, ContactLaw, Coulomb, CoulombParameters, FrictionState, Sliding,
 };
 
 /// A point of an interface.
 struct Point {
     bond: Bond,
-    friction: Option<Coulomb>,
+    friction: Option<ContactLaw>,
     alpha_n: f64,
     states: (BondState, FrictionState),
     /// g, u, p, q
@@ -25,28 +25,42 @@ type Answered = ([f64; 2], [[f64; 2]; 2], (BondState, FrictionState), f64);
 
 impl Point {
     fn new(parameters: BondParameters, mu: f64, [alpha_n, alpha_t]: [f64; 2]) -> Self {
-        let bond = Bond::new(&parameters, BondSurfaces::new(alpha_n, alpha_t, mu)).expect("allowed");
+        let surfaces = BondSurfaces::new(alpha_n, alpha_t, mu);
+        let bond = Bond::new(&parameters, surfaces).expect("allowed");
         let coulomb = |mu: f64| Coulomb::new(&CoulombParameters::new(mu), alpha_t).expect("allowed");
+        let beside = |law: Coulomb| ContactLaw::from(law).bonded(&parameters, surfaces).expect("allowed");
         let states = (bond.start(None, 0.0), FrictionState::default());
-        let friction = (mu > 0.0).then(|| coulomb(mu));
+        let friction = (mu > 0.0).then(|| beside(coulomb(mu)));
         Self { bond, friction, alpha_n, states, at: [0.0; 4], work: 0.0, dissipated: 0.0 }
+    }
+
+    /// The same, bonded over a gap.
+    fn across(parameters: BondParameters, mu: f64, stiff: [f64; 2], gap: f64) -> Self {
+        let mut parameters = parameters;
+        parameters.bonded = true;
+        let new = Self::new(parameters, mu, stiff);
+        Self { states: (new.bond.start(Some(gap), 0.0), new.states.1.clone()), at: [gap, 0.0, 0.0, 0.0], ..new }
     }
 
     fn answer(&self, gap: f64, slip: f64) -> Answered {
         let own = self.bond.respond(&self.states.0, gap.max(0.0), slip, false);
         let pressure = (-self.alpha_n * gap).max(0.0);
         let stiff = if gap < 0.0 { -self.alpha_n } else { 0.0 };
-        let friction = self.friction.map(|law| law.respond(&self.states.1, Sliding::new(slip, pressure, 0.1)));
-        let friction = friction.map(|answer| answer.expect("an answer"));
+        let mut limited = false;
+        let friction = self.friction.as_ref().map(|law| {
+            let sliding = Sliding::new(slip, pressure, 0.1);
+            let mut answer = law.respond(&self.states.1, sliding).expect("an answer");
+            limited = pressure > 0.0 && law.limit(&self.states.1, &mut answer, own.state.traction);
+            answer
+        });
         let (q, by_slip, by_pressure) = friction.as_ref().map_or((0.0, 0.0, 0.0), |answer| {
             (answer.state.traction, answer.dtraction_dslip, answer.dtraction_dpressure)
         });
         let after = friction.map_or(FrictionState::default(), |answer| answer.state);
         let dissipated = own.dissipation + after.dissipation - self.states.1.dissipation;
-        let tangent = [
-            [stiff - own.dtension[0], -own.dtension[1]],
-            [by_pressure * stiff + own.dtraction[0], by_slip + own.dtraction[1]],
-        ];
+        let of_bond = if limited { [0.0; 2] } else { own.dtraction };
+        let tangent =
+            [[stiff - own.dtension[0], -own.dtension[1]], [by_pressure * stiff + of_bond[0], by_slip + of_bond[1]]];
         ([pressure - own.state.tension, q + own.state.traction], tangent, (own.state, after), dissipated)
     }
 
@@ -70,7 +84,7 @@ impl Point {
     fn stored(&self, alpha_t: f64) -> f64 {
         let [gap, _, _, q] = self.at;
         let (own, _) = &self.states;
-        let normal = if gap < 0.0 { 0.5 * self.alpha_n * gap * gap } else { 0.5 * own.tension * gap };
+        let normal = if gap < 0.0 { 0.5 * self.alpha_n * gap * gap } else { 0.5 * own.tension * (gap - own.rest) };
         normal + 0.5 * (own.traction.powi(2) + (q - own.traction).powi(2)) / alpha_t
     }
 }
@@ -151,6 +165,21 @@ fn fracture_takes_the_work_of_its_path() {
     }
 }
 
+/// What is bonded over a gap has no stress there; farther apart it takes t ∫ (1 − w/δ) dw, and it resists no closing.
+#[test]
+fn a_bond_over_a_gap_begins_without_stress() {
+    let mut point = Point::across(BondParameters::new(10.0).tension(3.0).opening(10.0), 0.3, STIFF, 4.0);
+    close("at the start", point.go([4.0, 0.0], 1)[0], 0.0, 1e-15);
+    close("closing", point.go([2.0, 0.0], 100)[0], 0.0, 1e-15);
+    close("at the start again", point.go([4.0, 0.0], 100)[0], 0.0, 1e-15);
+    close("peak", -point.go([4.0 + 3e-6, 0.0], 10)[0], 3.0 * 0.6, 1e-5);
+    point.go([7.0, 0.0], 1000);
+    close("secant", -point.go([5.5, 0.0], 1000)[0], 0.5 * 3.0 * 0.3, 1e-5);
+    point.go([12.0, 0.0], 4000);
+    close("work", point.work, 3.0 * 0.6 * 6.0 / 2.0, 6e-3);
+    close("first law", point.work, point.dissipated, 6e-3);
+}
+
 /// One straight line of strength, c + μ p from pressure into tension.
 #[test]
 fn the_line_of_strength_is_straight_into_tension() {
@@ -168,6 +197,18 @@ fn the_line_of_strength_is_straight_into_tension() {
     close("q", q, 25.0, 1e-9);
 }
 
+/// The limit cuts friction and bond together, min(c + μ p, τ_max).
+#[test]
+fn the_limit_is_that_of_the_sum() {
+    for (p, expected) in [(0.0, 10.0), (10.0, 15.0), (20.0, 20.0), (30.0, 20.0), (100.0, 20.0)] {
+        let mut point = Point::new(BondParameters::new(10.0).limit(20.0).opening(10.0), 0.5, STIFF);
+        for slip in [1.0, 2.0, -3.0] {
+            let q = point.go([-1e-6 * p, slip], 50)[1];
+            close("min(c + mu p, limit)", q, if slip > 0.0 { expected } else { -expected }, 1e-9);
+        }
+    }
+}
+
 /// Constant normal stiffness, p = 50 + u: q = c ⟨1 − u/D⟩ + μ p.
 #[test]
 fn a_softening_bond_under_constant_normal_stiffness() {
@@ -183,7 +224,8 @@ fn a_softening_bond_under_constant_normal_stiffness() {
 fn some(draw: &mut Random) -> BondParameters {
     let parameters = BondParameters::new(10.0).residual([0.0, 4.0, 10.0][(3.0 * draw.unit()) as usize]).opening(10e-3);
     let parameters = if draw.chance(0.5) { parameters.slip(20e-3) } else { parameters };
-    if draw.chance(0.5) { parameters.tension(3.0) } else { parameters }
+    let parameters = if draw.chance(0.5) { parameters.tension(3.0) } else { parameters };
+    if draw.chance(0.5) { parameters.limit(draw.between(10.0, 16.0)) } else { parameters }
 }
 
 /// The tangent is that of the values, by central differences, but at kinks.
@@ -231,7 +273,11 @@ fn no_path_gains_energy() {
     let mut draw = Random(3);
     for _ in 0..100 {
         let stiff = [1e4, 5e3];
-        let mut point = Point::new(some(&mut draw), 0.3, stiff);
+        let parameters = some(&mut draw);
+        let mut point = match draw.chance(0.3) {
+            true => Point::across(parameters, 0.3, stiff, draw.between(0.0, 9e-3)),
+            false => Point::new(parameters, 0.3, stiff),
+        };
         let mut corners: Vec<[f64; 2]> =
             (0..6).map(|_| [draw.between(-4e-3, 12e-3), draw.between(-10e-3, 10e-3)]).collect();
         corners.push(corners[0]);

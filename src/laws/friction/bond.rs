@@ -30,8 +30,8 @@ pub struct BondParameters {
     pub opening: Option<f64>,
     /// τ_max: limit of the shear traction of friction and bond together, τ_max ≥ c; default: none [F/L²]
     pub limit: Option<f64>,
-    /// Whether surfaces that do not touch at the start are bonded as well, within the opening; otherwise they have c_r alone once
-    /// they meet
+    /// Whether surfaces that do not touch at the start are bonded as well, within the opening and without stress over the gap that they
+    /// have; otherwise they have c_r alone once they meet
     #[serde(default)]
     pub bonded: bool,
 }
@@ -103,16 +103,16 @@ impl BondSurfaces {
 /// p = p_N − T,   q = q_f + q_b                                      p_N, q_f: pressure and friction; the bond has T and q_b
 /// w = ⟨gap⟩,   w_e = t/α_n,   φ = ⟨1 − ⟨w − w_e⟩/(δ − w_e)⟩
 /// κ = min(1, ⟨w_max − w_e⟩/(δ − w_e) + Λ/D)                        irreversible; Λ: plastic slip of the bond
-/// T = t (1 − κ) min(1, w/max(w_max, w_e))                          secant unloading
+/// T = t (1 − κ) min(1, ⟨w − w₀⟩/max(w_max − w₀, w_e))              secant unloading; w₀: gap over which it was bonded
 /// |q_b| ≤ s = (c − c_r)(1 − κ) + c_r φ − μ T                       c_r φ returns where surfaces meet again, c − c_r does not
 /// ```
 /// With friction of the coefficient μ, c + μ p is one straight line from pressure into tension. An increment takes the state at its
 /// end for w; slip is returned to the strength,
 /// ```text
-/// q_tr = q_b0 + α_c Δu;   Δλ = (|q_tr| − s₀)/(α_c − S),   S = (c − c_r − μ t min(1, w/max(w_max, w_e)))/D      while κ < 1
+/// q_tr = q_b0 + α_c Δu;   Δλ = (|q_tr| − s₀)/(α_c − S),   S = (c − c_r − μ T/(1 − κ))/D                        while κ < 1
 ///                         Δλ = (|q_tr| − c_r φ)/α_c                                                           where the bond is used up
 /// ```
-/// Stored is q_b²/2α_c + T w/2, dissipated the mean of |q_b| over Δλ and what the secant stiffness loses, each of which is never negative.
+/// Stored is q_b²/2α_c + T (w − w₀)/2, dissipated the mean of |q_b| over Δλ and what the secant stiffness loses, each of which is never negative.
 /// The traction is continuous in w, so that an open point has an equilibrium wherever a closed one has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bond {
@@ -143,6 +143,8 @@ pub struct BondState {
     pub opening: f64,
     /// w_max [L]
     pub opened: f64,
+    /// w₀: gap over which it was bonded, from which tension counts [L]
+    pub rest: f64,
     /// Λ [L]
     pub slip: f64,
     /// What a multiplier of the traction leaves of elastic slip; 0 for the plain penalty [L]
@@ -173,7 +175,7 @@ struct Left<N> {
     used: N,
     /// c_r φ
     residual: N,
-    /// min(1, w/max(w_max, w_e))
+    /// T/(t (1 − κ))
     share: N,
     tension: N,
     strength: N,
@@ -280,7 +282,7 @@ impl Bond {
             Some(_) => self.opening,
         };
         let opened = if opened.is_finite() { opened } else { 0.0 };
-        BondState { traction, opened, opening: opened, ..BondState::default() }
+        BondState { traction, opened, opening: opened, rest: opened, ..BondState::default() }
     }
 
     /// Part of an initial traction under a pressure that the bond has, friction having the strength `of_friction`.
@@ -321,8 +323,8 @@ impl Bond {
         let most = opening.max(old.opened.into());
         let opened = (most - self.elastic).max(zero) / (self.opening - self.elastic);
         let used = (opened + old.slip / self.slip).min(one);
-        let reference = most.max(self.elastic.into());
-        let share = if self.tension > 0.0 && reference.value() > 0.0 { opening / reference } else { zero };
+        let (stretch, reference) = ((opening - old.rest).max(zero), (most - old.rest).max(self.elastic.into()));
+        let share = if self.tension > 0.0 && reference.value() > 0.0 { stretch / reference } else { zero };
         let tension = (one - used) * share * self.tension;
         let residual = self.left_of(opening) * self.residual;
         let strength = (one - used) * (self.strength - self.residual) + residual - tension * self.mu;
@@ -374,17 +376,19 @@ impl Bond {
         slid: f64,
     ) -> BondResponse {
         // Up to the largest opening so far nothing is lost but by slip; beyond, the tension falls linearly.
-        let most = old.opened.max(self.elastic);
+        let most = old.opened.max(old.rest + self.elastic);
         let [from, then] = match opening > most {
             true => [most, self.left(old, most).tension],
             false => [old.opening, old.tension],
         };
-        let lost = 0.5 * (then * opening - tension.value * from);
+        let stretch = |opening: f64| (opening - old.rest).max(0.0);
+        let lost = 0.5 * (then * stretch(opening) - tension.value * stretch(from));
         let state = BondState {
             traction: traction.value,
             tension: tension.value,
             opening,
             opened: opening.max(old.opened),
+            rest: old.rest,
             slip: old.slip + slid,
             elastic_slip: old.elastic_slip,
         };
