@@ -5,6 +5,7 @@ mod common;
 
 mod along;
 mod bonds;
+mod bonds_in_motion;
 mod contact;
 mod corners;
 mod faces;

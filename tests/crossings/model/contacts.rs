@@ -253,6 +253,8 @@ impl Writer<'_> {
 /// Writes the numbers of a contact's friction, and of that on a part of it, as expressions of the time that stay the same from the
 /// time `early` on. At the start those that say nothing of the first state of a point are a fifth larger: no increment ends there.
 pub(super) fn tell_in_time(contact: &mut Value, early: f64) {
+    // The strengths at the start share the initial traction.
+    let is_shared = contact.get("bond").is_some() && contact.get("initial").is_some();
     let told = |of: &mut Value| {
         let friction = of["friction"].clone();
         let of_first_state: &[&str] = match friction["law"].as_str() {
@@ -265,7 +267,11 @@ pub(super) fn tell_in_time(contact: &mut Value, early: f64) {
             // These do not vary in time.
             let of_start = ["alpha_t", "structure", "theta"].contains(&name.as_str());
             let Some(value) = value.as_f64().filter(|_| !of_start) else { continue };
-            let jump = if of_first_state.contains(&name.as_str()) { 0.0 } else { 0.2 };
+            // What may grow from nothing wants an opening of its own.
+            if name == "cohesion" && value == 0.0 {
+                continue;
+            }
+            let jump = if is_shared || of_first_state.contains(&name.as_str()) { 0.0 } else { 0.2 };
             let along = &mut of["along"][name];
             if along.is_object() {
                 continue;
