@@ -11,7 +11,8 @@ use super::error::CaseError;
 use super::schema::schema_of;
 use super::units;
 use crate::laws::friction::{
-    Confinement, ContactLaw, Dilatancy, FrictionLaw, FrictionParameters, FrictionState, Offsets, observables,
+    BondParameters, BondSurfaces, Confinement, ContactLaw, Dilatancy, FrictionLaw, FrictionParameters, FrictionState,
+    Offsets, observables,
 };
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::section::Section;
@@ -36,6 +37,9 @@ pub struct LawTestInput {
     pub dilatancy: Option<Dilatancy>,
     /// k of Archard's law, as of a contact [L²/F]
     pub wear: Option<f64>,
+    /// Bond beside friction, as of a contact, with its `opening`; pressure, traction and dissipation of the results include it. Its stiffness
+    /// is alpha_t, beside frictionless half of `normal.alpha_n`
+    pub bond: Option<BondParameters>,
     /// How the pressure answers to the opening of the interface by dilatancy and wear; constant normal load by default
     #[serde(default)]
     pub normal: ConfinementInput,
@@ -87,6 +91,9 @@ pub struct PhaseInput {
     pub slip: Option<Drive>,
     /// Applied pressure [F/L²], in the same forms; at or below 0 the surfaces are open; constant by default
     pub pressure: Option<Drive>,
+    /// Opening of the surfaces under which a `bond` acts [L], in the same forms; where it is positive friction has no pressure. 0 at the
+    /// start, then constant by default
+    pub opening: Option<Drive>,
     /// Longest step in this phase [T]; default: that of the test
     pub dt: Option<f64>,
 }
@@ -145,14 +152,58 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
         (None, Some(table)) => vec![table_of(input, table)?],
         _ => return Err(ModelError::new("", "must give either \"path\", a list of phases, or \"table\"")),
     };
-    let start = start(input, law.as_ref(), path[0].pressure(path[0].start()))?;
+    // Beside a bond the traction at the start is shared later.
+    let traction = if input.bond.is_some() { 0.0 } else { input.initial.traction };
+    let start = start(input, law.as_ref(), [path[0].pressure(path[0].start()), traction])?;
     if input.normal.constant_volume {
         check_constant(&path)?;
     }
     let offsets = Offsets { dilatancy: input.dilatancy, wear: input.wear };
-    let law = ContactLaw::with_offsets(law, offsets)
-        .map_err(|InvalidParameter { name, value, allowed }| ModelError::new(name, format!("is {value}: {allowed}")))?;
-    Ok(LawTest { law, start, path, confinement })
+    let refused = |InvalidParameter { name, value, allowed }| ModelError::new(name, format!("is {value}: {allowed}"));
+    let law = ContactLaw::with_offsets(law, offsets).map_err(refused)?;
+    let of_friction = law.description.starting_limit(start.pressure);
+    let Some(bond) = &input.bond else {
+        let opens = input.path.iter().flatten().position(|phase| phase.opening.is_some());
+        let place = format!("path[{}].opening", opens.unwrap_or_default());
+        refuse_if(opens.is_some(), place, "is for a `bond` beside friction, and there is none: leave it out")?;
+        return Ok(LawTest { law, start, path, of_bond: 0.0, confinement });
+    };
+    let law = bonded(law, bond, input)?;
+    let of_bond = law.share_of_bond(start.pressure, input.initial.traction);
+    let message = format!(
+        "is {of_bond} for the bond and {} for friction: it exceeds their strength",
+        input.initial.traction - of_bond
+    );
+    refuse_if((input.initial.traction - of_bond).abs() > of_friction * (1.0 + WRITTEN), "initial.traction", message)?;
+    let start = law.law.initial_state(start.pressure, input.initial.traction - of_bond);
+    Ok(LawTest { law, start, path, of_bond, confinement })
+}
+
+/// A law with a bond beside it.
+fn bonded(law: ContactLaw, bond: &BondParameters, input: &LawTestInput) -> Checked<ContactLaw> {
+    let message = "is that of the friction law already: leave one of them out";
+    refuse_if(law.law.cohesion() > 0.0, "bond.strength", message)?;
+    refuse_if(
+        bond.strength.is_none(),
+        "bond.strength",
+        "is missing: the friction law has no strength without pressure",
+    )?;
+    refuse_if(bond.opening.is_none(), "bond.opening", "is missing: a law alone has no mesh to choose it from")?;
+    let alpha_n = input.normal.alpha_n;
+    let message = "is missing: half of it is the stiffness of a bond beside a law without alpha_t";
+    refuse_if(law.stiffness == 0.0 && alpha_n.is_none(), "normal.alpha_n", message)?;
+    let moves = input.dilatancy.is_some()
+        || input.wear.is_some()
+        || input.normal.stiffness.is_some()
+        || input.normal.constant_volume;
+    refuse_if(
+        moves,
+        "bond",
+        "follows the opening of the path, and not that by dilatancy, wear or a normal stiffness: leave one of them out",
+    )?;
+    let surfaces = BondSurfaces::new(alpha_n.unwrap_or(f64::INFINITY), f64::NAN, 0.0);
+    law.bonded(bond, surfaces)
+        .map_err(|InvalidParameter { name, value, allowed }| ModelError::new(name, format!("is {value}: {allowed}")))
 }
 
 fn confinement(ConfinementInput { stiffness, constant_volume, alpha_n }: &ConfinementInput) -> Checked<Confinement> {
@@ -198,12 +249,11 @@ fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
     Ok(law.controlled().unwrap_or(law))
 }
 
-fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<FrictionState> {
+fn start(input: &LawTestInput, law: &dyn FrictionLaw, [pressure, traction]: [f64; 2]) -> Checked<FrictionState> {
     if let Some(negative) = input.initial.pressure.filter(|pressure| *pressure < 0.0) {
         return Err(ModelError::new("initial.pressure", format!("is {negative}: must be zero or positive")));
     }
     let at_rest = law.initial_state(0.0, 0.0);
-    let traction = input.initial.traction;
     let pressure = pressure.max(0.0);
     let strength = law.description().starting_limit(pressure);
     let message = format!(
@@ -236,6 +286,7 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
     };
     check_dt(&dt_place, dt, span)?;
 
+    let opened = before.map_or(0.0, |before| before.opening(start));
     let reached = before.map(|before| [before.slip(start), before.pressure(start)]);
     let (slip_place, pressure_place) = (format!("{place}.slip"), format!("{place}.pressure"));
     let slip = drive(&slip_place, phase.slip.as_ref(), reached.map_or(Some(0.0), |[slip, _]| Some(slip)))?;
@@ -247,7 +298,10 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
     if let Some(reached) = reached {
         check_continuous(&pressure_place, &pressure, reached, span)?;
     }
-    Phase::new(span, slip, pressure, dt).map_err(|Undefined { quantity, time }| {
+    let opening_place = format!("{place}.opening");
+    let opening = drive(&opening_place, phase.opening.as_ref(), Some(opened))?;
+    check_continuous(&opening_place, &opening, opened, span)?;
+    Phase::opened(span, [slip, pressure, opening], dt).map_err(|Undefined { quantity, time }| {
         let message = format!("is not a finite number at the time {time}: check the expression");
         ModelError::new(format!("{place}.{quantity}"), message)
     })

@@ -172,7 +172,7 @@ fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) 
     }
     // A length of the interface, not of its mesh
     for pair in &model.contacts {
-        case.contacts.get_mut(&pair.name).into_iter().for_each(|contact| keep_opening(contact, pair));
+        case.contacts.get_mut(&pair.name).into_iter().for_each(|contact| keep_opening(contact, pair, model));
     }
     for bar in &model.bars {
         let divided = case.bars.get_mut(&bar.name).filter(|input| input.segments.is_some() || input.is_free_beam());

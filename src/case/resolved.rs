@@ -7,7 +7,7 @@ use crate::bars::Bar;
 use crate::contact::pair::ContactPair;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
-use crate::model::builder::{BarInput, Contact, DefaultAlphaT, Friction, default_alpha_t};
+use crate::model::builder::{BarInput, Contact, DefaultAlphaT, Friction, default_alpha_t, with_friction};
 use crate::model::method::{Chosen, Method};
 
 /// Returns the case of a model as the text of a file, with the defaults chosen by the model: scheme and increments of every
@@ -23,9 +23,10 @@ pub fn resolved(case: &Case, model: &Model) -> String {
     if case.begin_with.is_none() {
         for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
             if let Some(contact) = case.contacts.get_mut(&pair.name) {
+                written_out(contact, &pair.name, model);
                 let alpha_t = default_alpha_t(contact, model, &case.steps);
                 fill(contact, pair.alpha_n, chosen.as_ref(), alpha_t);
-                keep_opening(contact, pair);
+                keep_opening(contact, pair, model);
             }
         }
     }
@@ -51,6 +52,14 @@ fn fill_bar(input: &mut BarInput, bar: &Bar) {
     }
 }
 
+/// Writes the friction and the bond of an interface in place of its strength.
+pub(super) fn written_out(contact: &mut Contact, name: &str, model: &Model) {
+    let named = Contact { name: name.into(), ..contact.clone() };
+    if let Ok(written) = with_friction(&named, model) {
+        *contact = written;
+    }
+}
+
 fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>, default: Option<DefaultAlphaT>) {
     contact.normal.alpha_n = Some(alpha_n);
     let Some(Chosen { method, points, .. }) = chosen else { return };
@@ -67,8 +76,11 @@ fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>, default: O
     }
 }
 
-/// Writes the opening over which strength without pressure fades into a contact that leaves it open.
-pub(super) fn keep_opening(contact: &mut Contact, pair: &ContactPair) {
+/// Writes the opening over which strength without pressure fades into a contact that leaves it open; quasi-dynamic steps know none.
+pub(super) fn keep_opening(contact: &mut Contact, pair: &ContactPair, model: &Model) {
+    if model.steps.iter().any(|step| step.scheme.is_quasi_dynamic()) {
+        return;
+    }
     if let Some(cohesion) = pair.laws.iter().find_map(|law| law.cohesion.as_ref()) {
         contact.bond.get_or_insert_default().opening = Some(cohesion.bond().opening());
     }

@@ -16,9 +16,9 @@ use crate::laws::bulk::{CauchyStress, PORE_PRESSURE, Slot, TEMPERATURE};
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum InitialStress {
-    /// Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a plate
+    /// Ground at rest under its weight along -y: σ_yy = −surcharge − weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a plate
     Geostatic {
-        /// Level y of zero vertical stress: the top of the body, or above it if the body lies deeper [L]
+        /// Level y of the vertical stress `surcharge`, 0 unless given: the top of the body, or above it if the body lies deeper [L]
         surface: f64,
         /// γ: weight per volume, the density times gravity, above 0 [F/L³]
         weight: f64,
@@ -26,6 +26,12 @@ pub enum InitialStress {
         /// body without lateral strain [-]
         #[serde(rename = "K0")]
         k0: f64,
+        /// Pressure on the surface, of a load on the ground or of what lies above it, zero or positive [F/L²]
+        #[serde(default)]
+        surcharge: f64,
+        /// Layers below, from the top down, each with its weight and K₀: the same profile may serve all bodies of the ground
+        #[serde(default)]
+        below: Vec<Layer>,
     },
     /// Components of the stress, tension positive
     Components {
@@ -41,12 +47,35 @@ pub enum InitialStress {
     },
 }
 
+/// A layer of the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Layer {
+    /// Level y of its top [L]
+    pub top: f64,
+    /// γ: weight per volume, above 0 [F/L³]
+    pub weight: f64,
+    /// K₀: ratio of horizontal to vertical stress, zero or positive [-]
+    #[serde(rename = "K0")]
+    pub k0: f64,
+}
+
 impl InitialStress {
+    /// Ground of one kind at rest under its weight.
+    pub const fn geostatic(surface: f64, weight: f64, k0: f64) -> Self {
+        Self::Geostatic { surface, weight, k0, surcharge: 0.0, below: Vec::new() }
+    }
+
     /// σ_xx, σ_yy, σ_xy, σ_zz at a reference position of a body; σ_zz is zero in plane stress [F/L²].
     pub fn at(&self, position: Vector2<f64>, in_plate: bool) -> [f64; 4] {
         match self {
-            Self::Geostatic { surface, weight, k0 } => {
-                let vertical = -weight * (surface - position.y);
+            Self::Geostatic { surface, weight, k0, surcharge, below } => {
+                let (mut pressure, mut here) = (*surcharge, Layer { top: *surface, weight: *weight, k0: *k0 });
+                for layer in below.iter().take_while(|layer| position.y < layer.top) {
+                    pressure += here.weight * (here.top - layer.top);
+                    here = *layer;
+                }
+                let (vertical, k0) = (-pressure - here.weight * (here.top - position.y), here.k0);
                 [k0 * vertical, vertical, 0.0, if in_plate { 0.0 } else { k0 * vertical }]
             }
             Self::Components { xx, yy, xy, zz } => {

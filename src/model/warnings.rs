@@ -38,7 +38,7 @@ impl Model {
                 .chain(isolated_pressure(self, pair))
                 .chain(facets_of_a_fit(self, pair))
                 .chain(truncated(pair))
-                .chain(fragile(pair));
+                .chain(fragile(pair).into_iter().flatten());
             warnings
                 .into_iter()
                 .chain(further)
@@ -115,8 +115,8 @@ const SNAPS: f64 = 1.5;
 /// Least slip over which a bond softens, over (c − c_r) h/E [-]
 const SNAPS_BACK: f64 = 4.0;
 
-/// Warns of strength without pressure that falls faster, over an opening or by slip, than an element follows.
-fn fragile(pair: &ContactPair) -> impl Iterator<Item = String> {
+/// Warns of strength without pressure that falls faster, first over an opening and then by slip, than an element follows.
+pub fn fragile(pair: &ContactPair) -> [Option<String>; 2] {
     let flexibility = pair.fades.map_or(0.0, |fades| fades.flexibility);
     let bonds: Vec<&Bond> = pair.laws.iter().filter_map(|law| Some(law.cohesion.as_ref()?.bond())).collect();
     let least = |share: f64, of: fn(&Bond) -> [f64; 2]| {
@@ -139,7 +139,7 @@ fn fragile(pair: &ContactPair) -> impl Iterator<Item = String> {
             number(least)
         )
     });
-    opening.into_iter().chain(slip)
+    [opening, slip]
 }
 
 /// Coefficient of friction that stands for none in a law that goes by cohesion alone [-]

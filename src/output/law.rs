@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::csv::Table;
-use super::quantities::{LAW, OPENED, names};
-use crate::laws::friction::{ContactLaw, FrictionResponse, observables};
+use super::quantities::{BONDED, LAW, OPENED, names};
+use crate::laws::friction::{Cohesion, ContactLaw, FrictionResponse, observables};
 use crate::run::error::Error;
 use crate::run::law::LawRow;
 
@@ -16,14 +16,17 @@ pub struct LawTable<'a> {
 }
 
 impl<'a> LawTable<'a> {
-    /// Creates `law.csv` of a law in `folder`; its further observables have columns at the end, and the gap of one that opens.
+    /// Creates `law.csv` of a law in `folder`; its further observables have columns at the end, and so have the gap of one
+    /// that opens, and the opening and the rest of a bond.
     ///
     /// # Errors
     /// Returns [`Error::Output`] if it cannot be written.
     pub fn create(folder: &Path, law: &'a ContactLaw) -> Result<Self, Error> {
         let further = observables::further([&law.description]).into_iter().map(String::from);
         let gap = (!law.description.opening.is_empty()).then(|| OPENED.name.into());
-        let header = names(&LAW).chain(further).chain(gap).collect();
+        let bonded = matches!(law.cohesion, Some(Cohesion::Beside(_)));
+        let bond = names(&BONDED).filter(|_| bonded);
+        let header = names(&LAW).chain(further).chain(gap).chain(bond).collect();
         Ok(Self { table: Table::create(&folder.join("law.csv"), header)?, law })
     }
 
@@ -33,17 +36,23 @@ impl<'a> LawTable<'a> {
     /// Returns [`Error::Output`] if it cannot be written.
     pub fn write(&mut self, row: &LawRow) -> Result<(), Error> {
         let Self { table, law } = self;
-        let LawRow { time, slip, response, gap, .. } = row;
+        let LawRow { time, slip, response, gap, bond, .. } = row;
         let FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations, .. } = response;
         let observed = |name: &str| law.observe(name, state);
         let mut write = |numbers: &[f64]| numbers.iter().for_each(|number| table.number(*number));
-        write(&[*time, *slip, state.pressure, state.traction]);
+        let of_friction = [state.pressure, state.traction, state.dissipation];
+        let [pressure, traction, dissipation] =
+            bond.map_or(of_friction, |bond| [bond.pressure, bond.traction, bond.dissipation]);
+        write(&[*time, *slip, pressure, traction]);
         write(&observables::ALWAYS.map(|(name, _)| observed(name)));
-        write(&[state.plastic_slip, state.dissipation, *dtraction_dslip, *dtraction_dpressure]);
+        write(&[state.plastic_slip, dissipation, *dtraction_dslip, *dtraction_dpressure]);
         table.count(*evaluations);
         table.numbers(observables::further([&law.description]).into_iter().map(observed));
         if !law.description.opening.is_empty() {
             table.number(*gap);
+        }
+        if let Some(bond) = bond {
+            table.numbers([bond.opening, bond.intact].into_iter());
         }
         table.end_row()
     }

@@ -386,6 +386,16 @@ pub const LAW: [Quantity; 12] = [
 pub const OPENED: Quantity =
     q("gap", LENGTH, "opening of the interface since the start: dilation − wear − (p − p₀)/α_n");
 
+/// Columns of `law.csv` for a bond beside friction, at the end; pressure, traction and dissipation include it.
+pub const BONDED: [Quantity; 2] = [
+    q("opening", LENGTH, "w: opening of the path"),
+    q(
+        "bond",
+        NONE,
+        "1 − κ: what is left of a bond's strength above its residual, and of its tension; 1 before any damage",
+    ),
+];
+
 /// Columns of `newton.csv`; those of the convergence aids stand before `verdict` and `reason`.
 pub const NEWTON: [Quantity; 15] = [
     q("step", NONE, "name of the step"),
@@ -567,5 +577,5 @@ pub const ALL: [(&str, &[Group]); 13] = [
         "newton.csv",
         &[("", &NEWTON), ("", &[q("aid_…", NONE, "points on which each convergence aid acted")]), ("", &VERDICT)],
     ),
-    ("law.csv", &[("", &LAW), ("", &[OF_SOME[0], OF_SOME[1], OF_SOME[2], OPENED])]),
+    ("law.csv", &[("", &LAW), ("", &[OF_SOME[0], OF_SOME[1], OF_SOME[2], OPENED, BONDED[0], BONDED[1]])]),
 ];

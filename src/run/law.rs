@@ -3,7 +3,8 @@
 //! # Path
 //!
 //! The path prescribes slip and pressure as functions of time; steps end at their turning points. An interface that opens with slip
-//! answers with its pressure as its [`Confinement`] makes it: under constant load, constant normal stiffness or constant volume.
+//! answers with its pressure as its [`Confinement`] makes it: under constant load, constant normal stiffness or constant volume. A bond
+//! beside friction follows the opening of the path; where that is positive friction has no pressure.
 //!
 //! # Report
 //!
@@ -35,7 +36,9 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use crate::laws::friction::{Confinement, ContactLaw, FrictionLaw, FrictionResponse, FrictionState, Sliding};
+use crate::laws::friction::{
+    BondState, Cohesion, Confinement, ContactLaw, FrictionLaw, FrictionResponse, FrictionState, Sliding,
+};
 use crate::laws::text::apart;
 use crate::model::boundary::{Drive, Span};
 use crate::run::error::Error;
@@ -48,6 +51,8 @@ pub struct LawTest {
     pub law: ContactLaw,
     /// state at the start of the path
     pub start: FrictionState,
+    /// part of the traction at the start that a bond beside friction has [F/L²]
+    pub of_bond: f64,
     /// how the pressure answers to the opening of the interface; it does not by default
     pub confinement: Confinement,
     /// the path, at least one phase
@@ -58,7 +63,8 @@ impl LawTest {
     /// Creates a test that drives the law along a path from its stationary state under the initial pressure.
     pub fn new(law: impl FrictionLaw + 'static, path: Vec<Phase>) -> Self {
         let pressure = path.first().map_or(0.0, |phase| phase.pressure(phase.start()));
-        Self { start: law.initial_state(pressure, 0.0), law: law.into(), path, confinement: Confinement::default() }
+        let start = law.initial_state(pressure, 0.0);
+        Self { start, law: law.into(), path, of_bond: 0.0, confinement: Confinement::default() }
     }
 
     /// Drives the law along its path and passes every step to `tell`. The report is returned for a stopped test as well.
@@ -82,22 +88,49 @@ impl LawTest {
         let mut time = first.start();
         let mut slip = first.slip(time);
         let mut state = self.start.clone();
+        let mut bond = self.bond_at_start(first);
         let mut step = |to: f64, phase: &Phase| {
-            let confined = self.confinement.confined(phase.pressure(to), self.start.pressure);
+            let opening = phase.opening(to).max(0.0);
+            let applied = if opening > 0.0 { 0.0 } else { phase.pressure(to) };
+            let confined = self.confinement.confined(applied, self.start.pressure);
             let sliding = Sliding { slip: phase.slip(to) - slip, pressure: confined.pressure, dt: to - time };
             let response = self.law.respond_confined(&state, sliding, confined);
-            let response = response.map_err(|cause| Error::Law { time, cause })?;
+            let mut response = response.map_err(|cause| Error::Law { time, cause })?;
+            if let (Some(Cohesion::Beside(law)), Some((before, lost))) = (&self.law.cohesion, &mut bond) {
+                let answer = law.respond(before, opening, sliding.slip, false);
+                if opening == 0.0 {
+                    self.law.limit(&state, &mut response, answer.state.traction);
+                }
+                (*before, *lost) = (answer.state, *lost + answer.dissipation);
+            }
             (time, slip, state) = (to, phase.slip(to), response.state.clone());
-            record(&self.row(time, slip, response))
+            record(&self.row(time, slip, response, bond))
         };
         step(first.start(), first)?;
         self.path.iter().try_for_each(|phase| phase.times().try_for_each(|to| step(to, phase)))
     }
 
-    fn row(&self, time: f64, slip: f64, response: FrictionResponse) -> LawRow {
+    /// State of a bond beside friction, which has its part of the traction at the start, and what it has dissipated.
+    fn bond_at_start(&self, first: &Phase) -> Option<(BondState, f64)> {
+        let Some(Cohesion::Beside(bond)) = &self.law.cohesion else { return None };
+        let opening = first.opening(first.start());
+        Some((bond.start((opening > 0.0).then_some(opening), self.of_bond), 0.0))
+    }
+
+    fn row(&self, time: f64, slip: f64, response: FrictionResponse, bond: Option<(BondState, f64)>) -> LawRow {
         let state = &response.state;
         let (gap, mu) = (self.confinement.gap(state, self.start.pressure), self.law.observe("mu", state));
-        LawRow { time, slip, response, mu, gap }
+        let bond = match (&self.law.cohesion, bond) {
+            (Some(Cohesion::Beside(law)), Some((own, lost))) => Some(LawBond {
+                opening: own.opening,
+                pressure: state.pressure - own.tension,
+                traction: state.traction + own.traction,
+                dissipation: state.dissipation + lost,
+                intact: law.intact(&own),
+            }),
+            _ => None,
+        };
+        LawRow { time, slip, response, mu, gap, bond }
     }
 
     /// Warns once of a pressure above which the response may not be unique.
@@ -121,6 +154,7 @@ pub struct Phase {
     span: Span,
     slip: PathDrive,
     pressure: PathDrive,
+    opening: PathDrive,
     /// longest step [T]
     dt: f64,
     /// time difference below which two times are equal [T]
@@ -151,7 +185,7 @@ impl PathDrive {
 #[error("the {quantity} has no finite value at time {time}")]
 #[non_exhaustive]
 pub struct Undefined {
-    /// "slip" or "pressure"
+    /// "slip", "pressure" or "opening"
     pub quantity: &'static str,
     /// t [T]
     pub time: f64,
@@ -172,8 +206,17 @@ impl Phase {
     /// # Errors
     /// Returns [`Undefined`] if an expression has no finite value.
     pub fn new(span: Span, slip: PathDrive, pressure: PathDrive, dt: f64) -> Result<Self, Undefined> {
-        let mut phase = Self { span, slip, pressure, dt, resolution: 0.0, stops: Vec::new() };
-        let mut knots: Vec<f64> = [&phase.slip, &phase.pressure].iter().flat_map(|course| course.knots(span)).collect();
+        Self::opened(span, [slip, pressure, PathDrive::new(Drive::Constant(0.0), 0.0)], dt)
+    }
+
+    /// Creates a phase of slip, pressure and opening, for a law with a bond beside it.
+    ///
+    /// # Errors
+    /// Returns [`Undefined`] if an expression has no finite value.
+    pub fn opened(span: Span, [slip, pressure, opening]: [PathDrive; 3], dt: f64) -> Result<Self, Undefined> {
+        let mut phase = Self { span, slip, pressure, opening, dt, resolution: 0.0, stops: Vec::new() };
+        let courses = [&phase.slip, &phase.pressure, &phase.opening];
+        let mut knots: Vec<f64> = courses.iter().flat_map(|course| course.knots(span)).collect();
         knots.sort_by(f64::total_cmp);
         knots.dedup();
         let apart = knots.windows(2).map(|pair| pair[1] - pair[0]).fold(dt, f64::min);
@@ -190,6 +233,11 @@ impl Phase {
     /// p_a: applied pressure; without an opening the surfaces are separated where it is not positive [F/L²].
     pub fn pressure(&self, time: f64) -> f64 {
         self.pressure.value(time, self.span)
+    }
+
+    /// w: opening of the surfaces, under which a bond acts and friction has no pressure [L].
+    pub fn opening(&self, time: f64) -> f64 {
+        self.opening.value(time, self.span)
     }
 
     /// t at the start [T].
@@ -222,13 +270,13 @@ impl Phase {
     fn find_stops(&self, knots: Vec<f64>) -> Result<Vec<f64>, Undefined> {
         let samples = self.samples(&knots);
         let mut located = Vec::new();
-        for (quantity, course) in [("slip", &self.slip), ("pressure", &self.pressure)] {
+        for (quantity, course) in [("slip", &self.slip), ("pressure", &self.pressure), ("opening", &self.opening)] {
             let value = |time| course.value(time, self.span);
             let samples = sampled(&samples, value).map_err(|time| Undefined { quantity, time })?;
             if matches!(course.drive, Drive::Expression(_)) {
                 located.extend(turning_points(&samples, value));
             }
-            if quantity == "pressure" {
+            if quantity != "slip" {
                 located.extend(touches(&samples, value));
             }
         }
@@ -395,6 +443,24 @@ pub struct LawRow {
     pub mu: f64,
     /// g: opening of the interface since the start, of its law and by its normal stiffness [L]
     pub gap: f64,
+    /// friction and a bond beside it together
+    pub bond: Option<LawBond>,
+}
+
+/// Friction and a bond beside it together at a step of the path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LawBond {
+    /// w [L]
+    pub opening: f64,
+    /// p − T [F/L²]
+    pub pressure: f64,
+    /// q [F/L²]
+    pub traction: f64,
+    /// work of friction and bond so far [F/L]
+    pub dissipation: f64,
+    /// 1 − κ [-]
+    pub intact: f64,
 }
 
 /// Point of the path for the evaluation of peaks and holds.

@@ -1,15 +1,17 @@
-//! Why a static step may have no equilibrium further on: loads at their limit point, and friction that weakens faster than what drives it
-//! gives way.
+//! Why a static step may have no equilibrium further on: loads at their limit point, friction or bonds that weaken faster than what drives
+//! them gives way.
 
 use nalgebra::Vector2;
 
 use super::failure::IncrementFailure;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
-use crate::laws::friction::Regime;
+use crate::contact::surface::SlavePoint;
+use crate::laws::friction::{Cohesion, Regime};
 use crate::linear::norm;
 use crate::model::state::State;
 use crate::model::text::number;
+use crate::model::warnings::fragile;
 use crate::model::{Model, Step};
 
 /// Growth of the rate of displacement over its mean in the step, from which it has begun to run away.
@@ -21,8 +23,10 @@ pub fn limit(model: &Model, step: &Step, state: &State, cause: &IncrementFailure
         return String::new();
     }
     let contacts = model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| step.joins(pair));
-    limit_point(step, state)
-        + &contacts.filter_map(|(pair, states)| unstable_slip(step, state, pair, states)).collect::<String>()
+    let of_contact = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
+        unstable_slip(step, state, pair, states).unwrap_or_default() + &snaps(pair, states)
+    };
+    limit_point(step, state) + &contacts.map(of_contact).collect::<String>()
 }
 
 /// A limit point under forces, with what its loads had reached, if displacements have begun to run away from them.
@@ -72,10 +76,11 @@ const SLIDES: f64 = 0.5;
 /// Rice (2003), J. Geophys. Res. 108, 2042.
 const NUCLEATION: f64 = 1.158;
 
-/// Slip that may be unstable under friction that weakens by W = Σ |dμ/dδ| p ℓ over the length L of the points that slip: a zone of
-/// L > 1.158 G* L/W, or a contact that slides as a whole and ever faster.
+/// Slip that may be unstable under friction that weakens by W = Σ (|dμ/dδ| p + (c − c_r)/D) ℓ over the length L of the points that slip, the
+/// second where a bond is not used up: a zone of L > 1.158 G* L/W, or a contact that slides as a whole and ever faster.
 fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[ContactState]) -> Option<String> {
     let (mut length, mut slipping, mut weakening, mut now, mut so_far) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let mut what = "friction weakens";
     for (slave, point) in pair.points.iter().zip(states).filter(|(_, point)| point.is_closed()) {
         length += point.length;
         if point.regime() != Regime::Slip {
@@ -84,6 +89,11 @@ fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[Conta
         let law = pair.ask_law(slave, [state.time; 2], |law| law.description).ok()?;
         slipping += point.length;
         weakening += law.weakening * point.friction.pressure * point.length;
+        let softening = softening(pair, slave, point);
+        if softening > 0.0 {
+            weakening += softening * point.length;
+            what = "friction and bond weaken";
+        }
         now += point.friction.plastic_increment.abs() * point.length / state.dt;
         so_far += point.friction.plastic_slip.abs() * point.length / (state.time - step.span.start);
     }
@@ -91,10 +101,38 @@ fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[Conta
     let slides = weakening > 0.0 && slipping > SLIDES * length && now > RUNS_AWAY * so_far;
     (nucleates || slides).then(|| {
         format!(
-            "slip of contact `{}` may be unstable here: where it slips, friction weakens by up to {} per slip (force over length); where the \
+            "slip of contact `{}` may be unstable here: where it slips, {what} by up to {} per slip (force over length); where the \
              bodies and what drives them give way by less, no static equilibrium follows: take a dynamic step (\"hht\"), with densities; ",
             pair.name,
             number(weakening)
         )
     })
+}
+
+/// (c − c_r)/D of a point whose bond slip has not used up; 0 without one [F/L³]
+fn softening(pair: &ContactPair, slave: &SlavePoint, point: &ContactState) -> f64 {
+    match (&pair.law(slave).cohesion, &point.bond) {
+        (Some(Cohesion::Beside(bond)), Some(state)) if bond.intact(state) > 0.0 => {
+            (bond.strength() - bond.residual()) / bond.slip()
+        }
+        _ => 0.0,
+    }
+}
+
+/// Share of its strength from which on a bond is about to slip [-]
+const NEARLY: f64 = 0.9;
+
+/// Strength without pressure that falls faster than an element follows, where a point has come to it.
+fn snaps(pair: &ContactPair, states: &[ContactState]) -> String {
+    let opens = |point: &ContactState| point.carries_open() || point.regime() == Regime::Slip;
+    let slips = |(slave, point): (&SlavePoint, &ContactState)| match (&pair.law(slave).cohesion, &point.bond) {
+        (Some(Cohesion::Beside(bond)), Some(state)) => {
+            bond.intact(state) > 0.0 && state.traction.abs() > NEARLY * bond.strength_left(state)
+        }
+        _ => false,
+    };
+    let [opening, slip] = fragile(pair);
+    let opening = opening.filter(|_| states.iter().any(opens));
+    let slip = slip.filter(|_| pair.points.iter().zip(states).any(slips));
+    opening.into_iter().chain(slip).map(|why| format!("contact `{}`: {why}; ", pair.name)).collect()
 }

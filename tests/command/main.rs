@@ -13,6 +13,7 @@ mod gradients;
 mod init;
 mod input;
 mod law;
+mod law_bond;
 mod layout;
 mod many;
 mod mutations;

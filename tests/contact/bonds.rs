@@ -285,3 +285,16 @@ fn bonds_that_cannot_be_are_refused() {
     let refusal = common::refusal(&tied);
     assert!(refusal.contains("contacts.c.bond") && refusal.contains("tied"), "{refusal}");
 }
+
+/// A static run that stops where a bond falls faster than an element follows names the bond, with what it lacks.
+#[test]
+fn a_stop_names_the_bond_that_snaps() {
+    let stop = |friction: Value, bond: Value| {
+        let case = pushed(&friction, &bond, &Value::Null);
+        let model = std::sync::Arc::new(common::model(&case));
+        let error = fecontact::run::run(&model, &mut []).1.expect_err("it stops");
+        error.to_string()
+    };
+    let told = stop(frictionless(), json!({"strength": 10, "slip": 5e-4, "opening": 2e-3}));
+    assert!(told.contains("contact `c`: its bond softens over the slip 5e-4, below 4 (c − c_r) h/E = 0.002"), "{told}");
+}

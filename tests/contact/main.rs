@@ -12,6 +12,7 @@ mod faces;
 mod few_edges;
 mod fields;
 mod hard;
+mod interfaces;
 mod moving;
 mod outlines;
 mod periodic;

@@ -57,6 +57,7 @@ pub const SLOTS: &[Slot] = &[
     ("varying", &[("no", 4), ("by_place", 1), ("in_time", 2), ("by_part", 1), ("random", 1)]),
     ("dilatancy", &[("no", 6), ("free", 1), ("limited", 1), ("structure", 1)]),
     ("wear", OPTION),
+    ("interface", &[("no", 14), ("named", 1), ("reduced", 1)]),
     ("bond", &[("no", 14), ("shear", 1), ("softens", 1), ("pulls", 1), ("limited", 1)]),
     ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1), ("by_place", 1), ("of_bodies", 1)]),
     ("radiation", &[("no", 6), ("given", 1), ("of_bodies", 1)]),
@@ -236,6 +237,9 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     ),
     (&["bond"], &["master:itself", "shrink_fit"], "surfaces that lie apart or overlap at first"),
     (&["bond:limited"], &["dilatancy", "wear"], "slip at the limit neither opens nor wears"),
+    (&["interface"], &["bond", "varying"], "it has both by itself"),
+    (&["interface"], &["master:itself", "shrink_fit"], "surfaces that lie apart or overlap at first"),
+    (&["dilatancy"], &["interface:reduced"], "its friction is that of the body"),
     (&["dilatancy", "wear"], &["shrink_fit"], "an overlap that wears away while it is brought in"),
     (
         &["massless"],
@@ -319,7 +323,9 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &[
             "dilatancy",
             "wear",
-            "bond",
+            "bond:pulls",
+            "bond:limited",
+            "interface",
             "fluid",
             "press:pressure",
             "press:plate",
@@ -468,6 +474,8 @@ pub const NEEDED: &[(&str, &[(&str, &str)])] = &[
     ("tractions:balanced", &[("stress", "components")]),
     ("tractions:of_bodies", &[("stress", "components")]),
     ("fluid:of_bodies", &[("pores", "full")]),
+    ("interface", &[("friction", "coulomb")]),
+    ("interface:reduced", &[("block_law", "mohr_coulomb")]),
     ("tip", &[("surfaces", "matching"), ("master", "deformable")]),
 ];
 

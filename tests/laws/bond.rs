@@ -294,6 +294,17 @@ fn no_path_gains_energy() {
     }
 }
 
+/// An initial traction is shared in proportion to the strengths; what exceeds c is friction's, whatever is known of its strength.
+#[test]
+fn an_initial_traction_is_shared() {
+    let bond = Bond::new(&BondParameters::new(4.0).opening(1.0), BondSurfaces::new(1e4, 1e4, 0.5)).expect("allowed");
+    for (traction, of_friction, expected) in
+        [(5.0, 6.0, 2.0), (-5.0, 6.0, -2.0), (3.0, 0.0, 3.0), (30.0, 0.0, 4.0), (-30.0, 0.0, -4.0), (30.0, 25.0, 4.0)]
+    {
+        close("share", bond.share(traction, of_friction), expected, 1e-12);
+    }
+}
+
 /// What cannot be is refused with what it means.
 #[test]
 fn numbers_out_of_range_are_refused() {

@@ -18,3 +18,4 @@ mod published;
 mod rupture;
 mod safety;
 mod slip_front;
+mod strength;

@@ -373,7 +373,7 @@ fn laws_serve_in_their_sections_alone() {
     let [heated, stressed] = [true, false].map(|heated| {
         move |builder: Builder| match heated {
             true => builder.thermal("block", Thermal::new(1e-3)),
-            false => builder.initial_stress("block", InitialStress::Geostatic { surface: 1.0, weight: 1.0, k0: 1.0 }),
+            false => builder.initial_stress("block", InitialStress::geostatic(1.0, 1.0, 1.0)),
         }
     });
     for (section, of, [place, why]) in [

@@ -352,6 +352,38 @@ fn ground(model: &str, section: Value, slope: f64) -> Value {
     })
 }
 
+/// One profile of two layers under a surcharge serves both bodies: they rest under σ_yy = −p₀ − Σ γ h and K₀ of the layer times that.
+#[test]
+fn layered_ground_under_a_surcharge_stays_at_rest() {
+    let mut case = ground("linear", json!("plane_strain"), 0.0);
+    let profile = json!({"geostatic": {"surface": 3, "weight": 9.81, "K0": 0.6, "surcharge": 5,
+        "below": [{"top": 1.5, "weight": 19.62, "K0": 0.45}, {"top": 0.75, "weight": 19.62, "K0": 0.4}]}});
+    for body in ["lower", "upper"] {
+        case["bodies"][body]["initial_stress"] = profile.clone();
+    }
+    case["bodies"]["lower"]["material"]["density"] = json!(2);
+    case["steps"][0]["loads"].as_array_mut().expect("loads").push(json!({"on": "upper_top", "dead_pressure": "5"}));
+    let run = finish(&case);
+    assert_eq!(run.model.warnings(), [""; 0]);
+    let most = run.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+    assert!(most < 1e-12, "it moves by {most}");
+    for point in &run.last().contacts[0] {
+        close("p", point.friction.pressure, 5.0 + 9.81 * 1.5, 1e-9);
+    }
+    let body = |name: &str| run.model.bodies.iter().find(|body| body.name == name).expect("a body");
+    for (name, y, yy, k0) in [
+        ("upper", 3.0, -5.0, 0.6),
+        ("upper", 2.0, -5.0 - 9.81, 0.6),
+        ("lower", 1.25, -5.0 - 1.5 * 9.81 - 0.25 * 19.62, 0.45),
+        ("lower", 0.5, -5.0 - 1.5 * 9.81 - 19.62, 0.4),
+    ] {
+        let found = body(name).total_stress(nalgebra::Vector2::new(2.0, y), false).expect("a stress");
+        for (what, found, expected) in [("yy", found.yy, yy), ("xx", found.xx, k0 * yy), ("zz", found.zz, k0 * yy)] {
+            close(&format!("{what} at y = {y}"), found, expected, 1e-12);
+        }
+    }
+}
+
 /// Ground in equilibrium does not move, in any scheme and section, whatever the law: σ_yy = −γ d, K₀ times that along x and across,
 /// and the contact carries what the bodies bring.
 #[test]
@@ -485,6 +517,22 @@ fn what_cannot_be_imposed_is_refused() {
         ),
         (stress(json!({"geostatic": {"surface": 3, "weight": 0, "K0": 1}})), "weight: is 0: must be positive"),
         (stress(json!({"geostatic": {"surface": 3, "weight": 1, "K0": -1}})), "K0: is -1: must be zero or positive"),
+        (
+            stress(json!({"geostatic": {"surface": 3, "weight": 1, "K0": 1, "surcharge": -1}})),
+            "surcharge: is -1: must be zero or positive",
+        ),
+        (
+            stress(
+                json!({"geostatic": {"surface": 3, "weight": 1, "K0": 1, "below": [{"top": 3.5, "weight": 1, "K0": 1}]}}),
+            ),
+            "below[0].top: is 3.5: layers follow each other downwards",
+        ),
+        (
+            stress(
+                json!({"geostatic": {"surface": 3, "weight": 1, "K0": 1, "below": [{"top": 1, "weight": 0, "K0": 1}]}}),
+            ),
+            "below[0].weight: is 0: must be positive",
+        ),
         (components(json!({"xx": 1, "yy": 1})), "components.zz: is missing"),
         (components(json!({"xx": "1/(x-1)", "yy": 1, "zz": 0})), "components.xx: is not a finite number at (1, "),
         (components(json!({"xx": "t", "yy": 1, "zz": 0})), "the time t has no meaning here"),

@@ -422,3 +422,78 @@ fn steps_that_may_not_be_short_enough_are_told_of() {
     );
     assert!(!told.contains("smallest allowed"), "{told}");
 }
+
+/// A bond of c = 4 that softens over D beside the friction of the spring-slider, driven at 1e-9 until it has slid off it, against
+/// Runge and Kutta's method of the fourth order with ten thousand steps a time constant or more:
+///
+/// ```text
+/// τ = τ₀ + k (V_p t − s),   τ − c ⟨1 − s/D⟩ = a p arsinh(V/(2 V_0) exp((f_0 + b ln(V_0 θ/D_c))/a)) + η V,   θ̇ = 1 − V θ/D_c
+/// ```
+#[test]
+fn a_bond_softens_by_slip() {
+    let [a, b, d_c, v_0, f_0, p, eta] = [0.015, 0.01, 0.008, 1e-6, 0.6, 50.0, 4.62];
+    let [c, d, k, driven, tau_0, theta_0] = [4.0, 0.02, 1e3, 1e-8, 30.0, 0.5 * 0.008 / 1e-9];
+    let mut case = slider("ageing", 1.0, &quasi_dynamic(1e-8, 1));
+    let friction = &mut case["contacts"]["base"]["friction"];
+    (friction["a"], friction["b"]) = (json!(a), json!(b));
+    case["contacts"]["base"]["bond"] = json!({"strength": c, "slip": d});
+    case["steps"][0]["loads"][1]["spring"] = json!({"kx": k, "driver": {"x": {"rate": driven}}});
+    case["steps"][0]["duration"] = json!(5e6);
+    let run = finish(&case);
+    // α_t of friction and of the bond are springs in series with k.
+    let k = 1.0 / (1.0 / k + 1.0 / 2e6);
+    let rate = |time: f64, slip: f64, theta: f64| {
+        let held: f64 = if slip < d { c * (1.0 - slip / d) } else { 0.0 };
+        let tau = tau_0 + k * (driven * time - slip) - held;
+        let law =
+            |v: f64| a * p * (v / (2.0 * v_0) * ((f_0 + b * (v_0 * theta / d_c).ln()) / a).exp()).asinh() + eta * v;
+        let [mut low, mut high] = [-60.0f64, 5.0];
+        for _ in 0..80 {
+            let middle = 0.5 * (low + high);
+            if law(middle.exp()) > tau { high = middle } else { low = middle }
+        }
+        if tau > 0.0 { low.exp() } else { 0.0 }
+    };
+    let rates = |time: f64, [slip, theta]: [f64; 2]| {
+        let v = rate(time, slip, theta);
+        [v, 1.0 - v * theta / d_c]
+    };
+    let (mut y, mut time, h) = ([0.0, theta_0], 0.0, 250.0);
+    let mut states = run.states.iter().filter(|state| state.time > 0.0).peekable();
+    let mut compared = 0;
+    while time < 5e6 {
+        let add = |y: [f64; 2], dy: [f64; 2], h: f64| [y[0] + h * dy[0], y[1] + h * dy[1]];
+        let k1 = rates(time, y);
+        while let Some(state) = states.next_if(|state| state.time <= time + h) {
+            let slip = y[0] + k1[0] * (state.time - time);
+            let point = &state.contacts[0][0];
+            close(&format!("slip at {}", state.time), point.friction.plastic_slip, slip, 2e-4 * d);
+            let held = if slip < d { c * (1.0 - slip / d) } else { 0.0 };
+            close(&format!("bond at {}", state.time), point.bond.expect("a bond").traction, held, 2e-3 * c);
+            compared += 1;
+        }
+        let k2 = rates(time + 0.5 * h, add(y, k1, 0.5 * h));
+        let k3 = rates(time + 0.5 * h, add(y, k2, 0.5 * h));
+        let k4 = rates(time + h, add(y, k3, h));
+        y = [0, 1].map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+        time += h;
+    }
+    assert!(compared > 20 && y[0] > d, "{compared} states, slip {}", y[0]);
+    let energy = &run.last().energy;
+    close("energy", energy.error(), 0.0, 1e-3 * energy.friction_dissipation);
+}
+
+/// What needs an opening is refused by its name; the resolved case is accepted.
+#[test]
+fn a_bond_without_an_opening_alone_goes_there() {
+    for (bond, place) in [
+        (json!({"strength": 4, "tension": 1}), "bond.tension"),
+        (json!({"strength": 4, "limit": 40}), "bond.limit"),
+        (json!({"strength": 4, "opening": 1}), "bond.opening"),
+    ] {
+        let mut case = slider("ageing", 1.0, &quasi_dynamic(1e-6, 1));
+        case["contacts"]["base"]["bond"] = bond;
+        let refused = refusal(&case);
+        assert!(refused.contains(&format!("contacts.base.{place}: is not for quasi_dynamic")), "{refused}");
+    }
+}

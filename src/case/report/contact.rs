@@ -8,6 +8,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::case::file::Case;
+use crate::case::resolved::written_out;
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::{Bond, Cohesion, Dilatancy, Onset};
@@ -22,7 +23,9 @@ use crate::output::concerns::several_answers;
 
 /// Lists every contact, with the position of its surfaces at the start.
 pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut case = case.clone();
+    case.contacts.iter_mut().for_each(|(name, contact)| written_out(contact, name, model));
+    let (case, mut lines) = (&case, Vec::new());
     for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
         lines.push(pair.name.clone());
         lines.extend(contact(case, model, pair, chosen.as_ref()).into_iter().map(|line| format!("  {line}")));

@@ -168,8 +168,14 @@ fn slopes(material: &BulkLaw) -> String {
 /// Initial stress, pore fluid and thermal expansion.
 fn imposed(input: &BodyInput) -> String {
     let stress = match &input.initial_stress {
-        Some(InitialStress::Geostatic { surface, weight, k0 }) => {
-            format!(", geostatic stress: weight {} below y = {}, K0 {}", number(*weight), number(*surface), number(*k0))
+        Some(InitialStress::Geostatic { surface, weight, k0, surcharge, below }) => {
+            let layer = |top: f64, weight: f64, k0: f64| {
+                format!("weight {} below y = {}, K0 {}", number(weight), number(top), number(k0))
+            };
+            let on_top = if *surcharge > 0.0 { format!("surcharge {}, ", number(*surcharge)) } else { String::new() };
+            let further: String =
+                below.iter().map(|next| format!("; {}", layer(next.top, next.weight, next.k0))).collect();
+            format!(", geostatic stress: {on_top}{}{further}", layer(*surface, *weight, *k0))
         }
         Some(InitialStress::Components { .. }) => ", initial stress by components".into(),
         None => String::new(),

@@ -121,6 +121,8 @@ pub struct MaterialDescription<'a> {
     pub flow: Option<Flow>,
     /// Why results depend on the mesh, of a law of which they do
     pub concern: Option<&'a str>,
+    /// c and tan φ of a law that yields where τ = c − σ_n tan φ on some plane, or nearly so; none of others [F/L², -]
+    pub strength: Option<[f64; 2]>,
     /// Whether an initial stress is the law's own, which [`BulkLaw::begin`] makes it remember; it stands beside the law ([`BodyLaw`])
     /// otherwise
     pub holds_initial_stress: bool,
@@ -144,6 +146,7 @@ impl<'a> MaterialDescription<'a> {
             evolves: false,
             flow: None,
             concern: None,
+            strength: None,
             holds_initial_stress: false,
             shown: &[],
             sections: Sections::All,

@@ -285,9 +285,10 @@ impl Bond {
         BondState { traction, opened, opening: opened, rest: opened, ..BondState::default() }
     }
 
-    /// Part of an initial traction under a pressure that the bond has, friction having the strength `of_friction`.
+    /// Part of an initial traction under a pressure that the bond has, friction having the strength `of_friction`, or what the bond
+    /// cannot have.
     pub fn share(&self, traction: f64, of_friction: f64) -> f64 {
-        traction * self.strength / (self.strength + of_friction.max(0.0))
+        traction * self.strength / (self.strength + of_friction.max(traction.abs() - self.strength).max(0.0))
     }
 
     /// φ, and its derivative by w

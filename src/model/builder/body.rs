@@ -254,13 +254,26 @@ fn check_imposed(law: &dyn Material, stressed: bool, thermal: Option<Thermal>, p
 /// Checks an initial stress: finite throughout the body, ground below its surface, and no out-of-plane stress in plane stress.
 pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place: &str) -> Checked<()> {
     match stress {
-        InitialStress::Geostatic { surface, weight, k0 } => {
-            for (key, value) in [("surface", surface), ("weight", weight), ("K0", k0)] {
+        InitialStress::Geostatic { surface, weight, k0, surcharge, below } => {
+            for (key, value) in [("surface", surface), ("weight", weight), ("K0", k0), ("surcharge", surcharge)] {
                 check_finite(&format!("{place}.geostatic.{key}"), [*value])?;
             }
             let along_y = ", the density times gravity that acts along -y";
             check_positive(&format!("{place}.geostatic.weight"), *weight, along_y)?;
             check_not_negative(&format!("{place}.geostatic.K0"), *k0)?;
+            check_not_negative(&format!("{place}.geostatic.surcharge"), *surcharge)?;
+            let mut above = *surface;
+            for (k, layer) in below.iter().enumerate() {
+                let place = format!("{place}.geostatic.below[{k}]");
+                let message = format!(
+                    "is {}: layers follow each other downwards, and the one above begins at {above}",
+                    layer.top
+                );
+                refuse_if(!(layer.top < above), format!("{place}.top"), message)?;
+                check_positive(&format!("{place}.weight"), layer.weight, along_y)?;
+                check_not_negative(&format!("{place}.K0"), layer.k0)?;
+                above = layer.top;
+            }
             let top = nodes.iter().map(|&node| mesh.nodes[node].y).fold(f64::NEG_INFINITY, f64::max);
             let [level, reached] = apart([*surface, top]);
             let message = format!(

@@ -8,6 +8,7 @@ use super::contact::Contact;
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
 use super::supports::axis;
 use crate::contact::pair::ContactPair;
+use crate::laws::friction::Cohesion;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::model::boundary::{Amplitude, Drive, Span};
@@ -141,8 +142,11 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     let why =
         "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with radiation_damping";
     refuse_if(pair.holds_fluid(), "fluid_pressure", why)?;
-    let why = "is not for quasi_dynamic steps, which ignore openings: leave it out, or take static steps with radiation_damping";
-    refuse_if(pair.laws.iter().any(|law| law.cohesion.is_some()), "bond", why)?;
+    let why = "is not for quasi_dynamic steps, which know no opening: leave it out, or take static steps with radiation_damping";
+    let bonds = || pair.laws.iter().filter_map(|law| law.cohesion.as_ref()).map(Cohesion::bond);
+    refuse_if(bonds().any(|bond| bond.tension() > 0.0), "bond.tension", why)?;
+    refuse_if(bonds().any(|bond| bond.limit().is_finite()), "bond.limit", why)?;
+    refuse_if(pair.fades.is_some_and(|fades| !fades.is_chosen), "bond.opening", why)?;
     let opening = pair.laws.iter().find_map(|law| law.description.opening.first());
     let key = if opening == Some(&"wear") { "wear" } else { "dilatancy" };
     let why = "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out";

@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
 use super::friction::{Along, Friction, check_in_time};
 use super::groups::{self, TIMES};
+use super::interface::Interface;
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
 use crate::laws::friction::{BondParameters, Dilatancy, FrictionParameters};
@@ -77,6 +78,9 @@ pub struct Contact {
     #[serde(default = "Friction::tie", skip_serializing_if = "Friction::is_tie")]
     #[schemars(with = "FrictionParameters")]
     pub friction: Friction,
+    /// Strength of the interface as a share of that of the soil beside it, or by cohesion and angle of friction: Coulomb friction and a
+    /// bond, which `check --resolved` shows. In place of `friction`
+    pub interface: Option<Interface>,
     /// Bond of the surfaces beside friction: strength without pressure. With `adhesion`, or `cohesion` of slip_weakening, it takes the
     /// `opening` over which that fades, and a `limit`
     pub bond: Option<BondParameters>,
@@ -300,6 +304,7 @@ impl Contact {
             massless: false,
             tied: false,
             friction: friction.into(),
+            interface: None,
             bond: None,
             dilatancy: None,
             wear: None,
@@ -308,6 +313,16 @@ impl Contact {
             along: Along::default(),
             initial: None,
         }
+    }
+
+    /// Creates a contact whose strength is a share of that of the soil beside it, or given by cohesion and angle.
+    pub fn with_interface(
+        name: impl Into<String>,
+        slave: impl Into<String>,
+        master: impl Into<MasterSide>,
+        interface: Interface,
+    ) -> Self {
+        Self { interface: Some(interface), ..Self::new(name, slave, master, Friction::tie()) }
     }
 
     /// Creates a contact of tied surfaces.
@@ -502,7 +517,9 @@ fn plane(point: [f64; 2], normal: [f64; 2], place: &str) -> Checked<Shape> {
 pub fn check_has_friction(contact: &Contact, place: &str) -> Checked<()> {
     let message = match (contact.tied, contact.friction.is_tie()) {
         (true, false) => "is for surfaces that slide, and these are tied: leave it out",
-        (false, true) => "is missing: give the law, such as {\"law\": \"coulomb\", \"mu\": 0.3}, or \"tied\": true",
+        (false, true) => {
+            "is missing: give the law, such as {\"law\": \"coulomb\", \"mu\": 0.3}, an `interface`, or \"tied\": true"
+        }
         _ => return Ok(()),
     };
     Err(ModelError::new(format!("{place}.friction"), message))

@@ -57,6 +57,7 @@ mod facing;
 mod friction;
 mod groups;
 mod initial;
+mod interface;
 mod load;
 mod load_step;
 mod loads;
@@ -80,6 +81,7 @@ pub(crate) use error::{check_line, check_positive, refuse_if};
 pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};
 pub use groups::Place;
 pub(crate) use groups::nodes_at;
+pub use interface::{Interface, with_friction};
 pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{
     IncrementSettings, LoadStep, OF_CRITICAL_SLIP, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings,
@@ -298,6 +300,8 @@ impl Builder {
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.plates = rigid::plates(&self.plates, &model.mesh)?;
         model.ties = rigid::ties(&self.periodic, &model.plates, &model.mesh)?;
+        let contacts = self.contacts.iter().map(|contact| interface::with_friction(contact, &model));
+        self.contacts = contacts.collect::<Checked<_>>()?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
         model.linkage = rigid::linkage(&self.plates, &self.steps, &model)?;
         let regime = schedule::regime(&self.steps);

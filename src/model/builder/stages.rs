@@ -197,7 +197,8 @@ impl<'m> Stages<'m> {
             refuse_if(pair.bodies.iter().any(parted), place, format!("the contact `{name}` {message}"))?;
             let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair);
             let message = "comes in this step, and is tied, starts closed, overlaps or has pores at mesh positions, which are not those of \
-                           then: let the bodies share nodes, or touch";
+                           then: let the bodies share nodes, or touch without `initial`, and what a body that goes in the same step exerted passes to the contact \
+                           over the step";
             refuse_if(is_new(pair) && at_places, place, format!("the contact `{name}` {message}"))?;
         }
         Ok(())

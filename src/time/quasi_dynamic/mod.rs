@@ -150,9 +150,13 @@ impl QuasiDynamic {
         let mut numbers = 0..n;
         let mut state = |pair, slave, old: &ContactState| {
             let k = numbers.next().unwrap_or_default();
-            let Rates { slip_rate, traction, pressure, radiation, .. } = steps.now()[k];
+            let Rates { slip_rate, traction, bond, pressure, radiation, .. } = steps.now()[k];
             let mut new = old.clone();
-            new.friction.traction = traction;
+            new.friction.traction = traction - bond;
+            if let Some(own) = &mut new.bond {
+                own.traction = bond;
+                own.slip += steps.z[k].abs();
+            }
             new.friction.pressure = pressure;
             new.friction.plastic_slip += steps.z[k];
             new.friction.plastic_increment = steps.last[k];
@@ -239,7 +243,7 @@ fn pull(model: &Model, contacts: &[Vec<ContactState>], found: &mut Evaluation) {
     for (pair, states) in model.contacts.iter().zip(contacts) {
         for (point, state) in pair.small.iter().flat_map(|small| small.points.iter().flatten()).zip(states) {
             let ContactState { friction, radiation, length, .. } = state;
-            let traction = point.normal * friction.pressure - point.tangent * (friction.traction + radiation);
+            let traction = point.normal * friction.pressure - point.tangent * (state.shear() + radiation);
             for (&node, w) in point.nodes.iter().zip(&point.weights) {
                 let node = model.ties.original(node);
                 (0..2).for_each(|i| found.force[2 * node + i] -= w * traction[i] * length);

@@ -2,17 +2,18 @@
 //!
 //! ```text
 //! ṡ = V,   ẋ = ẋ(V, x)                         s: slip, x: state of the law                                         (1)
-//! τ = q(V, x, p) + η V                          solved for V at every point                                          (2)
+//! τ = q(V, x, p) + q_b + η V                    solved for V at every point; q_b = s(Λ) sgn τ: a bond, 0 without one     (2)
 //! (p, −τ) = (p, −τ)₀ + Y s + ẏ (t − t₀)         bodies and springs of the contact, ẏ: loading ([`crate::equations::slip_operator`])   (3)
 //! ```
-//! The contact spring α_t is in series with the slider and its damper, and these with the bodies.
+//! The contact spring α_t, with α_c of a bond beside it, is in series with the slider, its bond and its damper, and these with the bodies.
+//! Below its strength s = c_r + (c − c_r) ⟨1 − Λ/D⟩ a bond holds, but for a share of 10⁻¹² of the traction that friction sees.
 
 use rayon::prelude::*;
 
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::{PointLoad, RateLaw};
+use crate::laws::friction::{BondState, Cohesion, PointLoad, RateLaw};
 
 /// Number of points that one thread takes at a time; no sum depends on their order.
 const PART: usize = 32;
@@ -24,8 +25,10 @@ pub struct Rates {
     pub slip_rate: f64,
     /// ẋ [1/T]
     pub evolution: f64,
-    /// q, p and η V [F/L²]
+    /// q of friction and a bond together, p and η V [F/L²]
     pub traction: f64,
+    /// q_b [F/L²]
+    pub bond: f64,
     /// p [F/L²]
     pub pressure: f64,
     /// η V [F/L²]
@@ -68,21 +71,38 @@ impl SlipEquations<'_> {
         let (pair, slave, start) = self.points[k];
         let change = |row: usize| dot(&self.by_slip[row * n..(row + 1) * n], &z[..n]) + self.loading[row] * since;
         let pressure = start.friction.pressure + change(k);
-        let traction = start.friction.traction + start.radiation - change(n + k);
-        let loading = PointLoad { traction, pressure, damping: pair.radiation };
+        let traction = start.shear() + start.radiation - change(n + k);
+        let free = match strength(pair, slave, start, z[k]) {
+            0.0 => traction,
+            strength => traction.signum() * (traction.abs() - strength).max(HELD * traction.abs()),
+        };
+        let loading = PointLoad { traction: free, pressure, damping: pair.radiation };
         let answer = with_rates(pair, slave, now, |law| {
             let slip_rate = law.slip_rate(z[n + k], loading);
             (slip_rate, law.evolution(z[n + k], slip_rate))
         });
         let (slip_rate, evolution) = answer.unwrap_or((f64::NAN, f64::NAN));
         let radiation = pair.radiation * slip_rate;
-        Rates { slip_rate, evolution, traction: traction - radiation, pressure, radiation }
+        Rates { slip_rate, evolution, traction: traction - radiation, bond: traction - free, pressure, radiation }
     }
 
     /// p and −τ at t₀ + `since`, minus those at t₀.
     pub fn tractions(&self, since: f64, slips: &[f64]) -> Vec<f64> {
         let rows = self.by_slip.chunks_exact(slips.len().max(1));
         rows.zip(self.loading).map(|(row, loading)| dot(row, slips) + loading * since).collect()
+    }
+}
+
+/// Share of the traction that friction sees while a bond holds: laws have no slip rate without traction [-]
+const HELD: f64 = 1e-12;
+
+/// s of a bond beside friction after a slip since t₀; 0 without one [F/L²]
+fn strength(pair: &ContactPair, slave: &SlavePoint, start: &ContactState, slip: f64) -> f64 {
+    match (&pair.law(slave).cohesion, &start.bond) {
+        (Some(Cohesion::Beside(bond)), Some(state)) => {
+            bond.strength_left(&BondState { slip: state.slip + slip.abs(), ..*state })
+        }
+        _ => 0.0,
     }
 }
 

@@ -155,7 +155,10 @@ impl Writer<'_> {
                 let surface = if name == "block" { BLOCK_HEIGHT } else { 0.0 };
                 let weight = self.frame.stress / self.frame.length;
                 let surface = self.frame.point([0.0, surface])[1];
-                body["initial_stress"] = json!({"geostatic": {"surface": surface, "weight": 2.0 * weight, "K0": 0.6}});
+                let layer =
+                    json!([{"top": surface - self.write(Kind::Length, 0.3), "weight": 1.5 * weight, "K0": 0.5}]);
+                let (surcharge, weight) = (self.write(Kind::Stress, 0.2), 2.0 * weight);
+                body["initial_stress"] = json!({"geostatic": {"surface": surface, "weight": weight, "K0": 0.6, "surcharge": surcharge, "below": layer}});
             }
             _ => {}
         }

@@ -74,6 +74,13 @@ impl Writer<'_> {
         if self.has("wear") {
             contact["wear"] = json!(2e-3 / frame.stress);
         }
+        if self.has("interface") {
+            let named = json!({"cohesion": self.write(Kind::Stress, 0.5), "friction_angle": 20});
+            let reduced = json!({"reduction": 0.6, "of": self.names.block});
+            contact["interface"] = if self.is("interface", "named") { named } else { reduced };
+            contact["bond"] = json!({"opening": self.write(Kind::Length, 0.01), "bonded": true});
+            contact.as_object_mut().expect("keys").remove("friction");
+        }
         if self.has("bond") {
             let mut bond = json!({"strength": self.write(Kind::Stress, 1.0), "opening": self.write(Kind::Length, 0.01), "bonded": true});
             match draft.of("bond") {
@@ -84,6 +91,9 @@ impl Writer<'_> {
                 "pulls" => bond["tension"] = json!(self.write(Kind::Stress, 0.5)),
                 "limited" => bond["limit"] = json!(self.write(Kind::Stress, 2.0)),
                 _ => {}
+            }
+            if self.scheme == "quasi_dynamic" {
+                bond.as_object_mut().expect("keys").remove("opening");
             }
             contact["bond"] = bond;
         }

@@ -85,6 +85,8 @@ pub struct DruckerPrager {
     cohesion: f64,
     /// p_t, that of the tip at most [F/L²]
     tension: f64,
+    /// c and tan φ as given [F/L², -]
+    given: [f64; 2],
 }
 
 /// Share of the elastic stiffness that is left in the tangent where there is none.
@@ -118,7 +120,8 @@ impl DruckerPrager {
         let [dilation, _] = slopes(psi);
         let tip = if friction > 0.0 { xi * c / friction } else { f64::INFINITY };
         let tension = tension.map_or(tip, |tension| tension.min(tip));
-        Elastoplastic::new(Self { elastic, friction, dilation, cohesion: xi * c, tension }, density, viscosity)
+        let given = [c, phi.to_radians().tan()];
+        Elastoplastic::new(Self { elastic, friction, dilation, cohesion: xi * c, tension, given }, density, viscosity)
     }
 
     /// √J₂ of the cone at a mean stress.
@@ -142,6 +145,7 @@ impl ReturnMap for DruckerPrager {
             flow: if self.dilation > 0.0 { Flow::Dilating } else { Flow::Isochoric },
             is_associated,
             localizes: (!is_associated).then_some("flows otherwise than it yields (psi < phi)"),
+            strength: Some(self.given),
             ..ReturnDescription::new("drucker_prager")
         }
     }
@@ -171,7 +175,7 @@ impl ReturnMap for DruckerPrager {
         _: &Vector4<f64>,
         history: &mut [f64],
     ) -> Result<Returned, MaterialFailure> {
-        let Self { elastic, friction, dilation, cohesion, tension } = *self;
+        let Self { elastic, friction, dilation, cohesion, tension, .. } = *self;
         let (shear, bulk) = (elastic.shear, elastic.bulk());
         let mut answer = Returned::elastic(elastic, trial);
         if self.yield_indicator(&answer.stress, history) <= ROUND_OFF * shear {

@@ -148,6 +148,8 @@ pub struct ReturnDescription<'a> {
     pub localizes: Option<&'static str>,
     /// Whether the law makes sense in a plate
     pub in_plates: bool,
+    /// c and tan φ of a law that yields by them, or nearly so [F/L², -]
+    pub strength: Option<[f64; 2]>,
 }
 
 impl ReturnDescription<'_> {
@@ -162,6 +164,7 @@ impl ReturnDescription<'_> {
             is_associated: true,
             localizes: None,
             in_plates: false,
+            strength: None,
         }
     }
 }
@@ -462,6 +465,7 @@ impl<L: ReturnMap> BulkLaw for Elastoplastic<L> {
             is_symmetric: own.is_associated && own.tensors == 0,
             flow: Some(own.flow),
             concern: self.concern.as_deref(),
+            strength: own.strength,
             holds_initial_stress: true,
             shown: &self.shown,
             sections: if own.in_plates { Sections::All } else { Sections::AnyStretch },

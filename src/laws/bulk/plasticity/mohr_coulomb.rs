@@ -483,6 +483,7 @@ impl ReturnMap for MohrCoulomb {
                 (false, false) => Some("flows otherwise than it yields (psi < phi)"),
                 (false, true) => None,
             },
+            strength: Some([self.virgin.c, self.virgin.phi.sin / self.virgin.phi.cos]),
             ..ReturnDescription::new(NAME)
         }
     }

@@ -250,6 +250,7 @@ impl ReturnMap for VonMises {
             tensors,
             localizes: (self.saturation < 0.0).then_some("softens (Q < 0)"),
             in_plates: true,
+            strength: Some([self.strength / 3f64.sqrt(), 0.0]),
             ..ReturnDescription::new(NAME)
         }
     }
