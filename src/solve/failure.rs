@@ -81,6 +81,18 @@ pub enum IncrementFailure {
          already: by more)"
     )]
     Floating(String),
+    /// A bond that pulls has torn over much of a contact at once.
+    #[error(
+        "the bond of contact `{contact}` tears over {percent:.0} % of its length within one increment: what is torn off is in equilibrium, too, \
+         but the run has not come there step by step; where no shorter increments lead on, it breaks away at once: take a step with inertia, or \
+         `rupture`, or a longer `bond.opening` under a lower `bond.tension`"
+    )]
+    Torn {
+        /// contact pair
+        contact: String,
+        /// part of its length
+        percent: f64,
+    },
     /// A trial state lost the contact that constrained a body.
     #[error("contact was lost during the iterations: {0}")]
     ContactLost(String),
@@ -125,6 +137,7 @@ impl IncrementFailure {
             Self::Slip { .. } => "slip equations",
             Self::Floating(_) => "floating body",
             Self::ContactLost(_) => "contact lost",
+            Self::Torn { .. } => "torn bond",
         }
     }
 
@@ -133,7 +146,8 @@ impl IncrementFailure {
     pub fn is_retryable(&self) -> bool {
         match self {
             Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,
-            Self::Newton(_) | Self::Penetration { .. } | Self::ElasticSlip { .. } | Self::ContactLost(_) => true,
+            Self::Newton(_) | Self::Penetration { .. } | Self::ElasticSlip { .. } => true,
+            Self::ContactLost(_) | Self::Torn { .. } => true,
             _ => false,
         }
     }

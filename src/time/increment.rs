@@ -1,6 +1,7 @@
 //! One increment: old state → new state.
 
 use super::accept::{accept, take_stock};
+use super::tearing::torn;
 use crate::contact::force::ContactState;
 use crate::equations::inertia::kinetic_energy;
 use crate::equations::{Evaluation, Trial, links};
@@ -31,6 +32,7 @@ pub fn advance(model: &Model, step: &Step, old: &State, dt: f64, work: &mut Work
     let increment = Trial::new(old, step, time, time - old.time);
     let Solved { iterations, displacement, foreseen, passes } = augment(model, increment.ahead(), work);
     let state = displacement.and_then(|u| arrive(model, increment, u, work));
+    let state = state.and_then(|new| torn(model, step, old, &new).map_or(Ok(new), Err));
     Advanced { iterations, state, foreseen, passes }
 }
 

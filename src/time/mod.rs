@@ -7,4 +7,5 @@ pub mod increment;
 pub mod neighbour;
 pub mod quasi_dynamic;
 pub mod step_size;
+mod tearing;
 pub mod touching;
