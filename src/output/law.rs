@@ -52,7 +52,7 @@ impl<'a> LawTable<'a> {
             table.number(*gap);
         }
         if let Some(bond) = bond {
-            table.numbers([bond.opening, bond.intact].into_iter());
+            table.numbers([bond.opening, bond.intact]);
         }
         table.end_row()
     }

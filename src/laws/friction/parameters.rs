@@ -40,6 +40,11 @@ pub enum FrictionParameters {
 }
 
 impl FrictionParameters {
+    /// Friction of a constant coefficient; none where that is 0.
+    pub fn constant(mu: f64) -> Self {
+        if mu > 0.0 { Self::Coulomb(CoulombParameters::new(mu)) } else { Self::Frictionless {} }
+    }
+
     /// Creates the law from checked parameters; `default_alpha_t` is used if the case does not specify `alpha_t`.
     ///
     /// # Errors

@@ -269,7 +269,7 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
                     "is {}: layers follow each other downwards, and the one above begins at {above}",
                     layer.top
                 );
-                refuse_if(!(layer.top < above), format!("{place}.top"), message)?;
+                refuse_if(layer.top >= above || layer.top.is_nan(), format!("{place}.top"), message)?;
                 check_positive(&format!("{place}.weight"), layer.weight, along_y)?;
                 check_not_negative(&format!("{place}.K0"), layer.k0)?;
                 above = layer.top;

@@ -63,6 +63,7 @@ mod load_step;
 mod loads;
 mod pair;
 mod pores;
+mod reduction;
 mod requests;
 mod rigid;
 pub(crate) mod schedule;
@@ -81,7 +82,7 @@ pub(crate) use error::{check_line, check_positive, refuse_if};
 pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};
 pub use groups::Place;
 pub(crate) use groups::nodes_at;
-pub use interface::{Interface, with_friction};
+pub use interface::Interface;
 pub use load::{Change, Components, DashpotLoad, Load, SpringLoad};
 pub use load_step::{
     IncrementSettings, LoadStep, OF_CRITICAL_SLIP, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings,
@@ -89,6 +90,7 @@ pub use load_step::{
 pub use loads::LoadsInForce;
 pub(crate) use pair::evaluation;
 pub use pair::{default_alpha_t, default_over, tangential_over};
+pub use reduction::with_friction;
 pub use requests::Gauge;
 pub use rigid::{LoadingPlateInput, MovingPlateInput, Plate, RigidBodyInput};
 pub use schedule::regime;
@@ -300,7 +302,7 @@ impl Builder {
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.plates = rigid::plates(&self.plates, &model.mesh)?;
         model.ties = rigid::ties(&self.periodic, &model.plates, &model.mesh)?;
-        let contacts = self.contacts.iter().map(|contact| interface::with_friction(contact, &model));
+        let contacts = self.contacts.iter().map(|contact| reduction::with_friction(contact, &model));
         self.contacts = contacts.collect::<Checked<_>>()?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
         model.linkage = rigid::linkage(&self.plates, &self.steps, &model)?;
