@@ -74,6 +74,22 @@ class Run:
         """A column of the history at the increment that ends at a time."""
         return self.history[column][np.abs(self.history["time"] - time).argmin()]
 
+    def interface(self, name):
+        """An array of interface.zarr: a row for every row of the history, a column for every point of the contact."""
+        folder = self.folder / "interface.zarr" / name
+        told = json.loads((folder / ".zarray").read_text())
+        found = np.empty(told["shape"])
+        counts = [-(-size // chunk) for size, chunk in zip(told["shape"], told["chunks"])]
+        for number in np.ndindex(*counts):
+            data = zlib.decompress((folder / ".".join(map(str, number))).read_bytes())
+            for _ in filter(lambda kind: kind["id"] == "shuffle", told["filters"] or []):
+                size = np.dtype(told["dtype"]).itemsize
+                data = np.frombuffer(data, "u1").reshape(size, -1).T.tobytes()
+            chunk = np.frombuffer(data, told["dtype"]).reshape(told["chunks"])
+            place = tuple(slice(k * step, min((k + 1) * step, size)) for k, step, size in zip(number, told["chunks"], told["shape"]))
+            found[place] = chunk[tuple(slice(0, part.stop - part.start) for part in place)]
+        return found
+
     def cost(self):
         """Newton iterations of an increment in the mean and at most, and cut-backs."""
         iterations = self.history["iterations"]

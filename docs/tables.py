@@ -23,6 +23,7 @@ from cavities_and_walls import WALLS
 from choosing import CHOOSING
 from closed_forms import CLOSED
 from error_bars import BARS, SLOW_BARS
+from faults_and_water import SLOW_WATER
 from forming import FORMING
 from limit_loads import LIMIT
 from penalties import PENALTIES
@@ -67,6 +68,7 @@ SLOW = {
     "numerical_choices": (PUBLISHED + "answers_do", 0),
     "spring_mass_resolved": (PUBLISHED + "resolved_runs", 0),
     **{name: (f"python3 docs/error_bars.py target/release/fecontact {name}", 0) for name in SLOW_BARS},
+    **{name: (f"python3 docs/faults_and_water.py target/release/fecontact {name}", 0) for name in SLOW_WATER},
 }
 
 

@@ -173,17 +173,21 @@ class Case:
         else:
             for file in _files(mesh):
                 of.update(Path(os.path.dirname(self._path), file).read_bytes())
+        for measured in _measured(self._document):
+            of.update(Path(os.path.dirname(self._path), measured["file"]).read_bytes())
         return of.hexdigest()[:16]
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the case as a file for ``fecontact run``, including a mesh in memory."""
         path = as_path(path, "path")
-        document = dict(self._document)
+        document = self.document
         mesh = document.get("mesh")
+        folder = os.path.dirname(path) or "."
+        for measured in _measured(document):
+            measured["file"] = os.path.relpath(os.path.join(os.path.dirname(self._path), measured["file"]), folder)
         if self._mesh is not None:
             document["mesh"] = self._mesh.document()
         elif _files(mesh):
-            folder = os.path.dirname(path) or "."
             beside = [os.path.relpath(os.path.join(os.path.dirname(self._path), file), folder) for file in _files(mesh)]
             document["mesh"] = beside[0] if isinstance(mesh, str) else beside
         Path(path).write_text(json.dumps(document, indent=1) + "\n")
@@ -264,6 +268,12 @@ def _raise(status: str, why: str | None, raised: BaseException | None, result: R
 def _files(mesh: Any) -> list[str]:
     """The files that a case names as its mesh."""
     return [mesh] if isinstance(mesh, str) else mesh if isinstance(mesh, list) else []
+
+
+def _measured(document: dict[str, Any]) -> list[dict[str, Any]]:
+    """What a case says of the tables of fluid pressure that it names."""
+    given = (contact.get("fluid_pressure") for contact in document.get("contacts", {}).values())
+    return [pressure["measured"] for pressure in given if isinstance(pressure, dict) and "measured" in pressure]
 
 
 def _again(document: dict[str, Any], path: str, mesh: Mesh | None) -> Case:

@@ -27,7 +27,7 @@ use serde_json::Value;
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, MeshError, gmsh};
 use crate::model::Model;
-use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_positive, refuse_if};
+use crate::model::builder::{Builder, Checked, Contact, FluidPressure, Gauge, ModelError, check_positive, refuse_if};
 pub use again::Opened;
 pub use error::CaseError;
 use file::{Case, MeshSource, blocks};
@@ -65,12 +65,14 @@ pub fn build(case: &Case, path: &Path) -> Result<Model, CaseError> {
 /// # Errors
 /// The same as for [`build`].
 pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError> {
-    built(case, mesh).map_err(|complaint| complaint.in_file(path))
+    built(case, mesh, path).map_err(|complaint| complaint.in_file(path))
 }
 
-fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
+fn built(case: &Case, mesh: Mesh, path: &Path) -> Checked<Model> {
     refuse_if(case.begin_with.is_some(), "begin_with", "another case must be opened first: see case::Opened")?;
-    let model = builder(case, mesh)?.build()?;
+    let mut builder = builder(case, mesh)?;
+    read_measured(&mut builder.contacts, path)?;
+    let model = builder.build()?;
     let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
     refuse_if(case.output.every == Some(0), "output.every", message)?;
     if let Some(minutes) = case.output.checkpoint.filter(|minutes| !(*minutes >= 0.0 && minutes.is_finite())) {
@@ -105,6 +107,17 @@ fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
         gauges: given.probes.into_iter().map(gauge).collect(),
         ..Model::builder(mesh).section(section)
     })
+}
+
+/// Reads the tables of measured pressures, relative to the case file.
+fn read_measured(contacts: &mut [Contact], path: &Path) -> Checked<()> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for Contact { name, fluid_pressure, .. } in contacts {
+        if let Some(FluidPressure::Measured(measured)) = fluid_pressure {
+            measured.read(folder, &format!("contacts.{name}.fluid_pressure"))?;
+        }
+    }
+    Ok(())
 }
 
 /// Warnings about a case before it is run: those of its model, and labels of units that nothing checks.

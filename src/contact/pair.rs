@@ -454,17 +454,32 @@ impl fmt::Debug for LawsInTime {
 pub type PressureAt = dyn Fn(Vector2<f64>, f64) -> f64 + Send + Sync;
 
 /// Pressure of the fluid in a contact.
-pub struct Fluid(Box<PressureAt>);
+pub struct Fluid {
+    pressure: Box<PressureAt>,
+    /// Times of kinks, ascending [T]
+    corners: Vec<f64>,
+}
 
 impl Fluid {
     /// Creates a fluid with the pressure p_w ≥ 0 as a function of reference position and time.
     pub fn new(pressure: impl Fn(Vector2<f64>, f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self(Box::new(pressure))
+        Self { pressure: Box::new(pressure), corners: Vec::new() }
+    }
+
+    /// Sets the times at which its rate jumps everywhere, ascending [T].
+    #[must_use]
+    pub fn with_corners(self, corners: Vec<f64>) -> Self {
+        Self { corners, ..self }
+    }
+
+    /// Times at which its rate jumps [T]
+    pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
+        self.corners.iter().copied()
     }
 
     /// p_w at a reference position [F/L²]
     pub fn pressure(&self, at: Vector2<f64>, time: f64) -> f64 {
-        (self.0)(at, time)
+        (self.pressure)(at, time)
     }
 }
 

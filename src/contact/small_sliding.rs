@@ -147,14 +147,20 @@ impl SmallPoint {
     }
 
     /// The slave node and its opposite master node, or the slave node alone on a rigid master; `None` if the point involves
-    /// more than one node of either side, or the master may rotate.
-    pub fn facing(&self) -> Option<(usize, Option<usize>)> {
+    /// more than one node of either side, or the master may rotate. A node and its copies on a periodic side are one, its `original`.
+    pub fn facing(&self, original: impl Fn(usize) -> usize) -> Option<(usize, Option<usize>)> {
         if self.lever.is_some() || self.turning.is_some() {
             return None;
         }
-        let counts = |&(_, w): &(&usize, &f64)| w.abs() > ROUND_OFF;
-        let mut part = self.nodes.iter().zip(&self.weights).filter(counts);
-        let whole = |(node, w): (&usize, &f64), of: f64| ((w - of).abs() <= ROUND_OFF).then_some(*node);
+        let mut weights: Vec<(usize, f64)> = Vec::with_capacity(self.nodes.len());
+        for (node, weight) in self.nodes.iter().map(|&node| original(node)).zip(&self.weights) {
+            match weights.iter_mut().find(|(known, _)| *known == node) {
+                Some((_, sum)) => *sum += weight,
+                None => weights.push((node, *weight)),
+            }
+        }
+        let mut part = weights.into_iter().filter(|(_, w)| w.abs() > ROUND_OFF);
+        let whole = |(node, w): (usize, f64), of: f64| ((w - of).abs() <= ROUND_OFF).then_some(node);
         let (first, second) = (part.next()?, part.next());
         let slave = whole(first, 1.0)?;
         let master = match second {

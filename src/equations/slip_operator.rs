@@ -14,7 +14,21 @@
 //! ```
 //! All quantities are increments. One product with the matrix of (5) gives the tractions of a slip; on a rigid master j is the
 //! motion of the slave itself.
+//!
+//! # Fluids
+//!
+//! The pressure p_w of a fluid acts on both sides in addition to p, and y stands for the effective tractions:
+//!
+//! ```text
+//! K j + ρ̂ = ℓ (y + (p_w, 0))     y = (ℓ + K/α)⁻¹ (K_s s + ρ̂ − ℓ (p_w, 0))                                     (6)
+//! ```
+//!
+//! # Sites
+//!
+//! The ends of a contact that periodic sides join are one node of one jump, with the length of both: a site. Slip and p_w of a site are the
+//! means of its points, and its tractions are those of each of them.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -29,7 +43,7 @@ use crate::linear::system::{Request, System};
 use crate::linear::{Condensation, Condensed, DenseLu, LinearFailure};
 use crate::model::Model;
 
-/// A contact point with matching nodes.
+/// A site: contact points with the same matching nodes, a single one but where periodic sides meet.
 struct Facing {
     /// Index of the slave node and of the master node
     slave: usize,
@@ -38,6 +52,8 @@ struct Facing {
     directions: [Vector2<f64>; 2],
     /// 1/α_n and 1/α_t [L³/F]
     compliance: [f64; 2],
+    /// ℓ [L]
+    length: f64,
 }
 
 /// Response of linear bodies to slip on an interface.
@@ -47,7 +63,8 @@ pub struct SlipOperator {
     /// their equations
     pub system: System,
     nodes: ContactNodes,
-    points: Vec<Facing>,
+    sites: Vec<Facing>,
+    points: Vec<AtSite>,
     condensed: Condensed,
     /// Index in m of every contact node; `None` for a slave on a rigid master
     moving: Vec<Option<usize>>,
@@ -59,8 +76,18 @@ pub struct SlipOperator {
     pulling: Vec<f64>,
     /// ℓ + K/α
     series: DenseLu,
-    /// y by s, row by row
+    /// y by s, row by row, of all contact points
     by_slip: Vec<f64>,
+    /// y by p_w, row by row; empty without a fluid
+    by_fluid: Vec<f64>,
+}
+
+/// Place of a contact point among the sites.
+struct AtSite {
+    /// its number
+    site: usize,
+    /// Its part of the length of the site [-]
+    share: f64,
 }
 
 /// Effect of residual forces without slip.
@@ -107,16 +134,17 @@ impl SlipOperator {
         bodies.assemble(trial, &vec![0.0; model.dofs()], &[], Request::Tangent, &mut system)?;
         let held = || LinearFailure::Singular("a body is constrained only by contact, or not at all".into());
         let condensed = condensation.condense(&system.tangent).ok_or_else(held)?;
-        let points: Vec<Facing> = model.contacts.iter().flat_map(|pair| facing(model, pair, &nodes)).collect();
+        let (sites, points) = gathered(model.contacts.iter().flat_map(|pair| facing(model, pair, &nodes)));
         let mut moving: Vec<Option<usize>> = vec![None; nodes.nodes.len()];
-        let slaves: Vec<usize> = points.iter().map(|point| point.slave).collect();
+        let slaves: Vec<usize> = sites.iter().map(|site| site.slave).collect();
         let others: Vec<usize> = (0..moving.len()).filter(|place| !slaves.contains(place)).collect();
         others.iter().enumerate().for_each(|(m, &place)| moving[place] = Some(m));
-        points.iter().for_each(|point| moving[point.slave] = point.master.and_then(|master| moving[master]));
+        sites.iter().for_each(|site| moving[site.slave] = site.master.and_then(|master| moving[master]));
         let mut jumps = Self {
             bodies,
             system,
             nodes,
+            sites,
             points,
             condensed,
             moving,
@@ -126,8 +154,12 @@ impl SlipOperator {
             pulling: Vec::new(),
             series: DenseLu::default(),
             by_slip: Vec::new(),
+            by_fluid: Vec::new(),
         };
-        jumps.condense(&lengths(model))?;
+        jumps.condense()?;
+        if model.contacts.iter().any(|pair| pair.fluid.is_some()) {
+            jumps.by_fluid = jumps.under_fluid();
+        }
         Ok(jumps)
     }
 
@@ -141,9 +173,14 @@ impl SlipOperator {
         &self.by_slip
     }
 
-    /// Condenses the bodies on the contact points, equations (3) and (5).
-    fn condense(&mut self, lengths: &[f64]) -> Result<(), LinearFailure> {
-        let (n, m) = (2 * self.points.len(), 2 * self.middles);
+    /// y by p_w, one row per component: all p, then all −τ; empty without a fluid.
+    pub fn by_fluid(&self) -> &[f64] {
+        &self.by_fluid
+    }
+
+    /// Condenses the bodies on the sites, equations (3) and (5).
+    fn condense(&mut self) -> Result<(), LinearFailure> {
+        let (n, m) = (2 * self.sites.len(), 2 * self.middles);
         let jumping: Vec<Vec<f64>> = (0..n).into_par_iter().map(|j| self.gather(&self.column_of_jump(j))).collect();
         let middle: Vec<Vec<f64>> = (0..m).into_par_iter().map(|c| self.gather(&self.column_of_middle(c))).collect();
         self.middle.factorize_columns(m, middle.iter().flat_map(|column| &column[..m]).copied().collect())?;
@@ -165,24 +202,46 @@ impl SlipOperator {
         for (j, column) in stiffness.iter().enumerate() {
             let compliance = self.compliance(j);
             series.extend(column.iter().map(|k| k * compliance));
-            series[j * n + j] += lengths[j % (n / 2)];
+            series[j * n + j] += self.sites[j % (n / 2)].length;
         }
         self.series.factorize_columns(n, series)?;
         let mut columns: Vec<f64> = stiffness[n / 2..].concat();
         self.series.solve_columns(&mut columns);
-        self.by_slip = (0..n).flat_map(|row| columns[row..].iter().step_by(n)).copied().collect();
+        self.by_slip = self.of_points(&columns);
         Ok(())
     }
 
-    /// 1/α of a component of the jumps: all normal ones, then all tangential ones.
+    /// y of all points by their p_w, equation (6).
+    fn under_fluid(&self) -> Vec<f64> {
+        let sites = self.sites.len();
+        let mut columns = vec![0.0; 2 * sites * sites];
+        self.sites.iter().enumerate().for_each(|(k, site)| columns[2 * sites * k + k] = -site.length);
+        self.series.solve_columns(&mut columns);
+        self.of_points(&columns)
+    }
+
+    /// A matrix of the points, row by row, from the one of the sites with two rows per site, column by column.
+    fn of_points(&self, columns: &[f64]) -> Vec<f64> {
+        let rows = 2 * self.sites.len();
+        let row = |row: usize| self.points.iter().map(move |of| of.share * columns[rows * of.site + row]);
+        self.components().flat_map(row).collect()
+    }
+
+    /// Component of a site for every component of a point: all normal ones, then all tangential ones.
+    fn components(&self) -> impl Iterator<Item = usize> + '_ {
+        let sites = self.sites.len();
+        [0, sites].into_iter().flat_map(move |first| self.points.iter().map(move |point| first + point.site))
+    }
+
+    /// 1/α of a component of the jumps of sites: all normal ones, then all tangential ones.
     fn compliance(&self, j: usize) -> f64 {
-        self.points[j % self.points.len()].compliance[j / self.points.len()]
+        self.sites[j % self.sites.len()].compliance[j / self.sites.len()]
     }
 
     /// Forces on all contact nodes by a unit jump.
     fn column_of_jump(&self, j: usize) -> Vec<f64> {
-        let Facing { slave, directions, .. } = &self.points[j % self.points.len()];
-        let direction = directions[j / self.points.len()];
+        let Facing { slave, directions, .. } = &self.sites[j % self.sites.len()];
+        let direction = directions[j / self.sites.len()];
         let [x, y] = [0, 1].map(|i| self.column(2 * slave + i));
         x.iter().zip(y).map(|(x, y)| x * direction.x + y * direction.y).collect()
     }
@@ -214,7 +273,7 @@ impl SlipOperator {
                 let [x, y] = [0, 1].map(|i| forces[2 * point.slave + i]);
                 x * point.directions[i].x + y * point.directions[i].y
             };
-            sums.extend(self.points.iter().map(along));
+            sums.extend(self.sites.iter().map(along));
         }
         sums
     }
@@ -233,18 +292,28 @@ impl SlipOperator {
         middles.iter_mut().for_each(|w| *w = -*w);
         self.follow(&jumps, &mut middles);
         let displacement = self.recover(&forwarded, &jumps, &middles);
+        let tractions = self.components().map(|component| tractions[component]).collect();
         Shift { tractions, displacement }
     }
 
-    /// The jumps of (4) from slip and tractions.
+    /// The jumps of (4) from slip and tractions, all of points.
     pub fn jumps(&self, slip: &[f64], tractions: &[f64]) -> Vec<f64> {
         let n = slip.len();
-        let jump = |(j, y): (usize, &f64)| if j < n { 0.0 } else { slip[j - n] } - y * self.compliance(j);
-        tractions.iter().enumerate().map(jump).collect()
+        let jump = |(j, (y, component)): (usize, (&f64, usize))| {
+            let slipped = if j < n { 0.0 } else { slip[j - n] };
+            slipped - y * self.compliance(component)
+        };
+        tractions.iter().zip(self.components()).enumerate().map(jump).collect()
     }
 
-    /// u of all nodes for given jumps, without other forces.
-    pub fn displacement(&self, jumps: &[f64]) -> Vec<f64> {
+    /// u of all nodes for given jumps of the points, without other forces.
+    pub fn displacement(&self, of_points: &[f64]) -> Vec<f64> {
+        let mut jumps = vec![0.0; 2 * self.sites.len()];
+        let shares = self.points.iter().chain(&self.points).map(|point| point.share);
+        for ((jump, share), component) in of_points.iter().zip(shares).zip(self.components()) {
+            jumps[component] += share * jump;
+        }
+        let jumps = &jumps[..];
         let mut middles = vec![0.0; 2 * self.middles];
         self.follow(jumps, &mut middles);
         let nothing = self.condensed.forward(&vec![0.0; 2 * self.bodies.model().mesh.nodes.len()]);
@@ -260,16 +329,16 @@ impl SlipOperator {
 
     /// Back substitution of A u = −r: u of all nodes from the jumps and m.
     fn recover(&self, forwarded: &crate::linear::Forwarded, jumps: &[f64], middles: &[f64]) -> Vec<f64> {
-        let n = self.points.len();
+        let n = self.sites.len();
         let mut kept = vec![0.0; 2 * self.nodes.nodes.len()];
         for (place, m) in self.moving.iter().enumerate() {
             if let Some(m) = m {
                 (0..2).for_each(|i| kept[2 * place + i] = -middles[2 * m + i]);
             }
         }
-        for (k, point) in self.points.iter().enumerate() {
-            let jump = point.directions[0] * jumps[k] + point.directions[1] * jumps[n + k];
-            (0..2).for_each(|i| kept[2 * point.slave + i] -= jump[i]);
+        for (k, site) in self.sites.iter().enumerate() {
+            let jump = site.directions[0] * jumps[k] + site.directions[1] * jumps[n + k];
+            (0..2).for_each(|i| kept[2 * site.slave + i] -= jump[i]);
         }
         let mut u = self.condensed.backward(forwarded, &kept);
         u.iter_mut().for_each(|u| *u = -*u);
@@ -283,19 +352,30 @@ fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes) -> Vec<Facing
     let place = |node: usize| nodes.place(model.ties.original(node)).expect("nodes at contacts are kept");
     let points = pair.points.iter().zip(pair.small.iter().flat_map(|small| small.points.iter().flatten()));
     let of = |(slave, point): (_, &crate::contact::small_sliding::SmallPoint)| {
-        let (own, master) = point.facing().expect("nodes face nodes");
+        let (own, master) = point.facing(|node| model.ties.original(node)).expect("nodes face nodes");
         Facing {
             slave: place(own),
             master: master.map(place),
             directions: [point.normal, point.tangent],
             compliance: [inverse(pair.alpha_n), inverse(pair.law(slave).description.stiffness)],
+            length: point.length,
         }
     };
     points.map(of).collect()
 }
 
-/// ℓ of all points.
-fn lengths(model: &Model) -> Vec<f64> {
-    let small = model.contacts.iter().filter_map(|pair| pair.small.as_ref());
-    small.flat_map(|small| small.points.iter().flatten()).map(|point| point.length).collect()
+/// Sites of all points, and the places of these.
+fn gathered(all: impl Iterator<Item = Facing>) -> (Vec<Facing>, Vec<AtSite>) {
+    let (mut sites, mut points): (Vec<Facing>, Vec<AtSite>) = (Vec::new(), Vec::new());
+    let mut of_slave: BTreeMap<usize, usize> = BTreeMap::new();
+    for point in all {
+        let site = *of_slave.entry(point.slave).or_insert(sites.len());
+        points.push(AtSite { site, share: point.length });
+        match sites.get_mut(site) {
+            Some(site) => site.length += point.length,
+            None => sites.push(point),
+        }
+    }
+    points.iter_mut().for_each(|point| point.share /= sites[point.site].length);
+    (sites, points)
 }

@@ -326,7 +326,6 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "bond:pulls",
             "bond:limited",
             "interface",
-            "fluid",
             "press:pressure",
             "press:plate",
             "press:rotation",

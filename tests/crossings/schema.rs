@@ -43,6 +43,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         &["gradients", "displacement_gradients"],
         "the relation `derivatives` asks for them, tests/command/gradients.rs for those of all nodes",
     ),
+    (&["measured", "file"], "a table in a file: tests/time/water.rs"),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 

@@ -19,3 +19,4 @@ mod rupture;
 mod safety;
 mod slip_front;
 mod strength;
+mod water;

@@ -17,3 +17,4 @@ mod stability_map;
 mod switched_off;
 mod switching;
 mod time_integration;
+mod water;

@@ -1,4 +1,4 @@
-"""Spring-slider of rate-and-state friction with radiation damping: the numbers of `quasi_dynamic.rs`.
+"""Spring-slider of rate-and-state friction with radiation damping: the numbers of `quasi_dynamic.rs` and `water.rs`.
 
     python3 tests/time/spring_slider.py
 
@@ -16,7 +16,7 @@ year = 365 * 86400.0
 tau0 = 30.0
 
 
-def rate(tau, x):
+def rate(tau, x, p=p):
     psi = f0 + b * x
     z = min(np.arcsinh(tau / (2 * V0 * eta) * np.exp(psi / a)), tau / (a * p))
     scale = 2 * V0 * np.exp(-psi / a)
@@ -54,3 +54,25 @@ def run(law, years):
 
 run("ageing", 100)
 run("slip", 100)
+
+
+# Water: the pressure p - pw(t) is that of a block under a constant weight.
+def under_water(years):
+    water = lambda t: 12 * (1 - np.exp(-t / (2 * year))) * (1 + 0.2 * np.sin(t / year))
+
+    def of(t, z):
+        V = rate(tau0 + k * (Vp * t - z[0]), z[1], p - water(t))
+        return [V, (V0 * np.exp(-z[1]) - V) / D]
+
+    def fast(t, z):
+        return np.log(rate(tau0 + k * (Vp * t - z[0]), z[1], p - water(t)) / 1e-3)
+
+    x0 = np.log(V0 * 0.5 * D / Vp / D)
+    solution = solve_ivp(of, [0, years * year], [0, x0], method="LSODA", rtol=1e-10, atol=[1e-12, 1e-10], max_step=0.02 * year, events=fast)
+    s, x = solution.y[:, -1]
+    V = rate(tau0 + k * (Vp * solution.t[-1] - s), x, p - water(solution.t[-1]))
+    print("water: s, x, V at the end:", *(f"{v:.9e}" for v in (s, x, V)))
+    print("  V passes 1e-3 at", *(f"{t / year:.6f}" for t in solution.t_events[0]), "yr")
+
+
+under_water(40)

@@ -88,6 +88,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
             let over = default_over(input, method, regime);
             let because = match regime {
                 Regime::Explicit => ": a step is explicit",
+                Regime::QuasiDynamic if input.fluid_pressure.is_some() => ": for a fluid",
                 Regime::QuasiDynamic => ": a step is quasi_dynamic",
                 Regime::Dynamic if !pair.tied => ": a step has inertia",
                 Regime::Dynamic | Regime::Static => "",

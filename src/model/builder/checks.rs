@@ -2,18 +2,18 @@
 //!
 //! Quasi-dynamic steps have requirements on the model.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::Contact;
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
 use super::supports::axis;
 use crate::contact::pair::ContactPair;
-use crate::laws::friction::Cohesion;
+use crate::laws::friction::{Cohesion, PointLoad, RateLaw};
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::support::{Inclined, Motion, Prescribed};
-use crate::model::text::number;
+use crate::model::text::{number, vector};
 use crate::model::{Model, NewtonSettings, Step};
 
 /// Maximum accepted limit of Newton iterations.
@@ -139,9 +139,8 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     refuse_if(pair.radiation == 0.0, "radiation_damping", why)?;
     let why = "is not for quasi_dynamic steps: leave it out, and raise alpha_n";
     refuse_if(pair.penetration.is_some(), "normal.penetration", why)?;
-    let why =
-        "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with radiation_damping";
-    refuse_if(pair.holds_fluid(), "fluid_pressure", why)?;
+    let why = "comes from pores, whose bodies are not for quasi_dynamic steps: give it by place and time";
+    refuse_if(pair.pores.is_some(), "fluid_pressure", why)?;
     let why = "is not for quasi_dynamic steps, which know no opening: leave it out, or take static steps with radiation_damping";
     let bonds = || pair.laws.iter().filter_map(|law| law.cohesion.as_ref()).map(Cohesion::bond);
     refuse_if(bonds().any(|bond| bond.tension() > 0.0), "bond.tension", why)?;
@@ -156,12 +155,13 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     refuse_if(pair.laws.iter().any(|law| law.law.rates().is_none()), "friction", why)
 }
 
-/// Checks that every point is a node opposite a node or a rigid body, and that no node is used twice.
+/// Checks that every point is a node opposite a node or a rigid body, and that no node is used twice but where periodic sides meet.
 fn check_nodes(model: &Model) -> Checked<()> {
-    let mut seen = BTreeSet::new();
-    for pair in &model.contacts {
+    let mut seen: BTreeMap<usize, Partner> = BTreeMap::new();
+    for (number, pair) in model.contacts.iter().enumerate() {
         let refused = |message: String| Err(ModelError::new(format!("contacts.{}", pair.name), message));
-        for (slave, point) in pair.points.iter().zip(pair.small.iter().flat_map(|small| &small.points)) {
+        let points = pair.points.iter().zip(pair.small.iter().flat_map(|small| &small.points)).enumerate();
+        for (index, (slave, point)) in points {
             let tags = |nodes: &[usize]| -> String {
                 let tags: BTreeSet<String> = nodes.iter().map(|&node| model.mesh.node_tags[node].to_string()).collect();
                 tags.into_iter().collect::<Vec<_>>().join(", ")
@@ -173,21 +173,89 @@ fn check_nodes(model: &Model) -> Checked<()> {
                     tags(&own)
                 ));
             };
-            let Some((own, master)) = point.facing() else {
+            let Some((own, master)) = point.facing(|node| model.ties.original(node)) else {
+                let across = pair.mortar.is_some() && point.nodes.iter().any(|&node| is_tied(model, node));
+                let why = "averages by mortar reach across periodic sides: take method node_to_segment, which is the default of \
+                           quasi_dynamic steps";
+                refuse_if(across, format!("contacts.{}.method", pair.name), why)?;
                 return refused(format!(
                     "nodes {} coincide: quasi_dynamic steps need a master node opposite every slave node (and method \
                      node_to_segment, which is the default)",
                     tags(&point.nodes)
                 ));
             };
-            for node in std::iter::once(own).chain(master).map(|node| model.ties.original(node)) {
-                if !seen.insert(node) {
-                    return refused(format!("node {} has two partners: quasi_dynamic steps need pairs", tags(&[node])));
+            let this = Partner { contact: number, faces: master, point: index };
+            let periodic = match seen.get(&own) {
+                Some(before) if before.contact == number && before.faces == master => Some(before.point),
+                Some(_) => {
+                    return refused(format!("node {} has two partners: quasi_dynamic steps need pairs", tags(&[own])));
                 }
+                None => None,
+            };
+            if let Some(other) = periodic {
+                check_ends(model, pair, [other, index])?;
+                continue;
             }
+            let of_master = master.filter(|master| seen.insert(*master, this).is_some());
+            if let Some(master) = of_master {
+                return refused(format!("node {} has two partners: quasi_dynamic steps need pairs", tags(&[master])));
+            }
+            seen.insert(own, this);
         }
     }
     Ok(())
+}
+
+/// Whether periodic sides join a node with another.
+fn is_tied(model: &Model, node: usize) -> bool {
+    model.ties.pairs().iter().any(|(copy, original)| node == *copy || node == *original)
+}
+
+/// Use of a node at a contact.
+#[derive(Clone, Copy)]
+struct Partner {
+    contact: usize,
+    /// master node, none on a rigid body
+    faces: Option<usize>,
+    /// number of the point
+    point: usize,
+}
+
+/// Relative difference up to which two ends of a contact that periodic sides join are alike [-].
+const ALIKE: f64 = 1e-6;
+
+/// Checks that two points that periodic sides join, which are one node with one slip, are under the same conditions.
+fn check_ends(model: &Model, pair: &ContactPair, ends: [usize; 2]) -> Checked<()> {
+    let x = model.mesh.undeformed();
+    let states = pair.initial_states(&x);
+    let alike = |[a, b]: [f64; 2]| (a - b).abs() <= ALIKE * a.abs().max(b.abs()) || a.is_nan() && b.is_nan();
+    let of_laws = |time: f64| {
+        let of = |k: usize| {
+            let (slave, friction) = (&pair.points[k], &states[k].friction);
+            let loading =
+                PointLoad { traction: friction.traction, pressure: friction.pressure, damping: pair.radiation };
+            let ask = |law: &dyn RateLaw| {
+                let state = law.evolving(friction);
+                let slip_rate = law.slip_rate(state, loading);
+                [state, slip_rate, law.evolution(state, slip_rate), law.evolution(state, 2.0 * slip_rate)]
+            };
+            let stiffness = pair.law(slave).description.stiffness;
+            let rates = pair.ask_law(slave, [time, time], |law| law.law.rates().map(ask)).ok().flatten();
+            let [a, b, c, d] = rates.unwrap_or([f64::NAN; 4]);
+            [a, b, c, d, stiffness, pair.fluid_pressure(slave, &x, time)]
+        };
+        let [one, other] = ends.map(of);
+        one.into_iter().zip(other).all(|(a, b)| alike([a, b]))
+    };
+    let [one, other] = ends.map(|k| &states[k].friction);
+    let starts = alike([one.pressure, other.pressure]) && alike([one.traction, other.traction]);
+    let mut times = model.steps.iter().flat_map(|step| [step.span.start, step.span.end]);
+    let [one, other] = ends.map(|k| vector(pair.points[k].at(&x)));
+    let message = format!(
+        "periodic sides make one node of {one} and {other}, and its friction, initial tractions or fluid_pressure are not the same at both: \
+         let them be periodic too"
+    );
+    refuse_if(!(starts && times.all(of_laws)), format!("contacts.{}", pair.name), message)
 }
 
 /// Checks that supports vary linearly and constrain no node of a contact.

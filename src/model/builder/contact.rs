@@ -1,22 +1,21 @@
-//! Input of a contact, with checks of its fluid and its rigid master.
+//! Input of a contact, with checks of its rigid master.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
-use super::friction::{Along, Friction, check_in_time};
-use super::groups::{self, TIMES};
+use super::fluid::{FluidPressure, GivenPressure, Measured};
+use super::friction::{Along, Friction};
+use super::groups;
 use super::interface::Interface;
 use crate::contact::master::{Circle, Plane, Polyline, Shape};
-use crate::contact::pair::{BadPressure, ContactPair, Fluid};
+use crate::contact::pair::ContactPair;
 use crate::laws::friction::{BondParameters, Dilatancy, FrictionParameters};
 use crate::mesh::Mesh;
-use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::method::Method;
-use crate::model::text::{number, vector};
-use crate::model::written::{Written, written};
+use crate::model::written::written;
 
 /// A contact pair.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -100,9 +99,9 @@ pub struct Contact {
     /// closed or open, in addition to the contact pressure p; friction, `initial.pressure` and all outputs called
     /// pressure use this effective p only. What acts at t = 0 of a contact with `initial` is there before anything moves, in addition
     /// to `initial.pressure`; what the run raises is 0 at t = 0. The pressure is prescribed: there is no flow. "of_bodies" takes it from the pores of the
-    /// slave's bodies (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it. Not for
-    /// quasi_dynamic steps [F/L²]
-    #[schemars(with = "Option<Profile>")]
+    /// slave's bodies (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it.
+    /// {"measured": {"file": …}} takes it from a table of time and place [F/L²]
+    #[schemars(with = "Option<GivenPressure>")]
     pub fluid_pressure: Option<FluidPressure>,
     /// Friction parameters that vary along the slave and in time
     #[serde(default)]
@@ -112,57 +111,13 @@ pub struct Contact {
     pub initial: Option<InitialTractions>,
 }
 
-/// Pressure of a fluid at a contact.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum FluidPressure {
-    /// That of the fluid in the pores of the slave's bodies
-    OfBodies,
-    /// That of a fluid between the surfaces
-    Given(Profile),
-}
-
-const OF_BODIES: &str = "of_bodies";
-
-impl Written for FluidPressure {
-    const EXPECTING: &'static str =
-        "\"of_bodies\", a number, an expression in x, y and t such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}";
-
-    fn number(value: f64) -> Option<Self> {
-        Profile::number(value).map(Self::Given)
-    }
-
-    fn text<E: serde::de::Error>(text: &str) -> Result<Self, E> {
-        if text == OF_BODIES { Ok(Self::OfBodies) } else { Profile::text(text).map(Self::Given) }
-    }
-
-    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-        Profile::object(object).map(Self::Given)
-    }
-}
-
-impl<'de> Deserialize<'de> for FluidPressure {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::read(deserializer)
-    }
-}
-
-impl Serialize for FluidPressure {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::OfBodies => serializer.serialize_str(OF_BODIES),
-            Self::Given(pressure) => Serialize::serialize(pressure, serializer),
-        }
-    }
-}
-
 /// Normal contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Normal {
     /// α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body and the depth h of
-    /// the slave's elements; 10 (λ + 2G)/h at Gauss points but on planes, and where a step has inertia, is quasi_dynamic or has `rupture`. A slave group of
+    /// the slave's elements; 10 (λ + 2G)/h at Gauss points but on planes, and where a step has inertia, is quasi_dynamic without `fluid_pressure` or has `rupture`. A slave group of
     /// points has no elements and needs a number
     pub alpha_n: Option<f64>,
     /// Largest penetration allowed [L]: the pressure is increased until no penetration is larger (augmented Lagrangian
@@ -396,6 +351,9 @@ setters! { contact: Contact;
         contact.fluid_pressure = Some(FluidPressure::Given(pressure.into()));
     }
 
+    /// Sets the pressure p_w of a fluid from a table of time and place.
+    measured_pressure(measured: Measured) { contact.fluid_pressure = Some(FluidPressure::Measured(measured)); }
+
     /// Makes friction go by the effective stress, with the pressure of the fluid in the pores of the slave's bodies.
     fluid_pressure_of_bodies() { contact.fluid_pressure = Some(FluidPressure::OfBodies); }
 
@@ -424,52 +382,6 @@ setters! { contact: Contact;
             initial.balanced = true;
         }
     }
-}
-
-/// Returns the fluid of a contact, if it has one.
-pub fn fluid(place: &str, contact: &Contact) -> Checked<Option<Fluid>> {
-    let Some(FluidPressure::Given(pressure)) = contact.fluid_pressure.clone() else { return Ok(None) };
-    check_in_time(&pressure, &format!("{place}.fluid_pressure"))?;
-    Ok(Some(Fluid::new(move |at, time| pressure.value_at(at, time))))
-}
-
-/// Checks that a fluid pressure is not negative.
-pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model, time: f64) -> Checked<()> {
-    let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&model.mesh.undeformed(), time) else {
-        return Ok(());
-    };
-    let message = format!(
-        "is {} at {} and t = {}: must be a finite number, zero or positive, which pushes the surfaces apart",
-        number(pressure),
-        vector(at),
-        number(time)
-    );
-    Err(ModelError::new(format!("{place}.fluid_pressure"), message))
-}
-
-/// Maximum number of values of fluid pressures that are checked before the run.
-const VALUES: usize = 2_000_000;
-
-/// Checks fluid pressures at evenly spaced times of the steps, as long as their times are certain; times in between are checked
-/// during the run.
-pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> {
-    for (contact, pair) in contacts.iter().zip(&model.contacts) {
-        match &contact.fluid_pressure {
-            Some(FluidPressure::Given(pressure)) if pressure.depends_on_time() => {}
-            _ => continue,
-        }
-        let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, TIMES as usize) as u32;
-        for step in &model.steps {
-            // Such a step may end immediately, and the times of all later steps are unknown.
-            if step.until.is_some() {
-                break;
-            }
-            for time in step.span.times(looks).skip(1) {
-                check_fluid(pair, &format!("contacts.{}", contact.name), model, time)?;
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Returns the shape of a rigid master.

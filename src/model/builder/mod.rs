@@ -54,6 +54,7 @@ mod checks;
 mod contact;
 mod error;
 mod facing;
+mod fluid;
 mod friction;
 mod groups;
 mod initial;
@@ -76,9 +77,10 @@ mod unseen;
 pub use bar::{BarBond, BarEnd, BarInput, Embedding};
 pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use bond::FADES;
-pub use contact::{Contact, FluidPressure, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
+pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_positive, refuse_if};
+pub use fluid::{Coordinate, FluidPressure, Measured, MeasuredTable};
 pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};
 pub use groups::Place;
 pub(crate) use groups::nodes_at;
@@ -319,7 +321,8 @@ impl Builder {
         requests::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;
         initial::check_excess(&model)?;
-        contact::check_fluids_in_time(&self.contacts, &model)?;
+        let fluids = self.contacts.iter().map(|contact| contact.fluid_pressure.as_ref());
+        fluid::check_fluids_in_time(fluids, &model)?;
         unconstrained::check(&self.steps, &model)?;
         Ok(model)
     }

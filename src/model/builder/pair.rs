@@ -55,7 +55,7 @@ use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::regime;
 use super::thickness::Outline;
-use super::{contact, friction, initial, pores, rigid, unseen};
+use super::{contact, fluid, friction, initial, pores, rigid, unseen};
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
@@ -121,7 +121,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         penetration: contact.normal.penetration,
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
-        fluid: contact::fluid(&place, contact)?,
+        fluid: fluid::fluid(&place, contact.fluid_pressure.as_ref())?,
         pores,
         laws,
         in_time,
@@ -147,7 +147,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     }
     check_stick(&pair, &place)?;
     start(&mut pair, contact, model, &place)?;
-    contact::check_fluid(&pair, &place, model, 0.0)?;
+    fluid::check_fluid(&pair, &place, model, 0.0)?;
     Ok(pair)
 }
 
@@ -468,12 +468,13 @@ pub struct Penalty {
     pub compliance: f64,
 }
 
-/// α_n over (λ + 2G)/h unless given [-]
+/// α_n over (λ + 2G)/h unless given; in quasi-dynamic steps a fluid is to change the pressure, not the gap, and stiffness costs nothing [-]
 #[doc(hidden)]
 pub fn default_over(contact: &Contact, method: Option<Method>, regime: Regime) -> f64 {
     match regime {
         Regime::Static | Regime::Dynamic if contact.tied => TIED,
         Regime::Static if bears_stiffness(contact, method) => STATIC,
+        Regime::QuasiDynamic if contact.fluid_pressure.is_some() => STATIC,
         _ => SOFTER,
     }
 }

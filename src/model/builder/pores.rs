@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::contact::{Contact, FluidPressure};
+use super::contact::Contact;
 use super::error::{Checked, ModelError, refuse_if};
+use super::fluid::FluidPressure;
 use super::friction::position;
 use crate::contact::pores::Pores;
 use crate::contact::surface::SlavePoint;

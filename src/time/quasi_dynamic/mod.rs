@@ -15,10 +15,13 @@ use self::slip_equations::{Rates, SlipEquations, with_rates};
 use self::steps::{Steps, Tried};
 use super::accept::{accept, take_stock};
 use crate::contact::force::ContactState;
+use crate::contact::pair::{BadPressure, Fluid};
 use crate::equations::slip_operator::{NoSlipOperator, Shift, SlipOperator};
+use crate::equations::sums::TrialFailure;
 use crate::equations::supports::turn;
 use crate::equations::{Evaluation, Trial};
 use crate::linear::system::Request;
+use crate::mesh::configuration::Configuration;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -100,7 +103,9 @@ impl QuasiDynamic {
             return Ok(Gone { steps: 0, next: dt });
         };
         let old = state.clone();
-        let interface = self.interface(&old);
+        let (model, mut stops) = (self.model.clone(), Stops::after(old.time, &self.model));
+        let places = model.mesh.undeformed();
+        let interface = self.interface(&old, places);
         let mut steps = Steps::new(interface, old.time, tolerance);
         let (mut gone, mut next, mut last, mut ended) = (0, dt, 0.0, false);
         if let Some(worst) = steps.now().iter().position(|rates| !rates.is_good()) {
@@ -111,10 +116,13 @@ impl QuasiDynamic {
             let h = next.clamp(self.step.increments.min, self.step.increments.max);
             ended = h > left * (1.0 - NEAR_END);
             let h = if ended { left } else { h };
+            let to_corner = stops.left(steps.since).filter(|to_corner| h > to_corner * (1.0 - NEAR_END));
+            ended &= to_corner.is_none();
+            let h = to_corner.unwrap_or(h);
             match steps.attempt(h) {
                 Tried::Taken(share) => {
                     (gone, last) = (gone + 1, h);
-                    next = if ended { next } else { share * h };
+                    next = if ended || to_corner.is_some() { next } else { share * h };
                 }
                 Tried::Refused { share, worst, rates } => {
                     ended = false;
@@ -130,6 +138,13 @@ impl QuasiDynamic {
             }
         }
         let time = if ended { self.step.span.end } else { old.time + steps.since };
+        if let Some((pair, bad)) =
+            model.contacts.iter().find_map(|pair| Some((pair, pair.bad_fluid_pressure(&places, time)?)))
+        {
+            let BadPressure { at, pressure } = bad;
+            let (contact, at) = (pair.name.clone(), [at.x, at.y]);
+            return Err(IncrementFailure::Start(TrialFailure::FluidPressure { contact, at, pressure, time }));
+        }
         let (contacts, jumps) = self.contacts(&old, &steps, time);
         let since = steps.since;
         self.follow(&old, time, since, contacts, &jumps, state)?;
@@ -137,16 +152,23 @@ impl QuasiDynamic {
         Ok(Gone { steps: gone, next })
     }
 
-    fn interface<'a>(&'a self, state: &'a State) -> SlipEquations<'a> {
+    fn interface<'a>(&'a self, state: &'a State, places: Configuration<'a>) -> SlipEquations<'a> {
         let states = self.model.contacts.iter().zip(&state.contacts);
         let points = states.flat_map(|(pair, states)| pair.points.iter().zip(states).map(move |(p, s)| (pair, p, s)));
-        SlipEquations { points: points.collect(), by_slip: self.jumps.by_slip(), loading: &self.loading.tractions }
+        SlipEquations {
+            points: points.collect(),
+            by_slip: self.jumps.by_slip(),
+            by_fluid: self.jumps.by_fluid(),
+            loading: &self.loading.tractions,
+            places,
+        }
     }
 
     /// Contact states at the end of the steps, and the traction changes since their start.
     fn contacts(&self, old: &State, steps: &Steps, time: f64) -> (Vec<Vec<ContactState>>, Vec<f64>) {
         let n = steps.last.len();
         let jumps = self.jumps.jumps(&steps.z[..n], &steps.tractions());
+        let places = self.model.mesh.undeformed();
         let mut numbers = 0..n;
         let mut state = |pair, slave, old: &ContactState| {
             let k = numbers.next().unwrap_or_default();
@@ -171,6 +193,7 @@ impl QuasiDynamic {
             new.slip = jumps[n + k];
             new.radiation = radiation;
             new.radiated += steps.works[k][1];
+            new.fluid = pair.fluid_pressure(slave, &places, time);
             new
         };
         let pairs = self.model.contacts.iter().zip(&old.contacts);
@@ -215,12 +238,14 @@ impl QuasiDynamic {
 
     /// Reason why a point cannot continue from a state by the shortest step `dt`, or cannot be evaluated there (`dt` = 0).
     fn failure(&self, state: &State, number: usize, rates: &Rates, dt: f64) -> IncrementFailure {
-        let (pair, slave, _) = self.interface(state).points[number];
+        let mut points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |slave| (pair, slave)));
+        let Some((pair, slave)) = points.nth(number) else { unreachable!("a contact point has failed that is none") };
         let at = slave.at(&self.model.configuration(&state.displacement));
         let why = if rates.pressure <= 0.0 {
+            let fluid = if pair.fluid.is_some() { " or lower fluid_pressure" } else { "" };
             format!(
                 "the pressure has dropped to {:e}, and quasi_dynamic steps keep every point closed: raise the \
-                 compression, or take static steps with radiation_damping",
+                 compression{fluid}, or take static steps with radiation_damping",
                 rates.pressure
             )
         } else if !rates.is_good() {
@@ -238,15 +263,37 @@ impl QuasiDynamic {
     }
 }
 
-/// Adds the contact forces on the nodes.
+/// Corners of measured fluid pressures, between which the rates are smooth.
+struct Stops {
+    /// Times since the start, ascending [T]
+    left: Vec<f64>,
+}
+
+impl Stops {
+    fn after(start: f64, model: &Model) -> Self {
+        let times = model.contacts.iter().filter_map(|pair| pair.fluid.as_ref()).flat_map(Fluid::corners);
+        let mut left: Vec<f64> = times.map(|time| time - start).filter(|left| *left > NEAR_END * start).collect();
+        left.sort_by(f64::total_cmp);
+        Self { left }
+    }
+
+    /// Time to the next one.
+    fn left(&mut self, since: f64) -> Option<f64> {
+        self.left.iter().map(|corner| corner - since).find(|left| *left > NEAR_END * since)
+    }
+}
+
+/// Adds the contact forces on the nodes, and those of fluids to the loads.
 fn pull(model: &Model, contacts: &[Vec<ContactState>], found: &mut Evaluation) {
     for (pair, states) in model.contacts.iter().zip(contacts) {
         for (point, state) in pair.small.iter().flat_map(|small| small.points.iter().flatten()).zip(states) {
-            let ContactState { friction, radiation, length, .. } = state;
-            let traction = point.normal * friction.pressure - point.tangent * (state.shear() + radiation);
+            let ContactState { friction, radiation, fluid, length, .. } = state;
+            let of_fluid = point.normal * *fluid;
+            let traction = point.normal * friction.pressure - point.tangent * (state.shear() + radiation) + of_fluid;
             for (&node, w) in point.nodes.iter().zip(&point.weights) {
                 let node = model.ties.original(node);
                 (0..2).for_each(|i| found.force[2 * node + i] -= w * traction[i] * length);
+                (0..2).for_each(|i| found.loads[2 * node + i] += w * of_fluid[i] * length);
             }
         }
     }

@@ -3,8 +3,11 @@
 //! ```text
 //! ṡ = V,   ẋ = ẋ(V, x)                         s: slip, x: state of the law                                         (1)
 //! τ = q(V, x, p) + q_b + η V                    solved for V at every point; q_b = s(Λ) sgn τ: a bond, 0 without one     (2)
-//! (p, −τ) = (p, −τ)₀ + Y s + ẏ (t − t₀)         bodies and springs of the contact, ẏ: loading ([`crate::equations::slip_operator`])   (3)
+//! (p, −τ) = (p, −τ)₀ + Y s + Z (p_w − p_w0) + ẏ (t − t₀)                                                       (3)
 //! ```
+//! Y, Z: bodies and springs of the contact, ẏ: loading ([`crate::equations::slip_operator`]). The pressure p_w of a fluid is that of the
+//! time at which rates are asked for, at every stage of a step.
+//!
 //! The contact spring α_t, with α_c of a bond beside it, is in series with the slider, its bond and its damper, and these with the bodies.
 //! Below its strength s = c_r + (c − c_r) ⟨1 − Λ/D⟩ a bond holds, but for a share of 10⁻¹² of the traction that friction sees.
 
@@ -14,6 +17,7 @@ use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{BondState, Cohesion, PointLoad, RateLaw};
+use crate::mesh::configuration::Configuration;
 
 /// Number of points that one thread takes at a time; no sum depends on their order.
 const PART: usize = 32;
@@ -53,23 +57,46 @@ pub struct SlipEquations<'a> {
     pub points: Vec<(&'a ContactPair, &'a SlavePoint, &'a ContactState)>,
     /// Y of (3), row by row
     pub by_slip: &'a [f64],
+    /// Z of (3), row by row; empty without a fluid
+    pub by_fluid: &'a [f64],
     /// ẏ [F/(L² T)]
     pub loading: &'a [f64],
+    /// Reference positions, for p_w
+    pub places: Configuration<'a>,
 }
 
 impl SlipEquations<'_> {
     /// All rates at a time after t₀, from the slips since then and the state variables, both in one list; `now` is the run
     /// time.
     pub fn rates(&self, now: f64, since: f64, z: &[f64], rates: &mut Vec<Rates>) {
-        let points = 0..self.points.len();
-        let all = points.into_par_iter().with_min_len(PART).map(|k| self.point(k, now, since, z));
+        let (points, fluid) = (0..self.points.len(), self.fluid(now));
+        let all = points.into_par_iter().with_min_len(PART).map(|k| self.point(k, now, since, z, &fluid));
         all.collect_into_vec(rates);
     }
 
-    fn point(&self, k: usize, now: f64, since: f64, z: &[f64]) -> Rates {
+    /// p_w − p_w0 of all points at a time; empty without a fluid.
+    fn fluid(&self, now: f64) -> Vec<f64> {
+        if self.by_fluid.is_empty() {
+            return Vec::new();
+        }
+        let rise = |(pair, slave, start): &(&ContactPair, &SlavePoint, &ContactState)| {
+            pair.fluid_pressure(slave, &self.places, now) - start.fluid
+        };
+        self.points.par_iter().with_min_len(PART).map(rise).collect()
+    }
+
+    /// p and −τ minus those at t₀: one component of one point.
+    fn change(&self, row: usize, since: f64, slips: &[f64], fluid: &[f64]) -> f64 {
+        let n = slips.len();
+        let own = row * n..(row + 1) * n;
+        let by_fluid = if fluid.is_empty() { 0.0 } else { dot(&self.by_fluid[own.clone()], fluid) };
+        dot(&self.by_slip[own], slips) + self.loading[row] * since + by_fluid
+    }
+
+    fn point(&self, k: usize, now: f64, since: f64, z: &[f64], fluid: &[f64]) -> Rates {
         let n = self.points.len();
         let (pair, slave, start) = self.points[k];
-        let change = |row: usize| dot(&self.by_slip[row * n..(row + 1) * n], &z[..n]) + self.loading[row] * since;
+        let change = |row: usize| self.change(row, since, &z[..n], fluid);
         let pressure = start.friction.pressure + change(k);
         let traction = start.shear() + start.radiation - change(n + k);
         let free = match strength(pair, slave, start, z[k]) {
@@ -86,10 +113,10 @@ impl SlipEquations<'_> {
         Rates { slip_rate, evolution, traction: traction - radiation, bond: traction - free, pressure, radiation }
     }
 
-    /// p and −τ at t₀ + `since`, minus those at t₀.
-    pub fn tractions(&self, since: f64, slips: &[f64]) -> Vec<f64> {
-        let rows = self.by_slip.chunks_exact(slips.len().max(1));
-        rows.zip(self.loading).map(|(row, loading)| dot(row, slips) + loading * since).collect()
+    /// p and −τ at t₀ + `since`, minus those at t₀; `now` is the run time.
+    pub fn tractions(&self, now: f64, since: f64, slips: &[f64]) -> Vec<f64> {
+        let fluid = self.fluid(now);
+        (0..2 * slips.len()).map(|row| self.change(row, since, slips, &fluid)).collect()
     }
 }
 

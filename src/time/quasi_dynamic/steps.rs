@@ -77,7 +77,7 @@ impl<'a> Steps<'a> {
 
     /// Current p and −τ, minus those at t₀.
     pub fn tractions(&self) -> Vec<f64> {
-        self.interface.tractions(self.since, &self.z[..self.last.len()])
+        self.interface.tractions(self.start + self.since, self.since, &self.z[..self.last.len()])
     }
 
     /// Tries a step of length `h`.

@@ -1,0 +1,95 @@
+"""Tables of docs/validation/water.md: python3 docs/faults_and_water.py PROGRAM NAME prints one of the slow tier.
+
+Needs numpy.
+"""
+
+import sys
+from math import erfc, exp, log10, pi, sqrt
+
+import numpy as np
+
+from results import Run, text_of
+
+DAY = 86400.0
+# Slip at x = 0 after 100 and 365 days [m], and the largest slip rate there [log10 m/s] with its time [d]: boundary elements on a graded
+# grid, extrapolated, and CYCLAPS.
+BP6 = {"ageing": [0.17511, 0.20683, -6.758, 89.08], "slip": [0.24678, 0.27206, -5.9094, 42.41]}
+# The source of BP6: diffusivity [m²/s], rate over storage and the root of the diffusivity [Pa/√s]
+DIFFUSIVITY, RATE, OFF = 0.1, 1.25e-6 / (1e-8 * 0.1 * sqrt(0.1)), 100 * DAY
+
+
+def grading(length, count, first):
+    """Ratio of the last of so many lengths to the first, which grow in a geometric series to a sum."""
+    low, high = 1.0 + 1e-12, 3.0
+    for _ in range(200):
+        ratio = (low + high) / 2
+        low, high = (ratio, high) if first * (ratio**count - 1) / (ratio - 1) < length else (low, ratio)
+    return low ** (count - 1)
+
+
+def sides_of_a_fault(edge, core, far, count, up):
+    """Blocks of two bodies along a fault on y = 0: even within the core, graded to the far sides."""
+    aside, away, blocks = grading(far - core, count, edge), grading(far, up, edge), []
+    for body, sign in [("lower", -1), ("upper", 1)]:
+        for [low, high], parts, ratio in [([-far, -core], count, 1 / aside), ([-core, core], round(2 * core / edge), 1.0), ([core, far], count, aside)]:
+            corners = [[low, 0], [high, 0], [high, sign * far], [low, sign * far]]
+            sides = [f"{body}_fault", None, f"{body}_far", None]
+            blocks.append({"body": body, "corners": corners, "elements": [parts, up], "grading": [ratio, away], "sides": sides})
+    return {"blocks": blocks}
+
+
+def source(t):
+    """Pressure of a source at x = 0 from a time on, as an expression."""
+    return f"sqrt({t})*(exp(-x^2/({4 * DIFFUSIVITY}*{t}))/sqrt(pi) - abs(x)/sqrt({4 * DIFFUSIVITY}*{t})*erfc(abs(x)/sqrt({4 * DIFFUSIVITY}*{t})))"
+
+
+def bp6(edge, evolution):
+    """SEAS BP6-QD-A (ageing) and -S (slip): a fault that strengthens with rate, into which water is injected for 100 days."""
+    shear, wave = 2670 * 3464.0**2, 3464.0
+    # G* = G/(1 − ν) in the plane stands for G across it.
+    modulus, poisson = 0.75 * shear, 0.25
+    material = {"model": "linear", "E": 2 * modulus * (1 + poisson), "nu": poisson, "density": 2670}
+    alpha_t = 100 * shear / edge
+    friction = {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-6, "a": 0.007, "b": 0.005, "D_c": 0.004, "theta": 10**10.6123183191346,
+                "evolution": evolution, "alpha_t": alpha_t}
+    water = f"max(0, {RATE}*({source('max(t, 1e-9)')} - {source(f'max(t - {OFF}, 1e-9)')}))"
+    scheme, dt = {"quasi_dynamic": {"tolerance": 1e-5, "every": 1}}, {"initial": 10}
+    return {
+        "title": "BP6",
+        "mesh": sides_of_a_fault(edge, 6000.0, 240e3, 40, 60),
+        "bodies": {"lower": {"material": material}, "upper": {"material": material}},
+        "contacts": {"fault": {
+            "slave": "upper_fault", "master": "lower_fault", "sliding": "small", "radiation_damping": shear / (2 * wave), "friction": friction,
+            "along": {"law": [{"where": "abs(x) - 20000", "friction": {"law": "prescribed", "slip_rate": 0, "alpha_t": alpha_t}}]},
+            "fluid_pressure": water, "initial": {"pressure": 50e6, "traction": 29.2e6, "balanced": True}}},
+        "steps": [
+            {"name": "inject", "duration": OFF, "scheme": scheme, "dt": dt,
+             "supports": [{"on": "lower_far", "ux": 0, "uy": 0}, {"on": "upper_far", "ux": 0, "uy": 0}]},
+            {"name": "spread", "duration": 265 * DAY, "scheme": scheme, "dt": dt}],
+        "output": {"fields": False, "report": False},
+    }
+
+
+def bp6_table(program):
+    """Slip and largest slip rate of BP6 on elements that are halved."""
+    rows = [["state law", "elements [m]", "time steps", "slip after 100 d [m]", "after 365 d [m]", "largest log₁₀ V", "at [d]"]]
+    for evolution in ["ageing", "slip"]:
+        for edge in [250.0, 125.0, 62.5] if evolution == "ageing" else [125.0, 62.5]:
+            run = Run(program, bp6(edge, evolution))
+            time, x = run.history["time"], run.interface("fault.x")
+            middle = np.abs(x if x.ndim == 1 else x[0]).argmin()
+            slip, rate = (run.interface(f"fault.{name}")[:, middle] for name in ["slip", "slip_rate"])
+            slip, rate, peak = slip[-len(time):], np.abs(rate[-len(time):]), np.abs(rate[-len(time):]).argmax()
+            at = abs(slip[np.abs(time - OFF).argmin()])
+            end, reference = abs(slip[-1]), BP6[evolution]
+            off = [f"{value:.5f} ({100 * (value / reference - 1):+.2f} %)" for value, reference in [(at, reference[0]), (end, reference[1])]]
+            rows.append([evolution, f"{edge:g}", str(len(time)), *off, f"{log10(rate[peak]):.3f}", f"{time[peak] / DAY:.2f}"])
+        slips = [f"{value:.5f}" for value in BP6[evolution][:2]]
+        rows.append([evolution, "reference", "", *slips, f"{BP6[evolution][2]:.3f}", f"{BP6[evolution][3]:.2f}"])
+    return rows
+
+
+SLOW_WATER = {"bp6": bp6_table}
+
+if __name__ == "__main__":
+    print(text_of(SLOW_WATER[sys.argv[2]](sys.argv[1])))
