@@ -1,4 +1,4 @@
-"""Tables of docs/validation/water.md: python3 docs/faults_and_water.py PROGRAM NAME prints one of the slow tier.
+"""Tables of docs/validation/water.md: python3 docs/faults_and_water.py PROGRAM NAME prints one.
 
 Needs numpy.
 """
@@ -89,7 +89,88 @@ def bp6_table(program):
     return rows
 
 
+def along(run, x, name):
+    """Places of the points of the fault over a length, ascending, with an array at the end of the run."""
+    x = run.interface(f"fault.{x}")
+    x, values = x if x.ndim == 1 else x[0], run.interface(f"fault.{name}")[-1]
+    order = np.argsort(x)
+    return x[order], np.abs(values[order])
+
+
+def injection(ratio, half):
+    """A fault of constant friction whose middle is held at a pressure: T, the half-length of its crack at the end."""
+    diffusivity, time, friction, pressure, water = 0.1, 2.0, 0.6, 1e-3, 5e-4
+    mesh = sides_of_a_fault(half / 16, 1.5 * half, 60 * half, 14, 18)
+    for block in mesh["blocks"]:
+        block["kind"] = "Q8"
+    body = {"material": {"model": "linear", "E": 2.5, "nu": 0.25}}
+    return {
+        "title": "self-similar injection", "mesh": mesh, "bodies": {"lower": body, "upper": body},
+        "contacts": {"fault": {
+            "slave": "upper_fault", "master": "lower_fault", "sliding": "small", "friction": {"law": "coulomb", "mu": friction},
+            "fluid_pressure": f"{water}*erfc((abs(x) + 1e-9)/(2*sqrt({diffusivity}*t + 1e-30)))",
+            "initial": {"pressure": pressure, "traction": friction * (pressure - ratio * water), "balanced": True}}},
+        "steps": [{"name": "inject", "duration": time, "dt": {"initial": 0.2, "max": 0.2},
+                   "supports": [{"on": "lower_far", "ux": 0, "uy": 0}, {"on": "upper_far", "ux": 0, "uy": 0}]}],
+        "output": {"exact": True, "fields": False, "report": False},
+    }
+
+
+def injection_table(program):
+    """Slip and length of the crack, over those of the closed form."""
+    rows = [["T", "quantity", "reference", "ours", "difference"]]
+    for ratio, length, middle, side in [(0.5, 0.791607, 0.468661, 0.233735), (0.9, 0.139813, 0.100051, 0.0534441)]:
+        half = length * sqrt(4 * 0.1 * 2.0)
+        x, slip = along(Run(program, injection(ratio, half)), "x", "slip")
+        x, slip = x / half, slip / (0.6 * 5e-4 * half * 0.75)
+        found = [slip[np.abs(x - place).argmin()] for place in [0.0, 0.5, 0.875, 0.90625]]
+        near, nearer = (value ** (2 / 3) for value in found[2:])
+        tip = 0.875 + near * 0.03125 / (near - nearer)
+        values = [("slip at the middle", middle, found[0]), ("slip half way", side, found[1]), ("λ", length, tip * length)]
+        rows += [[f"{ratio:g}", name, f"{value:.5f}", f"{ours:.5f}", f"{100 * (ours / value - 1):+.2f} %"] for name, value, ours in values]
+    return rows
+
+
+def reservoir(edge, friction):
+    """A reservoir of 225 m that a vertical fault displaces by 75 m, depleted by 25 MPa."""
+    inner, far, count = 225.0, 20e3, 32
+    ratio, fine, blocks = grading(far - inner, count, edge), round(2 * inner / edge), []
+    for body, sign in [("left", -1), ("right", 1)]:
+        for x0, x1, nx, gx in [(0.0, inner, fine // 2, 1.0), (inner, far, count, ratio)]:
+            for y0, y1, ny, gy in [(-far, -inner, count, 1 / ratio), (-inner, inner, fine, 1.0), (inner, far, count, ratio)]:
+                corners = [[sign * x0, y0], [sign * x1, y0], [sign * x1, y1], [sign * x0, y1]]
+                sides = [f"{body}_bottom" if y0 == -far else None, f"{body}_far" if x1 == far else None, None, None if x0 else f"{body}_fault"]
+                blocks.append({"body": body, "corners": corners, "elements": [nx, ny], "grading": [gx, gy], "sides": sides})
+    rock = {"model": "linear", "E": 14.95e9, "nu": 0.15}
+    water = {"left": (-150, 75), "right": (-75, 150)}
+    return {
+        "title": "displaced reservoir", "mesh": {"blocks": blocks},
+        "bodies": {name: {"material": rock, "pore_pressure": {"pressure": f"-25e6*t*(signum(y - {low}) - signum(y - {high}))/2", "biot": 0.9}}
+                   for name, (low, high) in water.items()},
+        "contacts": {"fault": {
+            "slave": "left_fault", "master": "right_fault", "sliding": "small", "method": "node_to_segment", "friction": friction,
+            "initial": {"pressure": 60e6, "balanced": True}}},
+        "steps": [{"name": "deplete", "duration": 1, "dt": {"initial": 1}, "supports": [
+            {"on": "left_far", "ux": 0}, {"on": "right_far", "ux": 0}, {"on": "left_bottom", "uy": 0}, {"on": "right_bottom", "uy": 0}]}],
+        "output": {"exact": True, "fields": False, "report": False},
+    }
+
+
+def reservoir_table(program):
+    """Slip without friction, and shear of a fault that sticks, over depth."""
+    rows = [["place [m]", "slip, reference [m]", "ours", "difference", "shear of a stuck fault, reference [MPa]", "ours", "difference"]]
+    y, slip = along(Run(program, reservoir(12.5, {"law": "frictionless"})), "y", "slip")
+    stuck = Run(program, reservoir(12.5, {"law": "coulomb", "mu": 0.9, "alpha_t": 4e12}))
+    at, shear = along(stuck, "y", "traction")
+    for place, way, traction in [(0, 0.181731, 4.088248), (50, 0.181731, 5.474311), (100, 0.121154, 3.095975), (125, 0.060577, 1.104989)]:
+        found = [values[np.abs(x - place).argmin()] for x, values in [(y, slip), (at, shear / 1e6)]]
+        off = [f"{100 * (ours / value - 1):+.2f} %" for ours, value in zip(found, [way, traction])]
+        rows.append([str(place), f"{way:.5f}", f"{found[0]:.5f}", off[0], f"{traction:.4f}", f"{found[1]:.4f}", off[1]])
+    return rows
+
+
 SLOW_WATER = {"bp6": bp6_table}
+WATER = {"self_similar_injection": injection_table, "displaced_reservoir": reservoir_table}
 
 if __name__ == "__main__":
-    print(text_of(SLOW_WATER[sys.argv[2]](sys.argv[1])))
+    print(text_of({**SLOW_WATER, **WATER}[sys.argv[2]](sys.argv[1])))

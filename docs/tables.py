@@ -23,7 +23,7 @@ from cavities_and_walls import WALLS
 from choosing import CHOOSING
 from closed_forms import CLOSED
 from error_bars import BARS, SLOW_BARS
-from faults_and_water import SLOW_WATER
+from faults_and_water import SLOW_WATER, WATER
 from forming import FORMING
 from limit_loads import LIMIT
 from penalties import PENALTIES
@@ -41,7 +41,7 @@ FRONTS = "cargo test --release --test published -- --nocapture fronts_run"
 LABORATORY = """cargo run --release -- run cases/laboratory/fault_4m.json &&
     python3 docs/figures/laboratory.py out/fault_4m docs/figures/laboratory.svg"""
 # Of the quick tier: the function that makes it.
-TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS, **PENALTIES, **BARS}
+TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS, **PENALTIES, **BARS, **WATER}
 # Written, but not compared: iterations that do not converge hang on the last digit, which differs between processors.
 LOOSE = {"cut_back", "drawing", "penalties"}
 # Of the slow tier: the command that prints it, and which of the tables that it prints.

@@ -52,7 +52,7 @@ pub struct Evaluation {
     pub dissipated: f64,
     /// Plastic dissipation of the materials in the increment [F·L]
     pub plastic: f64,
-    /// Work of the temperature change, and of jacks on bars, in the increment [F·L]
+    /// Work of changes of temperatures and of pressures in pores, and of jacks on bars, in the increment [F·L]
     pub heating: f64,
 }
 

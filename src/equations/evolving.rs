@@ -76,6 +76,7 @@ impl Evolving {
         let one = |((e, new), (force, tangent)): ((usize, &mut [f64]), Place)| {
             let old = model.memories.of(e, old);
             model.write_temperatures(trial.step, trial.moment(), e, old, new);
+            model.write_pressures(trial.moment(), e, new);
             let body = &model.bodies[model.body_of_element[e]];
             let (n, memory) = (model.mesh.elements[e].nodes.len(), Memory { dt: trial.dt, old, new: &mut *new });
             let (u, dofs) = (&nodal(model, e, u)[..n], 2 * n);
@@ -83,7 +84,7 @@ impl Evolving {
             let solid = model.as_born(born, e);
             let found = solid.evolve(&*body.material, memory, u, &mut force[..dofs], tangent);
             let energies = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
-            Ok((e, energies, model.heating(solid, e, [old, new])))
+            Ok((e, energies, model.heating(solid, e, [old, new]) + model.filling(solid, e, [old, new])))
         };
         let mut all = Evolved::default();
         let elements = model.memories.each_mut(memory).enumerate().zip(&*own);
@@ -121,6 +122,6 @@ pub struct Evolved {
     pub dissipated: f64,
     /// Dissipation of those that do
     pub plastic: f64,
-    /// Work of the temperature change
+    /// Work of changes of temperatures and of pressures in pores
     pub heating: f64,
 }

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::element::SolidElement;
-use super::imposed::{InitialStress, PoreFluid, Thermal};
+use super::imposed::{InitialStress, PoreFluid, PorePressure, Thermal};
 use crate::laws::bulk::Material;
 
 /// A body: a material on a group of elements.
@@ -23,6 +23,10 @@ pub struct Body {
     pub initial_stress: Option<InitialStress>,
     /// fluid in its pores, if any
     pub pore_fluid: Option<PoreFluid>,
+    /// pressure given in its pores, if any
+    pub pore_pressure: Option<PorePressure>,
+    /// whether that acts at the start
+    pub starts_pressed: bool,
     /// thermal expansion, if any
     pub thermal: Option<Thermal>,
     /// elements
@@ -32,14 +36,14 @@ pub struct Body {
 }
 
 impl Body {
-    /// Whether it has an initial stress, a pore fluid or thermal expansion.
+    /// Whether it has an initial stress, a pore fluid or pressure, or thermal expansion.
     pub fn is_imposed(&self) -> bool {
-        self.is_stressed() || self.thermal.is_some()
+        self.is_stressed() || self.thermal.is_some() || self.pore_pressure.is_some()
     }
 
-    /// Whether it has an initial stress or a pore fluid, whose pressure is one.
+    /// Whether it has an initial stress, or a pore fluid or a pressure at the start, which is one.
     pub fn is_stressed(&self) -> bool {
-        self.initial_stress.is_some() || self.pore_fluid.is_some()
+        self.initial_stress.is_some() || self.pore_fluid.is_some() || self.starts_pressed
     }
 }
 

@@ -1,4 +1,4 @@
-//! Initial stress, pore fluid and temperatures of bodies and their elements, and the work of temperature changes.
+//! Initial stress, pore fluid, given pore pressures and temperatures of bodies and their elements, and the work of their changes.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::boundary::{Amplitude, Moment, Profile};
 use super::element::SolidElement;
 use super::{Body, Model, Step};
-use crate::laws::bulk::{CauchyStress, PORE_PRESSURE, Slot, TEMPERATURE};
+use crate::laws::bulk::{CauchyStress, GIVEN_PRESSURE, PORE_PRESSURE, Slot, TEMPERATURE};
 
 /// Initial stress of a body. Displacements and strains are measured from the initial state; stresses are total. The run
 /// reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
@@ -126,11 +126,54 @@ impl PoreFluid {
     }
 }
 
+/// Pressure of the fluid in the pores of a body, given by place and time: drained ground whose water changes, or a reservoir. The material, and the
+/// initial stress, are those of the effective stress; stresses, and what is in equilibrium, are total: less biot times the pressure
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
+pub struct PorePressure {
+    /// p of the reference position x, y and, in expressions, of the run time t; what it is at t = 0 acts before anything moves. 0 at t = 0 for
+    /// pressures that count from the start, which may be negative [F/L²]
+    pub pressure: Profile,
+    /// b: Biot's coefficient, 0 < b ≤ 1, 1 − K/K_s with the bulk moduli of the body and of its grains; 1 of soil [-]
+    #[serde(default = "whole")]
+    pub biot: f64,
+}
+
+fn whole() -> f64 {
+    1.0
+}
+
+impl PorePressure {
+    /// Creates the pressure of a body whose grains are rigid.
+    pub fn new(pressure: impl Into<Profile>) -> Self {
+        Self { pressure: pressure.into(), biot: whole() }
+    }
+
+    /// Sets Biot's coefficient.
+    pub fn biot(self, biot: f64) -> Self {
+        Self { biot, ..self }
+    }
+
+    /// p at a reference position; beyond an increment it goes on linearly.
+    fn at(&self, position: Vector2<f64>, Moment { time, beyond }: Moment) -> f64 {
+        match beyond {
+            Some([from, to]) if self.pressure.depends_on_time() => {
+                let [first, last] = [from, to].map(|time| self.pressure.value_at(position, time));
+                first + (time - from) / (to - from) * (last - first)
+            }
+            _ => self.pressure.value_at(position, time),
+        }
+    }
+}
+
 impl Body {
     /// Total stress at the start at a reference position, effective stress less p_w; `None` if there is none.
     pub fn total_stress(&self, position: Vector2<f64>, in_plate: bool) -> Option<CauchyStress> {
         let effective = self.initial_stress.as_ref().map(|stress| stress.at(position, in_plate));
-        let fluid = self.pore_fluid.as_ref().map(|fluid| fluid.pressure.value(position));
+        let given = self.pore_pressure.as_ref().map(|given| given.biot * given.pressure.value(position));
+        let fluid = self.pore_fluid.as_ref().map(|fluid| fluid.pressure.value(position)).or(given);
         if effective.is_none() && fluid.is_none() {
             return None;
         }
@@ -191,6 +234,9 @@ impl Model {
                 if let (Some(fluid), Some(pores)) = (&body.pore_fluid, pores) {
                     pores.set(point, fluid.pressure.value(at));
                 }
+                if let (Some(given), Some(slot)) = (&body.pore_pressure, law.slot(&GIVEN_PRESSURE)) {
+                    slot.of_mut(point)[0] = given.pressure.value(at);
+                }
             }
         }
         memory
@@ -211,6 +257,34 @@ impl Model {
             }
             None => points.for_each(|(new, old)| heat.of_mut(new)[0] = heat.of(old)[0]),
         }
+    }
+
+    /// Writes the given pressures in the pores of an element to the variables of its material at a moment.
+    pub fn write_pressures(&self, at: Moment, element: usize, new: &mut [f64]) {
+        let Some((count, slot, given)) = self.water(element) else { return };
+        for (new, place) in new.chunks_exact_mut(count).zip(self.quadrature_positions(element)) {
+            slot.of_mut(new)[0] = given.at(place, at);
+        }
+    }
+
+    /// Work of a change of the given pressure on an element, as it came, in an increment, −½ (o₀ + o₁) Δp with o, what its pores have opened by: the
+    /// change of the stored energy at constant displacement [F·L].
+    pub fn filling(&self, solid: &SolidElement, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
+        let Some((count, slot, _)) = self.water(element) else { return 0.0 };
+        let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
+            let ([before, opened], [after, opens]) = (slot.of(old), slot.of(new));
+            -0.5 * (opened + opens) * (after - before) * volume
+        };
+        let points = old.chunks_exact(count).zip(new.chunks_exact(count));
+        solid.point_volumes().iter().zip(points).map(of).sum()
+    }
+
+    /// Number of variables of an element's material at a point, those of the given pressure, and this; `None` without one.
+    fn water(&self, element: usize) -> Option<(usize, Slot<2>, &PorePressure)> {
+        let body = self.body_of(element);
+        let law = body.material.description();
+        let given = body.pore_pressure.as_ref()?;
+        law.slot(&GIVEN_PRESSURE).map(|slot| (law.variables.len(), slot, given))
     }
 
     /// T − T₀ at the points of an element, from the internal variables of all elements; empty without thermal expansion.

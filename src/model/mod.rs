@@ -59,7 +59,7 @@ pub use bars::BarsInStep;
 pub use body::{Body, Damping, Memories, PointMass};
 use boundary::Loads;
 use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
-pub use imposed::{InitialStress, Layer, PoreFluid, Thermal};
+pub use imposed::{InitialStress, Layer, PoreFluid, PorePressure, Thermal};
 use linkage::Linkage;
 use method::Chosen;
 pub use method::Method;

@@ -155,7 +155,8 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
         return None;
     }
     let beside = |nodes: BTreeSet<usize>| {
-        let is_beside = |body: &&Body| body.pore_fluid.is_some() && body.nodes.iter().any(|node| nodes.contains(node));
+        let holds_water = |body: &Body| body.pore_fluid.is_some() || body.pore_pressure.is_some();
+        let is_beside = |body: &&Body| holds_water(body) && body.nodes.iter().any(|node| nodes.contains(node));
         model.bodies.iter().find(is_beside).map(|body| &body.name)
     };
     let (body, swap) = match beside(pair.slave_nodes().collect()) {

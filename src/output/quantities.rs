@@ -485,7 +485,7 @@ pub const OF_YIELDING: [Quantity; 10] = [
     ),
     q("R_star", NONE, "R* of sys_cam_clay: p_c over that of the superloading surface, 1/R* is the structure"),
     q("zeta", NONE, "ζ = √(3/2) ‖β‖ of sys_cam_clay: rotation of its yield surface"),
-    q("pore_pressure", STRESS, "p_w of bodies with a pore_fluid"),
+    q("pore_pressure", STRESS, "p_w of bodies with a pore_fluid or a pore_pressure"),
 ];
 
 /// Arrays of the frames of integration points; internal variables of materials follow, by their names.

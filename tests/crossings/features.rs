@@ -72,7 +72,7 @@ pub const SLOTS: &[Slot] = &[
     ("tip", &[("no", 12), ("yes", 1)]),
     ("tractions", &[("no", 8), ("given", 1), ("balanced", 1), ("of_bodies", 1)]),
     ("stress", &[("no", 5), ("components", 2), ("geostatic", 1)]),
-    ("pores", &[("no", 6), ("full", 1), ("cavitating", 1)]),
+    ("pores", &[("no", 6), ("full", 1), ("cavitating", 1), ("given", 1)]),
     ("heat", &[("no", 6), ("number", 1), ("table", 1), ("by_place", 1)]),
     (
         "scheme",

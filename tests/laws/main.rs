@@ -29,6 +29,7 @@ mod integration;
 mod materials;
 mod offset;
 mod plasticity;
+mod pressed;
 mod random;
 mod sys_cam_clay;
 mod undrained;

@@ -1,7 +1,8 @@
-//! Faults and water: slow slip by injection (SEAS BP6), and the self-similar crack of a fault under constant pressure.
+//! Faults and water: slow slip by injection (SEAS BP6), the self-similar crack of a fault under constant pressure, and a depleted reservoir.
 //!
 //! BP6: boundary elements on a graded grid, extrapolated; CYCLAPS (SEAS project of SCEC) differs by 0.1 %. The crack: R. C. Viesca, Self-similar fault
-//! slip in response to fluid injection, J. Fluid Mech. 928 (2021) A29; its integrals by quadrature.
+//! slip in response to fluid injection, J. Fluid Mech. 928 (2021) A29; its integrals by quadrature. The reservoir: J. D. Jansen & P. A. Meulenbroek,
+//! Induced aseismic slip and the onset of seismicity in displaced faults, Neth. J. Geosci. 101 (2022) e13.
 
 use crate::common::{Finished, close, finish};
 use serde_json::{Value, json};
@@ -156,5 +157,64 @@ fn a_crack_under_constant_pressure_is_self_similar() {
         close("slip at the middle", slip(0.0) / middle, 1.0, 0.005);
         close("slip half way", slip(0.5) / half, 1.0, 0.005);
         close("tip", tip, 1.0, 0.005);
+    }
+}
+
+/// A reservoir of 225 m that a vertical fault displaces by 75 m, depleted by 25 MPa with Biot's coefficient 0.9: with the fault stuck or without friction.
+fn reservoir(edge: f64, friction: &Value) -> Finished {
+    let (inner, far, count) = (225.0, 20e3, 32);
+    let ratio = grading(far - inner, count, edge);
+    let fine = (2.0 * inner / edge).round() as i32;
+    let mut blocks = Vec::new();
+    for (body, sign) in [("left", -1.0), ("right", 1.0)] {
+        for (x0, x1, nx, gx, at_fault) in [(0.0, inner, fine / 2, 1.0, true), (inner, far, count, ratio, false)] {
+            let rows = [
+                (-far, -inner, count, 1.0 / ratio, "bottom"),
+                (-inner, inner, fine, 1.0, ""),
+                (inner, far, count, ratio, "top"),
+            ];
+            for (y0, y1, ny, gy, end) in rows {
+                let name = |on: bool, side: &str| if on { json!(format!("{body}_{side}")) } else { Value::Null };
+                blocks.push(json!({
+                    "body": body, "corners": [[sign * x0, y0], [sign * x1, y0], [sign * x1, y1], [sign * x0, y1]],
+                    "elements": [nx, ny], "grading": [gx, gy],
+                    "sides": [name(end == "bottom", "bottom"), name(!at_fault, "far"), name(end == "top", "top"), name(at_fault, "fault")],
+                }));
+            }
+        }
+    }
+    let rock = |low: f64, high: f64| {
+        let pressure = format!("-25e6*t*(signum(y - {low:?}) - signum(y - {high:?}))/2");
+        json!({"material": {"model": "linear", "E": 14.95e9, "nu": 0.15}, "pore_pressure": {"pressure": pressure, "biot": 0.9}})
+    };
+    finish(&json!({
+        "mesh": {"blocks": blocks}, "bodies": {"left": rock(-150.0, 75.0), "right": rock(-75.0, 150.0)},
+        "contacts": {"fault": {
+            "slave": "left_fault", "master": "right_fault", "sliding": "small", "method": "node_to_segment", "friction": friction,
+            "initial": {"pressure": 60e6, "balanced": true}}},
+        "steps": [{"name": "deplete", "duration": 1, "dt": {"initial": 1}, "supports": [
+            {"on": "left_far", "ux": 0}, {"on": "right_far", "ux": 0}, {"on": "left_bottom", "uy": 0}, {"on": "right_bottom", "uy": 0}]}],
+    }))
+}
+
+/// Closed forms of Jansen & Meulenbroek: slip of the frictionless fault, even within |y| < 75 and linear to none at 150 m, and shear of the stuck one.
+#[test]
+fn a_displaced_reservoir_is_depleted() {
+    let along = |run: &Finished, y: f64| {
+        let (points, places) = (&run.model.contacts[0].points, run.model.mesh.undeformed());
+        let k = points.iter().position(|point| (point.at(&places).y - y).abs() < 1e-6).expect("a node");
+        run.last().contacts[0][k].clone()
+    };
+    let free = reservoir(12.5, &json!({"law": "frictionless"}));
+    for (y, slip) in [(0.0, 0.181731), (50.0, 0.181731), (100.0, 0.121154), (125.0, 0.060577)] {
+        let found = along(&free, y).friction.plastic_slip.abs();
+        println!("slip at {y}: {found}");
+        close("slip", found, slip, 0.005 * 0.181731);
+    }
+    let stuck = reservoir(12.5, &json!({"law": "coulomb", "mu": 0.9, "alpha_t": 4e12}));
+    for (y, traction) in [(0.0, 4.088248), (25.0, 4.352518), (50.0, 5.474311), (100.0, 3.095975), (125.0, -1.104989)] {
+        let found = -along(&stuck, y).friction.traction / 1e6;
+        println!("traction at {y}: {found}");
+        close("traction", found, traction, 0.005 * 4.088248);
     }
 }

@@ -35,4 +35,5 @@ mod stages;
 mod symmetry;
 mod terms;
 mod turning;
+mod water;
 mod yielding;

@@ -15,7 +15,7 @@ use crate::laws::bulk::MaterialParameters;
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
 use crate::model::builder::{BodyInput, BulkLaw, Formulation, LoadingPlateInput, Plate, RigidBodyInput};
-use crate::model::imposed::{InitialStress, PoreFluid, Thermal};
+use crate::model::imposed::{InitialStress, PoreFluid, PorePressure, Thermal};
 use crate::model::text::{count, number, vector};
 use crate::model::{Damping, Model, PointMass};
 use crate::output::fields::Selection;
@@ -165,7 +165,7 @@ fn slopes(material: &BulkLaw) -> String {
     format!(", slopes of ln J over ln p of the Kirchhoff stress {lambda}, {kappa}")
 }
 
-/// Initial stress, pore fluid and thermal expansion.
+/// Initial stress, pore fluid or pressure, and thermal expansion.
 fn imposed(input: &BodyInput) -> String {
     let stress = match &input.initial_stress {
         Some(InitialStress::Geostatic { surface, weight, k0, surcharge, below }) => {
@@ -193,7 +193,10 @@ fn imposed(input: &BodyInput) -> String {
             number(fluid.modulus())
         )
     });
-    stress + &fluid + &thermal
+    let given = input.pore_pressure.as_ref().map_or_else(String::new, |PorePressure { biot, .. }| {
+        format!(", pore pressure given, Biot's coefficient {}", number(*biot))
+    });
+    stress + &fluid + &given + &thermal
 }
 
 fn periodic(case: &Case, model: &Model) -> Vec<String> {

@@ -37,7 +37,7 @@ mod saint_venant_kirchhoff;
 mod slots;
 mod viscoelastic;
 
-pub use body::{BodyLaw, INITIAL_STRESS, PORE_PRESSURE, PoreFluid, Surroundings, TEMPERATURE};
+pub use body::{BodyLaw, GIVEN_PRESSURE, INITIAL_STRESS, PORE_PRESSURE, PoreFluid, Surroundings, TEMPERATURE};
 pub use hencky::Hencky;
 pub use linear::Linear;
 pub use material::{Material, MaterialResponse};

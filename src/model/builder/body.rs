@@ -13,12 +13,13 @@ use super::friction::{check_profile, defined};
 use super::groups;
 use super::groups::{TIMES, group, kind, some_of};
 use super::load_step::LoadStep;
+use super::water;
 use crate::laws::bulk::{self, BodyLaw, Material, MaterialParameters, Sections, Surroundings};
 use crate::mesh::section::Section;
 use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{Formulation, SolidElement, consistent_mass};
-use crate::model::imposed::{InitialStress, PoreFluid, Temperature, Thermal};
+use crate::model::imposed::{InitialStress, PoreFluid, PorePressure, Temperature, Thermal};
 use crate::model::text::{apart, number, vector};
 use crate::model::{Body, Damping, Model, PointMass};
 
@@ -39,6 +40,8 @@ pub struct BodyInput {
     pub initial_stress: Option<InitialStress>,
     /// Fluid in the pores that has no time to flow: an undrained body; default: none
     pub pore_fluid: Option<PoreFluid>,
+    /// Pressure given in the pores, by place and time; default: none
+    pub pore_pressure: Option<PorePressure>,
     /// Thermal expansion; default: none
     pub thermal: Option<Thermal>,
 }
@@ -74,7 +77,7 @@ pub struct PointMassInput {
 pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
     let mut bodies = Vec::new();
     let mut body_of_element = vec![usize::MAX; mesh.elements.len()];
-    for (name, BodyInput { material, element, damping, initial_stress, pore_fluid, thermal }) in given {
+    for (name, BodyInput { material, element, damping, initial_stress, pore_fluid, pore_pressure, thermal }) in given {
         let place = format!("bodies.{name}");
         let law = match material {
             BulkLaw::Parameters(parameters) => {
@@ -92,12 +95,19 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
         if let Some(fluid) = pore_fluid {
             check_fluid(&*law, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?;
         }
+        if let Some(given) = pore_pressure {
+            let place = format!("{place}.pore_pressure");
+            let message = "is given beside a pore_fluid, which has a pressure of its own: leave one of them out";
+            refuse_if(pore_fluid.is_some(), &place, message)?;
+            water::check(&*law, given, &mesh.nodes_of(group), mesh, &place)?;
+        }
         check_section(&*law, *element == Formulation::FBar, mesh.section, &place)?;
         let fluid = pore_fluid.as_ref();
         let surroundings = Surroundings {
             stressed: initial_stress.is_some(),
             expansion: thermal.map(|thermal| thermal.expansion),
             fluid: fluid.map(|fluid| bulk::PoreFluid { modulus: fluid.modulus(), cavitation: fluid.cavitation }),
+            biot: pore_pressure.as_ref().map(|given| given.biot),
             plate: mesh.section.is_plate() && law.description().sections != Sections::Plate,
         };
         let material = BodyLaw::around(law, surroundings)
@@ -117,6 +127,8 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             damping: *damping,
             initial_stress: initial_stress.clone(),
             pore_fluid: pore_fluid.clone(),
+            pore_pressure: pore_pressure.clone(),
+            starts_pressed: pore_pressure.as_ref().is_some_and(|given| water::acts_at_start(given, &nodes, mesh)),
             thermal: *thermal,
             elements,
             nodes,

@@ -14,7 +14,7 @@ use crate::mesh::section::Section;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::support::{Inclined, Motion, Prescribed};
 use crate::model::text::{number, vector};
-use crate::model::{Model, NewtonSettings, Step};
+use crate::model::{Body, Model, NewtonSettings, Step};
 
 /// Maximum accepted limit of Newton iterations.
 const MOST_ITERATIONS: usize = 1000;
@@ -105,10 +105,11 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
             return Err(ModelError::new(scheme, message));
         }
         if let Some(body) = model.bodies.iter().find(|body| body.is_imposed()) {
-            let key = match (&body.initial_stress, &body.pore_fluid) {
-                (Some(_), _) => "initial_stress",
-                (None, Some(_)) => "pore_fluid",
-                (None, None) => "thermal",
+            let key = match body {
+                Body { initial_stress: Some(_), .. } => "initial_stress",
+                Body { pore_fluid: Some(_), .. } => "pore_fluid",
+                Body { pore_pressure: Some(_), .. } => "pore_pressure",
+                _ => "thermal",
             };
             let message = "is not for quasi_dynamic steps: leave it out, and give the tractions of the contacts (initial, \
                            balanced), on top of whose stress the run counts";

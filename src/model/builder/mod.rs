@@ -73,6 +73,7 @@ mod supports;
 pub(crate) mod thickness;
 mod unconstrained;
 mod unseen;
+mod water;
 
 pub use bar::{BarBond, BarEnd, BarInput, Embedding};
 pub use body::{BodyInput, BulkLaw, PointMassInput};
@@ -102,7 +103,7 @@ use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::mesh::ties::Ties;
 pub use crate::model::element::Formulation;
-use crate::model::imposed::{InitialStress, PoreFluid, Thermal};
+use crate::model::imposed::{InitialStress, PoreFluid, PorePressure, Thermal};
 use crate::model::linkage::Linkage;
 use crate::model::{Damping, Memories, Model, NewtonSettings, OutputRequests};
 
@@ -153,6 +154,7 @@ setters! { builder: Builder;
             damping: Damping::default(),
             initial_stress: None,
             pore_fluid: None,
+            pore_pressure: None,
             thermal: None,
         };
         builder.bodies.push((name.into(), body));
@@ -251,6 +253,11 @@ impl Builder {
         self.change(body, |body| body.pore_fluid = Some(fluid))
     }
 
+    /// Gives the pressure in the pores of a body by place and time.
+    pub fn pore_pressure(self, body: impl Into<String>, pressure: PorePressure) -> Self {
+        self.change(body, |body| body.pore_pressure = Some(pressure))
+    }
+
     /// Sets the thermal expansion of a body, whose temperature is given by the steps ([`LoadStep::temperature`]).
     pub fn thermal(self, body: impl Into<String>, thermal: Thermal) -> Self {
         self.change(body, |body| body.thermal = Some(thermal))
@@ -323,6 +330,7 @@ impl Builder {
         initial::check_excess(&model)?;
         let fluids = self.contacts.iter().map(|contact| contact.fluid_pressure.as_ref());
         fluid::check_fluids_in_time(fluids, &model)?;
+        water::check_in_time(&model)?;
         unconstrained::check(&self.steps, &model)?;
         Ok(model)
     }

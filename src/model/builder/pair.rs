@@ -50,12 +50,13 @@ use super::bond::{bond, fades};
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
 use super::facing::{Facing, facing};
+use super::fluid::FluidPressure;
 use super::friction::{DefaultAlphaT, Laws};
 use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::regime;
 use super::thickness::Outline;
-use super::{contact, fluid, friction, initial, pores, rigid, unseen};
+use super::{contact, fluid, friction, initial, pores, rigid, unseen, water};
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
@@ -107,7 +108,11 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
-    let pores = pores::pores(&place, contact, &points, model)?;
+    let of_bodies = match contact.fluid_pressure {
+        Some(FluidPressure::OfBodies) => water::fluid_of_bodies(&contact.slave, model, &place)?,
+        _ => None,
+    };
+    let pores = if of_bodies.is_some() { None } else { pores::pores(&place, contact, &points, model)? };
     let mut pair = ContactPair {
         name: contact.name.clone(),
         tied: contact.tied,
@@ -121,7 +126,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         penetration: contact.normal.penetration,
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
-        fluid: fluid::fluid(&place, contact.fluid_pressure.as_ref())?,
+        fluid: of_bodies.or(fluid::fluid(&place, contact.fluid_pressure.as_ref())?),
         pores,
         laws,
         in_time,

@@ -53,6 +53,9 @@ impl<'m> Stages<'m> {
                 let message = "the first step begins with the bodies as they are: let it rest under initial stress and loads, and change \
                                bodies in the next";
                 refuse_if(!self.has_begun, &place, message)?;
+                let message = "has a pore_pressure, which acts from its birth on as if it had always been there: let the body be there from the start";
+                let pressed = comes && self.model.bodies[body].pore_pressure.is_some();
+                refuse_if(pressed, &place, format!("`{name}` {message}"))?;
                 self.check_platens(body, &place)?;
                 self.check_balanced(body, &place)?;
                 self.absent[body] = !comes;

@@ -162,7 +162,11 @@ impl Writer<'_> {
             }
             _ => {}
         }
-        if self.has("pores") {
+        if self.is("pores", "given") {
+            let pressure = format!("0.5*(1+0.2*X)*T/{}", self.duration());
+            let pressure = self.frame.expression(Kind::Stress, &pressure, self.ways.load);
+            body["pore_pressure"] = json!({"pressure": pressure, "biot": 0.8});
+        } else if self.has("pores") {
             let stress = |value: f64| json!(self.write(Kind::Stress, value));
             body["pore_fluid"] = json!({"bulk_modulus": stress(900.0), "porosity": 0.4});
             if self.is("pores", "cavitating") {

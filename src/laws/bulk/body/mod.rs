@@ -4,8 +4,10 @@
 //! |---|---|
 //! | initial stress and temperature | `imposed.rs` |
 //! | a fluid that cannot drain | `pores.rs` |
+//! | a fluid whose pressure is given | `given.rs` |
 //! | no out-of-plane stress | `plate.rs` |
 
+mod given;
 mod imposed;
 mod plate;
 mod pores;
@@ -20,6 +22,8 @@ use super::{
     BulkLaw, BulkResponse, CauchyStress, InadmissibleStress, Material, MaterialDescription, MaterialFailure, Sections,
     Straining,
 };
+pub use given::GIVEN_PRESSURE;
+use given::Given;
 use imposed::{Heat, Imposed};
 pub use imposed::{INITIAL_STRESS, TEMPERATURE};
 use pores::Pores;
@@ -35,6 +39,8 @@ pub struct Surroundings {
     pub expansion: Option<f64>,
     /// The fluid in its pores
     pub fluid: Option<PoreFluid>,
+    /// b of a body in whose pores the pressure of the fluid is given [-]
+    pub biot: Option<f64>,
     /// Whether it is a plate
     pub plate: bool,
 }
@@ -55,6 +61,11 @@ impl Surroundings {
         Self { fluid: Some(fluid), ..self }
     }
 
+    /// Sets Biot's coefficient of a body in whose pores the pressure of the fluid is given.
+    pub const fn biot(self, biot: f64) -> Self {
+        Self { biot: Some(biot), ..self }
+    }
+
     /// Makes it a plate.
     pub const fn plate(self) -> Self {
         Self { plate: true, ..self }
@@ -64,10 +75,10 @@ impl Surroundings {
 /// A law under what is imposed on it, with a fluid in its pores, or in a plate.
 ///
 /// ```text
-/// P = ϑ² (P_l(F_e) + F_e σ₀) − p_w F⁻ᵀ,   F = ϑ F_e                of a plate at the F₃₃ where P₃₃ = 0
+/// P = ϑ² (P_l(F_e) + F_e σ₀) − p_w F⁻ᵀ − b p J F⁻ᵀ,   F = ϑ F_e    of a plate at the F₃₃ where P₃₃ = 0
 /// ```
-/// The variables of the law stand between that of the fluid and those of the initial stress and the temperature.
-/// [`respond`](BulkLaw::respond) finds T − T₀ at the end of the increment in the new variables, which the caller writes there, and p_w0 in
+/// The variables of the law stand between that of the fluid and those of the initial stress, the temperature and the given pressure.
+/// [`respond`](BulkLaw::respond) finds T − T₀ and p at the end of the increment in the new variables, which the caller writes there, and p_w0 in
 /// the old ones. Damping is the law's own, in a plate with the moduli of a plate.
 ///
 /// # Errors
@@ -86,30 +97,34 @@ pub struct BodyLaw {
     pores: Option<Pores>,
     initial: Option<Imposed>,
     heat: Option<Heat>,
+    given: Option<Given>,
 }
 
 impl BodyLaw {
     /// A law in its surroundings; `None` if the law does not serve there (its [sections](MaterialDescription::sections)), of a fluid that
-    /// cavitates in a linear body, and of one in a plate.
+    /// cavitates in a linear body, of one in a plate, and of one whose pressure is given as well.
     pub fn new(law: impl Into<Arc<dyn Material>>, surroundings: Surroundings) -> Option<Self> {
         let law = law.into();
         let own = law.description();
-        let Surroundings { stressed, expansion, fluid, plate } = surroundings;
+        let Surroundings { stressed, expansion, fluid, biot, plate } = surroundings;
         let (linear, mut names, mut shown) = (own.is_linear, Names::default(), own.shown.to_vec());
         let pores = fluid.map(|fluid| Pores::new(fluid, linear, &mut names));
-        shown.extend(fluid.map(|_| pores::SHOWN));
+        shown.extend(fluid.map(|_| pores::SHOWN).or(biot.map(|_| pores::SHOWN)));
         let places = names.all(own.variables);
         let beside = stressed && !own.holds_initial_stress;
         let initial = beside.then(|| Imposed::new(linear, &mut names));
         let heat = expansion.map(|expansion| Heat::new(expansion, linear, &mut names));
-        let serves = match (plate, pores.is_some() || initial.is_some() || heat.is_some()) {
+        let given = biot.map(|biot| Given::new(biot, linear, &mut names));
+        let any = pores.is_some() || initial.is_some() || heat.is_some() || given.is_some();
+        let serves = match (plate, any) {
             (true, _) => own.sections == Sections::All && fluid.is_none(),
             (false, true) => own.sections.any_stretch(),
             (false, false) => true,
         };
         let cavitates = linear && fluid.is_some_and(|fluid| fluid.cavitation.is_some());
         let names = names.names;
-        (serves && !cavitates).then_some(Self {
+        let filled_twice = fluid.is_some() && biot.is_some();
+        (serves && !cavitates && !filled_twice).then_some(Self {
             law,
             surroundings,
             linear,
@@ -119,6 +134,7 @@ impl BodyLaw {
             pores,
             initial,
             heat,
+            given,
         })
     }
 
@@ -156,6 +172,9 @@ impl BodyLaw {
         if let (Some(pores), Some(fluid)) = (&self.pores, &fluid) {
             pores.add(&mut answer, fluid, straining, new);
         }
+        if let Some(given) = &self.given {
+            given.add(&mut answer, straining, new);
+        }
         Ok(answer)
     }
 }
@@ -169,7 +188,7 @@ impl BulkLaw for BodyLaw {
             p_wave_modulus: here(own.p_wave_modulus) + fluid.map_or(0.0, |fluid| fluid.modulus),
             viscous_modulus: Some(here(own.viscous_modulus.unwrap_or(own.p_wave_modulus))),
             variables: &self.names,
-            evolves: own.evolves || self.heat.is_some(),
+            evolves: own.evolves || self.heat.is_some() || self.given.is_some(),
             shown: &self.shown,
             sections: if plate { Sections::Plate } else { own.sections },
             ..own
@@ -214,6 +233,9 @@ impl BulkLaw for BodyLaw {
         let (own, fluid) = values.split_at_mut(self.law.description().shown.len());
         if let Some(pores) = &self.pores {
             fluid.fill(pores.fluid(&straining)?.pressure);
+        }
+        if let Some(given) = &self.given {
+            fluid.fill(given.pressure(straining.old));
         }
         self.law.show(&self.elastic(&straining, self.thermal_strain(straining.old)), own)
     }
