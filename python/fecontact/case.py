@@ -271,8 +271,10 @@ def _files(mesh: Any) -> list[str]:
 
 
 def _measured(document: dict[str, Any]) -> list[dict[str, Any]]:
-    """What a case says of the tables of fluid pressure that it names."""
-    given = (contact.get("fluid_pressure") for contact in document.get("contacts", {}).values())
+    """What a case says of the tables of pressure that it names."""
+    given = [contact.get("fluid_pressure") for contact in document.get("contacts", {}).values()]
+    pores = [body.get("pore_pressure") for body in document.get("bodies", {}).values()]
+    given += [pressure.get("pressure") for pressure in pores if isinstance(pressure, dict)]
     return [pressure["measured"] for pressure in given if isinstance(pressure, dict) and "measured" in pressure]
 
 

@@ -26,8 +26,8 @@ use serde_json::Value;
 
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, MeshError, gmsh};
-use crate::model::Model;
 use crate::model::builder::{Builder, Checked, Contact, FluidPressure, Gauge, ModelError, check_positive, refuse_if};
+use crate::model::{Measured, Model, PoreField};
 pub use again::Opened;
 pub use error::CaseError;
 use file::{Case, MeshSource, blocks};
@@ -71,7 +71,7 @@ pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError
 fn built(case: &Case, mesh: Mesh, path: &Path) -> Checked<Model> {
     refuse_if(case.begin_with.is_some(), "begin_with", "another case must be opened first: see case::Opened")?;
     let mut builder = builder(case, mesh)?;
-    read_measured(&mut builder.contacts, path)?;
+    read_measured(&mut builder, path)?;
     let model = builder.build()?;
     let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
     refuse_if(case.output.every == Some(0), "output.every", message)?;
@@ -110,11 +110,19 @@ fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
 }
 
 /// Reads the tables of measured pressures, relative to the case file.
-fn read_measured(contacts: &mut [Contact], path: &Path) -> Checked<()> {
+fn read_measured(builder: &mut Builder, path: &Path) -> Checked<()> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    for Contact { name, fluid_pressure, .. } in contacts {
+    let read = |measured: &mut Measured, place: String| {
+        measured.read(folder).map_err(|message| ModelError::new(format!("{place}.measured.file"), message))
+    };
+    for Contact { name, fluid_pressure, .. } in &mut builder.contacts {
         if let Some(FluidPressure::Measured(measured)) = fluid_pressure {
-            measured.read(folder, &format!("contacts.{name}.fluid_pressure"))?;
+            read(measured, format!("contacts.{name}.fluid_pressure"))?;
+        }
+    }
+    for (name, body) in &mut builder.bodies {
+        if let Some(PoreField::Measured(measured)) = body.pore_pressure.as_mut().map(|given| &mut given.pressure) {
+            read(measured, format!("bodies.{name}.pore_pressure.pressure"))?;
         }
     }
     Ok(())

@@ -276,7 +276,7 @@ impl ContactPair {
     /// p_w at a slave point as its expression gives it [F/L²].
     fn given_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
         let at = || x.apart(&slave.position, Vector2::zeros())[0];
-        self.fluid.as_ref().map_or(0.0, |fluid| fluid.pressure(at(), time))
+        self.fluid.as_ref().map_or(0.0, |fluid| fluid.pressure(slave, at, time))
     }
 
     /// First point with a negative or non-finite fluid pressure. A negative value within the round-off of the largest one, or of the
@@ -453,9 +453,19 @@ impl fmt::Debug for LawsInTime {
 /// p_w by reference position and time [F/L²].
 pub type PressureAt = dyn Fn(Vector2<f64>, f64) -> f64 + Send + Sync;
 
+/// p_w by node and time [F/L²].
+pub type PressureOfNode = dyn Fn(usize, f64) -> f64 + Send + Sync;
+
+/// What gives the pressure of a fluid.
+enum Source {
+    ByPlace(Box<PressureAt>),
+    /// linear between nodes
+    ByNode(Box<PressureOfNode>),
+}
+
 /// Pressure of the fluid in a contact.
 pub struct Fluid {
-    pressure: Box<PressureAt>,
+    pressure: Source,
     /// Times of kinks, ascending [T]
     corners: Vec<f64>,
 }
@@ -463,7 +473,12 @@ pub struct Fluid {
 impl Fluid {
     /// Creates a fluid with the pressure p_w ≥ 0 as a function of reference position and time.
     pub fn new(pressure: impl Fn(Vector2<f64>, f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self { pressure: Box::new(pressure), corners: Vec::new() }
+        Self { pressure: Source::ByPlace(Box::new(pressure)), corners: Vec::new() }
+    }
+
+    /// Creates a fluid with the pressure p_w ≥ 0 as a function of node and time, which the points of edges interpolate.
+    pub fn at_nodes(pressure: impl Fn(usize, f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self { pressure: Source::ByNode(Box::new(pressure)), corners: Vec::new() }
     }
 
     /// Sets the times at which its rate jumps everywhere, ascending [T].
@@ -477,9 +492,12 @@ impl Fluid {
         self.corners.iter().copied()
     }
 
-    /// p_w at a reference position [F/L²]
-    pub fn pressure(&self, at: Vector2<f64>, time: f64) -> f64 {
-        (self.pressure)(at, time)
+    /// p_w at a slave point, whose reference position is `at` [F/L²]
+    fn pressure(&self, slave: &SlavePoint, at: impl Fn() -> Vector2<f64>, time: f64) -> f64 {
+        match &self.pressure {
+            Source::ByPlace(pressure) => pressure(at(), time),
+            Source::ByNode(pressure) => slave.position.iter().map(|&(node, w)| w * pressure(node, time)).sum(),
+        }
     }
 }
 

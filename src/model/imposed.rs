@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::boundary::{Amplitude, Moment, Profile};
 use super::element::SolidElement;
+use super::measured::{GivenPressure, PoreField};
 use super::{Body, Model, Step};
 use crate::laws::bulk::{CauchyStress, GIVEN_PRESSURE, PORE_PRESSURE, Slot, TEMPERATURE};
 
@@ -135,7 +136,8 @@ impl PoreFluid {
 pub struct PorePressure {
     /// p of the reference position x, y and, in expressions, of the run time t; what it is at t = 0 acts before anything moves. 0 at t = 0 for
     /// pressures that count from the start, which may be negative [F/L²]
-    pub pressure: Profile,
+    #[schemars(with = "GivenPressure")]
+    pub pressure: PoreField,
     /// b: Biot's coefficient, 0 < b ≤ 1, 1 − K/K_s with the bulk moduli of the body and of its grains; 1 of soil [-]
     #[serde(default = "whole")]
     pub biot: f64,
@@ -147,7 +149,7 @@ fn whole() -> f64 {
 
 impl PorePressure {
     /// Creates the pressure of a body whose grains are rigid.
-    pub fn new(pressure: impl Into<Profile>) -> Self {
+    pub fn new(pressure: impl Into<PoreField>) -> Self {
         Self { pressure: pressure.into(), biot: whole() }
     }
 
@@ -155,24 +157,15 @@ impl PorePressure {
     pub fn biot(self, biot: f64) -> Self {
         Self { biot, ..self }
     }
-
-    /// p at a reference position; beyond an increment it goes on linearly.
-    fn at(&self, position: Vector2<f64>, Moment { time, beyond }: Moment) -> f64 {
-        match beyond {
-            Some([from, to]) if self.pressure.depends_on_time() => {
-                let [first, last] = [from, to].map(|time| self.pressure.value_at(position, time));
-                first + (time - from) / (to - from) * (last - first)
-            }
-            _ => self.pressure.value_at(position, time),
-        }
-    }
 }
 
 impl Body {
     /// Total stress at the start at a reference position, effective stress less p_w; `None` if there is none.
     pub fn total_stress(&self, position: Vector2<f64>, in_plate: bool) -> Option<CauchyStress> {
         let effective = self.initial_stress.as_ref().map(|stress| stress.at(position, in_plate));
-        let given = self.pore_pressure.as_ref().map(|given| given.biot * given.pressure.value(position));
+        // A table of nodes is zero at the start.
+        let by_place = self.pore_pressure.as_ref().filter(|given| given.pressure.nodal().is_none());
+        let given = by_place.map(|given| given.biot * given.pressure.value_at(position, 0.0));
         let fluid = self.pore_fluid.as_ref().map(|fluid| fluid.pressure.value(position)).or(given);
         if effective.is_none() && fluid.is_none() {
             return None;
@@ -234,10 +227,8 @@ impl Model {
                 if let (Some(fluid), Some(pores)) = (&body.pore_fluid, pores) {
                     pores.set(point, fluid.pressure.value(at));
                 }
-                if let (Some(given), Some(slot)) = (&body.pore_pressure, law.slot(&GIVEN_PRESSURE)) {
-                    slot.of_mut(point)[0] = given.pressure.value(at);
-                }
             }
+            self.write_pressures(0.0.into(), e, own);
         }
         memory
     }
@@ -262,8 +253,19 @@ impl Model {
     /// Writes the given pressures in the pores of an element to the variables of its material at a moment.
     pub fn write_pressures(&self, at: Moment, element: usize, new: &mut [f64]) {
         let Some((count, slot, given)) = self.water(element) else { return };
-        for (new, place) in new.chunks_exact_mut(count).zip(self.quadrature_positions(element)) {
-            slot.of_mut(new)[0] = given.at(place, at);
+        let points = new.chunks_exact_mut(count);
+        let Some(table) = given.pressure.nodal() else {
+            let value = |(new, place): (&mut [f64], Vector2<f64>)| {
+                slot.of_mut(new)[0] = linear(at, |time| given.pressure.value_at(place, time));
+            };
+            return points.zip(self.quadrature_positions(element)).for_each(value);
+        };
+        let element = (&self.mesh.elements[element], self.solids[element].quadrature());
+        for (new, point) in points.zip(element.1) {
+            let shares = element.0.kind.values(point.at);
+            let value =
+                |time| element.0.nodes.iter().zip(&shares).map(|(&node, n)| n * table.at_node(node, time)).sum();
+            slot.of_mut(new)[0] = linear(at, value);
         }
     }
 
@@ -323,4 +325,11 @@ impl Model {
             element.nodes.iter().zip(element.kind.values(point.at)).map(|(&node, n)| self.mesh.nodes[node] * n).sum()
         })
     }
+}
+
+/// A value at a moment; beyond an increment it goes on linearly.
+fn linear(Moment { time, beyond }: Moment, value: impl Fn(f64) -> f64) -> f64 {
+    let Some([from, to]) = beyond else { return value(time) };
+    let [first, last] = [value(from), value(to)];
+    first + (time - from) / (to - from) * (last - first)
 }

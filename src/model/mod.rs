@@ -19,6 +19,7 @@ cfg_if::cfg_if! {
         pub mod element;
         pub mod imposed;
         pub mod linkage;
+        pub mod measured;
         pub mod method;
         pub mod scheme;
         pub mod state;
@@ -32,6 +33,7 @@ cfg_if::cfg_if! {
         pub(crate) mod element;
         pub(crate) mod imposed;
         pub(crate) mod linkage;
+        pub(crate) mod measured;
         pub(crate) mod method;
         pub(crate) mod scheme;
         pub(crate) mod state;
@@ -61,6 +63,7 @@ use boundary::Loads;
 use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
 pub use imposed::{InitialStress, Layer, PoreFluid, PorePressure, Thermal};
 use linkage::Linkage;
+pub use measured::{Coordinate, Measured, MeasuredTable, PoreField};
 use method::Chosen;
 pub use method::Method;
 pub use requests::{OutputRequests, Probe, WatchedSet};

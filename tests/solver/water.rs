@@ -1,8 +1,10 @@
 //! Pressures given in the pores of bodies: against the same pressure on their faces, in every scheme, and as contacts see them.
 
+use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, distance, finish, model, quadratic, refusal};
+use crate::common::{Blocks, Finished, close, distance, finish, finish_at, model, quadratic, refusal};
 use fecontact::model::Model;
 use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
@@ -130,17 +132,21 @@ fn water_in_motion() {
 
 /// A block on ground under its weight in water whose level falls: friction by the pressure of the body below.
 fn ground(fluid: &Value) -> Finished {
+    finish(&ground_case(fluid))
+}
+
+fn ground_case(fluid: &Value) -> Value {
     let mesh = Blocks::default()
         .rectangle("block", [4, 2], [0.5, 0.0], [2.5, 1.0])
         .rectangle("ground", [6, 3], [0.0, -1.5], [3.0, 0.0])
         .json();
     let soil = |biot: f64| json!({"material": {"model": "linear", "E": 1000, "nu": 0.3}, "pore_pressure": {"pressure": "(2 + 0.3*x)*t", "biot": biot}});
-    finish(&json!({
+    json!({
         "mesh": mesh, "bodies": {"block": soil(1.0), "ground": soil(1.0)},
         "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": {"law": "coulomb", "mu": 0.4}, "fluid_pressure": fluid}},
         "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.1}, "supports": [
             {"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": {"rate": 0.002}, "uy": {"rate": -0.01}}]}],
-    }))
+    })
 }
 
 /// A contact takes the pressure of the pores behind it, which is the one that may be given instead.
@@ -151,6 +157,61 @@ fn contacts_see_the_water_of_their_bodies() {
     let wet = &taken.last().contacts[0];
     assert!(wet.iter().all(|point| point.fluid > 1.0) && wet.iter().any(|point| point.friction.pressure > 1.0));
     close("energy", taken.last().energy.error(), 0.0, 1e-3 * taken.last().energy.external_work);
+}
+
+/// Ground whose pressures are measured at its nodes, in a file, as `fluid` of the contact or of the bodies behind it.
+fn measured(folder: &Path, bodies: &Value, fluid: &Value) -> Value {
+    let mut case = ground_case(fluid);
+    case["bodies"]["block"]["pore_pressure"]["pressure"] = bodies.clone();
+    case["bodies"]["ground"]["pore_pressure"]["pressure"] = bodies.clone();
+    let built = model(&ground_case(&json!(0)));
+    let (tags, nodes) = (&built.mesh.node_tags, &built.mesh.nodes);
+    let line =
+        |head: String, of: &dyn Fn(usize) -> f64| (0..nodes.len()).fold(head, |line, k| format!("{line}, {}", of(k)));
+    let head = (0..nodes.len()).fold(String::from("t"), |line, k| format!("{line}, {}", tags[k]));
+    let [none, all] = [0.0, 1.0].map(|t| line(t.to_string(), &|k| t * (2.0 + 0.3 * nodes[k].x)));
+    fs::write(folder.join("nodes.csv"), format!("{head}\n{none}\n{all}\n")).expect("a file");
+    fs::write(folder.join("places.csv"), "t, 0, 3\n0, 0, 0\n1, 2, 2.9\n").expect("a file");
+    case
+}
+
+/// Tables of times and places, or of times and nodes, are the expression that they were made from: in bodies and at contacts.
+#[test]
+fn tables_of_places_and_of_nodes_are_what_they_were_made_from() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("case.json");
+    let plain = ground(&json!("of_bodies"));
+    let [by_place, by_node] = ["x", "nodes"].map(|along| {
+        let file = if along == "x" { "places.csv" } else { "nodes.csv" };
+        json!({"measured": {"file": file, "along": along}})
+    });
+    for (bodies, fluid) in [
+        (&by_place, &json!("of_bodies")),
+        (&by_node, &json!("of_bodies")),
+        (&by_node, &by_place),
+        (&by_place, &by_node),
+    ] {
+        let run = finish_at(&measured(folder.path(), bodies, fluid), &path);
+        let gap = distance(&run.last().displacement, &plain.last().displacement);
+        assert!(gap < 1e-12, "{bodies}, {fluid}: {gap:e}");
+        for (here, there) in run.last().contacts[0].iter().zip(&plain.last().contacts[0]) {
+            close("p_w", here.fluid, there.fluid, 1e-12);
+            close("p", here.friction.pressure, there.friction.pressure, 1e-8);
+        }
+    }
+    let case = measured(folder.path(), &by_node, &json!("of_bodies"));
+    for (text, why) in
+        [("t, 0, 1\n0, 0, 0\n", "has no pressures of node"), ("t, 0\n0, 0, 0\n", "`nodes.csv`: line 2 has 3 numbers")]
+    {
+        fs::write(folder.path().join("nodes.csv"), text).expect("a file");
+        let told = crate::common::built(&case, &path).expect_err("it is refused").to_string();
+        assert!(told.contains("bodies.block.pore_pressure.pressure") && told.contains(why), "{told}");
+    }
+    let case = measured(folder.path(), &by_node, &json!("of_bodies"));
+    let text = fs::read_to_string(folder.path().join("nodes.csv")).expect("a file");
+    fs::write(folder.path().join("nodes.csv"), text.replace("\n0, 0", "\n0, 1")).expect("a file");
+    let told = crate::common::built(&case, &path).expect_err("it is refused").to_string();
+    assert!(told.contains("pressures at nodes count from the start"), "{told}");
 }
 
 /// What does not go together is refused with its place, and a contact that ignores the water is warned of.

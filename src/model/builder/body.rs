@@ -95,11 +95,12 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
         if let Some(fluid) = pore_fluid {
             check_fluid(&*law, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?;
         }
-        if let Some(given) = pore_pressure {
+        let mut pore_pressure = pore_pressure.clone();
+        if let Some(given) = &mut pore_pressure {
             let place = format!("{place}.pore_pressure");
             let message = "is given beside a pore_fluid, which has a pressure of its own: leave one of them out";
             refuse_if(pore_fluid.is_some(), &place, message)?;
-            water::check(&*law, given, &mesh.nodes_of(group), mesh, &place)?;
+            *given = water::checked(&*law, given, &mesh.nodes_of(group), mesh, &place)?;
         }
         check_section(&*law, *element == Formulation::FBar, mesh.section, &place)?;
         let fluid = pore_fluid.as_ref();
@@ -127,8 +128,8 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             damping: *damping,
             initial_stress: initial_stress.clone(),
             pore_fluid: pore_fluid.clone(),
-            pore_pressure: pore_pressure.clone(),
             starts_pressed: pore_pressure.as_ref().is_some_and(|given| water::acts_at_start(given, &nodes, mesh)),
+            pore_pressure,
             thermal: *thermal,
             elements,
             nodes,

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
-use super::fluid::{FluidPressure, GivenPressure, Measured};
+use super::fluid::FluidPressure;
 use super::friction::{Along, Friction};
 use super::groups;
 use super::interface::Interface;
@@ -14,6 +14,7 @@ use crate::contact::pair::ContactPair;
 use crate::laws::friction::{BondParameters, Dilatancy, FrictionParameters};
 use crate::mesh::Mesh;
 use crate::model::boundary::Profile;
+use crate::model::measured::{GivenPressure, Measured};
 use crate::model::method::Method;
 use crate::model::written::written;
 

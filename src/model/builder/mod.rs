@@ -81,7 +81,7 @@ pub use bond::FADES;
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_positive, refuse_if};
-pub use fluid::{Coordinate, FluidPressure, Measured, MeasuredTable};
+pub use fluid::FluidPressure;
 pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};
 pub use groups::Place;
 pub(crate) use groups::nodes_at;

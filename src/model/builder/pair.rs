@@ -112,6 +112,8 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         Some(FluidPressure::OfBodies) => water::fluid_of_bodies(&contact.slave, model, &place)?,
         _ => None,
     };
+    let slaves: Vec<usize> = points.iter().flat_map(|point| point.position.iter().map(|(node, _)| *node)).collect();
+    let given = fluid::fluid(&place, contact.fluid_pressure.as_ref(), &slaves, &model.mesh)?;
     let pores = if of_bodies.is_some() { None } else { pores::pores(&place, contact, &points, model)? };
     let mut pair = ContactPair {
         name: contact.name.clone(),
@@ -126,7 +128,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         penetration: contact.normal.penetration,
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
-        fluid: of_bodies.or(fluid::fluid(&place, contact.fluid_pressure.as_ref())?),
+        fluid: of_bodies.or(given),
         pores,
         laws,
         in_time,

@@ -136,8 +136,7 @@ pub(super) fn axis_told(base: &Base) -> Outcome {
 pub(super) fn told_in_time(base: &Base) -> Outcome {
     let draft = base.draft;
     // The opening over which a cohesion fades goes by what it is at the start.
-    let fades =
-        draft.is("friction", "adhesion") || model::case(draft, &base.ways).to_string().contains("\"cohesion\"");
+    let fades = draft.is("friction", "adhesion") || model::case(draft, &base.ways).to_string().contains("\"cohesion\"");
     if fades || draft.is("friction", "frictionless") || draft.is("friction", "prescribed") || !base.has_ended_well() {
         return Outcome::Idle;
     }
