@@ -355,7 +355,6 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
             "second_contact",
             "inclined",
             "until",
-            "periodic",
         ],
         "quasi-dynamic steps are linear but for the interface",
     ),

@@ -238,3 +238,22 @@ fn what_water_cannot_do_is_refused() {
     let warnings = model(&case).warnings();
     assert!(warnings.iter().any(|told| told.contains("its friction goes by the total pressure")), "{warnings:?}");
 }
+
+/// Ground at rest under its weight in water whose level falls by 5 m: the settlement of the column is ∫ Δσ′/M dy, with Δσ′ = Δp in the water that is left
+/// and γ_w times the height above it.
+#[test]
+fn ground_settles_where_its_water_falls() {
+    let mesh = Blocks::default().rectangle("soil", [1, 10], [0.0, 0.0], [1.0, 10.0]).json();
+    let run = finish(&json!({
+        "mesh": mesh, "bodies": {"soil": {
+            "material": {"model": "linear", "E": 10e3, "nu": 0.3, "density": 2.0},
+            "initial_stress": {"geostatic": {"surface": 10, "weight": 10, "K0": 0.5}},
+            "pore_pressure": {"pressure": "9.81*max(0, 10 - 5*min(t, 1) - y)"}}},
+        "steps": [{"name": "lower", "duration": 1, "dt": {"initial": 0.25}, "loads": [{"on": "soil", "gravity": {"y": "-9.905"}}], "supports": [
+            {"on": "soil_bottom", "ux": 0, "uy": 0}, {"on": "soil_left", "ux": 0}, {"on": "soil_right", "ux": 0}]}],
+    }));
+    let modulus = 10e3 * 0.7 / (1.3 * 0.4);
+    let top = run.nodes("soil_top")[0];
+    close("settlement", run.last().displacement[2 * top + 1], -9.81 * (25.0 + 12.5) / modulus, 1e-9);
+    close("energy", run.last().energy.error(), 0.0, 1e-9);
+}
