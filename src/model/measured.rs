@@ -253,7 +253,7 @@ impl From<PressureObject> for PoreField {
 
 /// Forms of a pressure that is given, for the schema.
 #[derive(JsonSchema)]
-#[serde(untagged)]
+#[serde(untagged, deny_unknown_fields)]
 pub enum GivenPressure {
     /// By place
     Profile(Profile),
