@@ -76,7 +76,8 @@ impl Reduced {
             for (name, given) in known.iter().filter(|(name, _)| all || names.contains(name)) {
                 let place = format!("{list}.{name}.{law_key}");
                 let law = given.get(law_key).and_then(|law| law.get(tag)).and_then(Value::as_str).unwrap_or_default();
-                let has_bond = given.get("bond").is_some_and(Value::is_object);
+                let [has_bond, is_interface] =
+                    ["bond", "interface"].map(|key| given.get(key).is_some_and(Value::is_object));
                 let part = &mut case[list][name];
                 match STRENGTHS.iter().find(|(known, _)| *known == law) {
                     Some((_, keys)) => {
@@ -86,7 +87,7 @@ impl Reduced {
                         }
                         count += 1;
                     }
-                    None if !all && !has_bond => return Err(ModelError::new(place, no_strength(law))),
+                    None if !(all || has_bond || is_interface) => return Err(ModelError::new(place, no_strength(law))),
                     None if ["rate_and_state", "registered", "prescribed"].contains(&law) => {
                         return Err(ModelError::new(place, no_strength(law)));
                     }
@@ -96,6 +97,17 @@ impl Reduced {
                     let bond = &mut part["bond"];
                     OF_BONDS.iter().for_each(|key| scale(&mut bond[*key], factor));
                     prune(bond);
+                    count += 1;
+                }
+                if is_interface {
+                    // A share of the strength of the soil follows the soil where that is reduced.
+                    let own = if all || !self.bodies.is_empty() { None } else { Some("reduction") };
+                    let strength = &mut part["interface"];
+                    ["cohesion"].into_iter().chain(own).for_each(|key| scale(&mut strength[key], factor));
+                    if let Some(degrees) = strength["friction_angle"].as_f64() {
+                        strength["friction_angle"] = json!(divided_angle(degrees, factor));
+                    }
+                    prune(strength);
                     count += 1;
                 }
                 prune(part);
@@ -170,8 +182,7 @@ fn divide(law: &mut Value, name: &str, keys: &[&str], factor: f64, place: &str) 
     for key in keys {
         match *key {
             "phi" => {
-                let reduced = |degrees: f64| (degrees.to_radians().tan() / factor).atan().to_degrees();
-                let phi = law["phi"].as_f64().map_or(0.0, reduced);
+                let phi = law["phi"].as_f64().map_or(0.0, |degrees| divided_angle(degrees, factor));
                 law["phi"] = json!(phi);
                 if law["psi"].as_f64().is_some_and(|psi| psi > phi) {
                     law["psi"] = json!(phi);
@@ -206,6 +217,11 @@ fn along(along: &mut Value, keys: &[&str], factor: f64, place: &str) -> Checked<
     }
     prune(along);
     Ok(())
+}
+
+/// The angle whose tangent is that of another over F [degrees].
+fn divided_angle(degrees: f64, factor: f64) -> f64 {
+    (degrees.to_radians().tan() / factor).atan().to_degrees()
 }
 
 fn scale(value: &mut Value, factor: f64) {
