@@ -31,6 +31,111 @@ def _given(values: Mapping[str, Any]) -> dict[str, Any]:
     return {key.rstrip("_"): value for key, value in values.items() if not isinstance(value, Given)}
 
 
+class Bar(dict[str, Any]):
+    """A bar along straight lines: a truss, or a beam where `ei` is given. In plane strain all values are per unit of
+    thickness, otherwise they are those of the whole bar. A bar has a group of its nodes under its name, for
+    supports, loads and `watch`, and its ends are the groups `NAME_start` and `NAME_end`.
+
+    Args:
+        ea: EA: axial stiffness, above 0 [F]
+        ei: EI: bending stiffness; default: 0, a truss [F L²]
+        embedded: Body that it lies in, with bond along its whole length; default: none, it is joined to others
+            by its ends and shared nodes alone
+        end: How it ends; default: free
+        limit: N_p: force at which it yields in tension and compression, at constant force; default: none [F]
+        mass: Mass per length; needed in dynamic steps [M/L]
+        on: Group of edges of a body whose nodes it shares, or of lines of the mesh that are sides of no element
+        points: Points [x, y] of its axis, joined by straight lines. Either these or `on`
+        segments: Number of segments that it is divided into; default: with `embedded` about one to an element
+            of the body, 20 for a beam, and one from point to point for a truss
+        start: How it begins; default: free
+    """
+
+    def __init__(
+        self,
+        *,
+        ea: float,
+        ei: float | Given = NOT_GIVEN,
+        embedded: Embedding | None | Given = NOT_GIVEN,
+        end: BarEnd | None | Given = NOT_GIVEN,
+        limit: float | None | Given = NOT_GIVEN,
+        mass: float | Given = NOT_GIVEN,
+        on: str | None | Given = NOT_GIVEN,
+        points: Pairs | Given = NOT_GIVEN,
+        segments: int | None | Given = NOT_GIVEN,
+        start: BarEnd | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"ea": ea, "ei": ei, "embedded": embedded, "end": end, "limit": limit, "mass": mass, "on": on, "points": points, "segments": segments, "start": start}))
+
+
+class Embedding(dict[str, Any]):
+    """Bond of a bar with the bodies in which it lies.
+
+    Args:
+        in_: Bodies in which it lies from end to end
+        bond: Bond along it; default: it moves with the bodies, without slip
+    """
+
+    def __init__(
+        self,
+        *,
+        in_: Sequence[str],
+        bond: BarBond | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"in_": in_, "bond": bond}))
+
+
+class BarBond(dict[str, Any]):
+    """Bond along a bar: shear per length of the bar against slip, as in a bond of a contact. Across, the bar is tied
+    by a penalty.
+
+    Args:
+        mu: μ: what the strength grows by per pressure of the body across the bar (times the thickness of the
+            body), that at the start of an increment; twice a coefficient of friction where both faces rub.
+            Default: 0 [-]
+        normal: k_n: force across the bar per length and distance; default: 100 (λ + 2G)/(length of a segment)
+            of the body times its thickness [F/L²]
+        residual: c_r: what is left of it after the slip `slip`, 0 ≤ c_r ≤ c; default: c, and 0 where `slip` is
+            given [F/L]
+        slip: D: slip over which the strength falls from c to c_r; default: it does not fall [L]
+        stiffness: k: shear per length and slip before any slips for good; default: 100 (λ + 2G)/(length of a
+            segment) of the body times its thickness, a penalty [F/L²]
+        strength: c: shear strength per length; default: 0 with `mu`, otherwise none: it never slips for good
+            [F/L]
+    """
+
+    def __init__(
+        self,
+        *,
+        mu: float | Given = NOT_GIVEN,
+        normal: float | None | Given = NOT_GIVEN,
+        residual: float | None | Given = NOT_GIVEN,
+        slip: float | None | Given = NOT_GIVEN,
+        stiffness: float | None | Given = NOT_GIVEN,
+        strength: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"mu": mu, "normal": normal, "residual": residual, "slip": slip, "stiffness": stiffness, "strength": strength}))
+
+
+class BarEnd(dict[str, Any]):
+    """An end of a bar.
+
+    Args:
+        clamped: Whether a beam keeps its angle there: to the body or bar that it is joined to, otherwise in
+            space. Default: a hinge
+        on: Body in which the end lies, another bar with a point there, or a group of points of the mesh: it is
+            joined to that point
+    """
+
+    def __init__(
+        self,
+        *,
+        clamped: bool | Given = NOT_GIVEN,
+        on: str | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"clamped": clamped, "on": on}))
+
+
 class Body(dict[str, Any]):
     """A body.
 
@@ -40,6 +145,7 @@ class Body(dict[str, Any]):
         element: Element formulation
         initial_stress: Stress of the undeformed body at the start; default: none
         pore_fluid: Fluid in the pores that has no time to flow: an undrained body; default: none
+        pore_pressure: Pressure given in the pores, by place and time; default: none
         thermal: Thermal expansion; default: none
     """
 
@@ -51,9 +157,10 @@ class Body(dict[str, Any]):
         element: Formulation | Given = NOT_GIVEN,
         initial_stress: InitialStress | None | Given = NOT_GIVEN,
         pore_fluid: PoreFluid | None | Given = NOT_GIVEN,
+        pore_pressure: PorePressure | None | Given = NOT_GIVEN,
         thermal: Thermal | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"material": material, "damping": damping, "element": element, "initial_stress": initial_stress, "pore_fluid": pore_fluid, "thermal": thermal}))
+        super().__init__(_given({"material": material, "damping": damping, "element": element, "initial_stress": initial_stress, "pore_fluid": pore_fluid, "pore_pressure": pore_pressure, "thermal": thermal}))
 
 
 class Linear(dict[str, Any]):
@@ -413,15 +520,39 @@ class Damping(dict[str, Any]):
         super().__init__(_given({"mass": mass, "stiffness": stiffness}))
 
 
-class Geostatic(dict[str, Any]):
-    """Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a
-    plate.
+class Layer(dict[str, Any]):
+    """A layer of the ground.
 
     Args:
-        surface: Level y of zero vertical stress: the top of the body, or above it if the body lies deeper [L]
+        top: Level y of its top [L]
+        weight: γ: weight per volume, above 0 [F/L³]
+        K0: K₀: ratio of horizontal to vertical stress, zero or positive [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        top: float,
+        weight: float,
+        K0: float,
+    ) -> None:
+        super().__init__(_given({"top": top, "weight": weight, "K0": K0}))
+
+
+class Geostatic(dict[str, Any]):
+    """Ground at rest under its weight along -y: σ_yy = −surcharge − weight (surface − y), and σ_xx = σ_zz = K0 σ_yy;
+    σ_zz = 0 in a plate.
+
+    Args:
+        surface: Level y of the vertical stress `surcharge`, 0 unless given: the top of the body, or above it if
+            the body lies deeper [L]
         weight: γ: weight per volume, the density times gravity, above 0 [F/L³]
         K0: K₀: ratio of horizontal to vertical stress, zero or positive; 1 − sin φ for loose soil, ν/(1 − ν)
             for an elastic body without lateral strain [-]
+        below: Layers below, from the top down, each with its weight and K₀: the same profile may serve all
+            bodies of the ground
+        surcharge: Pressure on the surface, of a load on the ground or of what lies above it, zero or positive
+            [F/L²]
     """
 
     def __init__(
@@ -430,8 +561,10 @@ class Geostatic(dict[str, Any]):
         surface: float,
         weight: float,
         K0: float,
+        below: Sequence[Layer] | Given = NOT_GIVEN,
+        surcharge: float | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__({"geostatic": _given({"surface": surface, "weight": weight, "K0": K0})})
+        super().__init__({"geostatic": _given({"surface": surface, "weight": weight, "K0": K0, "below": below, "surcharge": surcharge})})
 
 
 class AlongX(dict[str, Any]):
@@ -536,6 +669,49 @@ class PoreFluid(dict[str, Any]):
         super().__init__(_given({"bulk_modulus": bulk_modulus, "porosity": porosity, "cavitation": cavitation, "pressure": pressure}))
 
 
+class PorePressure(dict[str, Any]):
+    """Pressure of the fluid in the pores of a body, given by place and time: drained ground whose water changes, or a
+    reservoir. The material, and the initial stress, are those of the effective stress; stresses, and what is in
+    equilibrium, are total: less biot times the pressure.
+
+    Args:
+        pressure: p of the reference position x, y and, in expressions, of the run time t; what it is at t = 0
+            acts before anything moves. 0 at t = 0 for pressures that count from the start, which may be
+            negative [F/L²]
+        biot: b: Biot's coefficient, 0 < b ≤ 1, 1 − K/K_s with the bulk moduli of the body and of its grains; 1
+            of soil [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        pressure: GivenPressure,
+        biot: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"pressure": pressure, "biot": biot}))
+
+
+class Measured(dict[str, Any]):
+    """By time and place.
+
+    Args:
+        file: Table of comma-separated numbers, relative to the case file. The first line has the places behind
+            a word, such as "t"; each further one has a time of the run, and the pressures at the places. Times
+            and places ascend
+        along: What the places are: the coordinate "x" or "y" of the reference position (of the slave, in a
+            contact), or "nodes", tags of nodes in the mesh (counted from 0 in a mesh given in place); default
+            "x"
+    """
+
+    def __init__(
+        self,
+        *,
+        file: str,
+        along: Coordinate | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"measured": _given({"file": file, "along": along})})
+
+
 class Thermal(dict[str, Any]):
     """Thermal expansion of a body, whose `temperature` is given by the steps. With F = (1 + α (T − T₀)) F_e the
     material is evaluated at F_e; a `linear` one at the strain minus α (T − T₀).
@@ -575,11 +751,14 @@ class Contact(dict[str, Any]):
             a contact with `initial` is there before anything moves, in addition to `initial.pressure`; what the
             run raises is 0 at t = 0. The pressure is prescribed: there is no flow. "of_bodies" takes it from
             the pores of the slave's bodies (`pore_fluid`), whose total stress the contact carries: friction
-            goes by what p_w leaves of it. Not for quasi_dynamic steps [F/L²]
+            goes by what p_w leaves of it. {"measured": {"file": …}} takes it from a table of time and place
+            [F/L²]
         friction: Friction law; only surfaces that are tied have none. Text is the name of a law in `frictions`
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
             point is then measured, throughout the run, relative to the gap at which this pressure acts in its
             initial position
+        interface: Strength of the interface as a share of that of the soil beside it, or by cohesion and angle
+            of friction: Coulomb friction and a bond, which `check --resolved` shows. In place of `friction`
         massless: Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their
             elements, so that impact does not excite spurious oscillation of these nodes and of the contact
             force
@@ -627,9 +806,10 @@ class Contact(dict[str, Any]):
         area: float | None | Given = NOT_GIVEN,
         bond: Bond | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
-        fluid_pressure: Profile | None | Given = NOT_GIVEN,
+        fluid_pressure: GivenPressure | None | Given = NOT_GIVEN,
         friction: Friction | str | Given = NOT_GIVEN,
         initial: Initial | None | Given = NOT_GIVEN,
+        interface: Interface | None | Given = NOT_GIVEN,
         massless: bool | Given = NOT_GIVEN,
         method: Method | None | Given = NOT_GIVEN,
         normal: Normal | Given = NOT_GIVEN,
@@ -643,7 +823,7 @@ class Contact(dict[str, Any]):
         tied: bool | Given = NOT_GIVEN,
         wear: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
+        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "interface": interface, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
 
 
 class Plane(dict[str, Any]):
@@ -915,8 +1095,8 @@ class Bond(dict[str, Any]):
     """Bond of a contact, beside its friction: strength without pressure, in shear and in tension.
 
     Args:
-        bonded: Whether surfaces that do not touch at the start are bonded as well, within the opening;
-            otherwise they have c_r alone once they meet
+        bonded: Whether surfaces that do not touch at the start are bonded as well, within the opening and
+            without stress over the gap that they have; otherwise they have c_r alone once they meet
         limit: τ_max: limit of the shear traction of friction and bond together, τ_max ≥ c; default: none [F/L²]
         opening: δ: opening at which nothing is carried any more, neither shear nor tension, δ > 2 t/α_n; a
             length of the interface. Default 4 c h/E of the softer side, with the longest edge h of the slave in
@@ -997,14 +1177,38 @@ class Initial(dict[str, Any]):
         super().__init__(_given({"balanced": balanced, "of_bodies": of_bodies, "pressure": pressure, "structure": structure, "traction": traction}))
 
 
+class Interface(dict[str, Any]):
+    """Strength of an interface, c_i + p tan φ_i: a share of that of the soil beside it, or by its own numbers. In
+    place of `friction`, and of the `strength` of a bond.
+
+    Args:
+        cohesion: c_i, c_i ≥ 0; default 0 where `friction_angle` is given [F/L²]
+        friction_angle: φ_i, 0 ≤ φ_i < 90; default 0 where `cohesion` is given [degrees]
+        of: Name of that body, where bodies beside the interface differ in strength
+        reduction: R: share of the cohesion and of tan φ of the body beside the interface that yields by
+            mohr_coulomb, drucker_prager or von_mises (c = σ_y/√3, φ = 0), as it is before any softening, 0 ≤ R
+            ≤ 1. Without `cohesion` and `friction_angle` [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        cohesion: float | None | Given = NOT_GIVEN,
+        friction_angle: float | None | Given = NOT_GIVEN,
+        of: str | None | Given = NOT_GIVEN,
+        reduction: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"cohesion": cohesion, "friction_angle": friction_angle, "of": of, "reduction": reduction}))
+
+
 class Normal(dict[str, Any]):
     """Normal contact.
 
     Args:
         alpha_n: α_n: pressure per penetration [F/L³]; default 300 (λ + 2G)/h, with λ + 2G of the softer body
             and the depth h of the slave's elements; 10 (λ + 2G)/h at Gauss points but on planes, and where a
-            step has inertia, is quasi_dynamic or has `rupture`. A slave group of points has no elements and
-            needs a number
+            step has inertia, is quasi_dynamic without `fluid_pressure` or has `rupture`. A slave group of
+            points has no elements and needs a number
         penetration: Largest penetration allowed [L]: the pressure is increased until no penetration is larger
             (augmented Lagrangian by Uzawa's method), so that the solution does not depend on alpha_n; default:
             penalty only
@@ -1291,17 +1495,20 @@ class Step(dict[str, Any]):
     Args:
         name: Name in messages and results
         duration: Length of the step [T]
-        add: Bodies that come at the start of this step and are absent before, such as a wall. They come without
-            strain in the place that their nodes have then, at rest under their `initial_stress`, if any; that
-            and their weight grow in linearly over the step
+        add: Bodies and bars that come at the start of this step and are absent before, such as a wall or an
+            anchor. Bodies come without strain in the place that their nodes have then, at rest under their
+            `initial_stress`, if any; that and their weight grow in linearly over the step. A bar comes without
+            force between its points as they are then
         damping: Damping of bodies from this step on, replacing that of the body or of an earlier step;
             inherited. No effect in static steps
         dt: Increments; by default inherited from the previous step, a tenth of the first step
         loads: Loads; inherited, and replaced where the same group and kind is named again. In any scheme null
             reduces a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
             and ends springs, dashpots and absorbing sides at once. For a sudden end, use a table or expression
-        remove: Bodies taken away at the start of this step, as in an excavation. The forces that they exerted
-            on the rest remain as loads that fade linearly to zero over the step
+        prestress: Bars that are stressed in this step, by name: the force N to which a jack brings the whole
+            bar linearly over the step; with the end of the step its length is locked [F]
+        remove: Bodies and bars taken away at the start of this step, as in an excavation. The forces that they
+            exerted on the rest remain as loads that fade linearly to zero over the step
         rupture: Static and implicit steps: automatic switch to explicit integration while a contact slips fast.
             Not inherited
         scheme: Time scheme; by default inherited from the previous step, static in the first step
@@ -1331,6 +1538,7 @@ class Step(dict[str, Any]):
         damping: Mapping[str, Damping] | Given = NOT_GIVEN,
         dt: Increments | None | Given = NOT_GIVEN,
         loads: Sequence[Load] | Given = NOT_GIVEN,
+        prestress: Mapping[str, float] | Given = NOT_GIVEN,
         remove: Sequence[str] | Given = NOT_GIVEN,
         rupture: Rupture | None | Given = NOT_GIVEN,
         scheme: Scheme | None | Given = NOT_GIVEN,
@@ -1340,7 +1548,7 @@ class Step(dict[str, Any]):
         until: Until | None | Given = NOT_GIVEN,
         velocity: Mapping[str, Vector] | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"name": name, "duration": duration, "add": add, "damping": damping, "dt": dt, "loads": loads, "remove": remove, "rupture": rupture, "scheme": scheme, "stabilize": stabilize, "supports": supports, "temperature": temperature, "until": until, "velocity": velocity}))
+        super().__init__(_given({"name": name, "duration": duration, "add": add, "damping": damping, "dt": dt, "loads": loads, "prestress": prestress, "remove": remove, "rupture": rupture, "scheme": scheme, "stabilize": stabilize, "supports": supports, "temperature": temperature, "until": until, "velocity": velocity}))
 
 
 class Increments(dict[str, Any]):
@@ -1703,6 +1911,9 @@ Marginal = Union[Literal["normal"], Literal["lognormal"]]
 # Spectrum of a random field.
 Spectrum = Union[Literal["gaussian"], VonKarman]
 
+# Coordinate along which places are measured.
+Coordinate = Union[Literal["x"], Literal["y"], Literal["nodes"]]
+
 # The master side: a group of the mesh, or a rigid master given by a formula or an outline, fixed unless `rigid_body`
 # names a moving body.
 Master = Union[Plane, Circle, Polyline, Outline, str]
@@ -1768,10 +1979,15 @@ Scheme = Union[Literal["static"], Newmark, Hht, GeneralizedAlpha, Explicit, Quas
 # from the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
 Temperature = Union[Rate, Table, AlongX, AlongY, float, str]
 
+# Forms of a pressure that is given, for the schema.
+GivenPressure = Union[Profile, Measured]
+
 
 class CaseKeys(TypedDict, total=False):
     """The keys of a case."""
 
+    # Trusses, beams, anchors and geogrids by a name of your choice
+    bars: Mapping[str, Bar]
     # Folder of results, or checkpoint, of a completed case, relative to this file: this case begins with its final
     # state. Mesh, bodies and contacts must be the same except for the parameters of friction and damping. The steps
     # follow those of that case: supports, loads and time continue; energies start from zero
