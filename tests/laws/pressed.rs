@@ -15,7 +15,8 @@ fn build(given: Value) -> Box<dyn Material> {
 }
 
 fn pressed(law: Box<dyn Material>, plate: bool) -> Option<BodyLaw> {
-    BodyLaw::new(law, Surroundings { plate, ..Surroundings::default().biot(BIOT) })
+    let surroundings = Surroundings::default().biot(BIOT);
+    BodyLaw::new(law, if plate { surroundings.plate() } else { surroundings })
 }
 
 fn laws() -> Vec<(&'static str, Box<dyn Material>)> {
