@@ -35,6 +35,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "another way to write a mesh: tests/solver/blocks.rs",
     ),
     (&["node"], "another way to name a node: tests/solver/boundary.rs"),
+    (&["materials", "frictions"], "another way to write a law: tests/command/by_name.rs"),
     (&["area"], "slaves that are points: tests/contact/contact.rs"),
     (&["hole"], "the rim of a hole: tests/contact/contact.rs"),
     (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),
@@ -111,8 +112,18 @@ const AROUND: &[(&str, &str)] = &[
     ("converge", "tests/command/converge.rs"),
     ("converge --measure", "tests/command/converge.rs"),
     ("converge --levels", "tests/command/converge.rs"),
+    ("converge --within", "tests/command/converge.rs"),
     ("converge --out", "tests/command/converge.rs"),
     ("converge --threads", "tests/command/converge.rs"),
+    ("init", "tests/command/init.rs"),
+    ("completions", "tests/command/init.rs"),
+    ("safety", "tests/published/safety.rs"),
+    ("safety --body", "tests/published/safety.rs"),
+    ("safety --contact", "tests/published/safety.rs"),
+    ("safety --within", "tests/published/safety.rs"),
+    ("safety --most", "tests/published/safety.rs"),
+    ("safety --out", "tests/published/safety.rs"),
+    ("safety --threads", "tests/published/safety.rs"),
     ("law", "tests/command/law.rs"),
     ("law --out", "tests/command/law.rs"),
     ("report", "tests/command/report.rs"),
@@ -128,7 +139,8 @@ fn around() -> Vec<String> {
     let mut found = Vec::new();
     let mut command = String::new();
     for line in read("tests/command/surface/commands.txt").lines() {
-        match line.trim().split(' ').next().filter(|word| word.starts_with("--")) {
+        match line.trim().split([' ', ',']).find(|word| word.starts_with("--")) {
+            Some("--help") => {}
             Some(option) => found.push(format!("{command} {option}")),
             None if !line.starts_with(' ') => {
                 command = line.to_owned();

@@ -89,7 +89,7 @@ fn a_slope_has_the_factor_of_its_slices() {
                    "loads": [{"on": "soil", "gravity": {"y": -10}}]}],
         "output": {"fields": false, "report": false}
     });
-    let [stands, fails] = between(&case, &["--within", "0.02"]);
+    let [stands, fails] = between(&case, &["--within", "0.02", "--threads", "1"]);
     let factor = 0.5 * (stands + fails);
     assert!((factor - 1.38).abs() < 0.03, "{stands} to {fails}");
 }
@@ -120,5 +120,9 @@ fn laws_that_heal_are_refused() {
     let coulomb = json!({"law": "coulomb", "mu": 0.5});
     refused(&case(coulomb.clone()), &["--body", "block"], "bodies.block.material: `linear` has no strength");
     refused(&case(coulomb.clone()), &["--contact", "bas"], "contacts: `bas` is not known here; did you mean `base`?");
-    refused(&case(coulomb), &["--within", "0"], "--within: is 0: must be above 0");
+    refused(&case(coulomb.clone()), &["--within", "0"], "--within: is 0: must be above 0");
+    refused(&case(coulomb.clone()), &["--most", "1"], "--most: is 1: must be above 1");
+    let output = safety(&case(coulomb), &["--most", "1.2"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && said.contains("the strengths stand even when divided by 1.2"), "{said}");
 }
