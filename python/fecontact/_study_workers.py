@@ -94,6 +94,9 @@ class _Slot:
 
 def local(tasks: list[Task], measure: Measure | None, workers: int) -> Generator[tuple[Task, Record], None, None]:
     """Do tasks in processes of this computer; tells each as it ends."""
+    # As Python does; libraries such as gmsh undo it, and a worker that is killed would take this process along by its pipe.
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     sent = _pickled(measure)
     left = list(reversed(tasks))
     slots = [_Slot(sent) for _ in range(min(workers, len(tasks)))]
