@@ -35,6 +35,9 @@ fn a_case_to_begin_with_runs() {
         assert!(run.status.success(), "{kind}: {}", stderr(&run));
         assert_eq!(stderr(&run).lines().count(), 1, "{kind}: {}", stderr(&run));
     }
+    // The fault breaks twice, under its header.
+    let events = std::fs::read_to_string(folder.path().join("out/fault/events.csv")).unwrap();
+    assert_eq!(events.lines().count(), 3, "{events}");
     let elsewhere = fecontact(&folder, &["init", "wall", "nowhere/wall.json"]);
     assert_eq!(elsewhere.status.code(), Some(2));
     assert!(stderr(&elsewhere).contains("nowhere/wall.json: cannot be written"), "{}", stderr(&elsewhere));
