@@ -56,7 +56,10 @@ impl Reduced {
     /// # Errors
     /// Returns [`CaseError`] with the place of a body or contact without a strength that F could divide, or if there is none at all.
     pub fn check(&self, written: &Written) -> Result<(), CaseError> {
-        self.of(&written.document, 1.0).map(drop).map_err(|complaint| complaint.in_file(&written.path))
+        stands_still(&written.document)
+            .and_then(|()| self.of(&written.document, 1.0))
+            .map(drop)
+            .map_err(|complaint| complaint.in_file(&written.path))
     }
 
     /// A case with strengths divided by F.
@@ -78,6 +81,10 @@ impl Reduced {
                 let law = given.get(law_key).and_then(|law| law.get(tag)).and_then(Value::as_str).unwrap_or_default();
                 let [has_bond, is_interface] =
                     ["bond", "interface"].map(|key| given.get(key).is_some_and(Value::is_object));
+                if given.get("radiation_damping").is_some_and(|eta| eta.is_number() || *eta == json!(true)) {
+                    let message = "bears load as long as anything moves, so that nothing fails: leave it out";
+                    return Err(ModelError::new(format!("{list}.{name}.radiation_damping"), message));
+                }
                 let part = &mut case[list][name];
                 match STRENGTHS.iter().find(|(known, _)| *known == law) {
                     Some((_, keys)) => {
@@ -128,6 +135,7 @@ impl Reduced {
         let opened = Opened::begin(written.clone())?;
         let taken_over = opened.case.steps.len();
         let complain = |complaint: ModelError| complaint.in_file(path);
+        stands_still(&opened.document).map_err(complain)?;
         let mut document = self.of(&opened.document, factor).map_err(complain)?;
         add_step(&mut document, &opened, factor);
         let case: super::file::Case = read::input(&document).map_err(complain)?;
@@ -141,6 +149,59 @@ impl Reduced {
         let saved = crate::run::SavedRun::from_bytes(checkpoint.run, &model)
             .map_err(|error| complain(ModelError::new("", error.to_string())))?;
         Job::claim(Opened::going_on(path, document, case, taken_over), model, Some(saved.begin()), place)
+    }
+}
+
+/// Refuses what would go on changing in the trials, whose time follows that of the case: supports and loads in force at its end, pressures,
+/// temperatures and parameters that depend on time.
+fn stands_still(case: &Value) -> Checked<()> {
+    let steps = case["steps"].as_array().map_or(&[][..], Vec::as_slice);
+    let end: f64 = steps.iter().filter_map(|step| step["duration"].as_f64()).sum();
+    let mut in_force = BTreeMap::new();
+    for (k, step) in steps.iter().enumerate() {
+        for list in ["supports", "loads"] {
+            for (i, entry) in step[list].as_array().into_iter().flatten().enumerate() {
+                for (key, value) in entry.as_object().into_iter().flatten() {
+                    let place = format!("steps[{k}].{list}[{i}].{key}");
+                    in_force.insert((list, entry["on"].to_string(), key.clone()), (place, value));
+                }
+            }
+        }
+        for (body, value) in step["temperature"].as_object().into_iter().flatten() {
+            in_force.insert(
+                ("temperature", body.clone(), String::new()),
+                (format!("steps[{k}].temperature.{body}"), value),
+            );
+        }
+    }
+    let parts = [("contacts", "fluid_pressure"), ("contacts", "along"), ("bodies", "pore_pressure")];
+    let given = parts.into_iter().flat_map(|(list, key)| {
+        let named = case[list].as_object().into_iter().flatten();
+        named.map(move |(name, part)| (format!("{list}.{name}.{key}"), &part[key]))
+    });
+    let changing = in_force.into_values().chain(given).find(|(_, value)| changes_after(value, end));
+    changing.map_or(Ok(()), |(place, _)| {
+        let message = "goes on changing after the end of the case, and so in the trials: hold it in a last step, a motion by {\"rate\": 0}, or give it without the time";
+        Err(ModelError::new(place, message))
+    })
+}
+
+/// Whether a value of a case, or anything in it, depends on time after the end.
+fn changes_after(value: &Value, end: f64) -> bool {
+    match value {
+        Value::String(text) => text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == "t"),
+        Value::Object(object) => object.iter().any(|(key, inner)| match key.as_str() {
+            "on" => false,
+            "rate" => inner.as_f64().is_none_or(|rate| rate != 0.0),
+            "measured" => true,
+            "table" => {
+                let last = inner.as_array().and_then(|rows| rows.last()).and_then(|row| row[0].as_f64());
+                last.is_none_or(|last| last > end)
+            }
+            _ => changes_after(inner, end),
+        }),
+        Value::Array(list) => list.iter().any(|inner| changes_after(inner, end)),
+        _ => false,
     }
 }
 
