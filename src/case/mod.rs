@@ -26,7 +26,7 @@ use serde_json::Value;
 
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, MeshError, gmsh};
-use crate::model::builder::{Builder, Checked, Contact, FluidPressure, Gauge, ModelError, check_positive, refuse_if};
+use crate::model::builder::{Builder, Checked, Contact, FluidPressure, Gauge, ModelError, refuse_if};
 use crate::model::{Measured, Model, PoreField};
 pub use again::Opened;
 pub use error::CaseError;
@@ -78,7 +78,9 @@ fn built(case: &Case, mesh: Mesh, path: &Path) -> Checked<Model> {
     if let Some(minutes) = case.output.checkpoint.filter(|minutes| !(*minutes >= 0.0 && minutes.is_finite())) {
         return Err(ModelError::new("output.checkpoint", format!("is {minutes}: must be minutes, or null for none")));
     }
-    check_positive("output.fronts.slip_rate", case.output.fronts.map_or(1.0, |fronts| fronts.slip_rate), "")?;
+    if let Some(fronts) = case.output.fronts {
+        fronts.check()?;
+    }
     Ok(model)
 }
 

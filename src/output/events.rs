@@ -9,6 +9,7 @@
 //! fracture energy   ∫ (q − q_min) ds up to the minimum of q, q_min: work in excess of sliding at that traction
 //! released          Δ(external work − strain energy − elastic energy of contacts), of the whole model
 //! radiated          released − Δ(dissipation by friction): kinetic energy, and energy absorbed by dampers and absorbing sides
+//! seismic share     ∫ s_seismic dl/∫ s dl, with s_seismic the slip in rows whose slip rate is above the seismic one
 //! front speed       slope of the distance from where it began over the arrivals, by least squares
 //! ```
 //!
@@ -34,6 +35,7 @@ use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::bulk::Material;
 use crate::model::Model;
+use crate::model::builder::{ModelError, check_positive};
 use crate::model::state::State;
 
 /// A slip event, complete or in progress.
@@ -48,6 +50,8 @@ pub(super) struct SlipEvent {
     pub energies: [Energies; 2],
     /// Record of each point
     pub courses: Vec<PointRecord>,
+    /// Time when a point first slipped faster than the seismic rate: the row before
+    seismic_onset: Option<f64>,
 }
 
 /// Energy released by loads and stored energies, and dissipated by friction, since the start of the run [F·L].
@@ -76,6 +80,8 @@ pub(super) struct PointRecord {
     /// State at the last row
     last: Mark,
     pub peak_rate: f64,
+    /// Plastic slip while it slipped faster than the seismic rate [L]
+    seismic_slip: f64,
 }
 
 /// Plastic slip [L], q [F/L²] and ∫ |q| ds [F/L] of a point.
@@ -97,13 +103,19 @@ impl Mark {
 impl SlipEvent {
     /// Starts an event at the end of the previous increment, given the marks of the points and the energies of the model there.
     pub fn begin(number: usize, marks: impl Iterator<Item = Mark>, until: f64, energies: Energies) -> Self {
-        let course = |mark: Mark| PointRecord { before: mark, least: mark, last: mark, peak_rate: 0.0 };
-        Self { number, until, over: false, energies: [energies; 2], courses: marks.map(course).collect() }
+        let course =
+            |mark: Mark| PointRecord { before: mark, least: mark, last: mark, peak_rate: 0.0, seismic_slip: 0.0 };
+        let courses = marks.map(course).collect();
+        Self { number, until, over: false, energies: [energies; 2], courses, seismic_onset: None }
     }
 
-    /// Adds an increment; `over` if no point slips any more.
-    pub fn go_on(&mut self, state: &State, marks: impl Iterator<Item = (Mark, f64)>, over: bool) {
+    /// Adds an increment; `over` if no point slips any more. Slip faster than `seismic` is summed separately.
+    pub fn go_on(&mut self, state: &State, marks: impl Iterator<Item = (Mark, f64)>, seismic: f64, over: bool) {
         for (course, (mark, rate)) in self.courses.iter_mut().zip(marks) {
+            if rate.abs() > seismic {
+                course.seismic_slip += mark.slip - course.last.slip;
+                self.seismic_onset.get_or_insert(self.until);
+            }
             if mark.traction.abs() < course.least.traction.abs() && mark.slip != course.before.slip {
                 course.least = mark;
             }
@@ -148,11 +160,14 @@ pub(super) struct Measures {
     pub released: f64,
     pub radiated: f64,
     pub front_speed: f64,
+    /// First slip faster than the seismic rate, and the share of slip times length at such rates; NaN if no rate is given
+    pub seismic_onset: f64,
+    pub seismic_share: f64,
 }
 
 impl Measures {
     /// Returns the measures of an event; `None` if no front has reached a point.
-    pub fn of(event: &SlipEvent, interface: &ContactPoints) -> Option<Self> {
+    pub fn of(event: &SlipEvent, interface: &ContactPoints, criterion: &FrontsInput) -> Option<Self> {
         let reached: Vec<(&Point, &PointRecord, f64)> = interface
             .points
             .iter()
@@ -171,6 +186,7 @@ impl Measures {
             |of: &dyn Fn(&PointRecord) -> f64| reached.iter().map(|(_, course, _)| of(course)).fold(0.0, f64::max);
         let [start, end] = event.energies;
         let released = end.given - start.given;
+        let share = mean(&|course| course.seismic_slip.abs()) / mean(&|course| course.slip().abs());
         Some(Self {
             onset,
             position: first.position,
@@ -184,6 +200,8 @@ impl Measures {
             released,
             radiated: released - (end.friction - start.friction),
             front_speed: front_speed(first, onset, &reached),
+            seismic_onset: event.seismic_onset.unwrap_or(f64::NAN),
+            seismic_share: if criterion.seismic_rate.is_some() { share } else { f64::NAN },
         })
     }
 }
@@ -249,8 +267,25 @@ pub struct FrontsInput {
     /// Slip rate that marks the arrival of a front when it is exceeded; a slip event lasts while any point of the contact
     /// slips faster [L/T]
     pub slip_rate: f64,
+    /// Slip rate from which slip counts as seismic, above `slip_rate`: `events.csv` then tells when an event became
+    /// seismic, and which share of its slip was [L/T]
+    pub seismic_rate: Option<f64>,
     /// Criterion for arrivals instead of the slip rate
     pub arrival: Option<ArrivalInput>,
+}
+
+impl FrontsInput {
+    /// Checks the thresholds.
+    pub fn check(&self) -> Result<(), ModelError> {
+        check_positive("output.fronts.slip_rate", self.slip_rate, "")?;
+        match self.seismic_rate {
+            Some(seismic) if !(seismic > self.slip_rate && seismic.is_finite()) => Err(ModelError::new(
+                "output.fronts.seismic_rate",
+                format!("is {seismic}: must be above output.fronts.slip_rate, {}", self.slip_rate),
+            )),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Criterion for the arrival of a front at a point.
@@ -363,7 +398,8 @@ impl ContactPoints {
         }
         let event = if slipping || goes_on { self.events.len() } else { 0 };
         if let Some(last) = self.events.last_mut().filter(|event| !event.over) {
-            last.go_on(after, marks.iter().copied().zip(rates.iter().copied()), !slipping);
+            let seismic = criterion.seismic_rate.unwrap_or(f64::INFINITY);
+            last.go_on(after, marks.iter().copied().zip(rates.iter().copied()), seismic, !slipping);
         }
         let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
         for ((point, (mark, rate)), (slave, state)) in points {

@@ -101,7 +101,10 @@ impl Fronts {
         let mut table = Table::create(&self.folder.join("events.csv"), names(&EVENTS).collect())?;
         for interface in &self.interfaces {
             let rayleigh = interface.speeds.as_ref().map_or(f64::NAN, |speeds| speeds.rayleigh);
-            for (event, m) in interface.events.iter().filter_map(|event| Some((event, Measures::of(event, interface)?)))
+            for (event, m) in interface
+                .events
+                .iter()
+                .filter_map(|event| Some((event, Measures::of(event, interface, &self.criterion)?)))
             {
                 table.text(&interface.name);
                 table.count(event.number);
@@ -110,8 +113,8 @@ impl Fronts {
                 table.count(usize::from(event.over));
                 let slip = [m.length, m.mean_slip, m.largest_slip, m.peak_slip_rate];
                 let energies = [m.stress_drop, m.fracture_energy, m.released, m.radiated];
-                let speeds = [m.front_speed, m.front_speed / rayleigh];
-                table.numbers(slip.into_iter().chain(energies).chain(speeds));
+                let rest = [m.front_speed, m.front_speed / rayleigh, m.seismic_onset, m.seismic_share];
+                table.numbers(slip.into_iter().chain(energies).chain(rest));
                 table.end_row()?;
             }
         }

@@ -345,7 +345,7 @@ pub const FRONTS: [Quantity; 14] = [
 ];
 
 /// Columns of `events.csv`: one row per event of a contact.
-pub const EVENTS: [Quantity; 18] = [
+pub const EVENTS: [Quantity; 20] = [
     q("contact", NONE, "the contact"),
     q("event", NONE, "number in its contact, from 1"),
     q("onset", TIME, "time of the first arrival"),
@@ -364,6 +364,16 @@ pub const EVENTS: [Quantity; 18] = [
     q("energy_radiated", ENERGY, "released energy less the dissipation by friction"),
     q("front_speed", VELOCITY, "slope of distance over arrivals by least squares, both directions together"),
     q("front_speed_over_c_R", NONE, "over the Rayleigh wave speed of the body behind the slave"),
+    q(
+        "seismic_onset",
+        TIME,
+        "the row before a point first slips faster than `seismic_rate`; NaN where none does, or none is given",
+    ),
+    q(
+        "seismic_share",
+        NONE,
+        "share of slip times length that is faster than `seismic_rate`: 0 in an aseismic event; NaN without one",
+    ),
 ];
 
 /// Columns of `law.csv` common to all laws.

@@ -26,6 +26,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
             "points",
             "fronts",
             "arrival",
+            "seismic_rate",
             "R",
         ],
         "what is written, not what is computed: tests/command",

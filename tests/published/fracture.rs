@@ -320,7 +320,7 @@ fn the_table_of_events_tells_what_a_front_did() {
         folder.path(),
         &model,
         &start,
-        FrontsInput { slip_rate: 0.01 * half, arrival: Some(ArrivalInput::R(0.999_999)) },
+        FrontsInput { slip_rate: 0.01 * half, seismic_rate: None, arrival: Some(ArrivalInput::R(0.999_999)) },
     );
     let points = model.contacts[BREAKING].points.len();
     let mut passages = Passages { half, time: 0.0, slips: vec![0.0; points], at: vec![None; points] };

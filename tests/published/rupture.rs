@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::common::{self, Blocks, model, refusal};
 use fecontact::model::Model;
+use fecontact::model::state::State;
 use fecontact::output::events::WaveSpeeds;
 use fecontact::output::fronts::{Fronts, FrontsInput};
 use fecontact::run::error::Error;
@@ -209,12 +210,77 @@ fn rows(path: &Path) -> Vec<Vec<String>> {
     text.lines().skip(1).map(|line| line.split(',').map(Into::into).collect()).collect()
 }
 
+/// Shows an accepted increment to the observer of fronts.
+fn accepted(fronts: &mut Fronts, model: &Model, old: &State, new: &State) {
+    let told = Attempt {
+        step: &model.steps[0],
+        step_number: 0,
+        ended: &[],
+        passes: &[],
+        number: 1,
+        old,
+        dt: new.time - old.time,
+        iterations: &[],
+        accepted: Some(new),
+        row: Row::Written,
+        verdict: Verdict::Accepted,
+        cause: None,
+        doubt: None,
+        local_error: None,
+    };
+    fronts.record(model, &told).expect("a row");
+}
+
+/// The middle of a fault slips at 0.6 for 2 s and at 2 for 1 s, rests, and slips at 0.6 for another second: of the first event a share of
+/// 2/(1.2 + 2) is faster than 1, from t = 2 on, and the second one is aseismic.
+#[test]
+fn events_tell_their_seismic_share() {
+    let model = model(&scec(2000.0, false, 1.0, quiet()));
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut old = model.initial_state();
+    let criterion = FrontsInput { slip_rate: 0.5, seismic_rate: Some(1.0), arrival: None };
+    let mut fronts = Fronts::new(folder.path(), &model, &old, criterion);
+    let x = fecontact::mesh::configuration::Configuration::undeformed(&model.mesh.nodes);
+    let inside: Vec<bool> = model.contacts[0].points.iter().map(|point| point.at(&x).x.abs() < 5e3).collect();
+    for k in 1..=140 {
+        let time = 0.05 * f64::from(k);
+        let rate = match time - 0.025 {
+            t if t < 2.0 => 0.6,
+            t if t < 3.0 => 2.0,
+            t if t < 5.0 => 0.0,
+            t if t < 6.0 => 0.6,
+            _ => 0.0,
+        };
+        let mut new = old.clone();
+        new.time = time;
+        for (contact, _) in new.contacts[0].iter_mut().zip(&inside).filter(|(_, inside)| **inside) {
+            contact.friction.plastic_slip += rate * (new.time - old.time);
+        }
+        accepted(&mut fronts, &model, &old, &new);
+        old = new;
+    }
+    fronts.finish().expect("written");
+    let text = std::fs::read_to_string(folder.path().join("events.csv")).expect("a file");
+    let names: Vec<&str> = text.lines().next().expect("names").split(',').collect();
+    let events = rows(&folder.path().join("events.csv"));
+    let number = |event: usize, name: &str| {
+        let column = names.iter().position(|column| *column == name).expect("a column");
+        events[event][column].parse::<f64>().expect("a number")
+    };
+    assert_eq!(events.len(), 2);
+    common::close("share", number(0, "seismic_share"), 0.625, 1e-9);
+    common::close("onset", number(0, "seismic_onset"), 2.0, 1e-9);
+    assert_eq!(number(1, "seismic_share"), 0.0);
+    assert!(number(1, "seismic_onset").is_nan());
+}
+
 #[test]
 fn fronts_tell_when_and_how_fast_a_given_front_ran() {
     let model = model(&scec(2000.0, false, 1.0, quiet()));
     let folder = tempfile::tempdir().expect("a folder");
     let mut old = model.initial_state();
-    let mut fronts = Fronts::new(folder.path(), &model, &old, FrontsInput { slip_rate: 0.5, arrival: None });
+    let mut fronts =
+        Fronts::new(folder.path(), &model, &old, FrontsInput { slip_rate: 0.5, seismic_rate: None, arrival: None });
     // From the middle to both ends at 2500 m/s, behind it 1 m/s of slip; after 6.5 s it rests, and at 9 s it starts again.
     let x = fecontact::mesh::configuration::Configuration::undeformed(&model.mesh.nodes);
     let places: Vec<f64> = model.contacts[0].points.iter().map(|point| point.at(&x).x).collect();
@@ -229,23 +295,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
         }
         // Loads and stored energies give 3 a second.
         (new.energy.external_work, new.energy.strain) = (5.0 * time, 2.0 * time);
-        let told = Attempt {
-            step: &model.steps[0],
-            step_number: 0,
-            ended: &[],
-            passes: &[],
-            number: 1,
-            old: &old,
-            dt: 0.05,
-            iterations: &[],
-            accepted: Some(&new),
-            row: Row::Written,
-            verdict: Verdict::Accepted,
-            cause: None,
-            doubt: None,
-            local_error: None,
-        };
-        fronts.record(&model, &told).expect("a row");
+        accepted(&mut fronts, &model, &old, &new);
         old = new;
     }
     fronts.finish().expect("written");
@@ -290,6 +340,12 @@ fn what_varies_along_a_fault_is_checked() {
     refused(&format!("{fault}/initial"), "pressure", json!("x"), "must be zero or positive");
     refused(&format!("{fault}/initial"), "structure", json!(1.0), "has no structure");
     refused("/output", "fronts", json!({"slip_rate": 0.0}), "output.fronts.slip_rate");
+    refused(
+        "/output",
+        "fronts",
+        json!({"slip_rate": 0.1, "seismic_rate": 0.1}),
+        "must be above output.fronts.slip_rate",
+    );
 }
 
 #[test]

@@ -500,7 +500,8 @@ fn observers_go_back_with_the_run() {
         Motions::default(),
     )
     .expect("frames");
-    let mut fronts = Fronts::new(folder.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None });
+    let mut fronts =
+        Fronts::new(folder.path(), &model, &start, FrontsInput { slip_rate: 1e-3, seismic_rate: None, arrival: None });
     let mut warnings = Warnings::default();
     let mut simulation = Simulation::new(model.clone());
     let mut observers: [&mut dyn Observer; 5] = [&mut history, &mut log, &mut fields, &mut fronts, &mut warnings];
@@ -544,7 +545,12 @@ fn observers_go_back_with_the_run() {
             )
             .expect("frames"),
         ),
-        Box::new(Fronts::new(straight.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None })),
+        Box::new(Fronts::new(
+            straight.path(),
+            &model,
+            &start,
+            FrontsInput { slip_rate: 1e-3, seismic_rate: None, arrival: None },
+        )),
         Box::new(Warnings::default()),
     ];
     let mut others: Vec<&mut dyn Observer> =
