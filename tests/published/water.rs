@@ -130,7 +130,11 @@ fn slow_slip_is_that_of_boundary_elements() {
 /// λ √(4 D t), for T = (f σ′ − τ₀)/(f Δp). Slip over f Δp a (1 − ν)/G at the middle and half way, and where it ends.
 #[test]
 fn a_crack_under_constant_pressure_is_self_similar() {
-    for (ratio, lambda, middle, half) in [(0.5, 0.791607, 0.468661, 0.233735), (0.9, 0.139813, 0.100051, 0.0534441)] {
+    for (ratio, lambda, middle, half, within) in [
+        (0.1, 3.64052, 0.447123, 0.0981815, 0.01),
+        (0.5, 0.791607, 0.468661, 0.233735, 0.005),
+        (0.9, 0.139813, 0.100051, 0.0534441, 0.005),
+    ] {
         let (diffusivity, time, friction, pressure, water) = (0.1f64, 2.0, 0.6, 1e-3, 5e-4);
         let a = lambda * (4.0 * diffusivity * time).sqrt();
         let sizes = Sizes { edge: a / 16.0, core: 1.5 * a, far: 60.0 * a, aside: 14, across: 18 };
@@ -154,9 +158,9 @@ fn a_crack_under_constant_pressure_is_self_similar() {
         let [near, nearer] = [0.875, 0.90625].map(|x| (x, slip(x).powf(2.0 / 3.0)));
         let tip = near.0 + near.1 * (nearer.0 - near.0) / (near.1 - nearer.1);
         println!("T = {ratio}: {} and {}, tip at {tip} a", slip(0.0), slip(0.5));
-        close("slip at the middle", slip(0.0) / middle, 1.0, 0.005);
-        close("slip half way", slip(0.5) / half, 1.0, 0.005);
-        close("tip", tip, 1.0, 0.005);
+        close("slip at the middle", slip(0.0) / middle, 1.0, within);
+        close("slip half way", slip(0.5) / half, 1.0, within);
+        close("tip", tip, 1.0, within);
     }
 }
 
