@@ -59,6 +59,8 @@ SLOW = {
     "bp3_surface": (CYCLES, 0),
     "laboratory": (LABORATORY, 0),
     "laboratory_fronts": (LABORATORY, 1),
+    "record_basalt": ("python3 cases/laboratory/velocity_step.py", 0),
+    "record_pile": ("python3 cases/laboratory/pile_load_test.py docs/figures/pile_load_test.svg", 0),
     "fronts_weakening": (FRONTS, 0),
     "fronts_super_subloading": (FRONTS, 1),
     "weak_patch": (PUBLISHED + "weak_patch_converge", -1),

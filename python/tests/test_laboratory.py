@@ -1,4 +1,4 @@
-"""The measured events of the 4 m fault: the numbers of cases/laboratory/README.md."""
+"""Measured records: the events of the 4 m fault (cases/laboratory/README.md), a velocity step and a load test (docs/validation/records.md)."""
 
 from __future__ import annotations
 
@@ -13,13 +13,17 @@ from conftest import REPOSITORY
 FOUND = {"mu_s": 0.3295, "mu_k": 0.3236, "xi": 0.2817}
 
 
-@pytest.fixture(scope="module")
-def script() -> Any:
-    spec = importlib.util.spec_from_file_location("spring_slider", REPOSITORY / "cases" / "laboratory" / "spring_slider.py")
+def loaded(name: str) -> Any:
+    spec = importlib.util.spec_from_file_location(name, REPOSITORY / "cases" / "laboratory" / f"{name}.py")
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def script() -> Any:
+    return loaded("spring_slider")
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +68,24 @@ def test_what_the_events_determine_and_what_not(script: Any, cycle: Any) -> None
     for changes in ({"mass": script.MASS / 10.0}, {"r": 3.0 * script.GIVEN["r"]}):
         other = cycle(**changes)
         assert all(abs(other[name] - told[name]) < 2.0 * error[name] for name in error), (changes, other, told)
+
+
+def test_a_velocity_step_of_basalt_has_the_constants_of_its_authors() -> None:
+    step = loaded("velocity_step")
+    found = step.fitted(step.excerpt(), "ageing")
+    value = found.table["value"]
+    # The inversion published with the whole record: D_c = 6.74 µm, b − a = 5.6e-4; the mean friction of the excerpt before the step.
+    assert value["D_c"] == pytest.approx(6.74, rel=0.15)
+    assert 0 < value["b"] - value["a"] < 1e-3
+    assert value["f_0"] == pytest.approx(0.6077, abs=5e-4)
+    assert not found.words
+
+
+def test_the_shaft_of_a_pile_carries_what_its_head_did() -> None:
+    test = loaded("pile_load_test")
+    found = test.fitted(test.PRESSURES["from 50 kPa on"])
+    _, load = test.record()
+    assert np.sqrt(np.mean(found.residuals[0] ** 2)) < 0.02 * load.max()
+    # Equilibrium: the strength of the whole shaft under 200 kPa in the mean is the largest load, but for what has not yet slid to R = 1.
+    friction = found.table["value"]["contacts.shaft.friction.mu_s"]
+    assert friction * 200 * test.PERIMETER * test.LENGTH == pytest.approx(load.max(), rel=0.03)
