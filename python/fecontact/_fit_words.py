@@ -66,7 +66,7 @@ def words(of: Evidence) -> list[str]:
     if of.misfit > COMPUTED and of.memory > NOISE / np.sqrt(of.samples):
         told.append(
             f"the residuals are no noise (each has the correlation {of.memory:.2f} with the one before): this {of.model} does not follow these "
-            "data, or their noise has a memory; the intervals are too narrow"
+            "data, or their noise has a memory; the intervals are widened as for a memory"
         )
     if of.sigma and of.noise > MISFIT:
         told.append(

@@ -25,7 +25,7 @@ from ._fit_names import check_names, check_room, no_room
 from ._fit_problem import End, plain_of, search
 from ._fit_problem import Problem as _Problem
 from ._fit_space import Array, Space
-from ._fit_words import Evidence, words
+from ._fit_words import COMPUTED, NOISE, Evidence, words
 from ._plain import a_name, count, names, number
 from ._records import MACHINE, Holds, Interface, Record, SpringSlider
 from ._run_problem import RunProblem, run_problem
@@ -170,7 +170,7 @@ class Fit:
     Attributes:
         parameters: all parameters, including the given ones; of a fit through runs the fitted ones, by place; of tests of samples those of the law.
         table: one row per free parameter: ``value``, ``low`` and ``high`` of its 95 % interval, from zero to infinity where the data do not
-            determine it, ``std`` (of its logarithm where ``log``).
+            determine it, ``std`` (of its logarithm where ``log``). Where residuals have a memory ρ, n of them count as n (1 − ρ)/(1 + ρ).
         correlation: correlation of the free parameters.
         words: assessment of the fit in words; empty if there is no problem.
         noise: s, standard deviation of the residuals; in units of sigma where sigma was given.
@@ -192,7 +192,14 @@ class Fit:
         scale = 1.0 if sigma else max(self.noise, LEAST_NOISE)
         # That a parameter is somewhere in its range is known beforehand: without data its standard deviation is the width of it.
         known = np.diag(1.0 / (space.high - space.low))
-        _, singular, directions = np.linalg.svd(np.vstack([problem.jacobian(best.point) / scale, known]), full_matrices=False)
+        parts = np.split(best.residuals, np.cumsum([record.measured.size for record in problem.records])[:-1])
+        self.residuals = [part * noise / record.weight for part, noise, record in zip(parts, problem.scales, problem.records)]
+        misfits = [_share(part, record.measured) for part, record in zip(self.residuals, problem.records)]
+        shares = [_independent(part, misfit) for part, misfit in zip(parts, misfits)]
+        rows = np.concatenate([np.full(part.size, share) for part, share in zip(parts, shares)])
+        self._independent = min(shares)
+        counted = problem.jacobian(best.point) * np.sqrt(rows)[:, None] / scale
+        _, singular, directions = np.linalg.svd(np.vstack([counted, known]), full_matrices=False)
         spread = 1.0 / singular
         covariance = (directions.T * spread**2) @ directions
         self._covariance, self._std = covariance, np.sqrt(np.diag(covariance))
@@ -200,15 +207,12 @@ class Fit:
         index = pd.Index(space.names, name="parameter")
         self.correlation = pd.DataFrame(covariance / np.outer(self._std, self._std), index=index, columns=index)
         self.table = _table(space, best.point, self._std, self._quantile)
-        parts = np.split(best.residuals, np.cumsum([record.measured.size for record in problem.records])[:-1])
-        self.residuals = [part * noise / record.weight for part, noise, record in zip(parts, problem.scales, problem.records)]
         self.memory = max(_memory(part) for part in parts)
         self.ends = pd.DataFrame([[*space.values(end.point), end.squares] for end in ends], columns=[*space.names, "S"])
-        misfit = max(_share(part, record.measured) for part, record in zip(self.residuals, problem.records))
         self.words = words(
             Evidence(
                 self.table, self.correlation, self.ends, self.parameters, spread, directions, at_border,
-                self.noise, sigma, self.memory, samples, misfit, problem.model,
+                self.noise, sigma, self.memory, samples, max(misfits), problem.model,
             )
         )  # fmt: skip
         self.runs = problem.runs if isinstance(problem, RunProblem) else 0
@@ -291,10 +295,10 @@ class Fit:
 
     def profile(self, name: str, points: int = 12) -> pd.DataFrame:
         """Quality of the fit with a parameter fixed at other values: its profile likelihood, for intervals where the law is
-        strongly nonlinear. It takes one search per point.
+        strongly nonlinear. It takes one search per point. n/n′ is how many of the rows count as one, for the memory of residuals.
 
         ```text
-        S(x) = min over the other parameters,   95 %:  S(x) ≤ S_min + t₀.₉₇₅² s²,   s = 1 where sigma was given
+        S(x) = min over the other parameters,   95 %:  S(x) ≤ S_min + t₀.₉₇₅² s² n/n′,   s = 1 where sigma was given
         ```
 
         Args:
@@ -311,7 +315,7 @@ class Fit:
         """
         if name not in self.table.index:
             raise ValueError(f"name: {name} is no free parameter; there are {', '.join(self.table.index)}")
-        excess = self._quantile**2 * (1.0 if self._sigma else self.noise**2)
+        excess = self._quantile**2 * (1.0 if self._sigma else self.noise**2) / self._independent
         step = float(self._std[list(self.table.index).index(name)])
         return _profile(self._problem, self._best, name, step, excess, max(2, points))
 
@@ -486,6 +490,15 @@ def _share(residuals: Array, measured: Array) -> float:
     """Root mean square of residuals, as a fraction of the largest measured value."""
     size, largest = float(np.sqrt(np.mean(residuals**2))), float(np.abs(measured).max())
     return size / largest if largest > size else float(size > 0.0)
+
+
+def _independent(residuals: Array, misfit: float) -> float:
+    """Share of rows that count as independent: (1 − ρ)/(1 + ρ) where each residual has the correlation ρ with the one before.
+
+    So the variance of a mean of an autoregressive noise of first order is that of so many independent values.
+    """
+    memory = _memory(residuals)
+    return (1.0 - memory) / (1.0 + memory) if misfit > COMPUTED and NOISE / np.sqrt(residuals.size) < memory < 1.0 else 1.0
 
 
 def _memory(residuals: NDArray[np.float64]) -> float:

@@ -191,6 +191,28 @@ def test_peaks_after_holds() -> None:
     assert both.words and len(both.residuals) == 2
 
 
+def test_intervals_count_a_memory_of_the_noise() -> None:
+    """The mean of n values of the noise ε' = ρ ε + … has the deviation s √((1 + ρ)/(1 − ρ)/n), and friction that slides is such a mean."""
+    samples, memory, scatter = 400, 0.8, 0.01
+    time = np.linspace(0.0, 10.0, samples)
+    draws = np.random.default_rng(3).normal(size=(30, samples + 200)) * scatter * np.sqrt(1 - memory**2)
+    values, stds = [], []
+    for draw in draws:
+        noise = np.zeros(draw.size)
+        for k in range(1, draw.size):
+            noise[k] = memory * noise[k - 1] + draw[k]
+        # It begins below all strengths, and slides from the second row on.
+        sliding = Interface(time, time, 1.0, np.concatenate([[0.3], 0.5 + noise[1 - samples :]]), initial=0.3)
+        found = fc.fit(sliding, "coulomb", {"mu": (0.3, 0.7)}, alpha_t=1e3, starts=1)
+        values.append(found.table["value"]["mu"])
+        stds.append(found.table["std"]["mu"] * found.table["value"]["mu"])
+        assert any("memory" in text for text in found.words)
+    expected = scatter * np.sqrt((1 + memory) / (1 - memory) / samples)
+    # Of 30 draws the deviation is known to an eighth.
+    assert np.std(values, ddof=1) == pytest.approx(expected, rel=0.4)
+    assert np.mean(stds) == pytest.approx(expected, rel=0.1)
+
+
 def test_a_law_that_cannot_follow_says_so() -> None:
     """Rate and state: friction jumps up with the rate, and super/subloading friction does not."""
     time, slip = np.linspace(0.0, 60.0, 600), np.zeros(600)
