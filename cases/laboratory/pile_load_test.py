@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import fecontact as fc
-from fecontact.calibration import Run
+from fecontact.calibration import Run, read
 
 # The pile: length in the ground [m], perimeter of the box around its section [m], and axial stiffness EA [kN]
 LENGTH, PERIMETER, AXIAL = 16.2, 1.45, 2009e2 * 16.2
@@ -26,8 +26,7 @@ FREE = {"contacts.shaft.friction.mu_s": (0.3, 0.8), "contacts.shaft.friction.r":
 
 def record() -> tuple[np.ndarray, np.ndarray]:
     """Settlement [m] and load [kN]."""
-    path = pathlib.Path(__file__).parent / "pile_load_test.csv"
-    settlement, load = np.genfromtxt(path, delimiter=",", skip_header=3).T
+    settlement, load = read(pathlib.Path(__file__).parent / "pile_load_test.csv").to_numpy().T
     return settlement / 1000, load
 
 

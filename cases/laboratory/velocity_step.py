@@ -8,14 +8,13 @@ minute). Needs the Python package. Units: µm, s; tractions over the pressure.
 
 from __future__ import annotations
 
-import csv
 import pathlib
 import sys
 
-import numpy as np
+import pandas as pd
 
 import fecontact as fc
-from fecontact.calibration import SpringSlider
+from fecontact.calibration import SpringSlider, read
 
 # The step in the whole record [s after its first row], and what is fitted of it, as in the inversion of its authors.
 STEP, FROM, UNTIL = 68.58, 58.0, 90.0
@@ -25,21 +24,15 @@ FREE = {"a": (1e-3, 0.03), "b": (1e-3, 0.03), "D_c": (0.5, 50.0), "f_0": (0.5, 0
 FOUND = ("a", "b", "D_c", "stiffness")
 
 
-def record(path: pathlib.Path) -> dict[str, np.ndarray]:
-    """Columns of a record."""
-    rows = list(csv.DictReader(line for line in path.read_text().splitlines() if line[0] != "#"))
-    return {name: np.array([float(row[name]) for row in rows]) for name in ("time_s", "load_point_um", "friction")}
-
-
-def excerpt() -> dict[str, np.ndarray]:
+def excerpt() -> pd.DataFrame:
     """The committed means."""
-    return record(pathlib.Path(__file__).parent / "velocity_step.csv")
+    return read(pathlib.Path(__file__).parent / "velocity_step.csv")
 
 
-def fitted(data: dict[str, np.ndarray], evolution: str) -> fc.Fit:
+def fitted(data: pd.DataFrame, evolution: str) -> fc.Fit:
     """The fit of rate-and-state friction behind a spring, which slides steadily at the lower rate before."""
-    time, way = data["time_s"] - data["time_s"][0], data["load_point_um"] - data["load_point_um"][0]
-    slider = SpringSlider(time, way, 1.0, data["friction"], initial=BEFORE)
+    time, way, friction = data[["time_s", "load_point_um", "friction"]].to_numpy().T
+    slider = SpringSlider(time - time[0], way - way[0], 1.0, friction, initial=BEFORE)
     return fc.fit(slider, "rate_and_state", FREE, V_0=3.0, alpha_t=10.0, evolution=evolution)
 
 
@@ -54,11 +47,10 @@ def main() -> None:
     print("| record, law of state | a | b | D_c [µm] | k/σ [1/µm] |\n|---|---|---|---|---|")
     records = {"excerpt": excerpt()}
     if len(sys.argv) > 1:
-        whole = record(pathlib.Path(sys.argv[1]))
-        inside = (whole["time_s"] >= FROM) & (whole["time_s"] <= UNTIL)
-        records["whole, load point as measured"] = led = {name: values[inside] for name, values in whole.items()}
+        whole = read(sys.argv[1])
+        records["whole, load point as measured"] = led = whole[whole["time_s"].between(FROM, UNTIL)]
         since = led["time_s"] - STEP
-        records["whole, load point even"] = {**led, "load_point_um": np.where(since < 0, SLOW, FAST) * since}
+        records["whole, load point even"] = led.assign(load_point_um=since.where(since > 0, since * SLOW / FAST) * FAST)
     for name, data in records.items():
         for evolution in ("ageing", "slip"):
             print(row(f"{name}, {evolution}", fitted(data, evolution)))

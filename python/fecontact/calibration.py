@@ -4,7 +4,7 @@ The parameters x are fitted by their logarithms if their range is positive, othe
 
     S(x) = Σ w² ((y(x) − ŷ)/σ)² → min,   cov = (JᵀJ/s² + diag(1/range²))⁻¹,   interval = x ± t₀.₉₇₅(n − m) √cov
 
-The ranges are prior information: a parameter not determined by the data lies within its range, which also limits its effect on the others. J
+J is weighted by the share of rows that count as independent where residuals have a memory. The ranges are prior information: a parameter not determined by the data lies within its range, which also limits its effect on the others. J
 is the exact derivative of the computed values at fixed sub-steps: parameters and state are differentiated together from sample to sample
 (:meth:`fecontact.law.Law.drive`, ``by``). For laws without derivatives (written in Python, or backward Euler) central differences are used.
 """
@@ -30,11 +30,12 @@ from ._plain import a_name, count, names, number
 from ._records import MACHINE, Holds, Interface, Record, SpringSlider
 from ._run_problem import RunProblem, run_problem
 from ._run_record import DisplacementField, Run
+from ._table_file import read
 from .case import Case
 from .law import Law
 from .law import law as law_of
 
-__all__ = ["DisplacementField", "ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit"]
+__all__ = ["DisplacementField", "ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit", "read"]
 
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128
