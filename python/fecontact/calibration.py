@@ -35,7 +35,7 @@ from .case import Case
 from .law import Law
 from .law import law as law_of
 
-__all__ = ["DisplacementField", "ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "fit", "read"]
+__all__ = ["DisplacementField", "ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "compare", "fit", "read"]
 
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128
@@ -198,7 +198,7 @@ class Fit:
         misfits = [_share(part, record.measured) for part, record in zip(self.residuals, problem.records)]
         shares = [_independent(part, misfit) for part, misfit in zip(parts, misfits)]
         rows = np.concatenate([np.full(part.size, share) for part, share in zip(parts, shares)])
-        self._independent = min(shares)
+        self._independent, self._measured = min(shares), [record.measured for record in problem.records]
         counted = problem.jacobian(best.point) * np.sqrt(rows)[:, None] / scale
         _, singular, directions = np.linalg.svd(np.vstack([counted, known]), full_matrices=False)
         spread = 1.0 / singular
@@ -393,6 +393,50 @@ def fit(
         why = "" if problem.stopped is None else f" first, {problem.stopped};"
         raise ValueError(f"free: the law has no answer to these records anywhere in the ranges:{why} narrow the ranges, or mend the records")
     return Fit(problem, ends)
+
+
+def compare(fits: Mapping[str, Fit]) -> pd.DataFrame:
+    """Which of several fits of the same records is worth its parameters: Akaike's criterion, corrected for few samples, and Schwarz's.
+
+    ```text
+    AICc = D + 2 m + 2 m (m + 1)/(n′ − m − 1),   BIC = D + m ln n′,   D = n′ ln(S/n), or S n′/n where sigma was given
+    ```
+
+    of m parameters (and one for the noise where the fit finds it); n rows count as n′ for the memory of residuals, that of the fit whose residuals have least.
+    Differences below 2 mean nothing, those above 10 decide.
+
+    Args:
+        fits: by name; of the same records, with the same sigma and weights.
+
+    Returns:
+        A row per fit, the best first: ``parameters`` m, ``noise`` s, ``memory``, ``AICc`` and ``BIC`` above the lowest, and ``weight``, the
+        probability exp(−AICc/2) over the sum of them.
+
+    Raises:
+        ValueError: there are none, their records differ, or there are too few rows for so many parameters.
+    """
+    if not fits:
+        raise ValueError("fits: there are none")
+    first = next(iter(fits.values()))
+    for name, fit in fits.items():
+        same = len(fit._measured) == len(first._measured) and all(map(np.array_equal, fit._measured, first._measured))
+        if not same or fit._sigma != first._sigma:
+            raise ValueError(f"fits: {name} is of other records than {next(iter(fits))}: criteria compare fits of the same rows, with the same sigma")
+    rows = sum(part.size for part in first._measured)
+    share = max(fit._independent for fit in fits.values())
+    counted, table = rows * share, {}
+    for name, fit in fits.items():
+        parameters = len(fit.table) + (0 if fit._sigma else 1)
+        if counted <= parameters + 1:
+            raise ValueError(f"fits: {name}: {rows} rows count as {counted:.3g} for the memory of residuals: too few for {parameters} parameters")
+        squares = max(float(fit.ends["S"].iloc[0]), np.finfo(float).tiny)
+        deviance = squares * share if fit._sigma else counted * np.log(squares / rows)
+        akaike = deviance + 2 * parameters + 2 * parameters * (parameters + 1) / (counted - parameters - 1)
+        table[name] = [len(fit.table), fit.noise, fit.memory, akaike, deviance + parameters * np.log(counted)]
+    told = pd.DataFrame.from_dict(table, orient="index", columns=["parameters", "noise", "memory", "AICc", "BIC"]).sort_values("AICc")
+    told[["AICc", "BIC"]] -= told[["AICc", "BIC"]].min()
+    weight = np.exp(-told["AICc"] / 2)
+    return told.assign(weight=weight / weight.sum()).astype({"parameters": int})
 
 
 def _through_runs(

@@ -213,6 +213,33 @@ def test_intervals_count_a_memory_of_the_noise() -> None:
     assert np.mean(stds) == pytest.approx(expected, rel=0.1)
 
 
+def test_criteria_choose_the_law_that_made_the_record() -> None:
+    """Slip weakening made it; a constant friction has too few parameters, and one more than needed does not pay."""
+    slip = np.linspace(0.0, 1.0, 80)
+    given = {"mu_s": 0.6, "mu_d": 0.4, "D_c": 0.4, "alpha_t": 1e3}
+    clean = fc.law("slip_weakening", **given).drive(slip, slip, 1.0).traction
+    record = Interface(slip, slip, 1.0, clean + 0.01 * np.random.default_rng(8).normal(size=80))
+    two = {"mu_s": (0.45, 0.9), "mu_d": (0.1, 0.45)}
+    fits = {
+        "constant": fc.fit(record, "coulomb", {"mu": (0.3, 0.9)}, alpha_t=1e3, starts=1),
+        "weakening": fc.fit(record, "slip_weakening", {**two, "D_c": (0.1, 1.0)}, alpha_t=1e3, starts=1),
+        "stiffness too": fc.fit(record, "slip_weakening", {**two, "D_c": (0.1, 1.0), "alpha_t": (3e2, 3e3)}, starts=1),
+    }
+    table = calibration.compare(fits)
+    assert table.index[0] == "weakening" and table["AICc"]["weakening"] == 0 and table["BIC"].idxmin() == "weakening"
+    assert table["AICc"]["constant"] > 20 and 0 < table["AICc"]["stiffness too"] < 4
+    assert table["weight"].sum() == pytest.approx(1.0)
+    # By the definition, of the sums of squares: residuals without a memory count as so many rows.
+    squares = {name: float(np.sum(fit.residuals[0] ** 2)) for name, fit in fits.items()}
+    criterion = {name: 80 * np.log(squares[name] / 80) + 2 * m + 2 * m * (m + 1) / (79 - m) for name, m in {"weakening": 4, "stiffness too": 5}.items()}
+    assert table["AICc"]["stiffness too"] == pytest.approx(criterion["stiffness too"] - criterion["weakening"], abs=1e-6)
+    other = fc.fit(Interface(slip, slip, 1.0, clean), "coulomb", {"mu": (0.3, 0.9)}, alpha_t=1e3, starts=1)
+    with pytest.raises(ValueError, match="other is of other records than constant"):
+        calibration.compare({"constant": fits["constant"], "other": other})
+    with pytest.raises(ValueError, match="there are none"):
+        calibration.compare({})
+
+
 def test_a_law_that_cannot_follow_says_so() -> None:
     """Rate and state: friction jumps up with the rate, and super/subloading friction does not."""
     time, slip = np.linspace(0.0, 60.0, 600), np.zeros(600)
