@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ._native import schema
-from ._records import MACHINE
+from ._records import OF_RECORDS
 
 Ranges = Mapping[str, tuple[float, float]]
 
@@ -31,7 +31,7 @@ def check_names(law: str, names: Iterable[str]) -> None:
 def _known(law: str) -> list[str]:
     laws = json.loads(schema("law"))["$defs"]["FrictionParameters"]["oneOf"]
     own = [list(one["properties"]) for one in laws if one["properties"]["law"].get("const") == law]
-    return [name for name in own[0] if name != "law"] + list(MACHINE) if own and law != "registered" else []
+    return [name for name in own[0] if name != "law"] + list(OF_RECORDS) if own and law != "registered" else []
 
 
 def no_room(ranges: Ranges, why: str) -> ValueError | None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ._fit_space import Array, Space
-from ._records import MACHINE, Record
+from ._records import OF_RECORDS, Record
 from .errors import CaseError, Stopped
 from .law import law as law_of
 
@@ -75,8 +75,8 @@ class Problem:
         """The same from the derivatives of the law; None if it has none."""
         slopes = self.space.slopes(point)
         parameters = {name: plain_of(value) for name, value in self.space.parameters(point[None]).items()}
-        of_law = law_of({name: value for name, value in parameters.items() if name not in MACHINE})
-        if not set(slopes) <= {*of_law.sensitivities(), *MACHINE}:
+        of_law = law_of({name: value for name, value in parameters.items() if name not in OF_RECORDS})
+        if not set(slopes) <= {*of_law.sensitivities(), *OF_RECORDS}:
             return None
         by = list(slopes)
         parts = [

@@ -16,6 +16,8 @@ Parameters = Mapping[str, Any]
 
 # Parameters of the machine of a spring-slider, which no law has.
 MACHINE = ("stiffness", "mass")
+# Parameters of a record that no law has: those of the machine, and what the measured traction drifts by along the way.
+OF_RECORDS = (*MACHINE, "drift")
 
 
 class Interface:
@@ -29,6 +31,8 @@ class Interface:
         sigma: standard deviation of the noise of ``traction``: a number or shape (n,); by default estimated by the fit [F/L²].
         weight: weight of this record relative to others.
         initial: traction at the start [F/L²].
+
+    A record may have the parameter ``drift`` [F/L³], given or free, which no law has: D times the slip since its first row is added to the traction of the law.
     """
 
     # What the residuals are of; records of several kinds need a sigma each.
@@ -63,13 +67,23 @@ class Interface:
     def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
         """Prediction of the measured quantity by the law, shape (sets, n)."""
         driven = law(_of_law(parameters)).drive(self.time, self.slip, self.pressure, traction=self.initial, threads=threads)
-        return driven["traction"]
+        return self._drifted(driven["traction"], parameters)
 
     def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
         """How that varies with parameters of one set, shape (n, by)."""
-        own = [name for name in by if name not in MACHINE]
+        own = [name for name in by if name not in OF_RECORDS]
         drive = law(_of_law(parameters)).drive(self.time, self.slip, self.pressure, traction=self.initial, by=own, threads=threads)
-        return _columns(drive, "traction", by)
+        return self._with_drift(_columns(drive, "traction", by), by)
+
+    def _drifted(self, traction: Array, parameters: Parameters) -> Array:
+        """A predicted traction, and what the record drifts by: D times the way so far."""
+        return np.asarray(traction + np.multiply.outer(np.asarray(parameters.get("drift", 0.0), dtype=float), self.slip - self.slip[0]))
+
+    def _with_drift(self, columns: Array, by: Sequence[str]) -> Array:
+        """Derivatives, those by the drift filled in."""
+        for column in (k for k, name in enumerate(by) if name == "drift"):
+            columns[:, column] = self.slip - self.slip[0]
+        return columns
 
     def __repr__(self) -> str:
         return _shown(self, time=self.time, **{self.led: self.slip}, pressure=self.pressure, traction=self.measured)
@@ -98,13 +112,14 @@ class SpringSlider(Interface):
     def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
         """Predicted force of the spring-slider, shape (sets, n)."""
         if "mass" in parameters:
-            return self._ride(parameters, (), threads)["force"]
+            return self._drifted(self._ride(parameters, (), threads)["force"], parameters)
         return super().predicted({**parameters, "alpha_t": self._series(parameters)[0]}, threads)
 
     def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
         """How that varies with parameters of one set, shape (n, by)."""
         if "mass" in parameters:
-            return _columns(self._ride(parameters, by, threads), "force", by)
+            own = [name for name in by if name != "drift"]
+            return self._with_drift(_columns(self._ride(parameters, own, threads), "force", by), by)
         series, shares = self._series(parameters)
         own = list(dict.fromkeys("alpha_t" if name == "stiffness" else name for name in by))
         columns = dict(zip(own, super().derivatives({**parameters, "alpha_t": series}, own, threads).T))
@@ -177,13 +192,19 @@ class Holds:
         return float(self.measured.max()), self.slide, float(self.hold.max())
 
     def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
-        """Predicted peaks, shape (sets, n)."""
+        """Predicted peaks, shape (sets, n).
+
+        Raises:
+            ValueError: a drift is asked for.
+        """
+        if "drift" in parameters:
+            raise ValueError("drift: it is along the way of a record, which peaks after holds are not: fit it to an Interface or SpringSlider")
         drive = law(_of_law(parameters)).drive(self._time, self._slip, self.pressure, threads=threads)
         return np.asarray(self._slides(drive["traction"]).max(axis=-1) / self.pressure)
 
     def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
         """Their derivatives by parameters of one set, shape (n, by), taken at the sample of the peak."""
-        own = [name for name in by if name not in MACHINE]
+        own = [name for name in by if name not in OF_RECORDS]
         drive = law(_of_law(parameters)).drive(self._time, self._slip, self.pressure, by=own, threads=threads)
         peaks = self._slides(drive["traction"]).argmax(axis=-1)
         columns = [self._slides(column)[np.arange(self.hold.size), peaks] for column in _columns(drive, "traction", by).T]
@@ -208,7 +229,7 @@ def _shown(record: Record, **ranges: Array | float) -> str:
 
 
 def _of_law(parameters: Parameters) -> dict[str, Any]:
-    return {name: value for name, value in parameters.items() if name not in MACHINE}
+    return {name: value for name, value in parameters.items() if name not in OF_RECORDS}
 
 
 def _columns(drive: Drive, what: str, by: Sequence[str]) -> Array:

@@ -27,7 +27,7 @@ from ._fit_problem import Problem as _Problem
 from ._fit_space import Array, Space
 from ._fit_words import COMPUTED, NOISE, Evidence, words
 from ._plain import a_name, count, names, number
-from ._records import MACHINE, Holds, Interface, Record, SpringSlider
+from ._records import OF_RECORDS, Holds, Interface, Record, SpringSlider
 from ._run_problem import RunProblem, run_problem
 from ._run_record import DisplacementField, Run
 from ._table_file import read
@@ -254,7 +254,7 @@ class Fit:
         if isinstance(self._problem, RunProblem):
             kind = "cases were fitted, not a law alone: they are in cases" if self._tested is None else "the law of a body is in material"
             raise ValueError(f"law: {kind}")
-        return law_of({name: value for name, value in self.parameters.items() if name not in MACHINE})
+        return law_of({name: value for name, value in self.parameters.items() if name not in OF_RECORDS})
 
     def _with_law(self, record: Record | Run | ElementTest) -> Record | Run:
         """A record that predicts; that of a test of a sample by the law that was fitted.
@@ -359,7 +359,8 @@ def fit(
         starts: number of completed searches; three times as many are started from the best of 128 points spread over the ranges.
         seed: random seed of those points.
         threads: number of threads; default: all cores.
-        **fixed: the other parameters; ``stiffness`` and ``mass`` are those of the machine of a :class:`SpringSlider`.
+        **fixed: the other parameters; ``stiffness`` and ``mass`` are those of the machine of a :class:`SpringSlider`,
+            ``drift`` is that of a record.
 
     Returns:
         The best fit. Read its ``words``, which name the parameters not determined by these data.

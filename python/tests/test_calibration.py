@@ -213,6 +213,30 @@ def test_intervals_count_a_memory_of_the_noise() -> None:
     assert np.mean(stds) == pytest.approx(expected, rel=0.1)
 
 
+@pytest.mark.parametrize("machine", [{}, {"stiffness": 50.0}, {"stiffness": 50.0, "mass": 1e-3}])
+def test_a_drift_of_the_record_is_found_beside_the_law(machine: dict[str, float]) -> None:
+    """The record is that of the law and 0.03 times the way; derivatives are those of differences."""
+    way = np.linspace(0.0, 1.0, 60)
+    law = {"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.4, "D_c": 0.4, "alpha_t": 1e3}
+    kind = SpringSlider if machine else Interface
+    clean = kind(way, way, 1.0, way).predicted({**law, **machine})
+    record = kind(way, way, 1.0, clean + 0.03 * way, sigma=1e-3)
+    at = {**law, **machine, "drift": 0.02}
+    slope = record.derivatives(at, ["mu_d", "drift"])[:, 1]
+    difference = (record.predicted({**at, "drift": 0.021}) - record.predicted({**at, "drift": 0.019})) / 0.002
+    np.testing.assert_allclose(slope, difference, atol=1e-10)
+    given = {name: value for name, value in {**law, **machine}.items() if name not in ("law", "mu_d")}
+    found = fc.fit(record, "slip_weakening", {"mu_d": (0.3, 0.5), "drift": (-0.1, 0.1)}, starts=2, **given)
+    assert found.parameters["drift"] == pytest.approx(0.03, abs=1e-5) and found.parameters["mu_d"] == pytest.approx(0.4, abs=1e-5)
+    assert "drift" not in found.law.parameters
+
+
+def test_holds_have_no_drift() -> None:
+    record = Holds([1.0, 10.0, 100.0], [0.5, 0.55, 0.6], rate=0.1, slide=0.5, pressure=2.0)
+    with pytest.raises(ValueError, match="drift: it is along the way"):
+        fc.fit(record, free={"mu_s": (0.45, 1.0), "drift": (-1.0, 1.0)}, mu_k=0.3, r=400, kappa=40, xi=0.01, alpha_t=2e3)
+
+
 def test_criteria_choose_the_law_that_made_the_record() -> None:
     """Slip weakening made it; a constant friction has too few parameters, and one more than needed does not pay."""
     slip = np.linspace(0.0, 1.0, 80)
@@ -459,7 +483,7 @@ def test_records_show_themselves() -> None:
     record = Interface([0.0, 1.0, 4.0], [0.0, 0.1, 0.2], 2.0, [0.0, 0.5, 0.25])
     assert repr(record) == "<Interface of 3 samples: time 0 to 4, slip 0 to 0.2, pressure 2, traction 0 to 0.5>"
     assert repr(SpringSlider(record.time, record.slip, 2.0, record.measured)).startswith("<SpringSlider of 3 samples: time 0 to 4, load_point")
-    holds = Holds([1.0, 10.0], [0.5, 0.6], rate=1.0, slide=3.0, pressure=2.0)
+    holds = Holds([1.0, 10.0, 100.0], [0.5, 0.55, 0.6], rate=1.0, slide=3.0, pressure=2.0)
     assert repr(holds) == "<Holds of 2 samples: hold 1 to 10, peak 0.5 to 0.6, rate 1, slide 3, pressure 2>"
 
 
