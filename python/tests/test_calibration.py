@@ -483,7 +483,7 @@ def test_records_show_themselves() -> None:
     record = Interface([0.0, 1.0, 4.0], [0.0, 0.1, 0.2], 2.0, [0.0, 0.5, 0.25])
     assert repr(record) == "<Interface of 3 samples: time 0 to 4, slip 0 to 0.2, pressure 2, traction 0 to 0.5>"
     assert repr(SpringSlider(record.time, record.slip, 2.0, record.measured)).startswith("<SpringSlider of 3 samples: time 0 to 4, load_point")
-    holds = Holds([1.0, 10.0, 100.0], [0.5, 0.55, 0.6], rate=1.0, slide=3.0, pressure=2.0)
+    holds = Holds([1.0, 10.0], [0.5, 0.6], rate=1.0, slide=3.0, pressure=2.0)
     assert repr(holds) == "<Holds of 2 samples: hold 1 to 10, peak 0.5 to 0.6, rate 1, slide 3, pressure 2>"
 
 
