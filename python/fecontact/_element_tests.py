@@ -16,7 +16,8 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from ._places import value_at
-from ._plain import refused, told
+from ._paths import told
+from ._plain import refused
 from ._records import Array, array_of, noise_of
 from ._run_record import Run
 from .case import Case

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from numbers import Real
 from typing import Any
 
-from ._plain import refused, told
+from ._paths import told
+from ._plain import refused
 from .case import Case
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._paths import told
 from .errors import CaseError
 
 
@@ -94,23 +95,6 @@ def a_name(given: Any, place: str, file: str) -> str:
     if not isinstance(given, str):
         raise refused(file, place, f"is {told(given)}: must be a name")
     return given
-
-
-def path(given: Any, place: str) -> str:
-    """The same as a text.
-
-    Raises:
-        ValueError: it is not a path.
-    """
-    if not isinstance(given, (str, os.PathLike)):
-        raise ValueError(f"{place}: is {told(given)}: must be a path")
-    return str(os.fspath(given))
-
-
-def told(given: Any) -> str:
-    """Short description of a value."""
-    shown = " ".join(repr(given).split())
-    return shown if len(shown) <= 40 else f"a {type(given).__name__}"
 
 
 def below(place: str, key: object, file: str) -> str:

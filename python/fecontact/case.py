@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _native
+from ._paths import path as as_path
 from ._plain import a_name, count, plain, refused
-from ._plain import path as as_path
 from ._progress import Progress
 from .errors import Defect, Interrupted, RunWarning, Stopped
 from .mesh import Mesh

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _foreign, _native
-from ._plain import numbers, path as as_path, plain, refused
+from ._paths import path as as_path
+from ._plain import numbers, plain, refused
 
 Lists = Union[ArrayLike, Sequence[ArrayLike]]
 # What a mesh is made of again: arrays, the content of a gmsh file, blocks as JSON, or such of several meshes.

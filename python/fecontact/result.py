@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from . import _native, _quantities
-from ._plain import path as as_path
+from ._paths import path as as_path
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._plain import a_name, count, number, path, plain, refused
+from ._paths import path
+from ._plain import a_name, count, number, plain, refused
 from .case import Case
 
 Array = NDArray[np.float64]
