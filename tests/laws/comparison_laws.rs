@@ -386,8 +386,9 @@ fn rates(p: &RateAndStateParameters, pressure: f64, v: f64, [q, theta]: [f64; 2]
 
 #[test]
 fn increments_converge_to_the_differential_equations() {
-    for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
-        let p = RATE_AND_STATE.evolution(evolution);
+    let laws = [StateEvolution::Ageing, StateEvolution::Slip].map(|evolution| [0.015, -0.015].map(|b| (evolution, b)));
+    for (evolution, b) in laws.into_iter().flatten() {
+        let p = with!(RATE_AND_STATE.evolution(evolution), b: b);
         let law = rate_and_state(p);
         // Slip at V₀, then ten times as fast, then back at a third: 60 s by the method of Runge and Kutta.
         let rate = |t: f64| {
@@ -423,8 +424,8 @@ fn increments_converge_to_the_differential_equations() {
             (state.traction - y[0]).abs() + 100.0 * (psi_of(&law, &state) - psi).abs()
         };
         let (coarse, fine) = (error(6000), error(12000));
-        assert!(fine < 0.02, "{evolution:?}: {fine}");
-        assert!((1.8..2.2).contains(&(coarse / fine)), "{evolution:?}: {coarse:e} became {fine:e}");
+        assert!(fine < 0.02, "{evolution:?}, b = {b}: {fine}");
+        assert!((1.8..2.2).contains(&(coarse / fine)), "{evolution:?}, b = {b}: {coarse:e} became {fine:e}");
     }
 }
 
@@ -436,7 +437,8 @@ fn rate_and_state_tangents_are_exact() {
         let evolution = if k % 2 == 0 { StateEvolution::Ageing } else { StateEvolution::Slip };
         // The weakening b p/D_c is 0.15 at the usual pressure: some contacts are softer than that.
         let alpha_t = Some(10f64.powf(random.between(-1.0, 2.0)));
-        let law = rate_and_state(with!(RATE_AND_STATE.evolution(evolution), alpha_t: alpha_t));
+        let b = [0.015, -0.015][k / 2 % 2];
+        let law = rate_and_state(with!(RATE_AND_STATE.evolution(evolution), alpha_t: alpha_t, b: b));
         let pressure = random.between(1.0, 150.0);
         let psi = random.between(0.5, 0.7);
         let old = with_psi(psi).loaded(pressure, random.between(-80.0, 80.0));
@@ -454,7 +456,7 @@ fn answers_meet_their_equations_and_are_the_first_root() {
     for k in 0..20000 {
         let evolution = if k % 2 == 0 { StateEvolution::Ageing } else { StateEvolution::Slip };
         let alpha_t = 10f64.powf(random.between(-2.0, 3.0));
-        let p = RATE_AND_STATE.evolution(evolution).alpha_t(alpha_t);
+        let p = with!(RATE_AND_STATE.evolution(evolution).alpha_t(alpha_t), b: [0.015, -0.015][k / 2 % 2]);
         let law = rate_and_state(p);
         let psi0 = random.between(0.3, 0.8);
         let old = with_psi(psi0).loaded(100.0, 0.0);
@@ -474,7 +476,7 @@ fn answers_meet_their_equations_and_are_the_first_root() {
                 StateEvolution::Ageing => (log0.exp() * (-x).exp() + dt / 10.0 * (1.0 - (-x).exp()) / x).ln(),
                 _ => log0 * (-x).exp() - v.ln() * (1.0 - (-x).exp()),
             };
-            let psi = 0.6 + 0.015 * log;
+            let psi = 0.6 + p.b * log;
             let w = (0.5 * v).ln() + psi / 0.01;
             let arsinh = if w > 30.0 { w + 2f64.ln() } else { w.exp().asinh() };
             (trial - alpha_t * slip - 0.01 * 100.0 * arsinh, psi)
@@ -505,7 +507,7 @@ fn parameters_out_of_range_are_named() {
         (with!(RATE_AND_STATE, f_0: 0.0), "f_0"),
         (with!(RATE_AND_STATE, reference_rate: 0.0), "V_0"),
         (with!(RATE_AND_STATE, a: 0.0), "a"),
-        (with!(RATE_AND_STATE, b: -1.0), "b"),
+        (with!(RATE_AND_STATE, b: f64::INFINITY), "b"),
         (with!(RATE_AND_STATE, critical_slip: f64::NAN), "D_c"),
         (RATE_AND_STATE.theta(0.0), "theta"),
         (RATE_AND_STATE.alpha_t(-1.0), "alpha_t"),
@@ -537,7 +539,7 @@ fn no_increment_panics_or_is_not_a_number() {
             _ => Box::new(rate_and_state(with!(
                 RATE_AND_STATE,
                 a: magnitude(&mut random, -6.0, 0.0),
-                b: if k % 7 == 0 { 0.0 } else { magnitude(&mut random, -6.0, 0.0) },
+                b: [0.0, 1.0, -1.0, 1.0, 1.0, 1.0, -1.0][k % 7] * magnitude(&mut random, -6.0, 0.0),
                 critical_slip: magnitude(&mut random, -9.0, 3.0),
                 reference_rate: magnitude(&mut random, -9.0, 3.0),
                 evolution: if k % 3 == 1 { StateEvolution::Ageing } else { StateEvolution::Slip },
@@ -568,7 +570,8 @@ fn the_slip_rate_follows_from_traction_and_state() {
     let mut random = Random(5);
     for k in 0..4000 {
         let evolution = [StateEvolution::Ageing, StateEvolution::Slip][k % 2];
-        let parameters = with!(RATE_AND_STATE.evolution(evolution), a: 0.003 + 0.03 * random.unit());
+        let b = [0.015, -0.015][k / 4 % 2];
+        let parameters = with!(RATE_AND_STATE.evolution(evolution), a: 0.003 + 0.03 * random.unit(), b: b);
         let law = rate_and_state(parameters);
         let rates = law.rates().expect("it has rates");
         let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, .. } = parameters;

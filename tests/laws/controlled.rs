@@ -102,8 +102,8 @@ fn differences(answers: &[FrictionResponse], exact: &[[f64; 3]]) -> [f64; 3] {
 
 #[test]
 fn coarse_records_are_answered_by_the_differential_equations() {
-    for evolution in EVOLUTIONS {
-        let parameters = LABORATORY.evolution(evolution);
+    for (evolution, b) in EVOLUTIONS.map(|evolution| [0.015, -0.01].map(|b| (evolution, b))).into_iter().flatten() {
+        let parameters = with!(LABORATORY.evolution(evolution), b: b);
         let exact = integrated(&parameters);
         for increments in [1, 3, 20] {
             let [traction, state, work] = differences(&driven(&*law(&parameters), increments), &exact);

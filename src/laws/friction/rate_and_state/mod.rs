@@ -11,7 +11,7 @@ use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, PointLoad, RateLaw,
     Regime, Sliding, traction_at_yield,
 };
-use crate::laws::parameter::{InvalidParameter, numbers, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
 use path::{PathState, Ramp};
 pub use relaxation::StateEvolution;
 use relaxation::{Coefficients, Relaxation, arsinh_of_exp};
@@ -29,7 +29,7 @@ pub struct RateAndStateParameters {
     pub reference_rate: f64,
     /// a: direct effect of the slip rate, a > 0 [-]
     pub a: f64,
-    /// b: effect of the state, b ≥ 0; steady sliding weakens with the rate where b > a [-]
+    /// b: effect of the state; steady sliding weakens with the rate where b > a, and where b < 0 slip strengthens [-]
     pub b: f64,
     /// D_c: slip over which the state evolves, D_c > 0 [L]
     #[serde(rename = "D_c")]
@@ -128,7 +128,7 @@ impl RateAndState {
         require_positive("f_0", f_0)?;
         require_positive("V_0", reference_rate)?;
         require_positive("a", a)?;
-        require_not_negative("b", b)?;
+        require("b", b, true, "it must be finite")?;
         require_positive("D_c", critical_slip)?;
         require_positive("alpha_t", alpha_t)?;
         let theta = parameters.theta.unwrap_or(critical_slip / reference_rate);
@@ -248,7 +248,7 @@ impl RateLaw for RateAndState {
     }
 
     fn weight(&self) -> f64 {
-        self.coefficients.b
+        self.coefficients.b.abs()
     }
 
     fn regime(&self, x: f64, slip_rate: f64) -> Regime {
@@ -270,9 +270,9 @@ impl FrictionLaw for RateAndState {
             stiffness: self.coefficients.alpha_t,
             variables: &["theta"],
             observables: Some(&["R", "mu", "theta"]),
-            weakening: self.coefficients.b / self.coefficients.critical_slip,
+            weakening: self.coefficients.b.max(0.0) / self.coefficients.critical_slip,
             // d(|q|/p)/dΔλ ≥ a/Δλ − b/D_c by (2) to (5)
-            unique_slip: self.coefficients.a / self.coefficients.b * self.coefficients.critical_slip,
+            unique_slip: self.coefficients.a / self.coefficients.b.max(0.0) * self.coefficients.critical_slip,
             critical_slip: Some(self.coefficients.critical_slip),
             ..Description::default()
         }

@@ -226,7 +226,7 @@ impl<'a> Ramp<'a> {
         let overlooked = self.overlooked(&from.state, &to.state, step);
         let parts = [
             [traction + law.alpha_t * overlooked, strength + noise * loaded],
-            [(law.a + law.b) * (log_theta + overlooked / law.critical_slip), law.f_0],
+            [(law.a + law.b.abs()) * (log_theta + overlooked / law.critical_slip), law.f_0],
             [work, strength * slip + noise * entry[3].value.abs()],
         ];
         // An exact 0 has no error, whatever the reference.

@@ -167,10 +167,18 @@ impl Relaxation<'_, Dual> {
 }
 
 impl Relaxation<'_> {
-    /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, which also occurs in the slip law.
-    /// With y = V θ₀/D_c it is x ln(1/y), which increases up to y = 1/e.
+    /// Bound of the increase of ψ by all slips up to this one, which rises with the slip: healing within the increment, which also occurs in
+    /// the slip law. With y = V θ₀/D_c it is b x ln(1/y), which increases up to y = 1/e. Where b < 0, what slip takes from θ
+    /// strengthens: by at most |b| x in the ageing law, and |b| x ln y in the slip law.
     fn healing(&self, slip: f64) -> f64 {
         let Coefficients { b, reference_rate, critical_slip, evolution, .. } = *self.law;
+        if b < 0.0 {
+            let spent = match evolution {
+                StateEvolution::Ageing => 1.0,
+                StateEvolution::Slip => slip.ln() - (reference_rate * self.dt).ln() + self.log_state,
+            };
+            return -b * slip / critical_slip * spent.max(0.0);
+        }
         if evolution == StateEvolution::Ageing {
             return 0.0;
         }
@@ -185,6 +193,7 @@ impl Relaxation<'_> {
     /// ageing:  −b (c + g (x − c)),  c = 1 − x/(eˣ − 1),  g = θ₀ e⁻ˣ/θ₁     x, c and x − c rise with x, g falls
     /// slip:    b (x e⁻ˣ ln(D_c/V θ₀) − (1 − e⁻ˣ))                           ln(D_c/V θ₀) falls with x
     /// ```
+    /// Where b < 0, the bounds change places.
     fn effect_bounds(&self, low: f64, high: f64) -> [f64; 2] {
         let Coefficients { b, reference_rate, critical_slip, evolution, .. } = *self.law;
         let x = [low / critical_slip, high / critical_slip];
@@ -213,7 +222,7 @@ impl Relaxation<'_> {
                 [healed[0] + (-x[1]).exp_m1(), healed[1] + (-x[0]).exp_m1()]
             }
         };
-        [b * less, b * more]
+        if b < 0.0 { [b * more, b * less] } else { [b * less, b * more] }
     }
 
     /// Bounds of −∂G/∂ln Δλ between two slips.
@@ -234,6 +243,10 @@ impl Relaxation<'_> {
     /// Whether G decreases monotonically.
     fn is_monotone(&self) -> bool {
         let Coefficients { b, reference_rate, critical_slip, alpha_t, evolution, .. } = *self.law;
+        if b < 0.0 {
+            // Slip spends θ, which strengthens; but at first the slip law may heal, which weakens.
+            return evolution == StateEvolution::Ageing;
+        }
         let fastest = match evolution {
             StateEvolution::Ageing => 0.0,
             StateEvolution::Slip => (self.trial / (alpha_t * reference_rate * self.dt)).ln() + self.log_state,
