@@ -70,6 +70,14 @@ impl Differentiated<'_> {
         let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
         refuse_if(self.begins_with, "gradients", message)?;
         self.model.steps.iter().try_for_each(check_step)?;
+        if let Some(pair) = self.model.contacts.iter().find(|pair| pair.conduit.is_some()) {
+            let message = format!(
+                "water flows along the contact `{}`, and derivatives do not follow its pressure: leave `gradients` out, and compare runs with two \
+                 values",
+                pair.name
+            );
+            return Err(ModelError::new("gradients", message));
+        }
         let defaults: Value = serde_json::from_str(&resolved(self.case, self.model)).unwrap_or_default();
         let one = |(k, place): (usize, &String)| {
             let at = format!("gradients[{k}]");

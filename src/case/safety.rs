@@ -193,7 +193,7 @@ fn changes_after(value: &Value, end: f64) -> bool {
         Value::Object(object) => object.iter().any(|(key, inner)| match key.as_str() {
             "on" => false,
             "rate" => inner.as_f64().is_none_or(|rate| rate != 0.0),
-            "measured" => true,
+            "measured" | "flow" => true,
             "table" => {
                 let last = inner.as_array().and_then(|rows| rows.last()).and_then(|row| row[0].as_f64());
                 last.is_none_or(|last| last > end)

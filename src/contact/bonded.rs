@@ -181,6 +181,7 @@ impl PointEvaluation<'_> {
             pores: 0.0,
             bond: (!is_own)
                 .then_some(BondState { elastic_slip: if is_own { 0.0 } else { state.elastic_slip }, ..state }),
+            water: old.water,
         }
     }
 

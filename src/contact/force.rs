@@ -268,6 +268,7 @@ impl<'a> PointEvaluation<'a> {
             fluid,
             pores,
             bond: held.map(|held| held.response.state),
+            water: old.water,
         })
     }
 
@@ -363,7 +364,7 @@ pub fn place(
     let Some(projection) = projection else { return PointPlace::default() };
     let gap = slave.gap(projection.gap, increment.during.fading);
     let closes = closes(pair, slave, gap, old, increment);
-    let fluid = pair.fluid_pressure(slave, x, increment.during.time);
+    let fluid = pair.acting_pressure(slave, old, x, increment.during.time);
     let bonded = pair.reaches(slave, gap, old, increment);
     if closes || bonded || fluid != 0.0 {
         kinematics(slave, &pair.master, &projection, old.foot, x, k);

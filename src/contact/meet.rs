@@ -124,9 +124,16 @@ impl ContactPair {
                 multiplier,
                 fluid: if foot.is_some() { self.fluid_pressure(slave, x, 0.0) } else { 0.0 },
                 pores: total - pressure,
+                water: None,
             }
         };
-        self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()
+        let mut states: Vec<ContactState> =
+            self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect();
+        if let Some(conduit) = &self.conduit {
+            let water = conduit.points(&conduit.initial, &conduit.walls(&states));
+            states.iter_mut().zip(water).for_each(|(state, water)| state.water = Some(water));
+        }
+        states
     }
 
     /// The states of all points while one of the sides is not there.
@@ -144,6 +151,7 @@ impl ContactPair {
             multiplier: 0.0,
             fluid: 0.0,
             pores: 0.0,
+            water: None,
         };
         self.points.iter().map(state).collect()
     }

@@ -11,8 +11,10 @@
 //! the traction on the slave is t = p n − q s.
 
 mod bonded;
+pub mod conduit;
 pub mod depth;
 pub mod dual;
+pub mod fluid;
 pub mod force;
 mod hats;
 pub mod kinematics;

@@ -9,7 +9,8 @@
 //! f_a = −w_a p_w n ℓ       in addition to that of p and q, wherever the point has a projection, closed or open
 //! ```
 //!
-//! p_w is prescribed as a function of the reference position of a slave point and time: fluid flow is not modelled. Friction
+//! p_w is prescribed as a function of the reference position of a slave point and time, or that of water which flows along the contact
+//! (`conduit`): then every point remembers the pressure of the increment that is solved. Friction
 //! depends on the effective pressure p only, by the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics,
 //! 1943, §6). Where p_w exceeds the contact pressure, the surfaces open and the fluid pressure continues to act, so that the
 //! traction is continuous there. Its work is that of a load.
@@ -27,6 +28,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
+use super::conduit::Conduit;
+pub use super::fluid::{BadPressure, Fluid};
 use super::master::Master;
 use super::mortar::Mortar;
 use super::point::ContactState;
@@ -70,6 +73,8 @@ pub struct ContactPair {
     pub radiation: f64,
     /// Fluid that acts on the surfaces in addition to the contact pressure
     pub fluid: Option<Fluid>,
+    /// What gives the pressure of the fluid if it flows along the contact: that of `fluid` is then the one at the start
+    pub conduit: Option<Conduit>,
     /// Pores behind every point, where friction goes by the effective stress of the slave's bodies
     pub pores: Option<Vec<Pores>>,
     /// Friction laws, each with the parameters of some of the points at the start of the run. They also define the
@@ -273,6 +278,11 @@ impl ContactPair {
         if given < 0.0 { 0.0 } else { given }
     }
 
+    /// p_w at a slave point at the end of an increment from the state `old` [F/L²].
+    pub fn acting_pressure(&self, slave: &SlavePoint, old: &ContactState, x: &Configuration, time: f64) -> f64 {
+        old.water.map_or_else(|| self.fluid_pressure(slave, x, time), |water| water.pressure)
+    }
+
     /// p_w at a slave point as its expression gives it [F/L²].
     fn given_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
         let at = || x.apart(&slave.position, Vector2::zeros())[0];
@@ -293,11 +303,12 @@ impl ContactPair {
     }
 
     /// The larger of α_n and α_t. Dilatant slip, δp = α_n tan ψ δu and δq = μ δp, has the stiffness α_n (1 + μ tan ψ), which is
-    /// below 2 α_n for μ < 1 [F/L³].
+    /// below 2 α_n for μ < 1. Water that flows presses back by 1/S per opening [F/L³].
     pub fn stiffest(&self, slave: &SlavePoint) -> f64 {
         let law = &self.law(slave).description;
         let lifted = if law.opening.is_empty() { 1.0 } else { 2.0 };
-        (lifted * self.alpha_n).max(law.stiffness)
+        let water = self.conduit.as_ref().map_or(0.0, |conduit| 1.0 / conduit.storage);
+        (lifted * self.alpha_n).max(law.stiffness) + water
     }
 
     /// η v for the slip of an increment, and its derivative η/Δt [F/L²], [F/L³].
@@ -450,74 +461,8 @@ impl fmt::Debug for LawsInTime {
     }
 }
 
-/// p_w by reference position and time [F/L²].
-pub type PressureAt = dyn Fn(Vector2<f64>, f64) -> f64 + Send + Sync;
-
-/// p_w by node and time [F/L²].
-pub type PressureOfNode = dyn Fn(usize, f64) -> f64 + Send + Sync;
-
-/// What gives the pressure of a fluid.
-enum Source {
-    ByPlace(Box<PressureAt>),
-    /// linear between nodes
-    ByNode(Box<PressureOfNode>),
-}
-
-/// Pressure of the fluid in a contact.
-pub struct Fluid {
-    pressure: Source,
-    /// Times of kinks, ascending [T]
-    corners: Vec<f64>,
-}
-
-impl Fluid {
-    /// Creates a fluid with the pressure p_w ≥ 0 as a function of reference position and time.
-    pub fn new(pressure: impl Fn(Vector2<f64>, f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self { pressure: Source::ByPlace(Box::new(pressure)), corners: Vec::new() }
-    }
-
-    /// Creates a fluid with the pressure p_w ≥ 0 as a function of node and time, which the points of edges interpolate.
-    pub fn at_nodes(pressure: impl Fn(usize, f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self { pressure: Source::ByNode(Box::new(pressure)), corners: Vec::new() }
-    }
-
-    /// Sets the times at which its rate jumps everywhere, ascending [T].
-    #[must_use]
-    pub fn with_corners(self, corners: Vec<f64>) -> Self {
-        Self { corners, ..self }
-    }
-
-    /// Times at which its rate jumps [T]
-    pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
-        self.corners.iter().copied()
-    }
-
-    /// p_w at a slave point, whose reference position is `at` [F/L²]
-    fn pressure(&self, slave: &SlavePoint, at: impl Fn() -> Vector2<f64>, time: f64) -> f64 {
-        match &self.pressure {
-            Source::ByPlace(pressure) => pressure(at(), time),
-            Source::ByNode(pressure) => slave.position.iter().map(|&(node, w)| w * pressure(node, time)).sum(),
-        }
-    }
-}
-
-impl fmt::Debug for Fluid {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str("a fluid")
-    }
-}
-
 /// Negative fluid pressures that are round-off, relative to the largest.
 const ROUND_OFF: f64 = 1e-12;
-
-/// A fluid pressure that is negative or not finite, with its position.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BadPressure {
-    /// Reference position of the slave point
-    pub at: Vector2<f64>,
-    /// p_w there, negative or not finite [F/L²]
-    pub pressure: f64,
-}
 
 /// Names of the fields of contacts: the common ones, and the internal variables and observables of their laws.
 pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
@@ -526,7 +471,14 @@ pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
     let of_surfaces = ["gap", "pressure", "traction", "slip", "elastic_slip", "slip_rate"].into_iter();
     let further = observables::further(laws);
     let fluid = pairs.iter().any(ContactPair::holds_fluid).then_some("fluid_pressure");
-    of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).chain(fluid).collect()
+    let flows = pairs.iter().any(|pair| pair.conduit.is_some()).then_some(["water_flow", "aperture"]);
+    of_surfaces
+        .chain(always)
+        .chain(["state", "dissipation"])
+        .chain(further)
+        .chain(fluid)
+        .chain(flows.into_iter().flatten())
+        .collect()
 }
 
 /// Values of a field at the points of a contact, at a time after an increment of length Δt; the names are listed with the
@@ -546,6 +498,8 @@ pub fn field_values(pair: &ContactPair, states: &[ContactState], time: f64, dt: 
             "slip_rate" => friction.plastic_increment * rate,
             "dissipation" => friction.dissipation,
             "fluid_pressure" => state.fluid + state.pores,
+            "water_flow" => state.water.map_or(0.0, |water| water.flow),
+            "aperture" => state.water.map_or(0.0, |water| water.aperture),
             "state" => match pair.regime(slave, state) {
                 Regime::Open => 0.0,
                 Regime::Stick | Regime::Tied => 1.0,

@@ -220,6 +220,17 @@ pub struct MasterPoint {
     pub xi: f64,
 }
 
+/// Water at a contact point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WaterPoint {
+    /// p_w, at the end of the increment that is solved [F/L²]
+    pub pressure: f64,
+    /// flow along the slave, in the order of its points [L³/T]
+    pub flow: f64,
+    /// w, with the hydraulic aperture if there is one [L]
+    pub aperture: f64,
+}
+
 /// Memory of one contact point between increments.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
@@ -248,6 +259,8 @@ pub struct ContactState {
     pub pores: f64,
     /// Memory of a bond beside friction, in a contact that has one
     pub bond: Option<BondState>,
+    /// Water that flows along the contact, in one that has it
+    pub water: Option<WaterPoint>,
 }
 
 impl ContactState {
@@ -392,5 +405,17 @@ impl Tractions {
     pub fn limited(self, most: f64) -> Self {
         let share = if self.pressure > most { most / self.pressure } else { 1.0 };
         Self { pressure: share * self.pressure, traction: share * self.traction }
+    }
+}
+
+/// Shares of neighbouring nodes of an edge at a contact point: linear between nodes, also of quadratic edges.
+pub fn linear_shares(point: &SlavePoint) -> Weights {
+    match point.position[..] {
+        [(a, at_a), (b, at_b), (middle, _)] => {
+            let xi = at_b - at_a;
+            let end = if xi < 0.0 { a } else { b };
+            vec![(end, xi.abs()), (middle, 1.0 - xi.abs())]
+        }
+        _ => point.position.clone(),
     }
 }

@@ -332,7 +332,7 @@ fn averaged(
 ) -> PointPlace {
     let Some(Meeting { gap, foot }) = meeting else { return PointPlace::default() };
     let gap = slave.gap(gap, increment.during.fading);
-    let fluid = pair.fluid_pressure(slave, x, increment.during.time);
+    let fluid = pair.acting_pressure(slave, old, x, increment.during.time);
     PointPlace {
         gap,
         foot: Some(foot),

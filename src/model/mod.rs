@@ -265,6 +265,9 @@ impl Model {
     /// The initial state before the first increment.
     pub fn initial_state(&self) -> State {
         let zero = vec![0.0; self.dofs()];
+        let contacts: Vec<_> = self.contacts.iter().map(|pair| self.first_states(pair)).collect();
+        let water = self.contacts.iter().zip(&contacts);
+        let water = water.map(|(pair, states)| pair.conduit.as_ref().map(|conduit| conduit.begin(states)));
         State {
             time: 0.0,
             increment: 0,
@@ -276,7 +279,8 @@ impl Model {
             external: zero.clone(),
             damping: zero.clone(),
             reaction: zero.clone(),
-            contacts: self.contacts.iter().map(|pair| self.first_states(pair)).collect(),
+            water: water.map(Option::unwrap_or_default).collect(),
+            contacts,
             memory: self.initial_memory(),
             bars: self.first_bars(),
             last_increment: None,

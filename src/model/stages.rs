@@ -20,6 +20,7 @@ use super::Model;
 use super::element::{ElementError, SolidElement};
 use super::state::{Births, State};
 use super::step::Step;
+use crate::contact::conduit::Conduit;
 use crate::contact::pair::ContactPair;
 use crate::contact::point::ContactState;
 
@@ -54,6 +55,12 @@ impl Model {
             true => pair.initial_states(&self.mesh.undeformed()),
             false => pair.apart(),
         }
+    }
+
+    /// Next time after a given one at which the rates of a well jump; increments end there.
+    pub fn next_corner(&self, after: f64) -> Option<f64> {
+        let corners = self.contacts.iter().filter_map(|pair| pair.conduit.as_ref()).flat_map(Conduit::corners);
+        corners.filter(|corner| *corner > after + 16.0 * f64::EPSILON * corner.abs()).reduce(f64::min)
     }
 
     /// An element as it is in a state: without strain at the place where it came.

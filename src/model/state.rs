@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::bars::BarState;
+use crate::contact::conduit::ConduitState;
 use crate::contact::force::ContactState;
 
 /// The accepted state at the end of an increment.
@@ -39,6 +40,9 @@ pub struct State {
     /// One list per contact pair, one entry per slave point
     #[doc(hidden)]
     pub contacts: Vec<Vec<ContactState>>,
+    /// Water that flows along each contact pair; empty where none does
+    #[doc(hidden)]
+    pub water: Vec<ConduitState>,
     /// Internal variables of the materials, element by element ([`crate::model::Memories`])
     #[doc(hidden)]
     pub memory: Vec<f64>,
@@ -88,6 +92,8 @@ impl State {
             vectors.map(|(own, _)| own);
         let mut contacts = self.contacts;
         contacts.clone_from(&other.contacts);
+        let mut water = self.water;
+        water.clone_from(&other.water);
         let mut bars = self.bars;
         bars.clone_from(&other.bars);
         let (last_increment, step_start) = (other.last_increment.clone(), other.step_start.clone());
@@ -104,6 +110,7 @@ impl State {
             damping,
             reaction,
             contacts,
+            water,
             memory,
             bars,
             last_increment,

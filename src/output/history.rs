@@ -12,10 +12,11 @@ use super::csv::{Rows, Sheet, Table};
 use super::friction_history::FrictionHistory;
 use super::quantities::{
     BAR, BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, PLASTIC, Quantity, RADIATED, RESULTANT, RIGID,
-    SCATTER, WATCHED, names,
+    SCATTER, WATCHED, WATER, names,
 };
 use crate::bars::fields::Summary;
 use crate::bars::{Bar, BarState};
+use crate::contact::conduit::ConduitState;
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
@@ -93,6 +94,8 @@ impl Rows for HistoryRows {
         header.extend(model.mesh.rigid_bodies.iter().flat_map(|body| of(&body.name, &RIGID)));
         header.extend(yields(model).then(|| PLASTIC.name.into()));
         header.extend(model.bars.iter().flat_map(|bar| of(&bar.name, &BAR)));
+        let with_water = model.contacts.iter().filter(|pair| pair.conduit.is_some());
+        header.extend(with_water.flat_map(|pair| of(&pair.name, &WATER)));
         let undeformed = model.mesh.undeformed();
         let rows = Self {
             observed,
@@ -179,6 +182,8 @@ impl HistoryRows {
         }
         row.extend(yields(model).then_some(state.energy.plastic_dissipation));
         row.extend(model.bars.iter().zip(&state.bars).flat_map(|(bar, state)| bar_row(bar, state)));
+        let with_water = model.contacts.iter().zip(&state.water).filter(|(pair, _)| pair.conduit.is_some());
+        row.extend(with_water.flat_map(|(_, water)| water_row(water)));
         row
     }
 }
@@ -199,6 +204,12 @@ fn radiates(model: &Model) -> bool {
 fn bar_row(bar: &Bar, state: &BarState) -> [f64; BAR.len()] {
     let Summary { ends, axial, moment, shear, slip, slipping } = bar.summary(state);
     [ends[0], ends[1], axial[0], axial[1], moment, shear, slip, slipping]
+}
+
+/// Volumes of the water that flows along a contact, and its largest pressure.
+fn water_row(water: &ConduitState) -> [f64; WATER.len()] {
+    let largest = water.pressure.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    [water.amounts.injected, water.amounts.leaked, water.mass_error, largest]
 }
 
 /// Whether some body or bar yields, and the energies have a column for it.

@@ -3,6 +3,7 @@
 mod csv;
 mod depths;
 mod frames;
+mod opened;
 pub mod results;
 mod slid_bars;
 mod unpressed;

@@ -54,13 +54,17 @@ const POWER: Unit = unit("power", [1, 1, -1]);
 const WORK_PER_AREA: Unit = unit("work_per_area", [1, -1, 0]);
 const MOMENTUM: Unit = unit("momentum", [1, 0, 1]);
 const SPIN: Unit = unit("angular_momentum", [1, 1, 1]);
+/// L³, of water
+const VOLUME: Unit = unit("volume", [0, 3, 0]);
+/// L³/T, of water
+const FLOW: Unit = unit("flow", [0, 3, -1]);
 const STIFFNESS: Unit = unit("stiffness_per_area", [1, -3, 0]);
 
 /// F/L, of what acts along a line
 const LINE_FORCE: Unit = WORK_PER_AREA;
 
 /// All units of results.
-pub const LABELLED: [Unit; 13] = [
+pub const LABELLED: [Unit; 15] = [
     LENGTH,
     FORCE,
     TIME,
@@ -74,6 +78,8 @@ pub const LABELLED: [Unit; 13] = [
     SPIN,
     STIFFNESS,
     ANGLE,
+    VOLUME,
+    FLOW,
 ];
 
 impl Unit {
@@ -89,7 +95,7 @@ impl Unit {
 
     /// Whether it is that of a sum over the thickness, as forces, energies and masses are.
     pub fn is_sum(self) -> bool {
-        [FORCE, ENERGY, POWER, MOMENTUM, SPIN, MASS].contains(&self)
+        [FORCE, ENERGY, POWER, MOMENTUM, SPIN, MASS, VOLUME, FLOW].contains(&self)
     }
 
     /// Formats the unit from those of force, length and time: `F/L²`; empty for a dimensionless number.
@@ -249,6 +255,14 @@ pub const EDGES: [Quantity; 2] = [
 /// Column of contacts with a fluid pressure.
 pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contacts in a fluid");
 
+/// Columns of contacts along which water flows.
+pub const WATER: [Quantity; 4] = [
+    q("injected", VOLUME, "water that wells and sources have let in so far, of contacts along which it flows"),
+    q("leaked", VOLUME, "water that has leaked through their walls"),
+    q("mass_error", VOLUME, "what the water in them has changed by, less what has come in: 0 but for round-off"),
+    q("largest_fluid_pressure", STRESS, "largest p_w"),
+];
+
 /// Heat of a contact.
 pub const HEAT: [Quantity; 2] = [
     q("frictional_heat", ENERGY, "∫∫ q v^p ds dt so far, less work of dilatancy, plus that of wear"),
@@ -306,7 +320,7 @@ pub const IN_FRAMES: [Quantity; 11] =
 pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
 
 /// Quantities at the points of some contacts, in both; names of other internal variables and observables come from their law.
-pub const OF_SOME: [Quantity; 5] = [
+pub const OF_SOME: [Quantity; 7] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
     q("dilation", LENGTH, "opening by dilatancy"),
     q("wear", LENGTH, "depth of wear"),
@@ -316,6 +330,8 @@ pub const OF_SOME: [Quantity; 5] = [
         NONE,
         "1 − κ: what is left of a bond's strength above its residual, and of its tension; 1 before any damage",
     ),
+    q("water_flow", FLOW, "water that flows along the slave, in the order of its points"),
+    q("aperture", LENGTH, "opening and dilatancy that hold water, with the hydraulic aperture of the cubic law"),
 ];
 
 /// Names of quantities of the store in earlier versions, with their present names.
@@ -535,6 +551,7 @@ pub const ALL: [(&str, &[Group]); 13] = [
             ("RIGID", &RIGID),
             ("", &[PLASTIC]),
             ("BAR", &BAR),
+            ("CONTACT", &WATER),
         ],
     ),
     ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),

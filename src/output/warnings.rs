@@ -17,6 +17,7 @@ use super::csv;
 use super::depths;
 use super::few_edges::FewEdges;
 use super::instability::Instability;
+use super::opened::Opened;
 use super::scattered::Scattered;
 use super::slid_bars::SlidBars;
 use super::unpressed::Unpressed;
@@ -74,6 +75,8 @@ pub struct Warnings {
     unpressed: Unpressed,
     /// Bars that have slipped far
     slid_bars: SlidBars,
+    /// Contacts that water has opened
+    opened: Opened,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -123,6 +126,7 @@ impl Observer for Warnings {
         self.few_edges.record(model, attempt, state, &x);
         self.unpressed.record(model, state);
         self.slid_bars.record(model, state);
+        self.opened.record(model, attempt.old, state);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             if !self.given.contains(&(number, Kind::DeepPenetration))
@@ -178,6 +182,7 @@ impl Observer for Warnings {
         self.list.extend(self.few_edges.tell());
         self.list.extend(self.unpressed.tell());
         self.list.extend(self.slid_bars.tell());
+        self.list.extend(self.opened.tell());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()

@@ -33,7 +33,9 @@ impl Simulation {
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
         let Self { model, step, state: old, work, control, .. } = self;
         let wanted = bounded(step, old.time, dt, None);
-        let dt = bounded(step, old.time, dt, model.requests.next_time(old.time));
+        let output = model.requests.next_time(old.time);
+        let stop = model.next_corner(old.time).map_or(output, |corner| Some(output.unwrap_or(corner).min(corner)));
+        let dt = bounded(step, old.time, dt, stop);
         let Advanced { iterations, state: solved, foreseen, passes } = advance(model, step, old, dt, work);
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };

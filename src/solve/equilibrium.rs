@@ -387,11 +387,14 @@ const STIFFEST: f64 = 1e4;
 /// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
 /// more penetration, and no more elastic slip, than allowed: Uzawa's method. α_n is raised for the increment while passes gain little:
 /// without that a soft penalty takes passes by the dozen, each of which leaves nearly all of the penetration (switch `stiffening`;
-/// `aid_stiffening` is 1 in iterations of a raised one).
+/// `aid_stiffening` is 1 in iterations of a raised one). The iterations begin at the start value of a new increment unless another is given.
 ///
 /// Source of the rule and its factors: Bertsekas (1982), Constrained Optimization and Lagrange Multiplier Methods, 2.2.
-pub fn augment(model: &Model, trial: Trial, work: &mut Workspace) -> Solved {
-    let mut solved = from_start_values(model, trial, work);
+pub fn augment(model: &Model, trial: Trial, start: Option<Vec<f64>>, work: &mut Workspace) -> Solved {
+    let mut solved = match start {
+        None => from_start_values(model, trial, work),
+        start => equilibrium(model, trial, start, work),
+    };
     let (mut stiffening, mut before) = (1.0, f64::INFINITY);
     let mut begun: Option<State> = None;
     for pass in 1.. {

@@ -93,6 +93,14 @@ pub enum IncrementFailure {
         /// part of its length
         percent: f64,
     },
+    /// Water that flows along a contact has no pressure.
+    #[error("the water of contact `{contact}`: {why}")]
+    Water {
+        /// contact pair
+        contact: String,
+        /// description of the defect
+        why: String,
+    },
     /// A trial state lost the contact that constrained a body.
     #[error("contact was lost during the iterations: {0}")]
     ContactLost(String),
@@ -138,6 +146,7 @@ impl IncrementFailure {
             Self::Floating(_) => "floating body",
             Self::ContactLost(_) => "contact lost",
             Self::Torn { .. } => "torn bond",
+            Self::Water { .. } => "water",
         }
     }
 
@@ -147,7 +156,7 @@ impl IncrementFailure {
         match self {
             Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,
             Self::Newton(_) | Self::Penetration { .. } | Self::ElasticSlip { .. } => true,
-            Self::ContactLost(_) | Self::Torn { .. } => true,
+            Self::ContactLost(_) | Self::Torn { .. } | Self::Water { .. } => true,
             _ => false,
         }
     }

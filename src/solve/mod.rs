@@ -9,6 +9,7 @@ pub mod floating;
 pub mod limit;
 pub mod neighbour;
 pub mod newton;
+pub mod water;
 
 use std::sync::Arc;
 

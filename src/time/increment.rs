@@ -7,9 +7,9 @@ use crate::equations::inertia::kinetic_energy;
 use crate::equations::{Evaluation, Trial, links};
 use crate::model::state::{LastIncrement, State};
 use crate::model::{Model, Step};
-use crate::solve::equilibrium::augment;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
+use crate::solve::water::{receive, settle};
 use crate::solve::{IterationRecord, Pass, Solved, Workspace};
 
 /// What one increment came to.
@@ -30,8 +30,11 @@ pub fn advance(model: &Model, step: &Step, old: &State, dt: f64, work: &mut Work
     // The last increment of a step ends exactly at its end, without round-off.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let increment = Trial::new(old, step, time, time - old.time);
-    let Solved { iterations, displacement, foreseen, passes } = augment(model, increment.ahead(), work);
-    let state = displacement.and_then(|u| arrive(model, increment, u, work));
+    let (Solved { iterations, displacement, foreseen, passes }, arrived) = settle(model, increment.ahead(), work);
+    let state = displacement.and_then(|u| arrive(model, increment, u, work)).map(|mut state| {
+        receive(model, arrived, &mut state);
+        state
+    });
     let state = state.and_then(|new| torn(model, step, old, &new).map_or(Ok(new), Err));
     Advanced { iterations, state, foreseen, passes }
 }

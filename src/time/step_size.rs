@@ -139,17 +139,42 @@ pub(super) fn can_shorten(step: &Step, old: &State, new: &State) -> bool {
 /// Judges a solved increment from `old` to `new` with the number of `tangents` of its hardest augmentation; `repeated` says
 /// that an attempt at it was rejected before.
 pub fn judge(model: &Model, step: &Step, states: [&State; 2], tangents: usize, repeated: bool) -> Judgement {
-    let (dt, easy) = (states[1].dt, tangents <= EASY);
+    let easy = tangents <= EASY;
     match step.increments.are_controlled() {
-        false => Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None },
+        false => judge_flow(step, states, [easy, repeated]),
         true if step.scheme.is_dynamic() => judge_motion(model, step, states, easy && !repeated),
         true => judge_slip(model, step, states, repeated),
     }
 }
 
+/// Judges an increment without error control: by the error of water that flows along contacts alone, if any does.
+fn judge_flow(step: &Step, [old, new]: [&State; 2], [easy, repeated]: [bool; 2]) -> Judgement {
+    let grown = |growth: f64| new.dt * growth;
+    let Some(error) = flow_error(new) else {
+        return Judgement { accepted: true, next: if easy { grown(GROWTH) } else { new.dt }, error: None };
+    };
+    let may_grow = easy && !repeated;
+    let share = (SAFETY * error.room().sqrt()).clamp(LEAST_SHARE, GROWTH);
+    let accepted = !can_shorten(step, old, new) || !error.is_excessive();
+    let next = match accepted {
+        true if may_grow => grown(share.max(1.0)),
+        true => new.dt,
+        false => grown(share).max(step.increments.min),
+    };
+    Judgement { accepted, next, error: Some(error) }
+}
+
+/// The worst error of the pressure of water by what surfaces do within an increment, over the allowed one; `None` where no water flows.
+fn flow_error(new: &State) -> Option<LocalError> {
+    let flowing = new.water.iter().filter(|water| !water.pressure.is_empty());
+    let worst = flowing.map(|water| LocalError { estimate: water.doubt, allowed: 1.0 });
+    worst.reduce(LocalError::worse)
+}
+
 /// Judges a static increment by the error of slip.
 fn judge_slip(model: &Model, step: &Step, [old, new]: [&State; 2], repeated: bool) -> Judgement {
-    let error = slip_error(model, step, [old, new]);
+    let slip = slip_error(model, step, [old, new]);
+    let error = flow_error(new).map_or(slip, |flow| slip.worse(flow));
     let share = (SAFETY * error.room().sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
     let accepted = !can_shorten(step, old, new) || !error.is_excessive();
     let keeps = accepted && (repeated || share <= WORTHWHILE);
@@ -165,6 +190,7 @@ fn judge_motion(model: &Model, step: &Step, [old, new]: [&State; 2], may_grow: b
         LocalError { estimate, allowed }
     });
     let slip = slip_error(model, step, [old, new]);
+    let slip = flow_error(new).map_or(slip, |flow| slip.worse(flow));
     let error = motion.worse(slip);
     let share = (SAFETY * motion.room().cbrt().min(slip.room().sqrt())).clamp(LEAST_SHARE, GROWTH);
     let judged = |accepted: bool, next: f64| Judgement { accepted, next, error: Some(error) };

@@ -59,6 +59,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
     ContactPair {
+        conduit: None,
         bodies: Default::default(),
         name: "test".into(),
         tied: false,
@@ -224,6 +225,7 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
 fn committed(friction: FrictionState, foot: MasterPoint, gap: f64) -> ContactState {
     let (foot, slip, radiation, radiated) = (Some(foot), 0.0, 0.0, 0.0);
     ContactState {
+        water: None,
         bond: None,
         friction,
         foot,
@@ -625,6 +627,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
                 let old = vec![
                     ContactState {
+                        water: None,
                         bond: None,
                         friction,
                         foot,
@@ -788,6 +791,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         let before = Configuration::new(&x, &aside);
         let friction = pair.laws[0].law.initial_state(0.0, 0.0);
         let old = ContactState {
+            water: None,
             bond: None,
             friction,
             foot: None,
@@ -1058,6 +1062,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
     let old = ContactState {
+        water: None,
         bond: None,
         friction: pressed,
         foot: Some(MasterPoint { segment: 0, xi: 0.9 }),

@@ -11,6 +11,7 @@ mod corners;
 mod faces;
 mod few_edges;
 mod fields;
+mod flow;
 mod hard;
 mod interfaces;
 mod moving;

@@ -59,7 +59,7 @@ pub const SLOTS: &[Slot] = &[
     ("wear", OPTION),
     ("interface", &[("no", 14), ("named", 1), ("reduced", 1)]),
     ("bond", &[("no", 14), ("shear", 1), ("softens", 1), ("pulls", 1), ("limited", 1)]),
-    ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1), ("by_place", 1), ("of_bodies", 1)]),
+    ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1), ("by_place", 1), ("of_bodies", 1), ("flows", 1)]),
     ("radiation", &[("no", 6), ("given", 1), ("of_bodies", 1)]),
     ("shrink_fit", OPTION),
     ("massless", OPTION),
@@ -273,6 +273,11 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["heat", "stress", "pores"], &["scheme:quasi_dynamic"], "tractions serve there"),
     (&["pores"], &["tractions"], "the pressure of the pores would be a part of them"),
     (&["fluid:of_bodies"], &["pores:no"], "there is no pressure to take"),
+    (
+        &["fluid:flows"],
+        &["scheme:wilson", "wear", "master:itself", "flange:added", "flange:removed", "shrink_fit"],
+        "what water along a contact is not for",
+    ),
     (&["fluid:of_bodies"], &["dilatancy", "wear"], "what an interface takes in as it opens is not followed"),
     (
         &["error_control"],

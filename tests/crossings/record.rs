@@ -320,6 +320,9 @@ fn form(column: &str, header: &[&str]) -> Form {
         | "energy_error"
         | "radiated"
         | "frictional_heat" => Form::Scalar(Kind::Energy),
+        "injected" | "leaked" => Form::Scalar(Kind::Volume),
+        "mass_error" => Form::Skip,
+        "largest_fluid_pressure" => Form::Scalar(Kind::Stress),
         "normal_force" | "fluid_force" => Form::Scalar(Kind::Force),
         "tangential_force" => Form::Signed(Kind::Force),
         "slip_fraction" | "contact_length" => Form::Scalar(Kind::Share),

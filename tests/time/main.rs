@@ -7,6 +7,7 @@ mod adaptive;
 mod columns;
 mod damping;
 mod explicit;
+mod flow;
 mod following;
 mod impact;
 mod quasi_dynamic;

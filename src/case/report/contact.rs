@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::case::file::Case;
 use crate::case::resolved::written_out;
+use crate::contact::conduit::{Conduit, Gives};
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::{Bond, Cohesion, Dilatancy, Onset};
@@ -222,6 +223,9 @@ fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
         lines.push(format!("dilatancy: {} per plastic slip, {limit}", rate.unwrap_or_default()));
     }
     lines.extend(input.wear.map(|wear| format!("wear: {} × pressure × plastic slip", number(wear))));
+    if let Some(conduit) = &pair.conduit {
+        lines.push(water(conduit, model));
+    }
     if pair.fluid.is_some() {
         let x = model.mesh.undeformed();
         let pressures = pair.points.iter().map(|point| pair.fluid_pressure(point, &x, 0.0));
@@ -236,6 +240,26 @@ fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// Water that flows along the contact, with its wells where they act.
+fn water(conduit: &Conduit, model: &Model) -> String {
+    let place = |node: usize| vector(model.mesh.nodes[conduit.line.nodes[node]]);
+    let wells = conduit.wells.iter().map(|well| {
+        let at = well.at.iter().map(|&(node, _)| place(node)).collect::<Vec<_>>().join(" and ");
+        let what = if matches!(well.gives, Gives::Pressure(_)) { "a pressure held" } else { "a rate given" };
+        format!("{what} at {at}")
+    });
+    let wells: Vec<String> = wells.collect();
+    let wells = if wells.is_empty() { "no wells".into() } else { wells.join(", ") };
+    let by = if conduit.transmissivity.aperture.is_some() {
+        "by the cubic law"
+    } else if conduit.transmissivity.varies() {
+        "by a transmissivity that changes"
+    } else {
+        "by a constant transmissivity"
+    };
+    format!("water flows along {} nodes {by}; {wells}", conduit.line.count())
 }
 
 fn master(input: &Contact) -> String {

@@ -77,6 +77,14 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
         );
         return refused(name, key, message);
     }
+    let flowing = model.contacts.iter().find(|pair| pair.conduit.is_some());
+    if let (Some(pair), Some(step)) = (flowing, model.steps.iter().find(|step| step.scheme.theta() > 1.0)) {
+        let message = format!(
+            "is not for the step `{}`, which solves for equilibrium beyond the end of its increments (Wilson-θ): take another scheme",
+            step.name
+        );
+        return refused(&pair.name, "fluid_pressure.flow", message);
+    }
     let Some(Step { name: step, .. }) = model.steps.iter().find(|step| step.may_be_explicit()) else { return Ok(()) };
     if let Some(contact) = contacts.iter().find(|contact| contact.massless) {
         let message = format!("the explicit step `{step}` needs the mass of every node: leave it out");

@@ -5,7 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
-use super::fluid::FluidPressure;
+use super::flow::Flow;
+use super::fluid::{FluidForms, FluidPressure};
 use super::friction::{Along, Friction};
 use super::groups;
 use super::interface::Interface;
@@ -14,7 +15,7 @@ use crate::contact::pair::ContactPair;
 use crate::laws::friction::{BondParameters, Dilatancy, FrictionParameters};
 use crate::mesh::Mesh;
 use crate::model::boundary::Profile;
-use crate::model::measured::{GivenPressure, Measured};
+use crate::model::measured::Measured;
 use crate::model::method::Method;
 use crate::model::written::written;
 
@@ -99,10 +100,11 @@ pub struct Contact {
     /// the reference position x, y of the slave. It acts on both surfaces wherever the slave projects onto the master,
     /// closed or open, in addition to the contact pressure p; friction, `initial.pressure` and all outputs called
     /// pressure use this effective p only. What acts at t = 0 of a contact with `initial` is there before anything moves, in addition
-    /// to `initial.pressure`; what the run raises is 0 at t = 0. The pressure is prescribed: there is no flow. "of_bodies" takes it from the pores of the
+    /// to `initial.pressure`; what the run raises is 0 at t = 0. A pressure that is given does not flow; {"flow": {…}} is that of water which
+    /// flows along the contact. "of_bodies" takes it from the pores of the
     /// slave's bodies (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it.
     /// {"measured": {"file": …}} takes it from a table of time and place [F/L²]
-    #[schemars(with = "Option<GivenPressure>")]
+    #[schemars(with = "Option<FluidForms>")]
     pub fluid_pressure: Option<FluidPressure>,
     /// Friction parameters that vary along the slave and in time
     #[serde(default)]
@@ -354,6 +356,9 @@ setters! { contact: Contact;
 
     /// Sets the pressure p_w of a fluid from a table of time and place.
     measured_pressure(measured: Measured) { contact.fluid_pressure = Some(FluidPressure::Measured(measured)); }
+
+    /// Lets water flow along the contact.
+    water(flow: Flow) { contact.fluid_pressure = Some(FluidPressure::Flow(Box::new(flow))); }
 
     /// Makes friction go by the effective stress, with the pressure of the fluid in the pores of the slave's bodies.
     fluid_pressure_of_bodies() { contact.fluid_pressure = Some(FluidPressure::OfBodies); }

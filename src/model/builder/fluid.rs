@@ -1,15 +1,17 @@
 //! Pressure of a fluid at a contact: as it is given, measured, or that of pores, with its checks.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{Checked, ModelError};
+use super::flow::Flow;
 use super::friction::check_in_time;
 use super::groups::TIMES;
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::model::boundary::Profile;
-use crate::model::measured::{Measured, PoreField, PressureObject};
+use crate::model::boundary::{Profile, RandomField};
+use crate::model::measured::Measured;
 use crate::model::text::{number, vector};
 use crate::model::written::Written;
 
@@ -23,13 +25,45 @@ pub enum FluidPressure {
     Given(Profile),
     /// The same, from a table of time and place
     Measured(Measured),
+    /// That of water which flows along the contact
+    Flow(Box<Flow>),
+}
+
+/// Forms of the object of a fluid pressure.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum FluidObject {
+    X(Vec<[f64; 2]>),
+    Y(Vec<[f64; 2]>),
+    Random(Box<RandomField>),
+    Measured(Measured),
+    Flow(Box<Flow>),
+}
+
+/// Forms of a fluid pressure, for the schema.
+#[derive(JsonSchema)]
+#[serde(untagged, deny_unknown_fields)]
+#[allow(dead_code, reason = "it describes the forms that are read")]
+pub enum FluidForms {
+    /// By place
+    Profile(Profile),
+    /// By time and place
+    Measured {
+        /// Table of pressures by time and place
+        measured: Measured,
+    },
+    /// By flow along the contact
+    Flow {
+        /// Water that flows along the contact
+        flow: Flow,
+    },
 }
 
 const OF_BODIES: &str = "of_bodies";
 
 impl Written for FluidPressure {
-    const EXPECTING: &'static str = "\"of_bodies\", a number, an expression in x, y and t such as \"1 + 0.1*x\", {\"x\": [[x, v], …]}, or \
-                                     {\"measured\": {\"file\": …}}";
+    const EXPECTING: &'static str = "\"of_bodies\", a number, an expression in x, y and t such as \"1 + 0.1*x\", {\"x\": [[x, v], …]}, \
+                                     {\"measured\": {\"file\": …}} or {\"flow\": {…}}";
 
     fn number(value: f64) -> Option<Self> {
         Profile::number(value).map(Self::Given)
@@ -40,9 +74,12 @@ impl Written for FluidPressure {
     }
 
     fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-        Ok(match PressureObject::deserialize(object)?.into() {
-            PoreField::Given(profile) => Self::Given(profile),
-            PoreField::Measured(measured) => Self::Measured(measured),
+        Ok(match FluidObject::deserialize(object)? {
+            FluidObject::X(table) => Self::Given(Profile::X(table)),
+            FluidObject::Y(table) => Self::Given(Profile::Y(table)),
+            FluidObject::Random(field) => Self::Given(Profile::Random(field)),
+            FluidObject::Measured(measured) => Self::Measured(measured),
+            FluidObject::Flow(flow) => Self::Flow(flow),
         })
     }
 }
@@ -58,8 +95,15 @@ impl Serialize for FluidPressure {
         match self {
             Self::OfBodies => serializer.serialize_str(OF_BODIES),
             Self::Given(pressure) => Serialize::serialize(pressure, serializer),
-            Self::Measured(measured) => Serialize::serialize(&PressureObject::Measured(measured.clone()), serializer),
+            Self::Measured(measured) => FluidObject::Measured(measured.clone()).serialize(serializer),
+            Self::Flow(flow) => FluidObject::Flow(flow.clone()).serialize(serializer),
         }
+    }
+}
+
+impl From<Flow> for FluidPressure {
+    fn from(flow: Flow) -> Self {
+        Self::Flow(Box::new(flow))
     }
 }
 
@@ -73,7 +117,8 @@ impl FluidPressure {
     /// Whether it varies in time by itself.
     fn varies(&self) -> bool {
         match self {
-            Self::OfBodies => false,
+            // What flows is known in the run only.
+            Self::OfBodies | Self::Flow(_) => false,
             Self::Given(pressure) => pressure.depends_on_time(),
             Self::Measured(measured) => measured.table.times.len() > 1,
         }
@@ -84,7 +129,8 @@ impl FluidPressure {
 pub fn fluid(place: &str, given: Option<&FluidPressure>, nodes: &[usize], mesh: &Mesh) -> Checked<Option<Fluid>> {
     let place = format!("{place}.fluid_pressure");
     match given.cloned() {
-        None | Some(FluidPressure::OfBodies) => Ok(None),
+        // Water that flows has its own conduit.
+        None | Some(FluidPressure::OfBodies | FluidPressure::Flow(_)) => Ok(None),
         Some(FluidPressure::Given(pressure)) => {
             check_in_time(&pressure, &place)?;
             Ok(Some(Fluid::new(move |at, time| pressure.value_at(at, time))))

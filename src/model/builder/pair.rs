@@ -56,10 +56,11 @@ use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::regime;
 use super::thickness::Outline;
-use super::{contact, fluid, friction, initial, pores, rigid, unseen, water};
+use super::{contact, flow, fluid, friction, initial, pores, rigid, unseen, water};
+use crate::contact::conduit::Conduit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
-use crate::contact::pair::ContactPair;
+use crate::contact::pair::{ContactPair, Fluid};
 use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, gauss_points_and_corners, in_order, is_corner, lone_point, nodal_points,
     nodal_points_of_rings,
@@ -114,6 +115,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     };
     let slaves: Vec<usize> = points.iter().flat_map(|point| point.position.iter().map(|(node, _)| *node)).collect();
     let given = fluid::fluid(&place, contact.fluid_pressure.as_ref(), &slaves, &model.mesh)?;
+    let conduit = flow::conduit(&place, contact, &points, model)?;
     let pores = if of_bodies.is_some() { None } else { pores::pores(&place, contact, &points, model)? };
     let mut pair = ContactPair {
         name: contact.name.clone(),
@@ -128,7 +130,8 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         penetration: contact.normal.penetration,
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
-        fluid: of_bodies.or(given),
+        fluid: of_bodies.or(given).or_else(|| conduit.as_ref().map(|conduit| at_start(conduit, model))),
+        conduit,
         pores,
         laws,
         in_time,
@@ -156,6 +159,12 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     start(&mut pair, contact, model, &place)?;
     fluid::check_fluid(&pair, &place, model, 0.0)?;
     Ok(pair)
+}
+
+/// The fluid of a contact along which water flows, at the start.
+fn at_start(conduit: &Conduit, model: &Model) -> Fluid {
+    let ties = model.ties.clone();
+    conduit.at_start(move |node| ties.original(node))
 }
 
 /// Gap at which surfaces touch, as a fraction of the shortest edge of the slave.

@@ -199,6 +199,11 @@ impl<'m> Stages<'m> {
             let message = "has a side on bodies of which only some are there: divide the side, body by body";
             refuse_if(pair.bodies.iter().any(parted), place, format!("the contact `{name}` {message}"))?;
             let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair);
+            let why = format!(
+                "changes the bodies of the contact `{name}`, along which water flows: let them be there from the start to the end"
+            );
+            let changes = pair.bodies.iter().flatten().any(|body| changed.contains(body));
+            refuse_if(changes && pair.conduit.is_some(), place, why)?;
             let message = "comes in this step, and is tied, starts closed, overlaps or has pores at mesh positions, which are not those of \
                            then: let the bodies share nodes, or touch without `initial`, and what a body that goes in the same step exerted passes to the contact \
                            over the step";

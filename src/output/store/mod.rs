@@ -80,7 +80,8 @@ impl InterfaceStore {
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
         let in_fluid = |pair: &ContactPair| pair.holds_fluid().then_some("fluid_pressure");
         let names = |pair: &ContactPair| {
-            IN_STORE.map(|of| of.name).into_iter().chain(further(pair)).chain(in_fluid(pair)).collect()
+            let flows = pair.conduit.is_some().then_some(["water_flow", "aperture"]).into_iter().flatten();
+            IN_STORE.map(|of| of.name).into_iter().chain(further(pair)).chain(in_fluid(pair)).chain(flows).collect()
         };
         let names: Vec<Vec<&str>> = model.contacts.iter().map(names).collect();
         let prefixes = prefixes(model);

@@ -27,6 +27,7 @@
 mod motion;
 mod plates;
 mod stability;
+mod waters;
 
 use std::sync::Arc;
 
@@ -187,7 +188,7 @@ impl Explicit {
         let mut increments = 0;
         while state.time < time {
             let end = self.next(time, state)?;
-            self.advance(end, state, assembler).map_err(IncrementFailure::Start)?;
+            self.advance(end, state, assembler)?;
             increments += 1;
             if state.time < time && pause() {
                 return Ok(increments);

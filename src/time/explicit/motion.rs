@@ -6,7 +6,6 @@ use rayon::prelude::*;
 use super::plates::Pulled;
 use super::{CHUNK, Explicit};
 use crate::equations::damping;
-use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Evaluation, Trial};
 use crate::model::boundary::Absorber;
 use crate::model::scheme::{start_acceleration, supported_rates};
@@ -14,6 +13,7 @@ use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
+use crate::solve::water::receive;
 use crate::time::accept::{accept, heat, take_stock};
 use crate::time::beginning::{keep_to_supports, launch};
 
@@ -107,7 +107,7 @@ impl Explicit {
         time: f64,
         state: &mut State,
         assembler: &mut Assembler,
-    ) -> Result<(), TrialFailure> {
+    ) -> Result<(), IncrementFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let dt = time - state.time;
         let is_viscous = model.is_viscous(step);
@@ -117,11 +117,7 @@ impl Explicit {
             self.mean_velocity.extend(ways.map(|(new, old)| (new - old) / dt));
         }
         let velocity = is_viscous.then_some(&self.mean_velocity[..]);
-        assembler.forces(
-            Trial { settles: false, ..Trial::new(state, step, time, dt) },
-            &self.displacement,
-            velocity,
-        )?;
+        let arrived = self.forces_in_water(time, velocity, state, assembler)?;
         if velocity.is_none() && !self.dampers.is_empty() {
             assembler.evaluation.damping.fill(0.0);
         }
@@ -147,6 +143,7 @@ impl Explicit {
         found.reactions.clear();
         found.reactions.extend(step.supports.iter().map(|support| reaction(support.at)));
         accept(model, step, time, &mut self.displacement, found, state);
+        receive(model, arrived, state);
         Ok(())
     }
 

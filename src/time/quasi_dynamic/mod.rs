@@ -8,12 +8,16 @@
 
 mod slip_equations;
 mod steps;
+mod tableau;
+mod waters;
 
 use std::sync::Arc;
 
 use self::slip_equations::{Rates, SlipEquations, with_rates};
 use self::steps::{Steps, Tried};
+use self::waters::Waters;
 use super::accept::{accept, take_stock};
+use crate::contact::conduit::Conduit;
 use crate::contact::force::ContactState;
 use crate::contact::pair::{BadPressure, Fluid};
 use crate::equations::slip_operator::{NoSlipOperator, Shift, SlipOperator};
@@ -106,7 +110,7 @@ impl QuasiDynamic {
         let (model, mut stops) = (self.model.clone(), Stops::after(old.time, &self.model));
         let places = model.mesh.undeformed();
         let interface = self.interface(&old, places);
-        let mut steps = Steps::new(interface, old.time, tolerance);
+        let mut steps = Steps::new(interface, Waters::new(&model, &old), old.time, tolerance);
         let (mut gone, mut next, mut last, mut ended) = (0, dt, 0.0, false);
         if let Some(worst) = steps.now().iter().position(|rates| !rates.is_good()) {
             return Err(self.failure(&old, worst, &steps.now()[worst], 0.0));
@@ -145,7 +149,14 @@ impl QuasiDynamic {
             let (contact, at) = (pair.name.clone(), [at.x, at.y]);
             return Err(IncrementFailure::Start(TrialFailure::FluidPressure { contact, at, pressure, time }));
         }
-        let (contacts, jumps) = self.contacts(&old, &steps, time);
+        if let Some((pair, pressure)) = steps.waters.below_zero(&model.contacts) {
+            let why = format!(
+                "its pressure has fallen to {pressure:e} at t = {time:e}: raise `initial`, the ground water that is there, or lower what a well takes"
+            );
+            return Err(IncrementFailure::Water { contact: pair.name.clone(), why });
+        }
+        let (mut contacts, jumps) = self.contacts(&old, &steps, time);
+        steps.waters.receive(&mut contacts, &mut state.water);
         let since = steps.since;
         self.follow(&old, time, since, contacts, &jumps, state)?;
         state.dt = last;
@@ -161,6 +172,7 @@ impl QuasiDynamic {
             by_fluid: self.jumps.by_fluid(),
             loading: &self.loading.tractions,
             places,
+            water: Vec::new(),
         }
     }
 
@@ -271,7 +283,9 @@ struct Stops {
 
 impl Stops {
     fn after(start: f64, model: &Model) -> Self {
-        let times = model.contacts.iter().filter_map(|pair| pair.fluid.as_ref()).flat_map(Fluid::corners);
+        let given = model.contacts.iter().filter_map(|pair| pair.fluid.as_ref()).flat_map(Fluid::corners);
+        let wells = model.contacts.iter().filter_map(|pair| pair.conduit.as_ref()).flat_map(Conduit::corners);
+        let times = given.chain(wells);
         let mut left: Vec<f64> = times.map(|time| time - start).filter(|left| *left > NEAR_END * start).collect();
         left.sort_by(f64::total_cmp);
         Self { left }

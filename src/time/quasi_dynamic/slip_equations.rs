@@ -63,6 +63,8 @@ pub struct SlipEquations<'a> {
     pub loading: &'a [f64],
     /// Reference positions, for p_w
     pub places: Configuration<'a>,
+    /// p_w of water that flows at every point, at the time for which rates are asked; empty where none does [F/L²]
+    pub water: Vec<f64>,
 }
 
 impl SlipEquations<'_> {
@@ -79,10 +81,12 @@ impl SlipEquations<'_> {
         if self.by_fluid.is_empty() {
             return Vec::new();
         }
-        let rise = |(pair, slave, start): &(&ContactPair, &SlavePoint, &ContactState)| {
-            pair.fluid_pressure(slave, &self.places, now) - start.fluid
+        let rise = |(k, (pair, slave, start)): (usize, &(&ContactPair, &SlavePoint, &ContactState))| {
+            let flows = pair.conduit.is_some();
+            let pressure = if flows { self.water[k] } else { pair.fluid_pressure(slave, &self.places, now) };
+            pressure - start.fluid
         };
-        self.points.par_iter().with_min_len(PART).map(rise).collect()
+        self.points.par_iter().enumerate().with_min_len(PART).map(rise).collect()
     }
 
     /// p and −τ minus those at t₀: one component of one point.

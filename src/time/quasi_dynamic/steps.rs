@@ -4,17 +4,10 @@
 //! e = max over the points of w |e_x|  and  |∂τ/∂s| |e_s|/p          both in the coefficient of friction; w = |∂(q/p)/∂x|
 //! h ← h × 0.9 (tolerance/e)^⅕                                       within a fifth and five times
 //! ```
-//!
-//! # Tableau
-//!
-//! The tableau is the Dormand–Prince pair of orders 5 and 4.
-//!
-//! ```text
-//! k_i = f(t + c_i h, z + h Σ a_ij k_j),   z₁ = z + h Σ b_i k_i,   e = h Σ (b_i − b̂_i) k_i          c_i = Σ a_ij
-//! ```
-//! The last stage is the first of the next step. Source: Dormand & Prince (1980), J. Comput. Appl. Math. 6, 19.
 
 use super::slip_equations::{Rates, SlipEquations, with_rates};
+use super::tableau::{A, C, E, STAGES};
+use super::waters::Waters;
 
 /// Safety factor on the length that the error allows.
 const SAFETY: f64 = 0.9;
@@ -33,6 +26,8 @@ pub enum Tried {
 /// Integration from one state on.
 pub struct Steps<'a> {
     interface: SlipEquations<'a>,
+    /// Water that flows along contacts
+    pub waters: Waters<'a>,
     /// w, and |∂τ/∂s|/p [-], [1/L]
     weights: Vec<[f64; 2]>,
     tolerance: f64,
@@ -53,7 +48,8 @@ pub struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// Starts at a time.
-    pub fn new(interface: SlipEquations<'a>, start: f64, tolerance: f64) -> Self {
+    pub fn new(mut interface: SlipEquations<'a>, waters: Waters<'a>, start: f64, tolerance: f64) -> Self {
+        interface.water = waters.now();
         let n = interface.points.len();
         let state = |&(pair, slave, state): &(_, _, &crate::contact::force::ContactState)| {
             with_rates(pair, slave, start, |law| law.evolving(&state.friction)).unwrap_or(f64::NAN)
@@ -67,7 +63,7 @@ impl<'a> Steps<'a> {
         let mut rates = vec![Vec::new(); STAGES];
         interface.rates(start, 0.0, &z, &mut rates[0]);
         let (trial, last, works) = (z.clone(), vec![0.0; n], vec![[0.0; 2]; n]);
-        Self { interface, weights, tolerance, start, since: 0.0, z, last, works, rates, trial }
+        Self { interface, waters, weights, tolerance, start, since: 0.0, z, last, works, rates, trial }
     }
 
     /// Current rates.
@@ -82,10 +78,23 @@ impl<'a> Steps<'a> {
 
     /// Tries a step of length `h`.
     pub fn attempt(&mut self, h: f64) -> Tried {
+        let n = self.last.len();
+        self.waters.foresee(self.start + self.since, h, &self.z[..n], &self.rates[0]);
+        let tried = self.go_through(h);
+        // What was foreseen is of a step that is refused, or has come true.
+        self.interface.water = self.waters.now();
+        tried
+    }
+
+    /// Goes through the stages of a step.
+    fn go_through(&mut self, h: f64) -> Tried {
         for stage in 1..STAGES {
             self.advance(A[stage], h);
             let since = self.since + C[stage] * h;
             let mut rates = std::mem::take(&mut self.rates[stage]);
+            if !self.waters.is_empty() {
+                self.interface.water = self.waters.at(stage);
+            }
             self.interface.rates(self.start + since, since, &self.trial, &mut rates);
             self.rates[stage] = rates;
             if let Some(worst) = self.rates[stage].iter().position(|rates| !rates.is_good()) {
@@ -140,26 +149,7 @@ impl<'a> Steps<'a> {
         std::mem::swap(z, trial);
         rates.swap(0, STAGES - 1);
         self.since += h;
+        let n = self.last.len();
+        self.waters.accept(h, &self.z[..n], &self.rates[0]);
     }
 }
-
-/// Number of stages.
-pub const STAGES: usize = 7;
-
-/// a_ij, one row per stage; the last row is b.
-pub const A: [&[f64]; STAGES] = [
-    &[],
-    &[1.0 / 5.0],
-    &[3.0 / 40.0, 9.0 / 40.0],
-    &[44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0],
-    &[19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0],
-    &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
-    &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
-];
-
-/// Nodes c_i of the stages.
-pub const C: [f64; STAGES] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
-
-/// Weights b_i − b̂_i of the error estimate.
-pub const E: [f64; STAGES] =
-    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];

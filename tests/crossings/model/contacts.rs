@@ -54,6 +54,15 @@ impl Writer<'_> {
                 contact["fluid_pressure"] =
                     json!(frame.expression(Kind::Stress, &format!("0.8*(1+0.2*T/{})", self.duration()), self.ways.load))
             }
+            "flows" => {
+                contact["fluid_pressure"] = json!({"flow": {
+                    "storage": 0.05 * frame.length / frame.stress,
+                    "transmissivity": 0.05 * frame.length.powi(3),
+                    "viscosity": frame.stress * frame.time,
+                    "initial": self.write(Kind::Stress, 0.6 * self.ways.load),
+                    "source": frame.expression(Kind::Velocity, "0.01*(1+0.2*X)*max(0,signum(T))", self.ways.load),
+                }})
+            }
             "by_place" => {
                 contact["fluid_pressure"] = json!(frame.expression(Kind::Stress, "0.8*(1+0.2*X)", self.ways.load))
             }

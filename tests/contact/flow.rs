@@ -1,0 +1,368 @@
+//! Water that flows along a contact, in static and implicit increments, against closed forms.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::common::{Blocks, Finished, close, finish, refusal};
+use fecontact::contact::force::ContactState;
+use fecontact::model::state::State;
+use fecontact::run::{Saved, Simulation};
+use serde_json::{Value, json};
+
+const LENGTH: f64 = 10.0;
+/// S, T and η: the diffusivity is 1
+const STORAGE: f64 = 2e-3;
+const TRANSMISSIVITY: f64 = 1e-2;
+const VISCOSITY: f64 = 5.0;
+
+fn water(more: Value) -> Value {
+    let mut flow = json!({"storage": STORAGE, "transmissivity": TRANSMISSIVITY, "viscosity": VISCOSITY});
+    let more = more.as_object().expect("an object").clone();
+    flow.as_object_mut().expect("an object").extend(more);
+    flow
+}
+
+/// A block that is pressed on a plane, under which water flows from x = 0 to x = 10.
+fn block(n: usize, flow: Value, duration: f64, dt: f64) -> Value {
+    json!({
+        "mesh": Blocks::default().rectangle("block", [n, 2], [0.0, 0.0], [LENGTH, 2.5]).json(),
+        "bodies": {"block": {"material": {"model": "linear", "E": 1e4, "nu": 0.2, "density": 1e-3}}},
+        "contacts": {"base": {
+            "slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
+            "friction": {"law": "coulomb", "mu": 0.6}, "initial": {"pressure": 100, "balanced": true},
+            "fluid_pressure": {"flow": flow},
+        }},
+        "steps": [{"name": "flow", "duration": duration, "dt": {"initial": dt, "max": dt},
+                   "supports": [{"on": "block_top", "ux": 0, "uy": 0}]}],
+    })
+}
+
+/// x and p_w of every point at the end.
+fn pressures(run: &Finished) -> Vec<[f64; 2]> {
+    let x = run.model.mesh.undeformed();
+    let points = run.model.contacts[0].points.iter().zip(&run.last().contacts[0]);
+    points.map(|(point, state)| [point.at(&x).x, state.fluid]).collect()
+}
+
+/// Largest difference from a closed form.
+fn off(run: &Finished, exact: impl Fn(f64) -> f64) -> f64 {
+    pressures(run).iter().map(|[x, p]| (p - exact(*x)).abs()).fold(0.0, f64::max)
+}
+
+/// What has come in is what is there, to round-off, in every state.
+fn balances(run: &Finished) {
+    for state in &run.states {
+        let water = &state.water[0];
+        let share = water.mass_error.abs() / water.amounts.throughput.max(f64::MIN_POSITIVE);
+        assert!(share < 1e-10, "{share:e} of {:e} at {}", water.amounts.throughput, state.time);
+    }
+}
+
+fn erfc(x: f64) -> f64 {
+    // 1 − 2/√π ∫ exp(−s²) ds by Simpson's rule
+    let n = 2000;
+    let h = x / f64::from(n);
+    let f = |k: i32| (-(h * f64::from(k)).powi(2)).exp();
+    let sum: f64 = (0..n / 2).map(|k| f(2 * k) + 4.0 * f(2 * k + 1) + f(2 * k + 2)).sum();
+    1.0 - 2.0 / PI.sqrt() * h / 3.0 * sum
+}
+
+/// p/P of a conduit of the length L whose end is held at P from t = 0 on: 1 − Σ 2 sin(λ x)/(λ L) exp(−λ² D t), λ = (k + ½) π/L.
+fn held(x: f64, t: f64) -> f64 {
+    let of = |k: i32| {
+        let rate = (f64::from(k) + 0.5) * PI / LENGTH;
+        2.0 / (rate * LENGTH) * (rate * x).sin() * (-rate * rate * t).exp()
+    };
+    1.0 - (0..400).map(of).sum::<f64>()
+}
+
+/// A pressure that is held diffuses to the impervious end, with an error of second order in the elements, whatever the increments: the first
+/// one has the jump in it.
+#[test]
+fn a_pressure_that_is_held_diffuses_to_an_impervious_end() {
+    let run = |n: usize, dt: f64, method: &str| {
+        let mut case = block(n, water(json!({"wells": [{"at": [0, 0], "pressure": 3}]})), 4.0, dt);
+        case["contacts"]["base"]["method"] = json!(method);
+        let run = finish(&case);
+        balances(&run);
+        off(&run, |x| 3.0 * held(x, 4.0)) / 3.0
+    };
+    let errors = [20, 40].map(|n| run(n, 1.0, "node_to_segment"));
+    println!("{errors:?}");
+    assert!(errors[1] < 6e-4 && errors[0] / errors[1] > 2.8, "{errors:?}");
+    close("one increment", run(40, 4.0, "node_to_segment"), errors[1], 2e-4);
+    for method in ["gauss_to_segment", "mortar"] {
+        assert!(run(40, 4.0, method) < 8e-4, "{method}");
+    }
+}
+
+/// A rate of volume into the end of a long conduit: p = q η/T √(4 D t) (exp(−ξ²)/√π − ξ erfc ξ), ξ = x/√(4 D t).
+#[test]
+fn a_rate_that_is_given_diffuses_along_a_long_contact() {
+    let (rate, time) = (0.02, 2.0);
+    let run = finish(&block(80, water(json!({"wells": [{"at": [0, 0], "rate": rate}]})), time, 0.5));
+    let size = (4.0 * time).sqrt();
+    let exact = |x: f64| {
+        let xi = x / size;
+        rate * VISCOSITY / TRANSMISSIVITY * size * ((-xi * xi).exp() / PI.sqrt() - xi * erfc(xi))
+    };
+    let error = off(&run, exact) / exact(0.0);
+    println!("{error:e}");
+    assert!(error < 4e-4, "{error}");
+    close("injected", run.last().water[0].amounts.injected, rate * time, 1e-15);
+    balances(&run);
+}
+
+/// Schedules: a rate between two nodes by a table, whose corners end increments, then a well that is shut. What is left is even in the end,
+/// p = V/(S L), and p stays the same where the walls leak nothing.
+#[test]
+fn what_a_schedule_has_let_in_spreads_evenly() {
+    let wells = json!([
+        {"at": [2.6, 0], "rate": {"table": [[0, 0], [1, 0.02], [2, 0]]}},
+        {"at": [7, 0], "pressure": 5, "from": 0.5, "until": 0.7},
+    ]);
+    let run = finish(&block(20, water(json!({"wells": wells})), 200.0, 50.0));
+    let water = &run.last().water[0];
+    let even = water.amounts.injected / (STORAGE * LENGTH);
+    assert!(water.amounts.injected > 0.02, "{}", water.amounts.injected);
+    assert!(off(&run, |_| even) < 1e-3 * even, "{even}: {:?}", pressures(&run));
+    for corner in [0.5, 0.7, 1.0, 2.0] {
+        run.at(corner);
+    }
+    balances(&run);
+}
+
+/// Walls that leak in proportion to the pressure: p = P cosh((L − x)/ℓ)/cosh(L/ℓ) in the end, ℓ² = T/(η c).
+#[test]
+fn walls_that_leak_take_what_the_well_gives() {
+    let leak = TRANSMISSIVITY / VISCOSITY / 4.0;
+    let flow = json!({"wells": [{"at": [0, 0], "pressure": 3}], "leak": {"coefficient": leak}});
+    let run = finish(&block(80, water(flow), 100.0, 100.0));
+    let error = off(&run, |x| 3.0 * ((LENGTH - x) / 2.0).cosh() / (LENGTH / 2.0).cosh()) / 3.0;
+    assert!(error < 5e-4, "{error}");
+    balances(&run);
+}
+
+/// Between periodic sides nothing has an end: p = p₀ + q cos(k (x − x₀)) (1 − exp(−D k² t))/(T/η k²) under a source q cos(k (x − x₀)).
+#[test]
+fn periodic_sides_are_joined() {
+    let k = 2.0 * PI / LENGTH;
+    let flow = json!({"initial": 2, "source": format!("1e-3*cos({k}*(x - 1.3))")});
+    let mut case = block(40, water(flow), 3.0, 1.0);
+    case["periodic"] = json!([["block_left", "block_right"]]);
+    case["contacts"]["base"]["method"] = json!("node_to_segment");
+    let run = finish(&case);
+    let size = 1e-3 * VISCOSITY / (TRANSMISSIVITY * k * k) * (1.0 - (-k * k * 3.0).exp());
+    let error = off(&run, |x| 2.0 + size * (k * (x - 1.3)).cos()) / size;
+    println!("{size} {error:e}");
+    assert!(error < 3e-3, "{error}");
+    let ends = [0, 40].map(|k| run.last().contacts[0][k].fluid);
+    close("ends", ends[0], ends[1], 1e-14);
+    balances(&run);
+}
+
+/// Slip that opens the fault: under a block that slides at the rate v, T = k₀ + k₁ v t everywhere, and p is that of a constant diffusivity
+/// at the time ∫ T/(S η) dt. Quadratic edges, Gauss points.
+#[test]
+fn a_transmissivity_follows_slip() {
+    let (rate, per_slip) = (0.5, 2e-2);
+    let mut flow = water(json!({"per_slip": per_slip, "wells": [{"at": [0, 0], "pressure": 3}]}));
+    (flow["storage"], flow["viscosity"]) = (json!(1e-3), json!(1.0));
+    flow["transmissivity"] = json!(1e-3);
+    let error = |dt: f64| {
+        let mut case = block(60, flow.clone(), 1.0, dt);
+        case["bodies"]["block"]["material"]["E"] = json!(1e7);
+        case["steps"][0]["supports"] = json!([{"on": "block_top", "ux": {"rate": rate}, "uy": 0}]);
+        let run = finish(&case);
+        balances(&run);
+        let size = 2.0 * ((1e-3 + 0.5 * per_slip * rate) / 1e-3f64).sqrt();
+        off(&run, |x| 3.0 * erfc(x / size)) / 3.0
+    };
+    let errors = [0.5, 0.1].map(error);
+    println!("{errors:?}");
+    assert!(errors.iter().all(|error| *error < 2e-3), "{errors:?}");
+}
+
+/// A dilatant fault that is loaded at once and slips without drainage: p_w = p₀ − δ tan ψ/S, so that it stops itself where
+/// q = μ (p − p_w), q = G (u − δ)/H − q/α_t less. Against the run itself for q, and Coulomb's law for the rest.
+#[test]
+fn a_dilatant_fault_stops_itself() {
+    let (psi, storage, ground) = (0.1, 1e-4, 40.0);
+    let flow = json!({"storage": storage, "transmissivity": 0, "viscosity": 1, "initial": ground});
+    let case = |flows: bool| {
+        let mut case = block(8, flow.clone(), 1.0, 0.1);
+        let base = &mut case["contacts"]["base"];
+        base["dilatancy"] = json!({"rate": psi});
+        if !flows {
+            base["fluid_pressure"] = json!(ground);
+        }
+        // The weight of what lies above stays: the top moves freely upwards under it.
+        case["steps"][0]["supports"] = json!([{"on": "block_top", "ux": 0.06}]);
+        case["steps"][0]["loads"] = json!([{"on": "block_top", "ty": 0}]);
+        case
+    };
+    let run = finish(&case(true));
+    let drained = finish(&case(false));
+    balances(&run);
+    let mean = |run: &Finished, of: fn(&ContactState) -> f64| {
+        let states = &run.last().contacts[0];
+        states.iter().map(|state| state.length * of(state)).sum::<f64>() / LENGTH
+    };
+    let slip = mean(&run, |state| state.friction.plastic_slip.abs());
+    let lifted = mean(&run, |state| state.friction.opening);
+    println!("slip {slip}, drained {}", mean(&drained, |state| state.friction.plastic_slip.abs()));
+    close("lift", lifted, psi * slip, 1e-9);
+    for state in &run.last().contacts[0] {
+        close("undrained", state.fluid, ground - state.friction.opening / storage, 1e-5);
+        close("strength", state.friction.traction.abs(), 0.6 * state.friction.pressure, 1e-6 * 100.0);
+        close("total", state.fluid + state.friction.pressure, 100.0 + ground, 4.0);
+    }
+    assert!(slip < 0.6 * mean(&drained, |state| state.friction.plastic_slip.abs()), "{slip}");
+}
+
+/// A half of Sneddon's crack: a half-plane on a rigid plane, which water parts over |x| < a.
+fn crack(flow: &Value, duration: f64, dt: f64) -> Value {
+    let far = 15.0;
+    let (n, m) = (16, 14);
+    let ratio = 20.0;
+    let mut blocks = Vec::new();
+    for (low, high, count, grading, side) in
+        [(-far, -1.0, m, 1.0 / ratio, "rest"), (-1.0, 1.0, n, 1.0, "crack"), (1.0, far, m, ratio, "rest")]
+    {
+        blocks.push(json!({
+            "body": "half", "kind": "Q8", "corners": [[low, 0], [high, 0], [high, far], [low, far]],
+            "elements": [count, m], "grading": [grading, ratio], "sides": [side, null, "far", null],
+        }));
+    }
+    json!({
+        "mesh": {"blocks": blocks},
+        "bodies": {"half": {"material": {"model": "linear", "E": 1000, "nu": 0.25}}},
+        "contacts": {"crack": {
+            "slave": "crack", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
+            "friction": {"law": "frictionless"}, "fluid_pressure": flow,
+        }},
+        "steps": [{"name": "fill", "duration": duration, "dt": {"initial": dt, "max": dt},
+                   "supports": [{"on": "rest", "uy": 0}, {"on": "far", "ux": 0, "uy": 0}]}],
+    })
+}
+
+fn opened(run: &Finished) -> f64 {
+    run.last().water[0].walls.iter().fold(0.0, |most: f64, wall| most.max(wall.opening))
+}
+
+/// A pressurised crack: p = q t/(C + 2 a S), with the volume C per pressure of the same mesh under a given pressure, whatever the
+/// compressibility of the water: from as soft as the crack to ten thousand times as stiff. C is that of Sneddon, π a²/E′ of a half, but
+/// for what the ends of the mesh change.
+#[test]
+fn a_pressurised_crack_takes_what_is_pumped_into_it() {
+    let modulus = 1000.0 / (1.0 - 0.0625);
+    let given = finish(&crack(&json!(0.3), 1.0, 1.0));
+    let states = &given.last().contacts[0];
+    let compliance = states.iter().map(|state| state.length * state.gap).sum::<f64>() / 0.3;
+    println!("C {compliance} for {}", PI / modulus);
+    close("Sneddon", compliance / (PI / modulus), 1.0, 0.03);
+    for storage in [1e-3, 1e-5, 1e-7] {
+        let flow = json!({"flow": {"storage": storage, "transmissivity": 1, "viscosity": 1e-3, "wells": [{"at": [0, 0], "rate": 1e-3}]}});
+        let run = finish(&crack(&flow, 1.0, 0.25));
+        balances(&run);
+        let expected = 1e-3 / (compliance + 2.0 * storage);
+        println!(
+            "S {storage:e}: {} iterations, p {}",
+            run.iterations.iter().sum::<usize>(),
+            run.last().contacts[0][8].fluid
+        );
+        assert!(off(&run, |_| expected) < 1e-3 * expected, "{expected}: {:?}", pressures(&run));
+        close("opening", opened(&run) / (2.0 * expected / modulus), 1.0, 0.03);
+    }
+}
+
+/// The cubic law in a crack under its own stress: twice the rate into the same crack opens it more where the well is; the balance closes,
+/// increments differ little, and the run is the same when it goes on from a file.
+#[test]
+fn a_crack_by_the_cubic_law_resumes_to_the_bit() {
+    let flow = json!({"flow": {"storage": 1e-4, "aperture": 1e-3, "viscosity": 1e-6, "initial": 0.5,
+                               "wells": [{"at": [0, 0], "rate": 4e-3}]}});
+    let mut case = crack(&flow, 1.0, 0.1);
+    case["contacts"]["crack"]["initial"] = json!({"pressure": 0.5, "balanced": true});
+    let whole = finish(&case);
+    balances(&whole);
+    let model = Arc::new(crate::common::model(&case));
+    let mut run = Simulation::new(model.clone());
+    for _ in 0..4 {
+        run.next_increment().expect("it is solved");
+    }
+    let bytes = run.save().bytes().expect("bytes");
+    let mut run = Simulation::resume(model.clone(), Saved::from_bytes(&bytes, &model).expect("it can be read"));
+    while run.next_increment().expect("it is solved").is_some() {}
+    assert!(run.state() == whole.last(), "a resumed run has other bits");
+    case["steps"][0]["dt"] = json!({"initial": 0.025, "max": 0.025});
+    let fine = finish(&case);
+    let apart = |a: &State, b: &State| {
+        let (a, b) = (&a.water[0].pressure, &b.water[0].pressure);
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    println!("{}", apart(fine.last(), whole.last()));
+    assert!(apart(fine.last(), whole.last()) < 0.05, "{}", apart(fine.last(), whole.last()));
+}
+
+/// Implicit dynamics whose motion is slow has the pressures of statics.
+#[test]
+fn slow_motion_has_the_water_of_statics() {
+    let flow = water(json!({"wells": [{"at": [0, 0], "pressure": "3*min(t, 1)"}], "closing": 40}));
+    let mut case = block(20, flow, 2.0, 0.1);
+    let still = finish(&case);
+    case["steps"][0]["scheme"] = json!({"generalized_alpha": {"rho_infinity": 0.5}});
+    let moving = finish(&case);
+    balances(&moving);
+    let apart = pressures(&moving).iter().zip(pressures(&still)).map(|(a, b)| (a[1] - b[1]).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-4, "{apart}");
+}
+
+#[test]
+fn what_water_cannot_do_is_refused_with_its_place() {
+    let refused = |edit: &dyn Fn(&mut Value), told: &[&str]| {
+        let mut case = block(8, water(json!({"wells": [{"at": [0, 0], "pressure": 3}]})), 1.0, 0.5);
+        edit(&mut case);
+        let why = refusal(&case);
+        for told in told {
+            assert!(why.contains(told), "{why}");
+        }
+    };
+    let flow = |key: &'static str, value: Value| {
+        move |case: &mut Value| {
+            case["contacts"]["base"]["fluid_pressure"]["flow"][key] = value.clone();
+        }
+    };
+    let place = "contacts.base.fluid_pressure.flow";
+    refused(&flow("storage", json!(0)), &[&format!("{place}.storage: is 0: must be positive")]);
+    refused(
+        &flow("transmissivity", json!(-1)),
+        &[&format!("{place}.transmissivity: is -1 at (0, 0): must be zero or positive")],
+    );
+    refused(
+        &flow("transmissivity", Value::Null),
+        &["transmissivity: is missing: give it, or the hydraulic `aperture`"],
+    );
+    refused(&flow("aperture", json!(1e-3)), &["transmissivity: is given beside `aperture`"]);
+    refused(
+        &flow("initial", json!("x - 1")),
+        &[&format!("{place}.initial: is -1 at (0, 0): must be zero or positive")],
+    );
+    refused(
+        &flow("wells", json!([{"at": [3, 1], "rate": 1}])),
+        &["wells[0].at: is (3, 1), which is not on the slave", "(2.5, 0)"],
+    );
+    refused(&flow("wells", json!([{"at": [3, 0]}])), &["wells[0]: needs either a `pressure` or a `rate`"]);
+    refused(&flow("wells", json!([{"at": [3, 0], "rate": "x"}])), &["wells[0].rate: depends on x or y"]);
+    refused(
+        &flow("wells", json!([{"at": [3, 0], "rate": {"table": [[1, 0], [0, 1]]}}])),
+        &["wells[0].rate: the times of the table must increase"],
+    );
+    let two = json!([{"at": [0, 0], "pressure": 1}, {"at": [0.1, 0], "pressure": 2}]);
+    refused(&flow("wells", two), &["wells[1]: holds a pressure at the same node"]);
+    refused(&|case| case["contacts"]["base"]["wear"] = json!(1e-3), &["is not for surfaces that wear"]);
+    refused(
+        &|case| case["steps"][0]["scheme"] = json!({"wilson": {"theta": 1.4}}),
+        &["contacts.base.fluid_pressure.flow: is not for the step `flow`"],
+    );
+}

@@ -1,0 +1,216 @@
+//! Water that flows along a contact, in quasi-dynamic steps, in explicit increments, and into a rupture and out of it.
+
+use std::sync::Arc;
+
+use crate::common::{Blocks, Finished, close, finish};
+use fecontact::contact::force::ContactState;
+use fecontact::model::state::State;
+use fecontact::run::{Saved, Simulation};
+use serde_json::{Value, json};
+
+fn quasi_dynamic(tolerance: f64) -> Value {
+    json!({"quasi_dynamic": {"tolerance": tolerance, "every": 10}})
+}
+
+/// Two unequal slabs with a fault between them, node facing node, along which water flows from a well.
+fn slabs(scheme: &Value, flow: &Value) -> Value {
+    let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
+        "upper",
+        [12, 4],
+        [0.0, 0.0],
+        [6.0, 1.0],
+    );
+    let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.25, "density": 1e-6}});
+    json!({
+        "mesh": mesh.json(),
+        "bodies": {"lower": body(200.0), "upper": body(120.0)},
+        "contacts": {"fault": {
+            "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small",
+            "normal": {"alpha_n": 4000}, "radiation_damping": 0.02,
+            "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.012, "b": 0.010, "D_c": 2e-3, "theta": 20,
+                         "alpha_t": 4000},
+            "fluid_pressure": {"flow": flow},
+            "initial": {"pressure": "2 + 0.1*x", "traction": 1.1, "balanced": true},
+        }},
+        "newton": {"tolerance": 1e-12},
+        "steps": [{"name": "inject", "duration": 10, "scheme": scheme, "dt": {"initial": 1e-3}, "supports": [
+            {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": {"rate": 1e-4}, "uy": 0},
+        ]}],
+    })
+}
+
+/// Slip, pressure and p_w of every point of the fault.
+fn fault(run: &Finished) -> Vec<[f64; 3]> {
+    let of = |state: &ContactState| [state.friction.plastic_slip, state.friction.pressure, state.fluid];
+    run.last().contacts[0].iter().map(of).collect()
+}
+
+/// Largest difference of two faults in each of the three, over the largest value.
+fn apart(a: &Finished, b: &Finished) -> [f64; 3] {
+    let (a, b) = (fault(a), fault(b));
+    [0, 1, 2].map(|i| {
+        let largest = a.iter().fold(0.0f64, |most, a| most.max(a[i].abs()));
+        a.iter().zip(&b).fold(0.0f64, |most, (a, b)| most.max((a[i] - b[i]).abs())) / largest
+    })
+}
+
+fn balances(run: &Finished) {
+    for state in &run.states {
+        let water = &state.water[0];
+        let share = water.mass_error.abs() / water.amounts.throughput.max(f64::MIN_POSITIVE);
+        assert!(share < 1e-10, "{share:e} of {:e} at {}", water.amounts.throughput, state.time);
+    }
+}
+
+/// A well that is shut after a while, in a fault whose transmissivity goes by slip and by the pressure on it: the steps of a quasi-dynamic run
+/// have the water of short static increments, and a run that goes on from a file the same bits.
+#[test]
+fn quasi_dynamic_water_is_that_of_static_increments() {
+    let flow = json!({
+        "storage": 0.05, "transmissivity": 0.01, "viscosity": 1, "per_slip": 0.5, "closing": 4,
+        "wells": [{"at": [2, 0], "rate": 0.03, "until": 6}],
+    });
+    let case = slabs(&quasi_dynamic(1e-7), &flow);
+    let exact = finish(&case);
+    balances(&exact);
+    close("injected", exact.last().water[0].amounts.injected, 0.18, 1e-12);
+    let errors = [0.1, 0.025].map(|dt| {
+        let mut case = slabs(&json!("static"), &flow);
+        case["steps"][0]["dt"] = json!({"initial": dt, "min": 1e-6, "max": dt});
+        let run = finish(&case);
+        balances(&run);
+        println!("{dt}: {:?}", apart(&exact, &run));
+        apart(&exact, &run)
+    });
+    assert!(errors[1].iter().all(|error| *error < 2e-3), "{errors:?}");
+    let slips = fault(&exact).iter().fold(0.0f64, |most, point| most.max(point[0].abs()));
+    assert!(slips > 1e-3, "{slips}");
+    let model = Arc::new(crate::common::model(&case));
+    let mut run = Simulation::new(model.clone());
+    for _ in 0..3 {
+        run.next_increment().expect("it is solved");
+    }
+    let bytes = run.save().bytes().expect("bytes");
+    let mut run = Simulation::resume(model.clone(), Saved::from_bytes(&bytes, &model).expect("it can be read"));
+    while run.next_increment().expect("it is solved").is_some() {}
+    assert!(run.state() == exact.last(), "a resumed run has other bits");
+}
+
+/// Periodic sides of a quasi-dynamic fault are joined: what is shifted by a part of the period has the same water at places that are shifted.
+#[test]
+fn water_goes_round_a_periodic_fault() {
+    let [one, other] = [0.0, 2.5].map(|shift| {
+        let flow = json!({"storage": 0.05, "transmissivity": 0.01, "viscosity": 1, "wells": [{"at": [(5.0 + shift) % 6.0, 0], "rate": 0.03}]});
+        let mut case = slabs(&quasi_dynamic(1e-7), &flow);
+        case["periodic"] = json!([["lower_left", "lower_right"], ["upper_left", "upper_right"]]);
+        case["contacts"]["fault"]["initial"] = json!({"pressure": 2, "traction": 1.1, "balanced": true});
+        let run = finish(&case);
+        balances(&run);
+        run
+    });
+    let x = one.model.mesh.undeformed();
+    let points = &one.model.contacts[0].points;
+    let at = |run: &Finished, place: f64| {
+        let k = points.iter().position(|slave| (slave.at(&x).x - place).abs() < 1e-9).expect("a node");
+        fault(run)[k]
+    };
+    let largest = fault(&one).iter().fold([0.0f64; 3], |most, point| [0, 1, 2].map(|i| most[i].max(point[i].abs())));
+    for k in 0..12 {
+        let place = 0.5 * f64::from(k);
+        let [here, there] = [at(&one, place), at(&other, (place + 2.5) % 6.0)];
+        (0..3).for_each(|i| close("shifted", there[i], here[i], 1e-7 * largest[i]));
+    }
+    let [first, last] = [at(&one, 0.0), at(&one, 6.0)];
+    (0..3).for_each(|i| close("ends", first[i], last[i], 1e-12 * largest[i]));
+}
+
+/// A slab on a plane whose water rises until the interface breaks within milliseconds.
+fn flooded(flow: &Value, dilatancy: f64, steps: Value) -> Finished {
+    let mut steps = steps;
+    steps[0]["supports"] = json!([{"on": "slab_top", "ux": 0, "uy": 0}]);
+    let mut case = json!({
+        "mesh": Blocks::default().rectangle("slab", [40, 8], [0.0, 0.0], [1.0, 0.2]).json(),
+        "bodies": {"slab": {
+            "material": {"model": "linear", "E": 2.5, "nu": 0.25, "density": 1e-6}, "damping": {"stiffness": 2e-6},
+        }},
+        "contacts": {"base": {
+            "slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "normal": {"alpha_n": 800.0}, "fluid_pressure": {"flow": flow},
+            "friction": {"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.4, "D_c": 8e-6, "alpha_t": 800.0},
+            "along": {"mu_s": {"x": [[0.2, 0.57], [0.3, 0.6]]}},
+            "initial": {"pressure": 1e-3, "traction": 5e-4, "balanced": true},
+        }},
+        "steps": steps,
+        "output": {"interval": 2e-5},
+    });
+    if dilatancy > 0.0 {
+        case["contacts"]["base"]["dilatancy"] = json!({"rate": dilatancy});
+    }
+    finish(&case)
+}
+
+/// Into a rupture and out of it the water goes on: p_w = Q t/S at every place without a transmissivity, in every state, until the source ends;
+/// it breaks as explicit increments alone have it, and the audit closes.
+#[test]
+fn water_rises_into_a_rupture_and_after_it() {
+    let source = "1.25e-4*(1 + 0.1*x)*max(0, signum(1 - t))";
+    let flow = json!({"storage": 0.5, "transmissivity": 0, "viscosity": 1, "source": source});
+    let run = flooded(
+        &flow,
+        0.0,
+        json!([{
+            "name": "flood", "duration": 1.2, "dt": {"initial": 0.005, "min": 1e-4, "max": 0.05}, "rupture": {"slip_rate": 1e-3},
+        }]),
+    );
+    println!("{} increments, {} ruptures", run.report.increments, run.report.ruptures);
+    assert!((1..=3).contains(&run.report.ruptures), "{}", run.report.ruptures);
+    balances(&run);
+    let x = run.model.mesh.undeformed();
+    for state in &run.states {
+        for (slave, contact) in run.model.contacts[0].points.iter().zip(&state.contacts[0]) {
+            let (t, x) = (state.time, slave.at(&x).x);
+            close("p_w", contact.fluid, 2.5e-4 * t.min(1.0) * (1.0 + 0.1 * x), 1e-9);
+        }
+        close("energy", state.energy.error(), 0.0, 0.01 * run.last().energy.friction_dissipation);
+    }
+    let slip = |state: &State| state.contacts[0].iter().map(|c| c.friction.plastic_slip.abs()).sum::<f64>() / 41.0;
+    let onset = run.states.iter().find(|state| slip(state) > 4e-6).expect("it breaks").time;
+    let after = run.states.iter().rfind(|state| state.time <= onset + 0.006).expect("a state");
+    let explicit = flooded(
+        &flow,
+        0.0,
+        json!([
+            {"name": "flood", "duration": onset - 0.002, "dt": {"initial": 0.005, "min": 1e-6}},
+            {"name": "break", "duration": 0.008, "scheme": {"explicit": {}}, "dt": {"initial": 1.0}},
+        ]),
+    );
+    println!("breaks at {onset}, mean slip {} and {}", slip(after), slip(explicit.last()));
+    close("slip", slip(after) / slip(explicit.last()), 1.0, 0.01);
+}
+
+/// The same with dilatancy: what opens within milliseconds takes its water from what is there, p_w = p₀ + Q t/S − d/S at every place and in
+/// every state, and slip is less.
+#[test]
+fn dilatancy_sucks_within_a_rupture() {
+    let flow = json!({"storage": 0.05, "transmissivity": 0, "viscosity": 1, "initial": 1e-4, "source": 1.25e-5});
+    let steps = || {
+        json!([
+            {"name": "flood", "duration": 0.5, "dt": {"initial": 0.05, "max": 0.05}},
+            {"name": "break", "duration": 0.01, "scheme": {"explicit": {}}, "dt": {"initial": 1.0},
+             "supports": [{"on": "slab_top", "ux": {"rate": 1e-2}, "uy": 0}]},
+        ])
+    };
+    let [dilatant, plain] = [0.05, 0.0].map(|dilatancy| flooded(&flow, dilatancy, steps()));
+    balances(&dilatant);
+    let lifted = dilatant.last().contacts[0].iter().fold(0.0f64, |most, state| most.max(state.friction.opening));
+    assert!(lifted > 1e-7, "{lifted}");
+    for state in &dilatant.states {
+        for contact in &state.contacts[0] {
+            let expected = 1e-4 + (1.25e-5 * state.time - contact.friction.opening) / 0.05;
+            close("p_w", contact.fluid, expected, 1e-9);
+        }
+    }
+    let slip = |run: &Finished| run.last().contacts[0].iter().map(|c| c.friction.plastic_slip.abs()).sum::<f64>();
+    println!("slip {} and {}, opening {lifted}", slip(&dilatant), slip(&plain));
+    assert!(slip(&dilatant) < slip(&plain));
+}
