@@ -18,6 +18,7 @@ mod bond;
 mod confinement;
 mod contact_law;
 mod coulomb;
+mod extrapolation;
 mod frictionless;
 pub mod observables;
 mod parameters;

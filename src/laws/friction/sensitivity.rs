@@ -63,6 +63,8 @@ pub(super) struct Inputs {
     pub traction: Dual,
     /// The internal variable at the start
     pub variable: Dual,
+    /// A second internal variable of some laws
+    pub second: Dual,
     /// Δu_t [L]
     pub slip: Dual,
     /// p at the end [F/L²]
@@ -84,6 +86,7 @@ impl Inputs {
         Ok(Self {
             traction: along(old.traction, |by| by.state.traction),
             variable: along(old.variables[0], |by| by.state.variables[0]),
+            second: along(old.variables[1], |by| by.state.variables[1]),
             slip: along(slip, |by| by.slip),
             pressure: along(pressure, |by| by.pressure),
             dt,

@@ -336,7 +336,7 @@ impl SensitiveLaw for RateAndState {
     ) -> Result<[Variation; 2], LawFailure> {
         let mut ramp = Ramp::new(self, old, Inputs::new(old, sliding, directions)?);
         let PathState { traction, theta, .. } =
-            if self.is_controlled && sliding.dt > 0.0 { ramp.end()? } else { ramp.single()? };
+            if self.is_controlled && sliding.dt > 0.0 { ramp.end_of_path()? } else { ramp.single()? };
         Ok(variations(traction, theta))
     }
 }

@@ -5,6 +5,7 @@
 //! The sub-step is governed by a scalar equation of plastic slip, of which the smallest root is required.
 
 use super::SuperSubloading;
+use super::direct::{DirectEffect, Strength};
 use super::peak::{Peak, PeakEvolution};
 use crate::laws::approach::{CurvePoint, SlidingCurve};
 use crate::laws::dual::{Dual, Number};
@@ -17,6 +18,8 @@ pub(super) struct Varied {
     pub r: Dual,
     pub elastic_core: Dual,
     pub evolution: PeakEvolution<Dual>,
+    /// Direct effect of the rate, if there is one
+    pub direct: Option<DirectEffect<Dual>>,
 }
 
 /// The part of an increment in which slip may be plastic, with signs such that the traction is not negative.
@@ -47,8 +50,10 @@ pub(super) struct PathState {
     pub traction: Dual,
     /// μ [-]
     pub mu: Dual,
-    /// R, and its point on the curve
+    /// R, and its point on the curve; below R_e the point is that of R_e
     pub curve_point: CurvePoint,
+    /// R of a law with a direct effect of the rate; without one it follows from the others
+    pub ratio: Dual,
     /// Plastic slip since the start of the path [L]
     pub plastic_slip: f64,
     /// ∫ (μ/μ_k − 1) dλ since the start of the path, if it is asked for [L]
@@ -64,14 +69,15 @@ pub(super) struct PathState {
 
 impl LoadPath<'_> {
     /// Start of the path.
-    pub(super) fn start(&self, traction: Dual, mu: Dual, ratio: f64) -> PathState {
-        let curve_point = self.law.curve.start(ratio);
+    pub(super) fn start(&self, traction: Dual, mu: Dual, ratio: Dual) -> PathState {
+        let curve_point = self.law.curve.start(ratio.value);
         let weighed_slip = 0.0.into();
         PathState {
             x: 0.0,
             traction,
             mu,
             curve_point,
+            ratio,
             plastic_slip: 0.0,
             weighed_slip,
             work: 0.0,
@@ -94,7 +100,7 @@ impl LoadPath<'_> {
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return Ok(self.stick(from, x, pressure.value));
+            return Ok(self.stick(from, x, pressure));
         }
         let (end, evaluations) = equation.solve(start)?;
         self.evaluations += evaluations;
@@ -103,14 +109,15 @@ impl LoadPath<'_> {
 
     /// A sub-step without plastic slip.
     #[inline]
-    fn stick(&self, from: &PathState, x: f64, pressure: f64) -> PathState {
+    fn stick(&self, from: &PathState, x: f64, pressure: Dual) -> PathState {
         let share = x - from.x;
         // Only weakening that has reduced the traction during unloading can leave it to reverse: it stays at 0.
         let trial = self.trial(from, share);
         let traction = if trial.value > 0.0 { trial } else { 0.0.into() };
         let mu = self.varied.evolution.rested(from.mu, self.time * share);
-        let curve_point = self.law.curve.start(traction.value / (mu.value * pressure));
-        let mut to = PathState { x, traction, mu, curve_point, overlooked: 0.0, doubt: 0.0, ..*from };
+        let curve_point = self.law.curve.start(traction.value / (mu.value * pressure.value));
+        let ratio = if self.varied.direct.is_some() { traction / (mu * pressure) } else { from.ratio };
+        let mut to = PathState { x, traction, mu, curve_point, ratio, overlooked: 0.0, doubt: 0.0, ..*from };
         let rates = [from, &to].map(|at| self.balance(at).rate());
         to.overlooked = self.law.alpha_t * share * mean_of_positive(rates);
         to
@@ -122,11 +129,12 @@ impl LoadPath<'_> {
     /// dΔλ = ∂G/D,   D = α_t + p (U μ + R ∂μ/∂Δλ)                      ∂G at constant Δλ
     /// dq = d(q_tr − α_t Δλ),   dμ = ∂μ + ∂μ/∂Δλ dΔλ
     /// ```
+    /// With a direct effect R μ is multiplied by its factor f: D = α_t + p d(R μ f)/dΔλ, dR = ∂R + U dΔλ.
     #[inline]
     fn slide(&self, from: &PathState, x: f64, pressure: Dual, point: &Point) -> PathState {
-        let (share, start_pressure) = (x - from.x, self.pressure(from.x.into()));
+        let share = x - from.x;
         let Point { curve_point, slip, .. } = *point;
-        let Varied { alpha_t, r, elastic_core, evolution } = &self.varied;
+        let Varied { alpha_t, evolution, .. } = &self.varied;
         let time = self.time * share;
         // The tangent neglects the change by the last step of the search, which would accumulate over many increments.
         let (peak, by_slip) = match self.parameters_vary {
@@ -136,15 +144,21 @@ impl LoadPath<'_> {
             }
             false => (point.peak.along(from.mu, time), point.peak.slope),
         };
-        let start_ratio = from.traction / (from.mu * start_pressure);
-        let ratio = self.law.curve.ratio_after(start_ratio, [&from.curve_point, &curve_point], [*r, *elastic_core]);
-        let slope =
-            self.law.alpha_t + pressure.value * (curve_point.rate * point.peak.mu + curve_point.ratio * by_slip);
+        let ratio = self.ratio_after(from, &curve_point);
+        let mut strength = curve_point.ratio * point.peak.mu;
+        let mut by_rate = curve_point.rate * point.peak.mu + curve_point.ratio * by_slip;
+        let mut resistance = ratio * peak;
+        if let (Some(direct), Some(varied)) = (&self.law.direct, &self.varied.direct) {
+            let factor = direct.factor(slip, time.value);
+            by_rate = by_rate * factor.value + strength * factor.slope;
+            strength *= factor.value;
+            resistance = resistance * varied.varied(slip, time, factor.value);
+        }
+        let slope = self.law.alpha_t + pressure.value * by_rate;
         let elastic = self.trial(from, share) - *alpha_t * slip;
-        let residual = elastic - ratio * peak * pressure;
+        let residual = elastic - resistance * pressure;
         let dslip = residual.map(0.0, 1.0 / slope.max(LEAST_SLOPE * self.law.alpha_t));
-        let mut traction =
-            (elastic - dslip * self.law.alpha_t).map(curve_point.ratio * point.peak.mu * pressure.value, 1.0);
+        let mut traction = (elastic - dslip * self.law.alpha_t).map(strength * pressure.value, 1.0);
         let mut mu = (peak + dslip * by_slip).map(point.peak.mu, 1.0);
         if !self.parameters_vary {
             for (i, limit) in [STEEPEST * self.law.alpha_t, STEEPEST].into_iter().enumerate() {
@@ -158,24 +172,47 @@ impl LoadPath<'_> {
             weighed_slip = weighed_slip + slip * evolution.excess(evolution.mean([from.mu, mu], slip, time));
         }
         let plastic_slip = from.plastic_slip + slip;
-        let work = from.work;
+        let (ratio, work) = ((ratio + dslip * curve_point.rate).map(curve_point.ratio, 1.0), from.work);
+        let (overlooked, doubt) = (0.0, 0.0);
         let mut to =
-            PathState { x, traction, mu, curve_point, plastic_slip, weighed_slip, work, overlooked: 0.0, doubt: 0.0 };
-        let [start, end] = [from, &to].map(|at| self.balance(at));
-        let strengths = [from.mu.value * start_pressure.value, mu.value * pressure.value];
-        let tractions = [from.traction.value, traction.value];
-        let steady = mean_of_steady_slip(&self.law.curve, [&from.curve_point, &curve_point], strengths);
-        let mean = mean_traction(steady, tractions);
-        if mean == steady || unsteadiness([&start, &end]) <= STEADY {
-            to.work += slip * steady;
+            PathState { x, traction, mu, curve_point, ratio, plastic_slip, weighed_slip, work, overlooked, doubt };
+        self.book(from, &mut to, slip);
+        to
+    }
+
+    /// R after the plastic slip of a sub-step, with its derivatives at constant slip.
+    fn ratio_after(&self, from: &PathState, here: &CurvePoint) -> Dual {
+        let Varied { r, elastic_core, direct, .. } = &self.varied;
+        let start = match direct {
+            Some(_) => from.ratio,
+            None => from.traction / (from.mu * self.pressure(from.x.into())),
+        };
+        self.law.curve.ratio_after(start, [&from.curve_point, here], [*r, *elastic_core])
+    }
+
+    /// Books the work of a sub-step with plastic slip, and what it may have overlooked.
+    #[inline]
+    fn book(&self, from: &PathState, to: &mut PathState, slip: f64) {
+        let share = to.x - from.x;
+        let [start, end] = [from, to].map(|at| self.balance(at));
+        if self.law.direct.is_some() {
+            // The rate is that of the end: of first order, as is all else.
+            to.work += slip * to.traction.value;
         } else {
-            to.work += slip * mean;
-            to.doubt = slip * (steady - mean).abs();
+            let strengths = [from.mu.value * self.pressure_at(from), to.mu.value * self.pressure_at(to)];
+            let tractions = [from.traction.value, to.traction.value];
+            let steady = mean_of_steady_slip(&self.law.curve, [&from.curve_point, &to.curve_point], strengths);
+            let mean = mean_traction(steady, tractions);
+            if mean == steady || unsteadiness([&start, &end]) <= STEADY {
+                to.work += slip * steady;
+            } else {
+                to.work += slip * mean;
+                to.doubt = slip * (steady - mean).abs();
+            }
         }
-        if !start.in_core && end.drive > 0.0 {
+        if !start.in_core && !start.exceeds && end.drive > 0.0 {
             to.overlooked = share * mean_of_positive([-start.drive, -end.drive]);
         }
-        to
     }
 
     /// The traction after a share of the slip without plastic slip.
@@ -202,12 +239,18 @@ impl LoadPath<'_> {
             drive: self.law.alpha_t * self.slip.value - recovery - pressing,
             ratio,
             in_core: at.traction.value < ratio * mu * pressure * (1.0 - ROUND_OFF),
+            exceeds: self.law.direct.is_some() && at.traction.value > ratio * mu * pressure * (1.0 + ROUND_OFF),
         }
     }
 
     /// p [F/L²]
     pub(super) fn pressure(&self, x: Dual) -> Dual {
         self.pressures[0] * (Dual::from(1.0) - x) + self.pressures[1] * x
+    }
+
+    /// p at a point of the path [F/L²]
+    pub(super) fn pressure_at(&self, path_state: &PathState) -> f64 {
+        self.pressure(path_state.x.into()).value
     }
 
     /// Change of the pressure from x = 0 to 1.
@@ -244,6 +287,8 @@ pub(super) struct Balance {
     pub ratio: f64,
     /// Whether the traction is below R μ p, inside the elastic core.
     pub in_core: bool,
+    /// Whether the traction is above R μ p, so that slip goes on by the direct effect of its rate.
+    pub exceeds: bool,
 }
 
 impl Balance {
@@ -288,6 +333,7 @@ fn mean_of_positive([start, end]: [f64; 2]) -> f64 {
 /// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t
 /// D = −dG/dΔλ = α_t + p (U μ + R ∂μ/∂Δλ)
 /// ```
+/// With a direct effect of the rate R μ is multiplied by 1 + a ln(1 + Δλ/(V₀ Δt)), which only increases with Δλ.
 pub(super) struct SlipEquation<'a> {
     pub law: &'a SuperSubloading,
     /// Point of the sliding curve at which plastic slip starts.
@@ -355,7 +401,8 @@ impl SlipEquation<'_> {
         }
         let mut evaluations = 1;
         let end = self.law.curve.beyond(self.trial / self.law.alpha_t, &self.start);
-        let unique = self.pressure * self.law.evolution.weakening(start.peak.mu) < self.law.alpha_t;
+        let most = self.law.direct.map_or(1.0, |direct| direct.factor(self.trial / self.law.alpha_t, self.dt).value);
+        let unique = self.pressure * self.law.evolution.weakening(start.peak.mu) * most < self.law.alpha_t;
         let bracket =
             if unique { [self.start.coordinate, end] } else { self.first_root_bracket(start, end, &mut evaluations)? };
         let mut point = start;
@@ -376,34 +423,55 @@ impl SlipEquation<'_> {
     #[inline(always)]
     fn point(&self, curve_point: CurvePoint) -> Point {
         let Self { law: SuperSubloading { alpha_t, .. }, pressure, .. } = *self;
-        let CurvePoint { stretch, bend, ratio, rate, .. } = curve_point;
+        let CurvePoint { stretch, bend, .. } = curve_point;
         let slip = (curve_point.slip - self.start.slip).max(0.0);
         let peak = self.law.evolution.after(self.old_mu, slip, self.dt);
-        let residual = self.trial - alpha_t * slip - ratio * peak.mu * pressure;
-        let slope = self.slope(ratio, rate, &peak);
-        // −d²G/d(coordinate)², as dU/dζ = −U
-        let curvature = bend * slope
-            + pressure * stretch * (stretch * (2.0 * rate * peak.slope + ratio * peak.curvature) - rate * peak.mu);
+        let strength = self.strength(&curve_point, &peak, slip);
+        let residual = self.trial - alpha_t * slip - strength.value * pressure;
+        let slope = alpha_t + pressure * strength.slope;
+        // −d²G/d(coordinate)²
+        let curvature = bend * slope + pressure * stretch * strength.bend;
         let per_gradient = 1.0 / (slope * stretch);
         let newton = residual * per_gradient;
         let bending = 0.5 * newton * curvature * per_gradient;
-        let step = if bending.abs() < 0.5 { newton * (1.0 - bending) } else { newton };
-        let close = self.is_close(&curve_point, slope, step);
+        let step = if bending.abs() < 0.5 {
+            newton * (1.0 - bending)
+        } else if let Some(direct) = &self.law.direct {
+            // By ln(1 + λ/V₀), in which the strength is linear
+            let scale = direct.own_slip(self.dt) + slip;
+            scale * (newton * stretch / scale).exp_m1() / stretch
+        } else {
+            newton
+        };
+        let close = self.is_close(&curve_point, slip, slope, step);
         Point { curve_point, slip, peak, residual, slope, step, close }
     }
 
+    /// The strength per pressure after plastic slip; dU/dζ = −U.
     #[inline(always)]
-    fn slope(&self, ratio: f64, rate: f64, peak: &Peak) -> f64 {
-        self.law.alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope)
+    fn strength(&self, curve_point: &CurvePoint, peak: &Peak, slip: f64) -> Strength {
+        let CurvePoint { stretch, ratio, rate, .. } = *curve_point;
+        let strength = Strength {
+            value: ratio * peak.mu,
+            slope: rate * peak.mu + ratio * peak.slope,
+            bend: stretch * (2.0 * rate * peak.slope + ratio * peak.curvature) - rate * peak.mu,
+        };
+        match &self.law.direct {
+            Some(direct) => strength.raised(&direct.factor(slip, self.dt), stretch),
+            None => strength,
+        }
     }
 
     /// Whether third-order terms of the step are round-off, which is magnified near the fold D = 0.
     #[inline(always)]
-    fn is_close(&self, curve_point: &CurvePoint, slope: f64, step: f64) -> bool {
+    fn is_close(&self, curve_point: &CurvePoint, slip: f64, slope: f64, step: f64) -> bool {
         let last = if self.law.evolution.is_linear() { LAST_STEP } else { LAST_STEP_OF_FIRST_ORDER };
-        let relative = curve_point.stretch
+        let mut relative = curve_point.stretch
             + curve_point.bend
             + curve_point.stretch * curve_point.stretch * self.law.evolution.sharpness();
+        if let Some(direct) = &self.law.direct {
+            relative += curve_point.stretch * curve_point.stretch / (direct.own_slip(self.dt) + slip);
+        }
         step.abs() * relative * self.law.alpha_t <= last * curve_point.stretch * slope.min(self.law.alpha_t)
     }
 
@@ -412,6 +480,16 @@ impl SlipEquation<'_> {
     #[inline]
     fn guess(&self, start: &Point) -> f64 {
         let strength = start.peak.mu * self.pressure;
+        if let Some(direct) = &self.law.direct {
+            let own = start.curve_point.ratio * strength;
+            // What the contact or the direct effect alone would let slip
+            let slip = (start.residual / self.law.alpha_t)
+                .min(direct.own_slip(self.dt) * (start.residual / (direct.a * own)).exp_m1());
+            if self.law.curve.progress(start.curve_point.ratio) > SMALL_Y || slip < start.curve_point.slip {
+                return (start.curve_point.coordinate + slip / start.curve_point.stretch)
+                    .min(self.law.curve.beyond(slip, &self.start));
+            }
+        }
         if self.law.curve.progress(start.curve_point.ratio) > SMALL_Y {
             start.curve_point.coordinate + start.step
         } else if self.trial < 0.9 * strength {
@@ -444,9 +522,21 @@ impl SlipEquation<'_> {
 
     /// Smallest and largest D between two points, from the monotonicity of U, R, μ and ∂μ/∂Δλ.
     fn slope_bounds(&self, left: &Point, right: &Point) -> [f64; 2] {
-        let least = right.curve_point.rate * right.peak.mu + right.curve_point.ratio * left.peak.slope;
-        let most = left.curve_point.rate * left.peak.mu + left.curve_point.ratio * right.peak.slope;
-        [least, most].map(|slope| self.law.alpha_t + self.pressure * slope)
+        let mut parts = [
+            [right.curve_point.rate * right.peak.mu, right.curve_point.ratio * left.peak.slope],
+            [left.curve_point.rate * left.peak.mu, left.curve_point.ratio * right.peak.slope],
+        ];
+        let mut by_rate = [0.0; 2];
+        if let Some(direct) = &self.law.direct {
+            let [before, after] = [left, right].map(|point| direct.factor(point.slip, self.dt));
+            parts[0] = [parts[0][0] * before.value, parts[0][1] * after.value];
+            parts[1] = [parts[1][0] * after.value, parts[1][1] * before.value];
+            by_rate = [
+                left.curve_point.ratio * right.peak.mu * after.slope,
+                right.curve_point.ratio * left.peak.mu * before.slope,
+            ];
+        }
+        [0, 1].map(|k| self.law.alpha_t + self.pressure * (parts[k][0] + parts[k][1] + by_rate[k]))
     }
 }
 
@@ -473,7 +563,7 @@ impl Point {
         } else {
             Peak { mu: evolution.clamp(peak.mu + advance * peak.slope), ..peak }
         };
-        let slope = equation.slope(curve_point.ratio, curve_point.rate, &peak);
+        let slope = equation.law.alpha_t + equation.pressure * equation.strength(&curve_point, &peak, slip).slope;
         Self { curve_point, slip, peak, slope, ..self }
     }
 }

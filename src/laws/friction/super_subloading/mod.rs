@@ -1,4 +1,5 @@
 //! Super/subloading friction: the law, and its parameters in a case.
+mod direct;
 mod increment;
 mod path;
 mod peak;
@@ -14,6 +15,7 @@ pub use crate::laws::approach::Approach;
 use crate::laws::approach::SlidingCurve;
 use crate::laws::dual::Dual;
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
+use direct::DirectEffect;
 use increment::{ROUND_OFF, SlipEquation, mean_of_steady_slip, mean_traction};
 use peak::PeakEvolution;
 pub use peak::{Integration, Onset, Rise};
@@ -53,6 +55,14 @@ pub use peak::{Integration, Onset, Rise};
 /// # Errors
 /// Returns [`LawFailure`](super::LawFailure) if the increment or the response is not finite, or Δt is negative.
 ///
+/// With a direct effect of the rate, a > 0, the strength grows with the rate of plastic slip,
+/// ```text
+/// |q| = R μ p (1 + a ln(1 + λ/V₀))                                                             (5)
+/// ```
+/// and R is a variable of its own: it follows (2) while λ > 0, and |q|/(μ p) where |q| does not exceed R μ p, which is unloading.
+/// (4) has the factor of (5) at λ = Δλ/Δt, by which a step is of first order and its root more stable; the controlled integration
+/// extrapolates such steps until q, μ p, R and the mean of q are accurate to the tolerance. Slip in no time is elastic.
+///
 /// Source: Yasuike, Toyoda & Noda, eqs 10–20; Toyoda, Yasuike & Noda (2024), Tribology International 191:109080;
 /// Ozaki & Hashiguchi (2010), Tribology International 43:2120.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +73,8 @@ pub struct SuperSubloading {
     structure: Option<f64>,
     curve: SlidingCurve,
     evolution: PeakEvolution,
+    /// Direct effect of the rate, unless a = 0
+    direct: Option<DirectEffect>,
     integration: Integration,
     tolerance: f64,
 }
@@ -105,6 +117,7 @@ impl SuperSubloading {
             structure: parameters.structure,
             curve: SlidingCurve::new(approach, elastic_core, r),
             evolution: PeakEvolution::new(mu_s, mu_k, kappa, xi, m, n, integration),
+            direct: parameters.direct_effect()?,
             integration,
             tolerance,
         })
@@ -121,7 +134,13 @@ impl SuperSubloading {
     /// Reduces a traction above the strength μ p to it, instantaneously and by plastic slip only.
     fn within_strength(&self, old: &FrictionState) -> FrictionState {
         let mu = self.evolution.clamp(mu_of(old));
-        let old = FrictionState { plastic_increment: 0.0, ..old.clone() }.with_variables([mu]);
+        let old = FrictionState { plastic_increment: 0.0, ..old.clone() };
+        if self.direct.is_some() {
+            // Above μ p it slips at a rate instead.
+            let ratio = ratio_of(&old);
+            return old.with_variables([mu, ratio]);
+        }
+        let old = old.with_variables([mu]);
         let strength = mu * old.pressure.max(0.0);
         if old.traction.abs() <= strength * (1.0 + EXCESS) {
             return old;
@@ -131,8 +150,37 @@ impl SuperSubloading {
     }
 
     /// An increment without plastic slip that ends with the strength μ p.
-    fn elastic(&self, old: &FrictionState, trial: f64, pressure: f64, mu: f64) -> FrictionResponse {
-        FrictionResponse::elastic(old.stuck(trial, pressure).with_variables([mu]), self.alpha_t)
+    fn elastic(&self, old: &FrictionState, trial: f64, sliding: Sliding, mu: f64) -> FrictionResponse {
+        let stuck = old.stuck(trial, sliding.pressure);
+        let ratio = stuck.ratio(mu).min(1.0);
+        // Slip in no time leaves R behind.
+        let kept = if trial * old.traction < 0.0 { 0.0 } else { self.ratio(old) };
+        let ratio = if sliding.dt == 0.0 { ratio.min(kept) } else { ratio };
+        FrictionResponse::elastic(self.remembering(stuck, mu, ratio), self.alpha_t)
+    }
+
+    /// The state with its internal variables.
+    fn remembering(&self, state: FrictionState, mu: f64, ratio: f64) -> FrictionState {
+        match self.direct {
+            Some(_) => state.with_variables([mu, ratio]),
+            None => state.with_variables([mu]),
+        }
+    }
+
+    /// R of a state: at most |q|/(μ p), and without a direct effect that.
+    fn ratio(&self, state: &FrictionState) -> f64 {
+        let of_traction = state.ratio(mu_of(state));
+        if self.direct.is_some() { of_traction.min(ratio_of(state)) } else { of_traction }
+    }
+
+    /// Whether an increment towards the trial traction has no plastic slip. In a rate effect there is some while the traction is above R μ p,
+    /// and none in no time.
+    fn is_elastic(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> bool {
+        let exceeds = || old.ratio(mu_of(old)) > self.ratio(old) * (1.0 + ROUND_OFF);
+        match self.direct {
+            Some(_) => sliding.dt == 0.0 || falls(old, trial, sliding.pressure) && !exceeds(),
+            None => falls(old, trial, sliding.pressure),
+        }
     }
 
     /// One step of the slip equation over the whole increment.
@@ -142,7 +190,7 @@ impl SuperSubloading {
         let reversed = trial * old.traction.signum() < 0.0;
         let equation = SlipEquation {
             law: self,
-            start: self.curve.start(if reversed { 0.0 } else { old.ratio(old_mu).min(1.0) }),
+            start: self.curve.start(if reversed { 0.0 } else { self.ratio(old).min(1.0) }),
             trial: trial.abs(),
             pressure,
             old_mu,
@@ -150,22 +198,25 @@ impl SuperSubloading {
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return Ok(self.elastic(old, trial, pressure, start.peak.mu));
+            return Ok(self.elastic(old, trial, sliding, start.peak.mu));
         }
         let (end, evaluations) = equation.solve(start)?;
-        let strength = trial.signum() * end.curve_point.ratio * end.peak.mu;
+        let factor = self.direct.map_or(1.0, |direct| direct.factor(end.slip, dt).value);
+        let strength = trial.signum() * end.curve_point.ratio * end.peak.mu * factor;
         // Plastic slip starts at the old pressure, or at that where the traction passes 0.
         let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
         let start_pressure = old.pressure + passed * (pressure - old.pressure);
-        let strengths = [old_mu * start_pressure, end.peak.mu * pressure];
+        let strengths = [old_mu * start_pressure, end.peak.mu * pressure].map(|strength| strength * factor);
         let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
         let steady = mean_of_steady_slip(&self.curve, [&equation.start, &end.curve_point], strengths);
         let mean = mean_traction(steady, tractions);
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
         Ok(FrictionResponse {
-            state: ruled(
-                old.slid(trial, strength * pressure, mean, pressure, self.alpha_t).with_variables([end.peak.mu]),
-            ),
+            state: self.ruled(self.remembering(
+                old.slid(trial, strength * pressure, mean, pressure, self.alpha_t),
+                end.peak.mu,
+                end.curve_point.ratio,
+            )),
             dtraction_dslip: self.alpha_t * (1.0 - softness),
             dtraction_dpressure: strength * softness,
             evaluations,
@@ -182,7 +233,7 @@ impl SuperSubloading {
         let (given, old) = (old.plastic_slip, self.within_strength(old));
         let released = (old.plastic_slip - given).abs() * self.evolution.excess(mu_of(&old));
         let trial = old.traction + self.alpha_t * slip;
-        if falls(&old, trial, pressure) {
+        if self.is_elastic(&old, trial, sliding) {
             return Ok([released, 0.0, 0.0]);
         }
         let [slip, by_slip, by_pressure] = match self.integration {
@@ -206,6 +257,12 @@ impl SuperSubloading {
         Ok([released + slip, by_slip, by_pressure])
     }
 
+    /// The state of a closed point with its contact status.
+    fn ruled(&self, state: FrictionState) -> FrictionState {
+        let slips = state.plastic_increment != 0.0 && self.ratio(&state) >= SLIPPING;
+        FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state }
+    }
+
     /// An increment in which slip may be plastic, in sub-steps.
     fn follow(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let inputs = Inputs::new(old, sliding, Direction::TANGENT)?;
@@ -214,13 +271,13 @@ impl SuperSubloading {
         let pressure = sliding.pressure;
         let plastic_slip = sign * end.plastic_slip;
         Ok(FrictionResponse {
-            state: ruled(FrictionState {
+            state: self.ruled(FrictionState {
                 traction: sign * end.traction.value,
                 pressure,
                 plastic_slip: old.plastic_slip + plastic_slip,
                 plastic_increment: old.plastic_increment + plastic_slip,
                 dissipation: old.dissipation + end.work,
-                ..old.clone().with_variables([end.mu.value])
+                ..self.remembering(old.clone(), end.mu.value, end.ratio.value)
             }),
             dtraction_dslip: sign * end.traction.by[0],
             dtraction_dpressure: sign * end.traction.by[1],
@@ -241,10 +298,9 @@ fn mu_of(state: &FrictionState) -> f64 {
     state.variables[0]
 }
 
-/// The state of a closed point with its contact status.
-fn ruled(state: FrictionState) -> FrictionState {
-    let slips = state.plastic_increment != 0.0 && state.ratio(mu_of(&state)) >= SLIPPING;
-    FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state }
+/// R, the second internal variable of a law with a direct effect [-]
+fn ratio_of(state: &FrictionState) -> f64 {
+    state.variables[1].clamp(0.0, 1.0)
 }
 
 impl FrictionLaw for SuperSubloading {
@@ -252,9 +308,10 @@ impl FrictionLaw for SuperSubloading {
     fn description(&self) -> Description {
         Description {
             stiffness: self.alpha_t,
-            variables: &["mu"],
+            variables: if self.direct.is_some() { &["mu", "R"] } else { &["mu"] },
             observables: Some(&["R", "mu", "structure"]),
-            starting_coefficient: Some(self.initial_mu),
+            // What exceeds it is released by slip at a rate.
+            starting_coefficient: self.direct.is_none().then_some(self.initial_mu),
             least_coefficient: Some(self.evolution.mu_k.min(self.evolution.mu_s)),
             full_structure: Some(self.evolution.mu_s / self.evolution.mu_k),
             weakening: self.evolution.weakening(self.evolution.mu_s),
@@ -263,21 +320,22 @@ impl FrictionLaw for SuperSubloading {
     }
 
     fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
-        FrictionState::default().with_variables([self.initial_mu]).loaded(pressure, traction)
+        // R is at most |q|/(μ p), here as well.
+        self.remembering(FrictionState::default(), self.initial_mu, 1.0).loaded(pressure, traction)
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         if pressure <= 0.0 {
             let mu = self.evolution.rested(self.evolution.clamp(mu_of(old)), dt);
-            let parted = old.parted(self.alpha_t).with_variables([mu]);
+            let parted = self.remembering(old.parted(self.alpha_t), mu, 0.0);
             return FrictionResponse::elastic(parted, 0.0).checked(self.alpha_t);
         }
         let old = self.within_strength(old);
         let trial = old.traction + self.alpha_t * slip;
-        if falls(&old, trial, pressure) {
+        if self.is_elastic(&old, trial, sliding) {
             let mu = self.evolution.rested(mu_of(&old), dt);
-            return self.elastic(&old, trial, pressure, mu).checked(self.alpha_t);
+            return self.elastic(&old, trial, sliding, mu).checked(self.alpha_t);
         }
         match self.integration {
             Integration::Controlled => self.follow(&old, sliding),
@@ -297,7 +355,7 @@ impl FrictionLaw for SuperSubloading {
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
         let mu = mu_of(state);
         match name {
-            "R" => Some(state.ratio(mu)),
+            "R" => Some(self.ratio(state)),
             "mu" => Some(mu),
             "structure" => Some(mu / self.evolution.mu_k),
             _ => None,
@@ -336,6 +394,13 @@ pub struct SuperSubloadingParameters {
     /// n: exponent of the recovery, n > 0 [-]
     #[serde(default = "one")]
     pub n: f64,
+    /// a: direct effect of the rate of plastic slip λ, by which the strength is multiplied by 1 + a ln(1 + λ/V₀), a ≥ 0; none by
+    /// default. R is then a state of its own, and steady sliding may strengthen with the rate [-]
+    #[serde(default)]
+    pub a: f64,
+    /// V₀: slip rate from which on the direct effect grows, V₀ > 0; needed with `a` alone [L/T]
+    #[serde(default, rename = "V_0")]
+    pub reference_rate: Option<f64>,
     /// 1/R*₀: structure at first contact, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
     #[serde(default)]
     pub structure: Option<f64>,
@@ -353,9 +418,28 @@ pub struct SuperSubloadingParameters {
     pub tolerance: Option<f64>,
 }
 
-numbers!(SuperSubloadingParameters: "mu_s" mu_s, "mu_k" mu_k, "r" r, "kappa" kappa, "xi" xi, "m" m, "n" n, "elastic_core" elastic_core; "alpha_t" alpha_t, "structure" structure, "tolerance" tolerance);
+numbers!(SuperSubloadingParameters: "mu_s" mu_s, "mu_k" mu_k, "r" r, "kappa" kappa, "xi" xi, "m" m, "n" n, "elastic_core" elastic_core, "a" a; "alpha_t" alpha_t, "structure" structure, "V_0" reference_rate, "tolerance" tolerance);
 
 impl SuperSubloadingParameters {
+    /// Parameters with derivatives of the responses; the last two are those of the direct effect.
+    pub(super) const VARYING: &'static [&'static str] =
+        &["mu_s", "mu_k", "r", "kappa", "xi", "m", "n", "elastic_core", "alpha_t", "structure", "a", "V_0"];
+
+    /// The direct effect of the rate, unless a = 0.
+    fn direct_effect(&self) -> Result<Option<DirectEffect>, InvalidParameter> {
+        let Self { a, reference_rate, .. } = *self;
+        require_not_negative("a", a)?;
+        reference_rate.map_or(Ok(()), |rate| require_positive("V_0", rate))?;
+        match reference_rate {
+            _ if a == 0.0 => Ok(None),
+            Some(reference_rate) => Ok(Some(DirectEffect { a, reference_rate })),
+            None => {
+                let allowed = "\"V_0\", the slip rate from which on it grows, is missing: give it as well".into();
+                Err(InvalidParameter { name: "a", value: a, allowed })
+            }
+        }
+    }
+
     /// Creates parameters without weakening and recovery, with the default tangential stiffness and the defaults of a case.
     pub const fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
         Self {
@@ -367,6 +451,8 @@ impl SuperSubloadingParameters {
             xi: 0.0,
             m: one(),
             n: one(),
+            a: 0.0,
+            reference_rate: None,
             structure: None,
             approach: Approach::Logarithmic,
             elastic_core: 0.0,
@@ -388,6 +474,11 @@ impl SuperSubloadingParameters {
     /// Sets the exponents of weakening and recovery [-].
     pub const fn exponents(self, m: f64, n: f64) -> Self {
         Self { m, n, ..self }
+    }
+
+    /// Sets the direct effect a of the rate of plastic slip [-], and the rate V₀ from which on it grows [L/T].
+    pub const fn rate_effect(self, a: f64, reference_rate: f64) -> Self {
+        Self { a, reference_rate: Some(reference_rate), ..self }
     }
 
     /// Sets the initial structure 1/R* [-].

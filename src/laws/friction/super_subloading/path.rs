@@ -13,7 +13,7 @@
 //! Responses are differentiated with respect to the parameters and the initial state.
 
 use super::increment::{Balance, LoadPath, PathState, STEADY, Varied, unsteadiness};
-use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls};
+use super::{EXCESS, SuperSubloading, SuperSubloadingParameters};
 use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
 use crate::laws::friction::{FrictionState, LawFailure, Sliding};
@@ -36,7 +36,13 @@ impl SuperSubloading {
         } else {
             let strength = mu.value * old_pressure;
             let ratio = if strength > 0.0 { old.value / strength } else { 0.0 };
-            path.start(old, mu, ratio.min(1.0))
+            match self.direct {
+                Some(_) if strength > 0.0 => {
+                    let ratio = (old / (mu * old_pressure)).min(inputs.second);
+                    path.start(old, mu, ratio.min(1.0.into()))
+                }
+                _ => path.start(old, mu, ratio.min(1.0).into()),
+            }
         };
         (path, start, sign)
     }
@@ -48,7 +54,7 @@ impl SuperSubloading {
         path.slip = trial / path.varied.alpha_t;
         path.pressures[0] = path.pressure(share);
         path.time = path.time * (Dual::from(1.0) - share);
-        path.start(0.0.into(), mu, 0.0)
+        path.start(0.0.into(), mu, 0.0.into())
     }
 
     /// The parameters with their derivatives.
@@ -58,6 +64,7 @@ impl SuperSubloading {
             r: inputs.parameter("r", self.curve.r),
             elastic_core: inputs.parameter("elastic_core", self.curve.elastic_core),
             evolution: self.evolution.along(inputs),
+            direct: self.direct.map(|direct| direct.along(inputs)),
         }
     }
 }
@@ -109,6 +116,9 @@ impl LoadPath<'_> {
     /// # Errors
     /// Returns [`LawFailure::NotConverged`] if sub-steps do not converge.
     pub(super) fn end(&mut self, start: &PathState) -> Result<PathState, LawFailure> {
+        if self.law.direct.is_some() {
+            return self.end_with_rate(start);
+        }
         let end = self.advance(start, 1.0)?;
         if self.is_right_alone(start, &end) {
             return Ok(end);
@@ -212,6 +222,7 @@ impl LoadPath<'_> {
             traction,
             mu,
             curve_point: self.law.curve.start(traction.value / strength.value),
+            ratio: fine.ratio,
             plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
             weighed_slip: fine.weighed_slip + (fine.weighed_slip - coarse.weighed_slip) / 3.0,
             work: (energy - 0.5 * traction.value * traction.value / self.law.alpha_t).max(from.work),
@@ -221,13 +232,8 @@ impl LoadPath<'_> {
     }
 
     /// Work of the traction: dissipated, and stored in the contact spring.
-    fn energy(&self, path_state: &PathState) -> f64 {
+    pub(super) fn energy(&self, path_state: &PathState) -> f64 {
         path_state.work + 0.5 * path_state.traction.value * path_state.traction.value / self.law.alpha_t
-    }
-
-    /// p at a point of the path [F/L²]
-    fn pressure_at(&self, path_state: &PathState) -> f64 {
-        self.pressure(path_state.x.into()).value
     }
 }
 
@@ -300,9 +306,10 @@ fn mean_error(slip: f64, start: &Balance, end: &Balance) -> f64 {
 }
 
 impl SensitiveLaw for SuperSubloading {
-    /// All parameters except the last, the tolerance.
+    /// All parameters except the tolerance; those of the direct effect if there is one.
     fn parameters(&self) -> &'static [&'static str] {
-        SuperSubloadingParameters::NUMBERS.split_last().map_or(&[], |(_, numbers)| numbers)
+        let all = SuperSubloadingParameters::VARYING;
+        if self.direct.is_some() { all } else { &all[..all.len() - 2] }
     }
 
     fn start(&self, parameter: &str) -> Variation {
@@ -326,18 +333,56 @@ impl SensitiveLaw for SuperSubloading {
         inputs.variable = evolution.clamp(inputs.variable);
         let rested = evolution.rested(inputs.variable, sliding.dt.into());
         if sliding.pressure <= 0.0 {
-            return Ok(variations(0.0.into(), rested));
+            return Ok(self.variations(0.0.into(), rested, 0.0.into()));
+        }
+        if self.direct.is_some() {
+            return self.vary_with_rate(old, &inputs, rested, sliding);
         }
         let strength = inputs.variable * old.pressure.max(0.0);
         if old.traction.abs() > strength.value * (1.0 + EXCESS) {
             inputs.traction = strength * old.traction.signum();
         }
         let trial = inputs.traction + alpha_t * inputs.slip;
-        if falls(&self.within_strength(old), trial.value, sliding.pressure) {
+        if self.is_elastic(&self.within_strength(old), trial.value, sliding) {
             return Ok(variations(trial, rested));
         }
         let (mut path, start, sign) = self.lead(&inputs, old.pressure);
         let end = path.end(&start)?;
         Ok(variations(end.traction * sign, end.mu))
+    }
+}
+
+impl SuperSubloading {
+    /// The same with a direct effect of the rate.
+    fn vary_with_rate(
+        &self,
+        old: &FrictionState,
+        inputs: &Inputs,
+        rested: Dual,
+        sliding: Sliding,
+    ) -> Result<[Variation; 2], LawFailure> {
+        let old = self.within_strength(old);
+        let trial = inputs.traction + self.along(inputs).alpha_t * inputs.slip;
+        if self.is_elastic(&old, trial.value, sliding) {
+            let own = trial * trial.value.signum() / (rested * inputs.pressure);
+            // Slip in no time is elastic, and leaves R as it was where it has not passed zero.
+            let reversed = trial.value * old.traction < 0.0;
+            let before = inputs.traction * inputs.traction.value.signum() / (inputs.variable * old.pressure.max(0.0));
+            let kept = if old.pressure > 0.0 && !reversed { before.min(inputs.second) } else { 0.0.into() };
+            let ratio = if sliding.dt == 0.0 { own.min(kept) } else { own };
+            return Ok(self.variations(trial, rested, ratio));
+        }
+        let (mut path, start, sign) = self.lead(inputs, old.pressure);
+        let end = path.end(&start)?;
+        Ok(self.variations(end.traction * sign, end.mu, end.ratio))
+    }
+
+    /// Derivatives of q, μ and, with a direct effect, R.
+    fn variations(&self, traction: Dual, mu: Dual, ratio: Dual) -> [Variation; 2] {
+        let mut found = variations(traction, mu);
+        if self.direct.is_some() {
+            found.iter_mut().zip(ratio.by).for_each(|(found, by)| found.variables[1] = by);
+        }
+        found
     }
 }
