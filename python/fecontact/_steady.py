@@ -36,6 +36,12 @@ def _coefficient(given: dict[str, Any], rate: Array) -> Array:
 
 
 def _super_subloading(given: dict[str, Any], rate: Array) -> Array:
+    a, reference = given.get("a") or 0.0, given.get("V_0")
+    factor = 1.0 + a * np.log1p(rate / reference) if a > 0.0 and reference else 1.0
+    return _peak_in_slip(given, rate) * factor
+
+
+def _peak_in_slip(given: dict[str, Any], rate: Array) -> Array:
     mu_s, mu_k, kappa, xi = given["mu_s"], given["mu_k"], given.get("kappa", 0.0), given.get("xi", 0.0)
     m, n = given.get("m", 1.0), given.get("n", 1.0)
     if mu_s == mu_k:

@@ -45,6 +45,9 @@ pub(super) struct CurvePoint {
 /// y below which slip counts as elastic: so small that R = R_e numerically.
 const LEAST_Y: f64 = 1e-100;
 
+/// Step of the coordinate below which a series of four terms is exact.
+const SHORT: f64 = 1e-3;
+
 impl SlidingCurve {
     pub(super) fn new(approach: Approach, elastic_core: f64, r: f64) -> Self {
         Self { approach, elastic_core, r, length: (1.0 - elastic_core) / r, per_range: 1.0 / (1.0 - elastic_core) }
@@ -75,6 +78,20 @@ impl SlidingCurve {
         } else {
             self.curve_point(coordinate, &self.approach.at(coordinate))
         }
+    }
+
+    /// Plastic slip from `start` over a step of the coordinate, without cancellation where it is short; `None` where it is not.
+    pub(super) fn short_slip(&self, start: &CurvePoint, step: f64) -> Option<f64> {
+        if start.full {
+            return Some(step);
+        }
+        let (w, sharpness) = ((-start.coordinate).exp(), start.bend / start.stretch);
+        if step.abs() * (1.0 + w + sharpness.abs()) > SHORT {
+            return None;
+        }
+        let [third, fourth] = self.approach.higher(w);
+        let rest = 1.0 + step * (0.5 * sharpness + step * (third / 6.0 + step * fourth / 24.0));
+        Some(start.stretch * step * rest)
     }
 
     #[inline]
@@ -198,6 +215,23 @@ impl Approach {
                     bend: 4.0 / PI * share * (1.0 - share),
                     rate: cotangent,
                 }
+            }
+        }
+    }
+
+    /// d³T/dζ³ and d⁴T/dζ⁴ at w = e^(−ζ), divided by dT/dζ.
+    ///
+    /// ```text
+    /// logarithmic:  w² − w,  w³ − 3 w² + w
+    /// cotangent:    4 z (z − s),  8 z (z² − 4 z s + s²)      s = 1/(1 + w²), z = 1 − s
+    /// ```
+    fn higher(self, w: f64) -> [f64; 2] {
+        match self {
+            Self::Logarithmic => [w * (w - 1.0), w * (w * (w - 3.0) + 1.0)],
+            Self::Cotangent => {
+                let s = 1.0 / (1.0 + w * w);
+                let z = 1.0 - s;
+                [4.0 * z * (z - s), 8.0 * z * (z * z - 4.0 * z * s + s * s)]
             }
         }
     }
@@ -356,7 +390,26 @@ const TAIL: [(f64, f64); 12] = [
 
 #[cfg(test)]
 mod approach_tests {
-    use super::Approach;
+    use super::{Approach, SlidingCurve};
+
+    /// Short slips by their series are the differences of long ones, where these have digits left.
+    #[test]
+    fn short_slips_are_differences() {
+        for approach in [Approach::Logarithmic, Approach::Cotangent] {
+            for ratio in [0.05, 0.3, 0.8, 0.999] {
+                let curve = SlidingCurve::new(approach, 0.02, 100.0);
+                let start = curve.start(ratio);
+                let step = 0.9e-3 / (1.0 + (-start.coordinate).exp() + start.bend / start.stretch);
+                let found = curve.short_slip(&start, step).expect("short");
+                let exact = curve.at(start.coordinate + step, &start).slip - start.slip;
+                assert!((found / exact - 1.0).abs() < 1e-10, "{approach:?} {ratio}: {found:e} {exact:e}");
+                let third = curve.approach.higher((-start.coordinate).exp())[0] * start.stretch;
+                let bends = [1e-4, -1e-4].map(|h| curve.at(start.coordinate + h, &start).bend);
+                assert!(((bends[0] - bends[1]) / 2e-4 - third).abs() < 1e-6 * start.stretch, "{approach:?} {ratio}");
+                assert_eq!(curve.short_slip(&start, 1.0), None);
+            }
+        }
+    }
 
     /// What is found at a distance is at that distance, from anywhere on the curve.
     #[test]

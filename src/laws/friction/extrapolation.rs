@@ -4,10 +4,10 @@ use super::LawFailure;
 use crate::laws::dual::{Dual, Number};
 
 /// Number of the shortest sub-steps in an increment.
-pub(super) const WHOLE: u64 = 1 << 40;
+pub(super) const WHOLE: u64 = 1 << 52;
 
 /// Length of sub-steps that may contain a jump, if slip and pressure have almost no effect in them ...
-const SHORT: u64 = 1 << 10;
+const SHORT: u64 = 1 << 22;
 
 /// ... defined by this fraction of the tolerance in the tractions.
 const SNAP: f64 = 1e-3;
@@ -58,7 +58,7 @@ pub(super) trait FirstOrder<const N: usize> {
     fn end(&mut self, start: &Self::State) -> Result<Self::State, LawFailure> {
         let (mut state, mut at, mut step) = (start.clone(), 0, WHOLE);
         for _ in 0..MOST_ATTEMPTS {
-            let (next, error) = match self.extrapolated(&state, at, step) {
+            let (next, error, few) = match self.extrapolated(&state, at, step) {
                 Ok(found) => found,
                 Err(_) if step > 1 => {
                     step /= 2;
@@ -78,14 +78,14 @@ pub(super) trait FirstOrder<const N: usize> {
             if at == WHOLE {
                 return Ok(state);
             }
-            if (error <= DOUBLED || snaps) && at % (2 * step) == 0 {
+            if (error <= DOUBLED || few || snaps) && at % (2 * step) == 0 {
                 step *= 2;
             }
         }
         Err(self.failure(&state, step))
     }
 
-    /// State at the end of a sub-step, and its error in tolerances.
+    /// State at the end of a sub-step, its error in tolerances, and whether it has taken few rows, so that twice the length may do.
     ///
     /// ```text
     /// T_j1: the sub-step by j increments of first order,   T_j,k+1 = T_jk + (T_jk − T_j−1,k)/(j/(j − k) − 1)
@@ -94,7 +94,7 @@ pub(super) trait FirstOrder<const N: usize> {
     /// of the finest row is used.
     ///
     /// Source: Deuflhard (1985), SIAM Review 27, 505; Hairer & Wanner, Solving Ordinary Differential Equations II, IV.9.
-    fn extrapolated(&mut self, from: &Self::State, at: u64, step: u64) -> Result<(Self::State, f64), LawFailure> {
+    fn extrapolated(&mut self, from: &Self::State, at: u64, step: u64) -> Result<(Self::State, f64, bool), LawFailure> {
         let (mut rows, mut error): (Vec<[Dual; N]>, f64) = (Vec::with_capacity(MOST_ROWS), f64::INFINITY);
         let mut fine = from.clone();
         for j in 1..=MOST_ROWS {
@@ -109,13 +109,13 @@ pub(super) trait FirstOrder<const N: usize> {
             }
             rows = row;
             if j > 1 && error <= 1.0 {
-                return Ok((self.state(&entry, fine), error));
+                return Ok((self.state(&entry, fine), error, j < MOST_ROWS));
             }
             if error > HOPELESS[j - 1] && step > SHORT {
                 break;
             }
         }
-        Ok((fine, error))
+        Ok((fine, error, false))
     }
 }
 

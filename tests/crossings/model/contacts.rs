@@ -171,10 +171,14 @@ impl Writer<'_> {
             "super_subloading" => {
                 let mut law = json!({"mu_s": self.pick("mu_s", &[0.4, 0.6]), "mu_k": 0.25, "r": self.pick("r", &[200.0, 1000.0]) / f.length, "kappa": self.pick("kappa", &[20.0, 100.0]) / f.length, "xi": self.pick("xi", &[0.0, 0.5]) / f.time / duration});
                 if further {
-                    match draft.count("further", 0, 3) {
+                    match draft.count("further", 0, 4) {
                         0 => law["elastic_core"] = json!(0.3),
                         1 => law["approach"] = json!("cotangent"),
                         2 => law["integration"] = json!("backward_euler"),
+                        3 => {
+                            law["a"] = json!(0.02);
+                            law["V_0"] = json!(1e-3 * f.unit(Kind::Velocity) / duration);
+                        }
                         _ => (law["structure"], law["m"], law["n"]) = (json!(1.2), json!(1.3), json!(1.4)),
                     }
                 }

@@ -113,20 +113,22 @@ impl LoadPath<'_> {
         FirstOrder::end(self, start)
     }
 
-    /// Plastic slip at the start of a sub-step with unloading that none of its rows resolves: the unloading lets its rate decay by
-    /// |q|/(a R μ p), and the traction above R μ p is all that it can release.
+    /// Plastic slip at the start of a sub-step that none of its rows resolves: unloading or healing lets its rate decay by
+    /// |q|/(a R μ p), or ends it before the end of the shortest row, and the traction above R μ p is all that it can release.
     fn decayed(&self, direct: &DirectEffect, [from, to]: [&PathState; 2], step: u64) -> f64 {
         let before = from.mu.value * from.ratio.value * self.pressure_at(from);
         let after = to.mu.value * from.ratio.value * self.pressure_at(to);
         let trial = from.traction.value + self.law.alpha_t * self.slip.value * share(step);
-        let excess = from.traction.value - before;
-        let fall = (from.traction.value / before - trial / after) / direct.a;
+        let level = from.traction.value / before;
+        let fall = (level - trial / after) / direct.a;
+        let ends = to.plastic_slip == from.plastic_slip;
         // From where R = 0 no traction falls.
-        if !(fall > RESOLVED && excess > 0.0) {
+        if !(level > 1.0 && (fall > RESOLVED || ends && fall > 0.0)) {
             return 0.0;
         }
-        let slip = direct.rate(from.traction.value / before) * self.time.value * share(step) / fall;
-        slip.min(excess / self.law.alpha_t)
+        let while_it_lasts = (((level - 1.0) / direct.a).min(1.0) / fall).min(1.0);
+        let slip = direct.rate(level) * self.time.value * share(step) * while_it_lasts;
+        slip.min((from.traction.value - before) / self.law.alpha_t)
     }
 
     fn tolerance(&self) -> f64 {
@@ -183,7 +185,7 @@ impl FirstOrder<ENTRIES> for LoadPath<'_> {
             [traction + alpha_t * decayed + to.overlooked, strength + noise],
             [mu + evolution.weakening(to.mu.value) * decayed, tolerance + NOISE * evolution.mu_s],
             [ratio + to.curve_point.rate * decayed, self.tolerance() + NOISE],
-            [energy, strength * slip + NOISE * entries[0][4].value.abs()],
+            [energy, strength / SHARE * slip + NOISE * entries[0][4].value.abs()],
         ])
     }
 

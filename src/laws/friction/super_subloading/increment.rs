@@ -196,8 +196,7 @@ impl LoadPath<'_> {
         let share = to.x - from.x;
         let [start, end] = [from, to].map(|at| self.balance(at));
         if self.law.direct.is_some() {
-            // The rate is that of the end: of first order, as is all else.
-            to.work += slip * to.traction.value;
+            to.work += slip * 0.5 * (from.traction.value + to.traction.value);
         } else {
             let strengths = [from.mu.value * self.pressure_at(from), to.mu.value * self.pressure_at(to)];
             let tractions = [from.traction.value, to.traction.value];
@@ -352,6 +351,8 @@ pub(super) struct SlipEquation<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
     pub curve_point: CurvePoint,
+    /// What is searched: the coordinate, or its offset from the start where slip must be known relative to its own size
+    place: f64,
     /// Δλ [L]
     pub slip: f64,
     /// μ and its derivatives
@@ -379,6 +380,9 @@ const LAST_STEP_OF_FIRST_ORDER: f64 = 1e-8;
 /// y below which Chebyshev's method from the start is a poor guess, as U is too large.
 const SMALL_Y: f64 = 0.05;
 
+/// Places beyond that of a guess, times itself, at which a search relative to the size of the root ends.
+const BEYOND: f64 = 4.0;
+
 /// Width of a piece of the bracket below which two roots cannot be distinguished.
 const LEAST_PIECE: f64 = 1e-12;
 
@@ -386,7 +390,7 @@ impl SlipEquation<'_> {
     /// Whether the trial is the solution, without plastic slip; also returns the equation at Δλ = 0.
     #[inline]
     pub(super) fn start(&self) -> (bool, Point) {
-        let start = self.point(self.start);
+        let start = self.point(self.start, self.start.coordinate - self.origin(), 0.0);
         (start.residual <= ROUND_OFF * self.trial, start)
     }
 
@@ -400,15 +404,19 @@ impl SlipEquation<'_> {
             return Ok((start.moved(self), 1));
         }
         let mut evaluations = 1;
-        let end = self.law.curve.beyond(self.trial / self.law.alpha_t, &self.start);
+        let end = self.law.curve.beyond(self.trial / self.law.alpha_t, &self.start) - self.origin();
         let most = self.law.direct.map_or(1.0, |direct| direct.factor(self.trial / self.law.alpha_t, self.dt).value);
         let unique = self.pressure * self.law.evolution.weakening(start.peak.mu) * most < self.law.alpha_t;
-        let bracket =
-            if unique { [self.start.coordinate, end] } else { self.first_root_bracket(start, end, &mut evaluations)? };
+        let guess = self.guess(&start) - self.origin();
+        let bracket = match unique {
+            true if self.law.direct.is_some() => [start.place, self.near_end(guess, end, &mut evaluations)],
+            true => [start.place, end],
+            false => self.first_root_bracket(start, end, &mut evaluations)?,
+        };
         let mut point = start;
-        bracketed_root(bracket, self.guess(&start), |coordinate| {
+        bracketed_root(bracket, guess, |place| {
             evaluations += 1;
-            point = self.at(coordinate);
+            point = self.at(place);
             let done = point.close || point.residual.abs() <= TOLERANCE * self.trial;
             Argument { value: point.residual, step: point.step, done }
         });
@@ -416,15 +424,34 @@ impl SlipEquation<'_> {
     }
 
     #[inline(always)]
-    fn at(&self, coordinate: f64) -> Point {
-        self.point(self.law.curve.at(coordinate, &self.start))
+    fn at(&self, place: f64) -> Point {
+        let curve_point = self.law.curve.at(self.origin() + place, &self.start);
+        let long = || (curve_point.slip - self.start.slip).max(0.0);
+        match self.law.direct {
+            Some(_) => {
+                self.point(curve_point, place, self.law.curve.short_slip(&self.start, place).unwrap_or_else(long))
+            }
+            None => self.point(curve_point, place, long()),
+        }
+    }
+
+    /// Coordinate from which places are counted.
+    #[inline(always)]
+    fn origin(&self) -> f64 {
+        if self.law.direct.is_some() { self.start.coordinate } else { 0.0 }
+    }
+
+    /// A place at or beyond the root, not far beyond, so that the root is resolved relative to its own size.
+    fn near_end(&self, guess: f64, end: f64, evaluations: &mut usize) -> f64 {
+        let near = BEYOND * guess;
+        *evaluations += 1;
+        if near > 0.0 && near < end && self.at(near).residual <= 0.0 { near } else { end }
     }
 
     #[inline(always)]
-    fn point(&self, curve_point: CurvePoint) -> Point {
+    fn point(&self, curve_point: CurvePoint, place: f64, slip: f64) -> Point {
         let Self { law: SuperSubloading { alpha_t, .. }, pressure, .. } = *self;
         let CurvePoint { stretch, bend, .. } = curve_point;
-        let slip = (curve_point.slip - self.start.slip).max(0.0);
         let peak = self.law.evolution.after(self.old_mu, slip, self.dt);
         let strength = self.strength(&curve_point, &peak, slip);
         let residual = self.trial - alpha_t * slip - strength.value * pressure;
@@ -444,7 +471,7 @@ impl SlipEquation<'_> {
             newton
         };
         let close = self.is_close(&curve_point, slip, slope, step);
-        Point { curve_point, slip, peak, residual, slope, step, close }
+        Point { curve_point, place, slip, peak, residual, slope, step, close }
     }
 
     /// The strength per pressure after plastic slip; dU/dζ = −U.
@@ -501,14 +528,14 @@ impl SlipEquation<'_> {
 
     /// A bracket that holds the smallest root, found by plastic slip.
     fn first_root_bracket(&self, start: Point, end: f64, evaluations: &mut usize) -> Result<[f64; 2], LawFailure> {
-        let mut at = |coordinate| {
+        let mut at = |place| {
             *evaluations += 1;
-            self.at(coordinate)
+            self.at(place)
         };
-        let near = start.curve_point.coordinate + 2.0 * start.step;
-        let right = at(if start.curve_point.coordinate < near && near < end { near } else { end });
+        let near = start.place + 2.0 * start.step;
+        let right = at(if start.place < near && near < end { near } else { end });
         let piece = |left: &Point, right: &Point| Piece {
-            ends: [left.curve_point.coordinate, right.curve_point.coordinate],
+            ends: [left.place, right.place],
             values: [left.residual, right.residual],
             fall: self.slope_bounds(left, right),
             way: right.slip - left.slip,
