@@ -82,6 +82,15 @@ pub struct SlipOperator {
     by_fluid: Vec<f64>,
 }
 
+/// What the slip s of an interface is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slips {
+    /// Slip of the slider; the springs α_t are in series with the bodies
+    Plastic,
+    /// All relative motion; the springs belong to the laws
+    All,
+}
+
 /// Place of a contact point among the sites.
 struct AtSite {
     /// its number
@@ -125,7 +134,7 @@ impl SlipOperator {
     ///
     /// # Errors
     /// Returns [`NoSlipOperator`] if the bodies cannot be assembled or are not constrained.
-    pub fn new(model: &Arc<Model>, trial: Trial) -> Result<Self, NoSlipOperator> {
+    pub fn new(model: &Arc<Model>, trial: Trial, slips: Slips) -> Result<Self, NoSlipOperator> {
         let nodes = ContactNodes::of_both_sides(model);
         let mut bodies = Assembler::new(model);
         bodies.couple(&Arc::new(Coupling::of(nodes.nodes.clone())));
@@ -134,7 +143,7 @@ impl SlipOperator {
         bodies.assemble(trial, &vec![0.0; model.dofs()], &[], Request::Tangent, &mut system)?;
         let held = || LinearFailure::Singular("a body is constrained only by contact, or not at all".into());
         let condensed = condensation.condense(&system.tangent).ok_or_else(held)?;
-        let (sites, points) = gathered(model.contacts.iter().flat_map(|pair| facing(model, pair, &nodes)));
+        let (sites, points) = gathered(model.contacts.iter().flat_map(|pair| facing(model, pair, &nodes, slips)));
         let mut moving: Vec<Option<usize>> = vec![None; nodes.nodes.len()];
         let slaves: Vec<usize> = sites.iter().map(|site| site.slave).collect();
         let others: Vec<usize> = (0..moving.len()).filter(|place| !slaves.contains(place)).collect();
@@ -347,7 +356,7 @@ impl SlipOperator {
 }
 
 /// Points of a pair with matching nodes, as checked when the model is built.
-fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes) -> Vec<Facing> {
+fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes, slips: Slips) -> Vec<Facing> {
     let inverse = |alpha: f64| if alpha > 0.0 { 1.0 / alpha } else { 0.0 };
     let place = |node: usize| nodes.place(model.ties.original(node)).expect("nodes at contacts are kept");
     let points = pair.points.iter().zip(pair.small.iter().flat_map(|small| small.points.iter().flatten()));
@@ -357,7 +366,13 @@ fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes) -> Vec<Facing
             slave: place(own),
             master: master.map(place),
             directions: [point.normal, point.tangent],
-            compliance: [inverse(pair.alpha_n), inverse(pair.law(slave).description.stiffness)],
+            compliance: [
+                inverse(pair.alpha_n),
+                match slips {
+                    Slips::Plastic => inverse(pair.law(slave).description.stiffness),
+                    Slips::All => 0.0,
+                },
+            ],
             length: point.length,
         }
     };

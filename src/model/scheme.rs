@@ -105,9 +105,9 @@ pub enum Scheme {
         safety: f64,
     },
     /// Quasi-dynamic: no inertia, linear bodies and contacts in small sliding with radiation damping; slip and state of
-    /// the interface are integrated explicitly with error control. For friction laws that define a slip rate by
-    /// traction and state (rate_and_state, prescribed), matching nodes, and loads and supports that vary linearly
-    /// within the step
+    /// the interface are integrated with error control, explicitly if all friction laws define a slip rate by
+    /// traction and state (rate_and_state, prescribed), else implicitly. For matching nodes, and loads and supports that vary
+    /// linearly within the step
     QuasiDynamic {
         /// Error of one step in the friction coefficient, 0 < tolerance < 0.1; default 1e-5 [-]
         #[serde(default = "hundred_thousandth")]

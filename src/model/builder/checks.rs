@@ -98,8 +98,7 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
     )
 }
 
-/// Checks the requirements of quasi-dynamic steps: linear bodies, small sliding with matching nodes, laws that define a slip
-/// rate by traction, and time functions that are linear within a step.
+/// Checks the requirements of quasi-dynamic steps: linear bodies, small sliding with matching nodes, and time functions that are linear within a step.
 pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
     let steps = model.steps.iter().enumerate();
     for (k, step) in steps.filter(|(_, step)| step.scheme.is_quasi_dynamic()) {
@@ -134,6 +133,7 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
             return Err(ModelError::new(format!("rigid_bodies.{}", body.name), message));
         }
         model.contacts.iter().try_for_each(check_contact)?;
+        check_implicit(model)?;
         check_nodes(model)?;
         check_supports(&place, step, model)?;
         check_loads(&place, step)?;
@@ -159,9 +159,26 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     let key = if opening == Some(&"wear") { "wear" } else { "dilatancy" };
     let why = "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out";
     refuse_if(opening.is_some(), key, why)?;
-    let why = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take rate_and_state or \
-               prescribed, or static steps with radiation_damping and dt.error";
-    refuse_if(pair.laws.iter().any(|law| law.law.rates().is_none()), "friction", why)
+    Ok(())
+}
+
+/// Checks what the implicit integration of laws without a slip rate does not have.
+fn check_implicit(model: &Model) -> Checked<()> {
+    let mut laws = model.contacts.iter().flat_map(|pair| &pair.laws);
+    if laws.all(|law| law.law.rates().is_some()) {
+        return Ok(());
+    }
+    for pair in &model.contacts {
+        let refuse_if =
+            |fails: bool, key: &str, why: &str| refuse_if(fails, format!("contacts.{}.{key}", pair.name), why);
+        let beside = pair.laws.iter().any(|law| matches!(law.cohesion, Some(Cohesion::Beside(_))));
+        let why = "beside friction is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): leave it out, \
+                   or take static steps with radiation_damping";
+        refuse_if(beside, "bond", why)?;
+        let why = "is not for quasi_dynamic steps: leave it out, and raise alpha_t";
+        refuse_if(pair.stick.is_some(), "stick", why)?;
+    }
+    Ok(())
 }
 
 /// Checks that every point is a node opposite a node or a rigid body, and that no node is used twice but where periodic sides meet.

@@ -3,11 +3,15 @@
 //! of `slip_equations.rs`. The bodies are condensed on it once per load step ([`crate::equations::slip_operator`]) and
 //! evaluated at requested results. Slip rates, and with them step lengths, may vary by ten decades or more in one run.
 //!
+//! If a law has no such rate, the interface is integrated by implicit steps instead (`stiff.rs`): slip is then all relative motion, and
+//! the law answers it with its traction.
+//!
 //! Source: Rice (1993), J. Geophys. Res. 98, 9885; Erickson et al. (2023), Bull. Seismol. Soc. Am. 113, 499 (community
 //! benchmarks).
 
 mod slip_equations;
 mod steps;
+mod stiff;
 mod tableau;
 mod waters;
 
@@ -15,12 +19,13 @@ use std::sync::Arc;
 
 use self::slip_equations::{Rates, SlipEquations, with_rates};
 use self::steps::{Steps, Tried};
+use self::stiff::Stiff;
 use self::waters::Waters;
 use super::accept::{accept, take_stock};
 use crate::contact::conduit::Conduit;
 use crate::contact::force::ContactState;
 use crate::contact::pair::{BadPressure, Fluid};
-use crate::equations::slip_operator::{NoSlipOperator, Shift, SlipOperator};
+use crate::equations::slip_operator::{NoSlipOperator, Shift, SlipOperator, Slips};
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::turn;
 use crate::equations::{Evaluation, Trial};
@@ -39,6 +44,8 @@ pub struct QuasiDynamic {
     model: Arc<Model>,
     step: Arc<Step>,
     jumps: SlipOperator,
+    /// What slip is in them: plastic slip of laws with a rate, or all of it
+    slips: Slips,
     /// Rates of tractions and displacements by supports and loads at zero slip
     loading: Shift,
 }
@@ -59,7 +66,9 @@ impl QuasiDynamic {
     pub fn new(model: &Arc<Model>, step: &Arc<Step>, state: &State) -> Result<Self, IncrementFailure> {
         let duration = step.span.end - step.span.start;
         let [first, last] = [step.span.start, step.span.end].map(|time| Trial::new(state, step, time, duration));
-        let mut jumps = SlipOperator::new(model, first).map_err(|cause| match cause {
+        let all_have_rates = model.contacts.iter().flat_map(|pair| &pair.laws).all(|law| law.law.rates().is_some());
+        let slips = if all_have_rates { Slips::Plastic } else { Slips::All };
+        let mut jumps = SlipOperator::new(model, first, slips).map_err(|cause| match cause {
             NoSlipOperator::Assembly(failure) => IncrementFailure::Start(failure),
             NoSlipOperator::Linear(failure) => IncrementFailure::Interface(failure),
         })?;
@@ -72,7 +81,7 @@ impl QuasiDynamic {
         let (before, mut after) = (residual(first)?, residual(last)?);
         after.iter_mut().zip(before).for_each(|(after, before)| *after = (*after - before) / duration);
         let loading = jumps.shift(&after);
-        Ok(Self { model: model.clone(), step: step.clone(), jumps, loading })
+        Ok(Self { model: model.clone(), step: step.clone(), jumps, slips, loading })
     }
 
     /// Brings the initial state of a load step to static equilibrium: unbalanced inertia forces move the bodies at once, and
@@ -91,7 +100,11 @@ impl QuasiDynamic {
         let jumps = self.jumps.jumps(&vec![0.0; n], &tractions);
         for (k, contact) in state.contacts.iter_mut().flatten().enumerate() {
             contact.friction.pressure += tractions[k];
-            contact.friction.traction -= tractions[n + k];
+            match self.slips {
+                Slips::Plastic => contact.friction.traction -= tractions[n + k],
+                // A law answers slip alone: what is not balanced sets the surfaces in motion.
+                Slips::All => contact.radiation -= tractions[n + k],
+            }
             contact.gap += jumps[k];
         }
         state.displacement.iter_mut().zip(displacement).for_each(|(u, way)| *u += way);
@@ -110,17 +123,20 @@ impl QuasiDynamic {
         let (model, mut stops) = (self.model.clone(), Stops::after(old.time, &self.model));
         let places = model.mesh.undeformed();
         let interface = self.interface(&old, places);
-        let mut steps = Steps::new(interface, Waters::new(&model, &old), old.time, tolerance);
+        let mut steps = match self.slips {
+            Slips::Plastic => Stepping::Explicit(Steps::new(interface, Waters::new(&model, &old), old.time, tolerance)),
+            Slips::All => Stepping::Implicit(Stiff::new(interface, old.time, tolerance)),
+        };
         let (mut gone, mut next, mut last, mut ended) = (0, dt, 0.0, false);
         if let Some(worst) = steps.now().iter().position(|rates| !rates.is_good()) {
             return Err(self.failure(&old, worst, &steps.now()[worst], 0.0));
         }
         while gone < every && !ended {
-            let left = self.step.span.end - old.time - steps.since;
+            let left = self.step.span.end - old.time - steps.since();
             let h = next.clamp(self.step.increments.min, self.step.increments.max);
             ended = h > left * (1.0 - NEAR_END);
             let h = if ended { left } else { h };
-            let to_corner = stops.left(steps.since).filter(|to_corner| h > to_corner * (1.0 - NEAR_END));
+            let to_corner = stops.left(steps.since()).filter(|to_corner| h > to_corner * (1.0 - NEAR_END));
             ended &= to_corner.is_none();
             let h = to_corner.unwrap_or(h);
             match steps.attempt(h) {
@@ -141,7 +157,7 @@ impl QuasiDynamic {
                 }
             }
         }
-        let time = if ended { self.step.span.end } else { old.time + steps.since };
+        let time = if ended { self.step.span.end } else { old.time + steps.since() };
         if let Some((pair, bad)) =
             model.contacts.iter().find_map(|pair| Some((pair, pair.bad_fluid_pressure(&places, time)?)))
         {
@@ -149,15 +165,18 @@ impl QuasiDynamic {
             let (contact, at) = (pair.name.clone(), [at.x, at.y]);
             return Err(IncrementFailure::Start(TrialFailure::FluidPressure { contact, at, pressure, time }));
         }
-        if let Some((pair, pressure)) = steps.waters.below_zero(&model.contacts) {
+        let below_zero = steps.waters().and_then(|waters| waters.below_zero(&model.contacts));
+        if let Some((pair, pressure)) = below_zero {
             let why = format!(
                 "its pressure has fallen to {pressure:e} at t = {time:e}: raise `initial`, the ground water that is there, or lower what a well takes"
             );
             return Err(IncrementFailure::Water { contact: pair.name.clone(), why });
         }
         let (mut contacts, jumps) = self.contacts(&old, &steps, time);
-        steps.waters.receive(&mut contacts, &mut state.water);
-        let since = steps.since;
+        if let Some(waters) = steps.waters() {
+            waters.receive(&mut contacts, &mut state.water);
+        }
+        let since = steps.since();
         self.follow(&old, time, since, contacts, &jumps, state)?;
         state.dt = last;
         Ok(Gone { steps: gone, next })
@@ -177,34 +196,42 @@ impl QuasiDynamic {
     }
 
     /// Contact states at the end of the steps, and the traction changes since their start.
-    fn contacts(&self, old: &State, steps: &Steps, time: f64) -> (Vec<Vec<ContactState>>, Vec<f64>) {
-        let n = steps.last.len();
-        let jumps = self.jumps.jumps(&steps.z[..n], &steps.tractions());
+    fn contacts(&self, old: &State, steps: &Stepping, time: f64) -> (Vec<Vec<ContactState>>, Vec<f64>) {
+        let n = steps.now().len();
+        let jumps = self.jumps.jumps(steps.slips(), &steps.tractions());
         let places = self.model.mesh.undeformed();
         let mut numbers = 0..n;
         let mut state = |pair, slave, old: &ContactState| {
             let k = numbers.next().unwrap_or_default();
             let Rates { slip_rate, traction, bond, pressure, radiation, .. } = steps.now()[k];
             let mut new = old.clone();
-            new.friction.traction = traction - bond;
-            if let Some(own) = &mut new.bond {
-                own.traction = bond;
-                own.slip += steps.z[k].abs();
+            match steps {
+                Stepping::Explicit(steps) => {
+                    new.friction.traction = traction - bond;
+                    if let Some(own) = &mut new.bond {
+                        own.traction = bond;
+                        own.slip += steps.z[k].abs();
+                    }
+                    new.friction.pressure = pressure;
+                    new.friction.plastic_slip += steps.z[k];
+                    new.friction.plastic_increment = steps.last[k];
+                    new.friction.dissipation += steps.works[k][0];
+                    let remembered = with_rates(pair, slave, time, |law| {
+                        let x = steps.z[n + k];
+                        let friction = law.remember(x, new.friction.clone());
+                        crate::laws::friction::FrictionState { regime: law.regime(x, slip_rate), ..friction }
+                    });
+                    new.friction = remembered.unwrap_or(new.friction);
+                    new.radiated += steps.works[k][1];
+                }
+                Stepping::Implicit(steps) => {
+                    new.friction = steps.state(k).clone();
+                    new.radiated += steps.radiated(k);
+                }
             }
-            new.friction.pressure = pressure;
-            new.friction.plastic_slip += steps.z[k];
-            new.friction.plastic_increment = steps.last[k];
-            new.friction.dissipation += steps.works[k][0];
-            let remembered = with_rates(pair, slave, time, |law| {
-                let x = steps.z[n + k];
-                let friction = law.remember(x, new.friction.clone());
-                crate::laws::friction::FrictionState { regime: law.regime(x, slip_rate), ..friction }
-            });
-            new.friction = remembered.unwrap_or(new.friction);
             new.gap += jumps[k];
             new.slip = jumps[n + k];
             new.radiation = radiation;
-            new.radiated += steps.works[k][1];
             new.fluid = pair.fluid_pressure(slave, &places, time);
             new
         };
@@ -225,7 +252,7 @@ impl QuasiDynamic {
         jumps: &[f64],
         state: &mut State,
     ) -> Result<(), IncrementFailure> {
-        let Self { model, step, jumps: bodies, loading } = self;
+        let Self { model, step, jumps: bodies, loading, .. } = self;
         let at_rest: Vec<f64> = loading.tractions.iter().map(|rate| rate * since).collect();
         let shifted = bodies.jumps(&vec![0.0; bodies.count()], &at_rest);
         let own: Vec<f64> = jumps.iter().zip(shifted).map(|(jump, shifted)| jump - shifted).collect();
@@ -272,6 +299,60 @@ impl QuasiDynamic {
             )
         };
         IncrementFailure::Slip { contact: pair.name.clone(), x: at.x, y: at.y, why }
+    }
+}
+
+/// Integration of the interface from one state on.
+enum Stepping<'a> {
+    /// of laws with a slip rate
+    Explicit(Steps<'a>),
+    /// of laws that answer slip with a traction
+    Implicit(Stiff<'a>),
+}
+
+impl Stepping<'_> {
+    fn now(&self) -> &[Rates] {
+        match self {
+            Self::Explicit(steps) => steps.now(),
+            Self::Implicit(steps) => steps.now(),
+        }
+    }
+
+    fn since(&self) -> f64 {
+        match self {
+            Self::Explicit(steps) => steps.since,
+            Self::Implicit(steps) => steps.since,
+        }
+    }
+
+    /// Slips since t₀: plastic ones, or all.
+    fn slips(&self) -> &[f64] {
+        match self {
+            Self::Explicit(steps) => &steps.z[..steps.last.len()],
+            Self::Implicit(steps) => steps.slips(),
+        }
+    }
+
+    fn tractions(&self) -> Vec<f64> {
+        match self {
+            Self::Explicit(steps) => steps.tractions(),
+            Self::Implicit(steps) => steps.tractions(),
+        }
+    }
+
+    /// Water that flows along the interface.
+    fn waters(&self) -> Option<&Waters> {
+        match self {
+            Self::Explicit(steps) => Some(&steps.waters),
+            Self::Implicit(_) => None,
+        }
+    }
+
+    fn attempt(&mut self, h: f64) -> Tried {
+        match self {
+            Self::Explicit(steps) => steps.attempt(h),
+            Self::Implicit(steps) => steps.attempt(h),
+        }
     }
 }
 

@@ -20,7 +20,7 @@ use crate::laws::friction::{BondState, Cohesion, PointLoad, RateLaw};
 use crate::mesh::configuration::Configuration;
 
 /// Number of points that one thread takes at a time; no sum depends on their order.
-const PART: usize = 32;
+pub(super) const PART: usize = 32;
 
 /// Rates and tractions of a point at a time.
 #[derive(Clone, Copy, Debug, Default)]

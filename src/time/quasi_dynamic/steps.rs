@@ -10,10 +10,10 @@ use super::tableau::{A, C, E, STAGES};
 use super::waters::Waters;
 
 /// Safety factor on the length that the error allows.
-const SAFETY: f64 = 0.9;
+pub(super) const SAFETY: f64 = 0.9;
 
 /// Smallest and largest ratio of successive step lengths.
-const SHARES: [f64; 2] = [0.2, 5.0];
+pub(super) const SHARES: [f64; 2] = [0.2, 5.0];
 
 /// An accepted step, or the worst point of a rejected one.
 pub enum Tried {
