@@ -15,6 +15,7 @@ mod radiation;
 mod slip_control;
 mod stability;
 mod stability_map;
+mod stiff;
 mod switched_off;
 mod switching;
 mod time_integration;

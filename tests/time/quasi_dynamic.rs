@@ -342,9 +342,12 @@ fn what_it_cannot_do_is_refused() {
         (|c| c["contacts"]["fault"]["radiation_damping"] = json!(false), "contacts.fault.radiation_damping", "missing"),
         (|c| c["contacts"]["fault"]["method"] = json!("gauss_to_segment"), "contacts.fault", "coincide: quasi"),
         (
-            |c| c["contacts"]["fault"]["along"]["law"][0]["friction"] = json!({"law": "coulomb", "mu": 0.7}),
-            "contacts.fault.friction",
-            "rate_and_state or prescribed",
+            |c| {
+                c["contacts"]["fault"]["along"]["law"][0]["friction"] = json!({"law": "coulomb", "mu": 0.7});
+                c["contacts"]["fault"]["stick"] = json!(1e-6);
+            },
+            "contacts.fault.stick",
+            "raise alpha_t",
         ),
         (
             |c| c["contacts"]["fault"]["normal"]["penetration"] = json!(1e-3),

@@ -1,0 +1,147 @@
+//! Quasi-dynamic steps of laws without a slip rate that follows from traction and state: implicit, against differential equations.
+
+use std::sync::Arc;
+
+use crate::common::{Finished, close, finish, model, refusal};
+use fecontact::model::Model;
+use fecontact::run::{Saved, Simulation};
+use serde_json::{Value, json};
+
+const DAMPING: f64 = 10.0;
+
+/// The spring-slider of the paper's case 3, with radiation damping in place of inertia.
+fn slider(law: &Value, scheme: &Value, duration: f64) -> Value {
+    json!({
+        "mesh": {"nodes": [[0, 0]], "points": {"block": [0]}},
+        "point_masses": {"block": {"mass": 10}},
+        "contacts": {"base": {
+            "slave": "block", "area": 1, "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "normal": {"alpha_n": 1000}, "radiation_damping": DAMPING, "sliding": "small", "friction": law,
+            "initial": {"pressure": 98.1, "traction": 1e-6},
+        }},
+        "steps": [{"name": "pull", "duration": duration, "scheme": scheme, "dt": {"initial": 0.01}, "loads": [
+            {"on": "block", "force": {"y": "-98.1"}},
+            {"on": "block", "spring": {"kx": 10, "driver": {"x": {"rate": 0.001}}}},
+        ]}],
+    })
+}
+
+fn paper() -> Value {
+    json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 1000, "r": 100, "kappa": 10, "xi": 0.002})
+}
+
+fn quasi_dynamic(tolerance: f64) -> Value {
+    json!({"quasi_dynamic": {"tolerance": tolerance, "every": 1}})
+}
+
+/// Times at which the slip rate rises and falls through 0.02, and the slip in between: all slip, between rows linearly.
+fn events(run: &Finished) -> Vec<[f64; 3]> {
+    let mut events: Vec<[f64; 3]> = Vec::new();
+    let mut before = [0.0; 3];
+    for state in &run.states {
+        let point = &state.contacts[0][0];
+        let now = [state.time, state.displacement[0], point.radiation / DAMPING];
+        let share = (0.02 - before[2]) / (now[2] - before[2]);
+        let at = [0, 1].map(|i| before[i] + share * (now[i] - before[i]));
+        if before[2] < 0.02 && now[2] >= 0.02 {
+            events.push([at[0], f64::NAN, -at[1]]);
+        }
+        if before[2] >= 0.02 && now[2] < 0.02 {
+            let last = events.last_mut().expect("an event that began");
+            (last[1], last[2]) = (at[0] - last[0], last[2] + at[1]);
+        }
+        before = now;
+    }
+    events
+}
+
+/// Onsets, durations and slips of three cycles, against Radau, BDF and LSODA at 1e-10 of u̇ = V, q̇ = α_t (V − λ sgn q) and (3) of the
+/// law with V = (K (v t − u) − q)/η, which agree to 2e-5: 3093.4927, 4189.1328, 5284.7730; 4.02623; 1.064539.
+#[test]
+fn a_spring_slider_sticks_and_slips_by_its_differential_equation() {
+    let mut errors = Vec::new();
+    for tolerance in [1e-4, 1e-5, 1e-6] {
+        let run = finish(&slider(&paper(), &quasi_dynamic(tolerance), 5400.0));
+        let events = events(&run);
+        println!("{tolerance:e}: {} steps, {events:?}", run.report.increments);
+        assert_eq!(events.len(), 3);
+        let off = |(event, onset): (&[f64; 3], f64)| (event[0] / onset - 1.0).abs();
+        let onsets = [3093.492_7, 4189.132_8, 5284.773_0];
+        errors.push(events.iter().zip(onsets).map(off).fold(0.0, f64::max));
+        if tolerance <= 1e-5 {
+            for [_, duration, slip] in events {
+                close("duration", duration / 4.026_23, 1.0, 1e-3);
+                close("slip", slip / 1.064_539, 1.0, 1e-3);
+            }
+        }
+        let last = run.last();
+        let contact = &last.contacts[0][0];
+        let pulled = 10.0 * (0.001 * last.time - last.displacement[0]);
+        close("spring", pulled, contact.friction.traction + contact.radiation, 1e-8);
+        close("energy", last.energy.error(), 0.0, 1e-3 * last.energy.friction_dissipation);
+    }
+    assert!(errors[1] < 1e-4 && errors[2] < 1e-4 && errors[2] <= errors[0], "{errors:?}");
+}
+
+/// Without friction the slider follows its damper, u = v (t − T (1 − e^(−t/T))) with T = η/K.
+#[test]
+fn without_friction_it_creeps_behind_the_spring() {
+    let run = finish(&slider(&json!({"law": "frictionless"}), &quasi_dynamic(1e-6), 5.0));
+    let exact = |t: f64| 0.001 * (t - (1.0 - (-t).exp()));
+    for state in &run.states {
+        close("u", state.displacement[0], exact(state.time), 1e-6);
+    }
+}
+
+/// A sticking Coulomb slider gives way when the spring has reached μ p, and follows it from there: closed form.
+#[test]
+fn a_coulomb_slider_gives_way() {
+    let law = json!({"law": "coulomb", "mu": 0.2, "alpha_t": 1e4});
+    let run = finish(&slider(&law, &quasi_dynamic(1e-6), 3000.0));
+    let yields = 0.2 * 98.1 / 10.0 / 0.001;
+    for state in run.states.iter().filter(|state| state.time > yields) {
+        let since = state.time - yields;
+        let slip = 0.001 * (since - (1.0 - (-since).exp()));
+        // Before, the contact spring has given way by μ p/α_t.
+        close("u", state.displacement[0], slip + 0.2 * 98.1 / 1e4, 2e-5);
+    }
+}
+
+/// With a direct effect of the rate sliding under a slow spring is steady where that strengthens, and the traction is the law's.
+#[test]
+fn a_direct_effect_makes_sliding_steady() {
+    let law = json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 1000, "r": 100, "kappa": 0, "xi": 0, "a": 0.02, "V_0": 1e-5});
+    let run = finish(&slider(&law, &quasi_dynamic(1e-6), 6000.0));
+    let last = &run.last().contacts[0][0];
+    close("rate", last.radiation / DAMPING, 1e-3, 1e-7);
+    close("traction", last.friction.traction / 98.1, 0.4 * (1.0 + 0.02 * f64::ln(101.0)), 1e-5);
+}
+
+/// What was saved goes on to the same bits.
+#[test]
+fn a_run_that_is_resumed_is_the_same() {
+    let case = slider(&paper(), &quasi_dynamic(1e-5), 3095.0);
+    let whole = finish(&case);
+    let shared: Arc<Model> = model(&case).into();
+    let mut run = Simulation::new(shared.clone());
+    for _ in 0..40 {
+        run.next_increment().expect("it runs");
+    }
+    let bytes = run.save().bytes().expect("it can be written");
+    let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
+    while run.next_increment().expect("it runs").is_some() {}
+    assert!(run.state() == whole.last(), "a resumed run has other bits");
+}
+
+/// What implicit steps do not have is refused with its place.
+#[test]
+fn what_implicit_steps_do_not_have_is_refused() {
+    let mut case = slider(&json!({"law": "coulomb", "mu": 0.2}), &quasi_dynamic(1e-5), 1.0);
+    case["contacts"]["base"]["stick"] = json!(1e-6);
+    let told = refusal(&case);
+    assert!(told.contains("contacts.base.stick") && told.contains("raise alpha_t"), "{told}");
+    let mut case = slider(&paper(), &quasi_dynamic(1e-5), 1.0);
+    case["contacts"]["base"]["bond"] = json!({"strength": 5});
+    let told = refusal(&case);
+    assert!(told.contains("contacts.base.bond") && told.contains("slip rate"), "{told}");
+}
