@@ -235,6 +235,11 @@ class Simulation:
         return np.array(self._native.displacement(a_name(group, "group", "displacement")))
 
     @property
+    def pore_pressures(self) -> Array:
+        """Pressures of water that flows through bodies at all nodes, NaN at others, shape (nodes,) [F/L²]; a copy."""
+        return self._native.pore_pressures()
+
+    @property
     def contacts(self) -> dict[str, ContactFields]:
         """Contacts by name, with their current fields."""
         return {name: ContactFields(self._native, name) for name in self._native.contacts}

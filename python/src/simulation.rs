@@ -180,6 +180,11 @@ impl Simulation {
         Ok(Array2::from_shape_fn((at.len(), 2), |(point, i)| at[point][i]).into_pyarray(py))
     }
 
+    fn pore_pressures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let values = self.with(|under_way| Ok(under_way.run.pore_pressures()))?;
+        Ok(values.into_pyarray(py))
+    }
+
     fn bar_field<'py>(&self, py: Python<'py>, bar: &str, field: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let values = self.with(|under_way| under_way.run.bar_field(bar, field).map_err(unknown))?;
         Ok(values.into_pyarray(py))

@@ -69,6 +69,8 @@ impl Differentiated<'_> {
         let places = &self.case.gradients;
         let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
         refuse_if(self.begins_with, "gradients", message)?;
+        let message = "are not for a case with water that flows (pore_fluid.permeability): leave them out, and compare runs with two values";
+        refuse_if(self.model.flow.is_some(), "gradients", message)?;
         self.model.steps.iter().try_for_each(check_step)?;
         if let Some(pair) = self.model.contacts.iter().find(|pair| pair.conduit.is_some()) {
             let message = format!(

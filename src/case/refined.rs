@@ -244,7 +244,7 @@ fn refine_increments(given: &mut LoadStep, step: &Step, factor: f64) {
     if matches!(step.scheme, Scheme::Explicit { .. }) && given.dt.is_none() {
         return;
     }
-    let Increments { initial, min, max, error, slip } = step.increments;
+    let Increments { initial, min, max, error, slip, pore_pressure } = step.increments;
     let finer = |error: f64| error / (factor * factor);
     let increments = Increments {
         initial: initial / factor,
@@ -252,6 +252,7 @@ fn refine_increments(given: &mut LoadStep, step: &Step, factor: f64) {
         max: max / factor,
         error: error.map(finer),
         slip: slip.map(finer),
+        pore_pressure: pore_pressure.map(finer),
     };
     given.dt = Some(increments.into());
 }

@@ -18,7 +18,7 @@ use serde_json::{Map, Value, json};
 
 use super::job::{Job, Refused};
 use super::{CaseError, Opened, Written, build_on, mesh, read};
-use crate::model::builder::{Checked, ModelError};
+use crate::model::builder::{Checked, ModelError, refuse_if};
 use crate::output::checkpoint;
 
 /// What is reduced; where no names are given, all bodies and contacts that have a strength.
@@ -64,6 +64,12 @@ impl Reduced {
 
     /// A case with strengths divided by F.
     fn of(&self, document: &Value, factor: f64) -> Checked<Value> {
+        for (name, body) in document["bodies"].as_object().into_iter().flatten() {
+            let message = "the trials of a factor of safety do not follow water that flows: leave it out, and give the pressure of the water \
+                           (pore_pressure)";
+            let flows = !body["pore_fluid"]["permeability"].is_null();
+            refuse_if(flows, format!("bodies.{name}.pore_fluid.permeability"), message)?;
+        }
         let mut case = document.clone();
         let mut count = 0;
         for (list, names, law_key, tag) in

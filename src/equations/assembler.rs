@@ -23,7 +23,7 @@ use crate::equations::solids::{LinearizedSolids, SolidForces, Solids};
 use crate::equations::sums::{Sums, TrialFailure};
 use crate::equations::term::{self, Term};
 use crate::equations::trial::Trial;
-use crate::equations::{bars, contacts, damping, links, loads, supports};
+use crate::equations::{bars, contacts, damping, links, loads, pore_flow, supports};
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
 use crate::model::Model;
@@ -383,6 +383,7 @@ impl Assembler {
             stabilization,
             memory,
             bars: bar_states,
+            water,
             strain_energy,
             dissipated,
             plastic,
@@ -412,6 +413,7 @@ impl Assembler {
                     *strain_energy = elastic + evolved.stored;
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
+                Term::PoreFlow => pore_flow::add(model, trial, u, water, &mut sums)?,
                 Term::Interfaces => contacts::add(responses, &mut sums),
                 Term::Bars => {
                     let found = bars::add(model, trial, u, bar_states, &mut sums);

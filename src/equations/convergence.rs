@@ -24,6 +24,7 @@ use crate::linear::SparseMatrix;
 use crate::mesh::configuration::Configuration;
 use crate::model::boundary::Absorber;
 use crate::model::coupled::{CoupledPart, CoupledParts};
+use crate::model::pore_flow::PoreFlow;
 use crate::model::state::State;
 use crate::model::{Body, Damping, Model, Step};
 
@@ -101,6 +102,15 @@ impl ConvergenceCriterion {
                 stiffness[node][2] += viscous * viscous;
             }
         }
+        for wet in model.flow.iter().flat_map(|flow| &flow.elements) {
+            let [solid, depth] = [model.solids[wet.element].volume(), model.solids[wet.element].mean_weight()];
+            let modulus = model.body_of(wet.element).material.description().p_wave_modulus * depth;
+            for &node in &wet.nodes[model.mesh.elements[wet.element].nodes.len()..] {
+                lone[node] = false;
+                stiffness[node][0] += modulus * modulus * (solid / depth);
+                stiffness[node][1] += modulus * modulus;
+            }
+        }
         bars::stiffness(model, step, |node, [strained, moved]| {
             let node = model.ties.original(node);
             stiffness[node][0] += strained;
@@ -110,6 +120,11 @@ impl ConvergenceCriterion {
         let bars = bars::own_nodes(model).map(|own| BalancedSet { nodes: own.clone(), contact: None });
         let of_body =
             |body: &Body| BalancedSet { nodes: model.ties.originals(body.nodes.iter().copied()), contact: None };
+        let of_flow = |flow: &PoreFlow| BalancedSet {
+            nodes: (flow.first..flow.first + flow.count() / 2).collect(),
+            contact: None,
+        };
+        let water = model.flow.iter().map(of_flow);
         let there = model.bodies.iter().enumerate().filter(|(body, _)| is_there(*body));
         let bodies = there.map(|(_, body)| of_body(body));
         let of_contact = |(k, pair): (usize, &ContactPair)| BalancedSet {
@@ -119,7 +134,7 @@ impl ConvergenceCriterion {
         let surfaces = model.contacts.iter().enumerate().map(of_contact);
         let lone = (0..count).filter(|&node| lone[node]).map(|node| BalancedSet { nodes: vec![node], contact: None });
         Self {
-            parts: bodies.chain(bars).chain(surfaces).chain(lone).collect(),
+            parts: bodies.chain(water).chain(bars).chain(surfaces).chain(lone).collect(),
             stiffness,
             dampings: model.bodies.iter().map(|body| body.damping).collect(),
             edges: model.contacts.iter().map(|pair| ContactEdges::of(pair, &model.mesh.undeformed())).collect(),

@@ -115,7 +115,8 @@ impl Layout {
         let of_bars: Vec<&[usize]> = model.bars.iter().flat_map(|bar| bar.groups()).collect();
         let others =
             edges.map(|edge| &edge[..]).chain(of_bars.iter().copied()).chain(groups.iter().map(|group| &group[..]));
-        let all = elements.chain(others);
+        let wet = model.flow.iter().flat_map(|flow| &flow.elements).map(|wet| &wet.nodes[..]);
+        let all = elements.chain(wet).chain(others);
         let tied = self.tied(all.clone());
         let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
         let skew = self.all_skew(&pattern);

@@ -19,7 +19,7 @@ use crate::bars::BarState;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::friction::Regime;
-use crate::model::state::State;
+use crate::model::state::{State, Water};
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
@@ -46,6 +46,8 @@ pub struct Evaluation {
     pub memory: Vec<f64>,
     /// states of the bars at the end of the trial
     pub bars: Vec<BarState>,
+    /// water of the pores that flows
+    pub water: Water,
     /// ∫ W dV, and what bars store [F·L]
     pub strain_energy: f64,
     /// Viscous dissipation of the materials in the increment [F·L]

@@ -77,6 +77,7 @@ impl Evolving {
             let old = model.memories.of(e, old);
             model.write_temperatures(trial.step, trial.moment(), e, old, new);
             model.write_pressures(trial.moment(), e, new);
+            model.write_flow(Some(u), e, new);
             let body = &model.bodies[model.body_of_element[e]];
             let (n, memory) = (model.mesh.elements[e].nodes.len(), Memory { dt: trial.dt, old, new: &mut *new });
             let (u, dofs) = (&nodal(model, e, u)[..n], 2 * n);

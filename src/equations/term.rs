@@ -2,7 +2,7 @@
 
 use super::coupling::Skew;
 use super::sums::Dependence;
-use super::{bars, contacts, damping, inertia, links, loads, solids, supports};
+use super::{bars, contacts, damping, inertia, links, loads, pore_flow, solids, supports};
 use crate::model::{Model, Step};
 
 /// A term of the equations.
@@ -10,6 +10,8 @@ use crate::model::{Model, Step};
 pub enum Term {
     /// Stress of the bodies
     Solids,
+    /// Water that flows through pores
+    PoreFlow,
     /// Contact and friction
     Interfaces,
     /// Trusses and beams
@@ -28,8 +30,9 @@ pub enum Term {
 
 impl Term {
     /// All terms, in the order in which they are added.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Solids,
+        Self::PoreFlow,
         Self::Interfaces,
         Self::Bars,
         Self::Loads,
@@ -40,16 +43,25 @@ impl Term {
     ];
 
     /// Terms that depend on the displacements only, in every scheme.
-    pub const OF_PLACE: [Self; 4] = [Self::Solids, Self::Interfaces, Self::Bars, Self::Loads];
+    pub const OF_PLACE: [Self; 5] = [Self::Solids, Self::PoreFlow, Self::Interfaces, Self::Bars, Self::Loads];
 
     /// Terms that also depend on velocities, which in implicit schemes follow from the displacements.
-    pub const OF_PLACE_AND_MOTION: [Self; 7] =
-        [Self::Solids, Self::Interfaces, Self::Bars, Self::Loads, Self::Dampers, Self::Stabilization, Self::Damping];
+    pub const OF_PLACE_AND_MOTION: [Self; 8] = [
+        Self::Solids,
+        Self::PoreFlow,
+        Self::Interfaces,
+        Self::Bars,
+        Self::Loads,
+        Self::Dampers,
+        Self::Stabilization,
+        Self::Damping,
+    ];
 
     /// Dependence of its tangent in a step of a model.
     pub fn dependence(self, model: &Model, step: &Step) -> Dependence {
         match self {
             Self::Solids => solids::dependence(model),
+            Self::PoreFlow => pore_flow::dependence(model),
             Self::Interfaces => contacts::dependence(model),
             Self::Bars => bars::dependence(model),
             Self::Loads => loads::dependence(step),

@@ -116,6 +116,9 @@ pub struct Mesh {
     /// Number of nodes of bars that belong to no element: the last ones
     #[doc(hidden)]
     pub bar_nodes: usize,
+    /// Number of nodes that stand for two pressures of flowing pore water each, and belong to no element
+    #[doc(hidden)]
+    pub water_nodes: usize,
 }
 
 impl Mesh {
@@ -166,10 +169,11 @@ impl Mesh {
         nodes
     }
 
-    /// Number of nodes excluding those of rigid bodies and of bars, which come last.
+    /// Number of nodes excluding those of rigid bodies, of bars and of flowing water, which come last.
     #[doc(hidden)]
     pub fn own_nodes(&self) -> usize {
-        self.nodes.len() - self.bar_nodes - self.rigid_bodies.iter().map(|body| body.nodes().len()).sum::<usize>()
+        let rigid = self.rigid_bodies.iter().map(|body| body.nodes().len()).sum::<usize>();
+        self.nodes.len() - self.bar_nodes - self.water_nodes - rigid
     }
 
     /// Returns the rigid body of this name.

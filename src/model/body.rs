@@ -36,14 +36,24 @@ pub struct Body {
 }
 
 impl Body {
+    /// The fluid in its pores, if it flows.
+    pub fn flowing(&self) -> Option<&PoreFluid> {
+        self.pore_fluid.as_ref().filter(|fluid| fluid.flows())
+    }
+
+    /// The fluid in its pores, if it cannot flow.
+    pub fn trapped(&self) -> Option<&PoreFluid> {
+        self.pore_fluid.as_ref().filter(|fluid| !fluid.flows())
+    }
+
     /// Whether it has an initial stress, a pore fluid or pressure, or thermal expansion.
     pub fn is_imposed(&self) -> bool {
-        self.is_stressed() || self.thermal.is_some() || self.pore_pressure.is_some()
+        self.is_stressed() || self.thermal.is_some() || self.pore_pressure.is_some() || self.pore_fluid.is_some()
     }
 
     /// Whether it has an initial stress, or a pore fluid or a pressure at the start, which is one.
     pub fn is_stressed(&self) -> bool {
-        self.initial_stress.is_some() || self.pore_fluid.is_some() || self.starts_pressed
+        self.initial_stress.is_some() || self.trapped().is_some() || self.starts_pressed
     }
 }
 

@@ -33,6 +33,8 @@ impl CoupledParts {
             first.into_iter().for_each(|first| nodes.for_each(|node| joined.join(first, node)));
         };
         model.mesh.elements.iter().for_each(|element| join(&mut element.nodes.iter().copied()));
+        let wet = model.flow.iter().flat_map(|flow| &flow.elements);
+        wet.for_each(|wet| join(&mut wet.nodes.iter().copied()));
         model.contacts.iter().for_each(|pair| join(&mut pair.nodes()));
         model.ties.pairs().iter().for_each(|&(copy, original)| join(&mut [copy, original].into_iter()));
         model.bars.iter().flat_map(|bar| bar.groups()).for_each(|group| join(&mut group.iter().copied()));

@@ -87,8 +87,9 @@ impl InitialStress {
     }
 }
 
-/// A fluid in the pores of a body that has no time to flow. The material, and the initial stress, are those of the effective stress; stresses
-/// and what contacts feel are total. Elements are nearly incompressible from the start: take f_bar, reduced Q8 or T6
+/// A fluid in the pores of a body. Without a permeability it has no time to flow, and elements are nearly incompressible from the start: take
+/// f_bar, reduced Q8 or T6. With one it flows in static steps, whose time is that of consolidation. The material, and the initial stress, are
+/// those of the effective stress; stresses and what contacts feel are total
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -103,12 +104,83 @@ pub struct PoreFluid {
     pub pressure: Profile,
     /// Pressure below which the fluid cavitates and p_w does not fall; −100 kPa of water below the atmosphere. No limit unless given [F/L²]
     pub cavitation: Option<f64>,
+    /// k: speed at which the fluid seeps under a gradient of head of 1, k > 0; given, the fluid flows [L/T]
+    pub permeability: Option<f64>,
+    /// k along y; as `permeability` unless given [L/T]
+    pub permeability_y: Option<f64>,
+    /// γ_w: weight of the fluid per volume, by which k is divided; required with a permeability [F/L³]
+    pub unit_weight: Option<f64>,
+    /// b of a fluid that flows: Biot's coefficient, porosity ≤ b ≤ 1, 1 − K/K_s with the bulk moduli of the body and of its grains; 1 of soil
+    /// unless given [-]
+    pub biot: Option<f64>,
+    /// Whether its weight, along −y, drives a fluid that flows: p_w is then the whole pressure, and rests where it is hydrostatic. Otherwise p_w is
+    /// the pressure in excess of that
+    #[serde(default)]
+    pub weighs: bool,
+    /// Height that the fluid rises to in the pores, h > 0, of one that weighs: where p_w is below 0 the permeability falls by exp(p_w/(γ_w h)), to a
+    /// ten-thousandth at least, as above a free surface. Unless given the ground stays saturated, and as permeable, under any suction [L]
+    pub capillary: Option<f64>,
+    /// Whether the permeability follows the void ratio e by Kozeny and Carman, k ~ e³/(1 + e), from that of the undeformed body at the porosity
+    #[serde(default)]
+    pub kozeny_carman: bool,
 }
 
 impl PoreFluid {
     /// Creates a fluid without initial pressure and without cavitation.
     pub fn new(bulk_modulus: f64, porosity: f64) -> Self {
-        Self { bulk_modulus, porosity, pressure: Profile::default(), cavitation: None }
+        Self {
+            bulk_modulus,
+            porosity,
+            pressure: Profile::default(),
+            cavitation: None,
+            permeability: None,
+            permeability_y: None,
+            unit_weight: None,
+            biot: None,
+            weighs: false,
+            capillary: None,
+            kozeny_carman: false,
+        }
+    }
+
+    /// Lets it flow, with the permeability and its unit weight [L/T], [F/L³].
+    pub fn flowing(self, permeability: f64, unit_weight: f64) -> Self {
+        Self { permeability: Some(permeability), unit_weight: Some(unit_weight), ..self }
+    }
+
+    /// Sets another permeability along y [L/T].
+    pub fn permeability_y(self, permeability: f64) -> Self {
+        Self { permeability_y: Some(permeability), ..self }
+    }
+
+    /// Sets Biot's coefficient of one that flows [-].
+    pub fn biot(self, biot: f64) -> Self {
+        Self { biot: Some(biot), ..self }
+    }
+
+    /// Lets its weight drive it.
+    pub fn weighing(self) -> Self {
+        Self { weighs: true, ..self }
+    }
+
+    /// Sets the height that it rises to in the pores [L].
+    pub fn capillary(self, height: f64) -> Self {
+        Self { capillary: Some(height), ..self }
+    }
+
+    /// Lets the permeability follow the void ratio.
+    pub fn kozeny_carman(self) -> Self {
+        Self { kozeny_carman: true, ..self }
+    }
+
+    /// Whether it flows.
+    pub fn flows(&self) -> bool {
+        self.permeability.is_some()
+    }
+
+    /// b [-]
+    pub fn coefficient(&self) -> f64 {
+        self.biot.unwrap_or(1.0)
     }
 
     /// Sets the pressure at the start [F/L²].
@@ -166,7 +238,8 @@ impl Body {
         // A table of nodes is zero at the start.
         let by_place = self.pore_pressure.as_ref().filter(|given| given.pressure.nodal().is_none());
         let given = by_place.map(|given| given.biot * given.pressure.value_at(position, 0.0));
-        let fluid = self.pore_fluid.as_ref().map(|fluid| fluid.pressure.value(position)).or(given);
+        let of = |fluid: &PoreFluid| fluid.coefficient() * fluid.pressure.value(position);
+        let fluid = self.pore_fluid.as_ref().map(of).or(given);
         if effective.is_none() && fluid.is_none() {
             return None;
         }
@@ -229,6 +302,7 @@ impl Model {
                 }
             }
             self.write_pressures(0.0.into(), e, own);
+            self.write_flow(None, e, own);
         }
         memory
     }
@@ -269,10 +343,23 @@ impl Model {
         }
     }
 
-    /// Work of a change of the given pressure on an element, as it came, in an increment, −½ (o₀ + o₁) Δp with o, what its pores have opened by: the
-    /// change of the stored energy at constant displacement [F·L].
+    /// Writes the pressures of water that flows through an element to the variables of its material, at a displacement or at the start.
+    pub fn write_flow(&self, u: Option<&[f64]>, element: usize, new: &mut [f64]) {
+        let Some((flow, wet)) = self.flow.as_ref().and_then(|flow| Some((flow, flow.wet(element)?))) else { return };
+        let law = self.body_of(element).material.description();
+        let Some(slot) = law.slot(&GIVEN_PRESSURE) else { return };
+        let pressures = wet.pressures.iter().map(|&k| flow.pressure(k, u));
+        let pressures: Vec<f64> = pressures.collect();
+        for (new, point) in new.chunks_exact_mut(law.variables.len()).zip(&wet.points) {
+            slot.of_mut(new)[0] = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
+        }
+    }
+
+    /// Work of a change of the pressure in the pores of an element, as it came, in an increment, −½ (o₀ + o₁) Δp with o, what its pores have opened
+    /// by: the change of the stored energy at constant displacement [F·L].
     pub fn filling(&self, solid: &SolidElement, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
-        let Some((count, slot, _)) = self.water(element) else { return 0.0 };
+        let law = self.body_of(element).material.description();
+        let (count, Some(slot)) = (law.variables.len(), law.slot(&GIVEN_PRESSURE)) else { return 0.0 };
         let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
             let ([before, opened], [after, opens]) = (slot.of(old), slot.of(new));
             -0.5 * (opened + opens) * (after - before) * volume

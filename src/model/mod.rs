@@ -6,6 +6,7 @@ mod body;
 pub mod boundary;
 pub mod builder;
 mod expression;
+mod flow_concerns;
 mod random;
 mod requests;
 mod stages;
@@ -21,6 +22,7 @@ cfg_if::cfg_if! {
         pub mod linkage;
         pub mod measured;
         pub mod method;
+        pub mod pore_flow;
         pub mod scheme;
         pub mod state;
         pub mod step;
@@ -35,6 +37,7 @@ cfg_if::cfg_if! {
         pub(crate) mod linkage;
         pub(crate) mod measured;
         pub(crate) mod method;
+        pub(crate) mod pore_flow;
         pub(crate) mod scheme;
         pub(crate) mod state;
         pub(crate) mod step;
@@ -66,6 +69,7 @@ use linkage::Linkage;
 pub use measured::{Coordinate, Measured, MeasuredTable, PoreField};
 use method::Chosen;
 pub use method::Method;
+use pore_flow::PoreFlow;
 pub use requests::{OutputRequests, Probe, WatchedSet};
 pub use scheme::Scheme;
 #[doc(hidden)]
@@ -140,6 +144,9 @@ pub struct Model {
     /// layout of the internal variables of all elements in [`State::memory`]
     #[doc(hidden)]
     pub memories: Memories,
+    /// water that flows through pores, if any does
+    #[doc(hidden)]
+    pub flow: Option<PoreFlow>,
     /// trusses and beams
     #[doc(hidden)]
     pub bars: Vec<Bar>,
@@ -172,6 +179,11 @@ impl Model {
     /// Number of dofs, two per node.
     pub fn dofs(&self) -> usize {
         2 * self.mesh.nodes.len()
+    }
+
+    /// Number of negative eigenvalues of a tangent at a stable equilibrium: the pressures of water that flows.
+    pub fn saddle(&self) -> usize {
+        self.flow.as_ref().map_or(0, PoreFlow::count)
     }
 
     /// The configuration x = X + u.
@@ -266,8 +278,8 @@ impl Model {
     pub fn initial_state(&self) -> State {
         let zero = vec![0.0; self.dofs()];
         let contacts: Vec<_> = self.contacts.iter().map(|pair| self.first_states(pair)).collect();
-        let water = self.contacts.iter().zip(&contacts);
-        let water = water.map(|(pair, states)| pair.conduit.as_ref().map(|conduit| conduit.begin(states)));
+        let conduits = self.contacts.iter().zip(&contacts);
+        let conduits = conduits.map(|(pair, states)| pair.conduit.as_ref().map(|conduit| conduit.begin(states)));
         State {
             time: 0.0,
             increment: 0,
@@ -279,10 +291,11 @@ impl Model {
             external: zero.clone(),
             damping: zero.clone(),
             reaction: zero.clone(),
-            water: water.map(Option::unwrap_or_default).collect(),
+            conduits: conduits.map(Option::unwrap_or_default).collect(),
             contacts,
             memory: self.initial_memory(),
             bars: self.first_bars(),
+            water: self.first_water(),
             last_increment: None,
             step_start: Arc::new(StepStart {
                 displacement: zero.clone(),

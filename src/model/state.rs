@@ -42,13 +42,16 @@ pub struct State {
     pub contacts: Vec<Vec<ContactState>>,
     /// Water that flows along each contact pair; empty where none does
     #[doc(hidden)]
-    pub water: Vec<ConduitState>,
+    pub conduits: Vec<ConduitState>,
     /// Internal variables of the materials, element by element ([`crate::model::Memories`])
     #[doc(hidden)]
     pub memory: Vec<f64>,
     /// One per bar
     #[doc(hidden)]
     pub bars: Vec<BarState>,
+    /// Water that flows through pores
+    #[doc(hidden)]
+    pub water: Water,
     /// Displacement increment of the last increment of this step; `None` at its start, and after explicit increments
     #[doc(hidden)]
     pub last_increment: Option<LastIncrement>,
@@ -92,10 +95,12 @@ impl State {
             vectors.map(|(own, _)| own);
         let mut contacts = self.contacts;
         contacts.clone_from(&other.contacts);
-        let mut water = self.water;
-        water.clone_from(&other.water);
+        let mut conduits = self.conduits;
+        conduits.clone_from(&other.conduits);
         let mut bars = self.bars;
         bars.clone_from(&other.bars);
+        let mut water = self.water;
+        water.clone_from(&other.water);
         let (last_increment, step_start) = (other.last_increment.clone(), other.step_start.clone());
         let Self { time, increment, dt, energy, .. } = *other;
         Self {
@@ -110,9 +115,10 @@ impl State {
             damping,
             reaction,
             contacts,
-            water,
+            conduits,
             memory,
             bars,
+            water,
             last_increment,
             step_start,
             energy,
@@ -135,6 +141,30 @@ impl State {
         self.velocity.fill(0.0);
         self.acceleration.fill(0.0);
     }
+}
+
+/// Water that flows through pores, as far as the next increment needs it, or the balance of water.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[doc(hidden)]
+pub struct Water {
+    /// What came to every pressure's share of the pores in the last increment, by volume [L³]
+    pub change: Vec<f64>,
+    /// Flow through each outlet of the model
+    pub outlets: Vec<Outflow>,
+    /// Largest mean pressure so far that each body has in excess of the one at the start [F/L²]
+    pub peaks: Vec<f64>,
+}
+
+/// Flow out of the bodies through an outlet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[doc(hidden)]
+pub struct Outflow {
+    /// at the end of the last increment [L³/T]
+    pub rate: f64,
+    /// volume in the last increment [L³]
+    pub change: f64,
+    /// volume since the start [L³]
+    pub volume: f64,
 }
 
 /// The last accepted increment, from which the next start value is extrapolated.

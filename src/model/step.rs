@@ -18,6 +18,7 @@ use super::bars::BarsInStep;
 use super::body::Damping;
 use super::boundary::{Amplitude, Loads, Span};
 use super::imposed::Temperature;
+use super::pore_flow::Drain;
 use super::scheme::Scheme;
 use super::state::State;
 use super::support::{Direction, Motion, Prescribed};
@@ -41,6 +42,8 @@ pub struct Increments {
     /// allowed error per increment of the slip of friction that is integrated to first order in time, as a fraction of its
     /// D_c [-]
     pub slip: Option<f64>,
+    /// allowed error per increment of the pressure of water that flows through pores [F/L²]
+    pub pore_pressure: Option<f64>,
 }
 
 impl Increments {
@@ -55,7 +58,7 @@ impl Increments {
     /// Whether an error decides how long they are.
     #[doc(hidden)]
     pub fn are_controlled(&self) -> bool {
-        self.error.is_some() || self.slip.is_some()
+        self.error.is_some() || self.slip.is_some() || self.pore_pressure.is_some()
     }
 }
 
@@ -85,6 +88,9 @@ pub struct Step {
     pub launch: Vec<(usize, [f64; 2])>,
     /// loads, springs and dashpots
     pub loads: Loads,
+    /// outlets of water that flows through pores
+    #[doc(hidden)]
+    pub drains: Vec<Drain>,
     /// supports and loads as the input gave them: those that the step ends, then those in force in it
     #[doc(hidden)]
     pub entries: Vec<Entry>,

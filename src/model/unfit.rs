@@ -10,8 +10,13 @@ use crate::model::{Body, Model};
 
 /// Warnings about elements.
 pub fn concerns(model: &Model) -> Vec<String> {
-    let lock = model.bodies.iter().filter_map(|body| locks(model, body));
-    lock.chain(alone(model)).collect()
+    let lock = model.bodies.iter().filter_map(|body| Some((body, locks(model, body)?)));
+    // f_bar is not for bodies whose water flows.
+    let remedy = |(body, told): (&Body, String)| match body.flowing() {
+        Some(_) => told.replace("Q4 with \"element\": \"f_bar\", ", ""),
+        None => told,
+    };
+    lock.map(remedy).chain(alone(model)).collect()
 }
 
 /// Elements that lock where their body yields: plastic flow says how the volume changes at every integration point, which is more than
@@ -19,7 +24,7 @@ pub fn concerns(model: &Model) -> Vec<String> {
 ///
 /// Source: Nagtegaal, Parks & Rice (1974), Comput. Methods Appl. Mech. Eng. 4, 153, doi:10.1016/0045-7825(74)90032-2.
 fn locks(model: &Model, body: &Body) -> Option<String> {
-    let undrained = body.pore_fluid.is_some();
+    let undrained = body.trapped().is_some();
     let flow = if undrained { Some(Flow::Isochoric) } else { body.material.description().flow };
     // An element alone has a few ways to strain, which its nodes can follow.
     let flow = flow.filter(|_| !model.mesh.section.is_plate() && body.elements.len() > 1)?;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::balance;
+use super::flow_concerns;
 use super::text::{count, number, vector};
 use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
@@ -47,7 +48,10 @@ impl Model {
         };
         let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self)).chain(many_increments(self));
         let of_model = of_model.chain(idle_radiation(self)).chain(uncertain_times(self)).chain(balance::concerns(self));
-        let of_model = of_model.chain(sheared_beside_faults(self)).chain(unfit::concerns(self));
+        let of_model = of_model
+            .chain(sheared_beside_faults(self))
+            .chain(unfit::concerns(self))
+            .chain(flow_concerns::concerns(self));
         let of_model = of_model.chain(self.bodies.iter().filter_map(concern_of_law));
         let concerns =
             self.about_methods(|chosen, pair| chosen.concern.map(String::from).or_else(|| uneven(self, pair, chosen)));
@@ -143,7 +147,7 @@ pub fn fragile(pair: &ContactPair) -> [Option<String>; 2] {
 }
 
 /// Coefficient of friction that stands for none in a law that goes by cohesion alone [-]
-const NO_FRICTION: f64 = 1e-6;
+pub const NO_FRICTION: f64 = 1e-6;
 
 /// Warns of friction that goes by the pressure where a body beside it has fluid in its pores: contacts carry total stress.
 fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<String> {

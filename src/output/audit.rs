@@ -76,6 +76,8 @@ pub struct Audit {
     gained: f64,
     /// Possible work of round-off in the forces [F·L]
     noise: f64,
+    /// Largest error of the balance of water, and largest volume that has come or gone [L³]
+    water: [f64; 2],
     /// Energy in the contact penalties
     pub give: Give,
     /// Parts of the model, once asked for: they take a look at every element
@@ -227,6 +229,9 @@ const GIVES_WAY: f64 = 0.01;
 /// Error of displacements by edges that stand for curves that causes a warning [-]
 const BY_CHORDS: f64 = 0.02;
 
+/// Error of the balance of water that causes a warning, as a fraction of what has come and gone [-]
+const WATER: f64 = 1e-5;
+
 /// Share of the energy that the advised penalties leave in the contacts [-]
 const ADVISED: f64 = 0.004;
 
@@ -256,6 +261,9 @@ impl Audit {
         }
         self.work += (new.energy.external_work - old.energy.external_work).abs();
         self.error = error;
+        if let Some([error, throughput]) = model.balance_of_water(new) {
+            self.water = [self.water[0].max(error.abs()), self.water[1].max(throughput)];
+        }
         let stresses = self.stresses.get_or_insert_with(|| stresses(model));
         let chords = self.chords.get_or_insert_with(|| model.contacts.iter().map(|pair| chords(model, pair)).collect());
         self.give.record(model, new, stresses, chords);
@@ -276,7 +284,18 @@ impl Audit {
     /// Warnings at the end of a run: that the energies do not balance, or contacts give way.
     pub fn concerns(&self) -> Vec<String> {
         let unbalanced = self.unbalanced().filter(|_| !self.is_unstable());
-        unbalanced.into_iter().chain(self.by_touch()).chain(self.give.concerns()).collect()
+        unbalanced.into_iter().chain(self.by_touch()).chain(self.water_lost()).chain(self.give.concerns()).collect()
+    }
+
+    /// Water that has come from nowhere, or gone there.
+    fn water_lost(&self) -> Option<String> {
+        let [error, throughput] = self.water;
+        (error > WATER * throughput).then(|| {
+            format!(
+                "the balance of water in the bodies is off by {error:.3e}, {:.1e} of what has come and gone: take a smaller newton.tolerance",
+                error / throughput
+            )
+        })
     }
 
     /// Checks at the end of a run that no motion gained more energy than was supplied.

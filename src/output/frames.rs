@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::gradients::MotionBy;
+use super::quantities::WATER_FLUX;
 use super::recovery::{NodalRecovery, shown_names};
 use super::vtu::{CellType, Grid, cell_type};
 use crate::bars::fields::{AT_POINTS, OF_SEGMENTS};
@@ -56,8 +57,16 @@ pub fn solid_frame(
     grid.vectors("reaction", &state.reaction[..2 * nodes]);
     grid.vectors("contact_force", &contact_forces[..2 * nodes]);
     add_fields(grid, &fields.tensors[..nodes], derived);
+    let flowing = model.flow.as_ref().map(|flow| flow.at_nodes(&model.mesh, &state.displacement));
     for (name, values) in fields.shown {
-        grid.at_points(name, 1, values.into_iter().take(nodes));
+        // Water that flows has pressures at nodes, which need no recovery.
+        let own = flowing.as_ref().filter(|_| name == PORE_PRESSURE);
+        let at =
+            |(node, value): (usize, f64)| own.map_or(value, |own| if own[node].is_nan() { value } else { own[node] });
+        grid.at_points(name, 1, values.into_iter().take(nodes).enumerate().map(at));
+    }
+    if flowing.is_some() {
+        grid.vectors(WATER_FLUX.name, &fluxes(model, state)[..2 * nodes]);
     }
     for (place, motion) in motions {
         grid.vectors(&format!("d(displacement)/d({place})"), &motion[..2 * nodes]);
@@ -65,6 +74,27 @@ pub fn solid_frame(
     grid.at_cells("body", body());
     grid.at_cells("material", body());
     hide_absent(model, state, &model.body_of_element, grid);
+}
+
+/// Name of the pressure in pores among what laws show.
+const PORE_PRESSURE: &str = "pore_pressure";
+
+/// Seepage of water that flows at every node, the mean of the elements around it by volume; 0 elsewhere [L/T].
+fn fluxes(model: &Model, state: &State) -> Vec<f64> {
+    let mut sums = vec![0.0; model.dofs()];
+    let mut volumes = vec![0.0; model.mesh.nodes.len()];
+    for wet in model.flow.iter().flat_map(|flow| &flow.elements) {
+        let flux = model.seepage(wet, state);
+        let volume: f64 = wet.volumes.iter().sum();
+        for &node in &model.mesh.elements[wet.element].nodes {
+            volumes[node] += volume;
+            (0..2).for_each(|i| sums[2 * node + i] += volume * flux[i]);
+        }
+    }
+    sums.iter_mut()
+        .enumerate()
+        .for_each(|(dof, sum)| *sum /= if volumes[dof / 2] > 0.0 { volumes[dof / 2] } else { 1.0 });
+    sums
 }
 
 /// Hides the cells of absent bodies, given the body of each cell.

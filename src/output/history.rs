@@ -11,8 +11,8 @@ use super::csv;
 use super::csv::{Rows, Sheet, Table};
 use super::friction_history::FrictionHistory;
 use super::quantities::{
-    BAR, BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, PLASTIC, Quantity, RADIATED, RESULTANT, RIGID,
-    SCATTER, WATCHED, WATER, names,
+    BAR, BODY, CONDUIT, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, OUTLET, PLASTIC, Quantity, RADIATED,
+    RESULTANT, RIGID, SCATTER, WATCHED, WATER, WATER_ERROR, names,
 };
 use crate::bars::fields::Summary;
 use crate::bars::{Bar, BarState};
@@ -95,7 +95,12 @@ impl Rows for HistoryRows {
         header.extend(yields(model).then(|| PLASTIC.name.into()));
         header.extend(model.bars.iter().flat_map(|bar| of(&bar.name, &BAR)));
         let with_water = model.contacts.iter().filter(|pair| pair.conduit.is_some());
-        header.extend(with_water.flat_map(|pair| of(&pair.name, &WATER)));
+        header.extend(with_water.flat_map(|pair| of(&pair.name, &CONDUIT)));
+        if let Some(flow) = &model.flow {
+            header.extend(flow.bodies.iter().flat_map(|&body| of(&model.bodies[body].name, &WATER)));
+            header.extend(flow.outlets.iter().flat_map(|outlet| of(outlet, &OUTLET)));
+            header.push(WATER_ERROR.name.into());
+        }
         let undeformed = model.mesh.undeformed();
         let rows = Self {
             observed,
@@ -182,8 +187,9 @@ impl HistoryRows {
         }
         row.extend(yields(model).then_some(state.energy.plastic_dissipation));
         row.extend(model.bars.iter().zip(&state.bars).flat_map(|(bar, state)| bar_row(bar, state)));
-        let with_water = model.contacts.iter().zip(&state.water).filter(|(pair, _)| pair.conduit.is_some());
-        row.extend(with_water.flat_map(|(_, water)| water_row(water)));
+        let with_water = model.contacts.iter().zip(&state.conduits).filter(|(pair, _)| pair.conduit.is_some());
+        row.extend(with_water.flat_map(|(_, water)| conduit_row(water)));
+        row.extend(water_row(model, state));
         row
     }
 }
@@ -193,6 +199,24 @@ impl History {
     pub fn courses(&self) -> &[FrictionHistory] {
         &self.rows.memory.courses
     }
+}
+
+/// Water of the bodies in which it flows, flow through its outlets, and their balance.
+fn water_row(model: &Model, state: &State) -> Vec<f64> {
+    let Some(flow) = &model.flow else { return Vec::new() };
+    let (mut row, mut balance) = (Vec::new(), 0.0);
+    for (&body, &peak) in flow.bodies.iter().zip(&state.water.peaks) {
+        let [taken, excess] = model.water_of(body, state).unwrap_or_default();
+        row.extend([excess, if peak == 0.0 { 0.0 } else { 1.0 - excess / peak }, taken]);
+        balance += taken;
+    }
+    for k in 0..flow.outlets.len() {
+        let outlet = state.water.outlets.get(k).copied().unwrap_or_default();
+        row.extend([outlet.rate, outlet.volume]);
+        balance += outlet.volume;
+    }
+    row.push(balance);
+    row
 }
 
 /// Whether slip radiates, which adds a column to the energies.
@@ -207,7 +231,7 @@ fn bar_row(bar: &Bar, state: &BarState) -> [f64; BAR.len()] {
 }
 
 /// Volumes of the water that flows along a contact, and its largest pressure.
-fn water_row(water: &ConduitState) -> [f64; WATER.len()] {
+fn conduit_row(water: &ConduitState) -> [f64; CONDUIT.len()] {
     let largest = water.pressure.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     [water.amounts.injected, water.amounts.leaked, water.mass_error, largest]
 }

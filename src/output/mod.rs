@@ -6,6 +6,7 @@ mod frames;
 mod opened;
 pub mod results;
 mod slid_bars;
+mod units;
 mod unpressed;
 
 // The writers of these files are internal to the program.

@@ -5,7 +5,10 @@
 //! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY`, `BAR` and `PROBE` stand
 //! for names of the case.
 
-use std::collections::BTreeMap;
+use super::units::{
+    ACCELERATION, ANGLE, ENERGY, FLOW, LINE_FORCE, MOMENTUM, POWER, SPIN, STIFFNESS, VOLUME, WORK_PER_AREA,
+};
+pub use super::units::{DENSITY, FORCE, LABELLED, LENGTH, MASS, NONE, STRESS, TIME, Unit, VELOCITY};
 
 /// A recorded quantity: a column of a table, or an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,124 +19,6 @@ pub struct Quantity {
     pub unit: Unit,
     /// meaning
     pub meaning: &'static str,
-}
-
-/// Unit of a quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unit {
-    /// name under which a case may label it, as for `length`, `force` and `time`
-    pub name: &'static str,
-    /// powers of force, length and time
-    powers: [i8; 3],
-}
-
-const fn unit(name: &'static str, powers: [i8; 3]) -> Unit {
-    Unit { name, powers }
-}
-
-/// Dimensionless number, or a word.
-pub const NONE: Unit = unit("none", [0, 0, 0]);
-/// L
-pub const LENGTH: Unit = unit("length", [0, 1, 0]);
-/// F/L²
-pub const STRESS: Unit = unit("stress", [1, -2, 0]);
-/// L/T
-pub const VELOCITY: Unit = unit("velocity", [0, 1, -1]);
-/// T
-pub const TIME: Unit = unit("time", [0, 0, 1]);
-/// F
-pub const FORCE: Unit = unit("force", [1, 0, 0]);
-/// F T²/L, of inputs
-pub const MASS: Unit = unit("mass", [1, -1, 2]);
-/// F T²/L⁴, of inputs
-pub const DENSITY: Unit = unit("density", [1, -4, 2]);
-const ANGLE: Unit = unit("angle", [0, 0, 0]);
-const ACCELERATION: Unit = unit("acceleration", [0, 1, -2]);
-const ENERGY: Unit = unit("energy", [1, 1, 0]);
-const POWER: Unit = unit("power", [1, 1, -1]);
-const WORK_PER_AREA: Unit = unit("work_per_area", [1, -1, 0]);
-const MOMENTUM: Unit = unit("momentum", [1, 0, 1]);
-const SPIN: Unit = unit("angular_momentum", [1, 1, 1]);
-/// L³, of water
-const VOLUME: Unit = unit("volume", [0, 3, 0]);
-/// L³/T, of water
-const FLOW: Unit = unit("flow", [0, 3, -1]);
-const STIFFNESS: Unit = unit("stiffness_per_area", [1, -3, 0]);
-
-/// F/L, of what acts along a line
-const LINE_FORCE: Unit = WORK_PER_AREA;
-
-/// All units of results.
-pub const LABELLED: [Unit; 15] = [
-    LENGTH,
-    FORCE,
-    TIME,
-    STRESS,
-    VELOCITY,
-    ACCELERATION,
-    ENERGY,
-    POWER,
-    WORK_PER_AREA,
-    MOMENTUM,
-    SPIN,
-    STIFFNESS,
-    ANGLE,
-    VOLUME,
-    FLOW,
-];
-
-impl Unit {
-    /// Powers of force, length and time.
-    pub fn powers(self) -> [i32; 3] {
-        self.powers.map(i32::from)
-    }
-
-    /// Whether it is dimensionless.
-    pub fn is_plain(self) -> bool {
-        self.powers == [0; 3]
-    }
-
-    /// Whether it is that of a sum over the thickness, as forces, energies and masses are.
-    pub fn is_sum(self) -> bool {
-        [FORCE, ENERGY, POWER, MOMENTUM, SPIN, MASS, VOLUME, FLOW].contains(&self)
-    }
-
-    /// Formats the unit from those of force, length and time: `F/L²`; empty for a dimensionless number.
-    pub fn made_of(self, [force, length, time]: [&str; 3]) -> String {
-        let raised = |power: i8| match power.abs() {
-            2 => "²",
-            3 => "³",
-            _ => "",
-        };
-        let parts = [force, length, time].into_iter().zip(self.powers);
-        let above = parts.clone().filter(|(_, power)| *power > 0).map(|(of, power)| format!("{of}{}", raised(power)));
-        let below = parts.filter(|(_, power)| *power < 0).map(|(of, power)| format!("{of}{}", raised(power)));
-        let [above, below] = [above.collect::<Vec<_>>(), below.collect()].map(|parts| parts.join("·"));
-        match (above.is_empty(), below.is_empty()) {
-            (_, true) => above,
-            (true, false) => format!("1/{below}"),
-            (false, false) => format!("{above}/{below}"),
-        }
-    }
-
-    /// Formats the unit according to the CF conventions: `N mm-2`.
-    pub fn of_store(self, [force, length, time]: [&str; 3]) -> String {
-        let parts = [force, length, time].into_iter().zip(self.powers).filter(|(_, power)| *power != 0);
-        let mut parts: Vec<(&str, i8)> = parts.collect();
-        parts.sort_by_key(|(_, power)| *power < 0);
-        let part = |(of, power): (&str, i8)| if power == 1 { of.to_string() } else { format!("{of}{power}") };
-        parts.into_iter().map(part).collect::<Vec<_>>().join(" ")
-    }
-
-    /// Label in a case: the given one, or one composed by `made` of force, length and time, if those needed are known.
-    pub fn label(self, units: &BTreeMap<String, String>, made: fn(Self, [&str; 3]) -> String) -> Option<String> {
-        if let Some(label) = units.get(self.name) {
-            return Some(label.clone());
-        }
-        let labels = ["force", "length", "time"].map(|of| units.get(of));
-        let known = labels.iter().zip(self.powers).all(|(label, power)| power == 0 || label.is_some());
-        (known && self.powers != [0; 3]).then(|| made(self, labels.map(|label| label.map_or("", String::as_str))))
-    }
 }
 
 const fn q(name: &'static str, unit: Unit, meaning: &'static str) -> Quantity {
@@ -252,11 +137,35 @@ pub const EDGES: [Quantity; 2] = [
     q("edge_uy", LENGTH, "along y"),
 ];
 
+/// Water of a body in which it flows.
+pub const WATER: [Quantity; 3] = [
+    q("excess_pore_pressure", STRESS, "mean p_w less that at the start, of a body whose water flows"),
+    q("consolidation", NONE, "1 less this over its largest value so far, of either sign; 0 before there is any"),
+    q("water", VOLUME, "volume of water that the body has taken up since the start"),
+];
+
+/// Flow through a place of `drainage`.
+pub const OUTLET: [Quantity; 2] = [
+    q("discharge", FLOW, "flow of water out of the bodies through the place at the end of the increment"),
+    q("outflow", VOLUME, "volume that has left through it since the start"),
+];
+
+/// Seepage in frames.
+pub const WATER_FLUX: Quantity =
+    q("water_flux", VELOCITY, "seepage of water that flows, the mean of the elements around a node");
+
+/// Balance of all water that flows.
+pub const WATER_ERROR: Quantity = q(
+    "water_error",
+    VOLUME,
+    "water that all bodies have taken up and that has left through all places: 0 but for round-off",
+);
+
 /// Column of contacts with a fluid pressure.
 pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contacts in a fluid");
 
 /// Columns of contacts along which water flows.
-pub const WATER: [Quantity; 4] = [
+pub const CONDUIT: [Quantity; 4] = [
     q("injected", VOLUME, "water that wells and sources have let in so far, of contacts along which it flows"),
     q("leaked", VOLUME, "water that has leaked through their walls"),
     q("mass_error", VOLUME, "what the water in them has changed by, less what has come in: 0 but for round-off"),
@@ -551,11 +460,14 @@ pub const ALL: [(&str, &[Group]); 13] = [
             ("RIGID", &RIGID),
             ("", &[PLASTIC]),
             ("BAR", &BAR),
-            ("CONTACT", &WATER),
+            ("CONTACT", &CONDUIT),
+            ("BODY", &WATER),
+            ("OUTLET", &OUTLET),
+            ("", &[WATER_ERROR]),
         ],
     ),
     ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),
-    ("solid.pvd", &[("", &SOLID), ("", &OF_YIELDING)]),
+    ("solid.pvd", &[("", &SOLID), ("", &OF_YIELDING), ("", &[WATER_FLUX])]),
     (
         "contact.pvd",
         &[

@@ -151,6 +151,20 @@ impl Simulation {
         })
     }
 
+    /// Returns the pressure of water that flows through bodies at every node of the mesh, NaN at others [F/L²].
+    pub fn pore_pressures(&self) -> Vec<f64> {
+        let nodes = self.model().mesh.own_nodes();
+        let found =
+            self.model().flow.as_ref().map(|flow| flow.at_nodes(&self.model().mesh, &self.state().displacement));
+        found.map_or_else(
+            || vec![f64::NAN; nodes],
+            |mut all| {
+                all.truncate(nodes);
+                all
+            },
+        )
+    }
+
     /// Returns the positions of the slave points of a contact, in their order [L].
     ///
     /// # Errors

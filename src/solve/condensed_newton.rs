@@ -95,6 +95,7 @@ impl CondensedNewton {
         if model.contacts.is_empty()
             || !model.aids.condense
             || model.changes_bodies()
+            || model.flow.is_some()
             || !model.steps.iter().any(condenses)
         {
             return None;

@@ -291,6 +291,7 @@ fn settings(model: &Model, trial: Trial) -> newton::Settings {
         max_iterations: model.newton.max_iterations,
         old_tangents: model.aids.old_tangents,
         downhill: model.aids.downhill,
+        saddle: model.saddle(),
         gives_up: trial.step.scheme.is_dynamic() && trial.step.shorter(trial.dt, 1).is_some(),
     }
 }
@@ -443,7 +444,9 @@ fn count_negative(trial: Trial, u: &[f64], last: Option<usize>, work: &mut Works
     let coupling = assembler.coupling();
     let evaluated = assembler.tangent(trial, u, false, system);
     let factorized = evaluated.is_ok() && solver.factorize(&system.tangent).is_ok();
-    let counted = if factorized { solver.least_negative() } else { None };
+    let saddle = assembler.model().saddle();
+    let (all, least) = (solver.negative_pivots(), solver.least_negative());
+    let counted = if factorized { newton::beyond(saddle, all, least) } else { None };
     // What is accepted, and the order of elimination of what follows, are as if nothing had been counted.
     assembler.couple(&coupling);
     assembler.residual(trial, u, system).ok().and(counted)

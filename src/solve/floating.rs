@@ -200,6 +200,9 @@ impl Resistance {
 fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String> {
     let mut lone = vec![true; model.mesh.nodes.len()];
     model.bodies.iter().flat_map(|body| &body.nodes).for_each(|&node| lone[node] = false);
+    if let Some(flow) = &model.flow {
+        lone[flow.first..flow.first + flow.count() / 2].fill(false);
+    }
     (0..lone.len()).filter(|&node| lone[node]).find_map(|node| {
         let block = tangent.pattern.block(node, node)?;
         let stiffness = Matrix2::from_fn(|i, j| tangent.values[block.value(i, j)]);

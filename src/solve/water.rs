@@ -100,7 +100,7 @@ fn flowing<'a>(model: &'a Model, trial: Trial<'a>) -> Vec<Flowing<'a>> {
         number,
         pair,
         conduit,
-        old: &trial.old.water[number],
+        old: &trial.old.conduits[number],
         open: 0.0,
         compliance: Vec::new(),
         pressure: Vec::new(),
@@ -330,6 +330,6 @@ pub fn receive(model: &Model, arrived: Arrived, state: &mut State) {
         let (Some(new), Some(conduit)) = (new, &model.contacts[number].conduit) else { continue };
         let points = conduit.points(&new.pressure, &new.walls);
         state.contacts[number].iter_mut().zip(points).for_each(|(state, water)| state.water = Some(water));
-        state.water[number] = new;
+        state.conduits[number] = new;
     }
 }

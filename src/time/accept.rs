@@ -29,7 +29,9 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     std::mem::swap(&mut state.contacts, &mut found.contacts);
     std::mem::swap(&mut state.memory, &mut found.memory);
     std::mem::swap(&mut state.bars, &mut found.bars);
+    std::mem::swap(&mut state.water, &mut found.water);
     (state.dt, state.time) = (time - state.time, time);
+    model.note_water(state);
     state.increment += 1;
 }
 

@@ -63,6 +63,8 @@ const WORTHWHILE: f64 = 1.25;
 
 /// Strongest growth by one estimate of the next attempt at the rest of a subdivided increment.
 const MOST_SHARE: f64 = 4.0;
+/// Strongest growth from one increment to the next while water flows: two-step formulas are stable below 1 + √2.
+const MOST_OF_FLOW: f64 = 2.0;
 /// Relative remainder of a step that is not worth another increment.
 const ROUND_OFF: f64 = 1e-6;
 
@@ -166,16 +168,17 @@ fn judge_flow(step: &Step, [old, new]: [&State; 2], [easy, repeated]: [bool; 2])
 
 /// The worst error of the pressure of water by what surfaces do within an increment, over the allowed one; `None` where no water flows.
 fn flow_error(new: &State) -> Option<LocalError> {
-    let flowing = new.water.iter().filter(|water| !water.pressure.is_empty());
+    let flowing = new.conduits.iter().filter(|water| !water.pressure.is_empty());
     let worst = flowing.map(|water| LocalError { estimate: water.doubt, allowed: 1.0 });
     worst.reduce(LocalError::worse)
 }
 
 /// Judges a static increment by the error of slip.
 fn judge_slip(model: &Model, step: &Step, [old, new]: [&State; 2], repeated: bool) -> Judgement {
-    let slip = slip_error(model, step, [old, new]);
+    let slip = slip_error(model, step, [old, new]).worse(pressure_error(model, step, [old, new]));
     let error = flow_error(new).map_or(slip, |flow| slip.worse(flow));
-    let share = (SAFETY * error.room().sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
+    let most = if model.flow.is_some() { MOST_OF_FLOW } else { MOST_SHARE };
+    let share = (SAFETY * error.room().sqrt()).clamp(LEAST_SHARE, most);
     let accepted = !can_shorten(step, old, new) || !error.is_excessive();
     let keeps = accepted && (repeated || share <= WORTHWHILE);
     let next = if keeps { new.dt } else { (share * new.dt).max(step.increments.min) };
@@ -258,6 +261,21 @@ fn slip_error(model: &Model, step: &Step, [old, new]: [&State; 2]) -> LocalError
         }
     }
     worst
+}
+
+/// ½ Δt |ṗ₁ − ṗ₀| of the pressures of water that flows, with the rates in the increment and in the last one of the step; the first has none.
+fn pressure_error(model: &Model, step: &Step, [old, new]: [&State; 2]) -> LocalError {
+    let (Some(allowed), Some(flow), Some(last)) = (step.increments.pore_pressure, &model.flow, &old.last_increment)
+    else {
+        return LocalError::NONE;
+    };
+    let of = |k: usize| {
+        let dof = flow.dof(k);
+        let rate = (new.displacement[dof] - old.displacement[dof]) / new.dt - last.displacement[dof] / last.dt;
+        0.5 * new.dt * flow.scales[k] * rate.abs()
+    };
+    let estimate = (0..flow.count()).map(of).fold(0.0, f64::max);
+    LocalError { estimate, allowed }
 }
 
 /// Largest slip in the increment of a point that participates in an event of its contact; 0 if there is none, and in the

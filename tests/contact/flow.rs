@@ -52,7 +52,7 @@ fn off(run: &Finished, exact: impl Fn(f64) -> f64) -> f64 {
 /// What has come in is what is there, to round-off, in every state.
 fn balances(run: &Finished) {
     for state in &run.states {
-        let water = &state.water[0];
+        let water = &state.conduits[0];
         let share = water.mass_error.abs() / water.amounts.throughput.max(f64::MIN_POSITIVE);
         assert!(share < 1e-10, "{share:e} of {:e} at {}", water.amounts.throughput, state.time);
     }
@@ -109,7 +109,7 @@ fn a_rate_that_is_given_diffuses_along_a_long_contact() {
     let error = off(&run, exact) / exact(0.0);
     println!("{error:e}");
     assert!(error < 4e-4, "{error}");
-    close("injected", run.last().water[0].amounts.injected, rate * time, 1e-15);
+    close("injected", run.last().conduits[0].amounts.injected, rate * time, 1e-15);
     balances(&run);
 }
 
@@ -122,7 +122,7 @@ fn what_a_schedule_has_let_in_spreads_evenly() {
         {"at": [7, 0], "pressure": 5, "from": 0.5, "until": 0.7},
     ]);
     let run = finish(&block(20, water(json!({"wells": wells})), 200.0, 50.0));
-    let water = &run.last().water[0];
+    let water = &run.last().conduits[0];
     let even = water.amounts.injected / (STORAGE * LENGTH);
     assert!(water.amounts.injected > 0.02, "{}", water.amounts.injected);
     assert!(off(&run, |_| even) < 1e-3 * even, "{even}: {:?}", pressures(&run));
@@ -247,7 +247,7 @@ fn crack(flow: &Value, duration: f64, dt: f64) -> Value {
 }
 
 fn opened(run: &Finished) -> f64 {
-    run.last().water[0].walls.iter().fold(0.0, |most: f64, wall| most.max(wall.opening))
+    run.last().conduits[0].walls.iter().fold(0.0, |most: f64, wall| most.max(wall.opening))
 }
 
 /// A pressurised crack: p = q t/(C + 2 a S), with the volume C per pressure of the same mesh under a given pressure, whatever the
@@ -298,7 +298,7 @@ fn a_crack_by_the_cubic_law_resumes_to_the_bit() {
     case["steps"][0]["dt"] = json!({"initial": 0.025, "max": 0.025});
     let fine = finish(&case);
     let apart = |a: &State, b: &State| {
-        let (a, b) = (&a.water[0].pressure, &b.water[0].pressure);
+        let (a, b) = (&a.conduits[0].pressure, &b.conduits[0].pressure);
         a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     };
     println!("{}", apart(fine.last(), whole.last()));

@@ -46,6 +46,23 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "the relation `derivatives` asks for them, tests/command/gradients.rs for those of all nodes",
     ),
     (&["measured", "file"], "a table in a file: tests/time/water.rs"),
+    (
+        &[
+            "permeability",
+            "permeability_y",
+            "unit_weight",
+            "weighs",
+            "capillary",
+            "kozeny_carman",
+            "drainage",
+            "head",
+            "seepage",
+            "flux",
+            "impervious",
+            "filter",
+        ],
+        "water that flows in static steps alone: tests/solver/consolidation.rs",
+    ),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 

@@ -7,6 +7,7 @@
 mod common;
 
 mod aids;
+mod consolidation;
 mod cycles;
 mod faults;
 mod fracture;

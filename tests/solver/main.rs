@@ -14,6 +14,7 @@ mod builder;
 mod bystander;
 mod clay;
 mod condensed;
+mod consolidation;
 mod constant;
 mod elements;
 mod history;

@@ -56,7 +56,7 @@ fn apart(a: &Finished, b: &Finished) -> [f64; 3] {
 
 fn balances(run: &Finished) {
     for state in &run.states {
-        let water = &state.water[0];
+        let water = &state.conduits[0];
         let share = water.mass_error.abs() / water.amounts.throughput.max(f64::MIN_POSITIVE);
         assert!(share < 1e-10, "{share:e} of {:e} at {}", water.amounts.throughput, state.time);
     }
@@ -73,7 +73,7 @@ fn quasi_dynamic_water_is_that_of_static_increments() {
     let case = slabs(&quasi_dynamic(1e-7), &flow);
     let exact = finish(&case);
     balances(&exact);
-    close("injected", exact.last().water[0].amounts.injected, 0.18, 1e-12);
+    close("injected", exact.last().conduits[0].amounts.injected, 0.18, 1e-12);
     let errors = [0.1, 0.025].map(|dt| {
         let mut case = slabs(&json!("static"), &flow);
         case["steps"][0]["dt"] = json!({"initial": dt, "min": 1e-6, "max": dt});

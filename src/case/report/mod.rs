@@ -186,6 +186,18 @@ fn imposed(input: &BodyInput) -> String {
     let fluid = input.pore_fluid.as_ref().map_or_else(String::new, |fluid| {
         let PoreFluid { bulk_modulus, porosity, cavitation, .. } = fluid;
         let least = cavitation.map_or_else(String::new, |least| format!(", cavitation at {}", number(least)));
+        if let (Some(along_x), Some(weight)) = (fluid.permeability, fluid.unit_weight) {
+            let along_y = fluid.permeability_y.map_or_else(String::new, |along_y| format!(" along x, {} along y", number(along_y)));
+            return format!(
+                ", water flows: permeability {}{along_y}, unit weight {}{}, bulk modulus {}, porosity {}, Biot's coefficient {}",
+                number(along_x),
+                number(weight),
+                if fluid.weighs { " that drives it" } else { "" },
+                number(*bulk_modulus),
+                number(*porosity),
+                number(fluid.coefficient())
+            );
+        }
         format!(
             ", undrained: bulk modulus {}, porosity {}, K_w/n {}{least}",
             number(*bulk_modulus),

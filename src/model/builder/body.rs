@@ -8,6 +8,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::drainage;
 use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size, refuse_if};
 use super::friction::{check_profile, defined};
 use super::groups;
@@ -38,7 +39,7 @@ pub struct BodyInput {
     pub damping: Damping,
     /// Stress of the undeformed body at the start; default: none
     pub initial_stress: Option<InitialStress>,
-    /// Fluid in the pores that has no time to flow: an undrained body; default: none
+    /// Fluid in the pores, which is trapped in an undrained body, or flows; default: none
     pub pore_fluid: Option<PoreFluid>,
     /// Pressure given in the pores, by place and time; default: none
     pub pore_pressure: Option<PorePressure>,
@@ -94,6 +95,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
         check_imposed(&*law, initial_stress.is_some(), *thermal, &place)?;
         if let Some(fluid) = pore_fluid {
             check_fluid(&*law, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?;
+            drainage::check_fluid(&*law, fluid, *element, &place)?;
         }
         let mut pore_pressure = pore_pressure.clone();
         if let Some(given) = &mut pore_pressure {
@@ -107,8 +109,11 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
         let surroundings = Surroundings {
             stressed: initial_stress.is_some(),
             expansion: thermal.map(|thermal| thermal.expansion),
-            fluid: fluid.map(|fluid| bulk::PoreFluid { modulus: fluid.modulus(), cavitation: fluid.cavitation }),
-            biot: pore_pressure.as_ref().map(|given| given.biot),
+            fluid: fluid
+                .filter(|fluid| !fluid.flows())
+                .map(|fluid| bulk::PoreFluid { modulus: fluid.modulus(), cavitation: fluid.cavitation }),
+            biot: (pore_pressure.as_ref().map(|given| given.biot))
+                .or(fluid.filter(|fluid| fluid.flows()).map(PoreFluid::coefficient)),
             plate: mesh.section.is_plate() && law.description().sections != Sections::Plate,
         };
         let material = BodyLaw::around(law, surroundings)
@@ -128,7 +133,8 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             damping: *damping,
             initial_stress: initial_stress.clone(),
             pore_fluid: pore_fluid.clone(),
-            starts_pressed: pore_pressure.as_ref().is_some_and(|given| water::acts_at_start(given, &nodes, mesh)),
+            starts_pressed: pore_pressure.as_ref().is_some_and(|given| water::acts_at_start(given, &nodes, mesh))
+                || drainage::acts_at_start(fluid, &nodes, mesh),
             pore_pressure,
             thermal: *thermal,
             elements,
@@ -203,7 +209,7 @@ fn at_initial_pressure(
 
 /// Checks the fluid in the pores of a body.
 fn check_fluid(law: &dyn Material, fluid: &PoreFluid, nodes: &[usize], mesh: &Mesh, place: &str) -> Checked<()> {
-    let PoreFluid { bulk_modulus, porosity, pressure, cavitation } = fluid;
+    let PoreFluid { bulk_modulus, porosity, pressure, cavitation, .. } = fluid;
     check_positive(&format!("{place}.bulk_modulus"), *bulk_modulus, " (2.2e9 Pa of water)")?;
     let message = format!("is {porosity}: it must be above 0 and below 1, e/(1 + e) of a void ratio e");
     refuse_if(!(*porosity > 0.0 && *porosity < 1.0), format!("{place}.porosity"), message)?;

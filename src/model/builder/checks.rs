@@ -175,6 +175,9 @@ fn check_implicit(model: &Model) -> Checked<()> {
         let why = "beside friction is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): leave it out, \
                    or take static steps with radiation_damping";
         refuse_if(beside, "bond", why)?;
+        let why = "of water that flows is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): give it by \
+                   place and time, or take static steps with radiation_damping";
+        refuse_if(pair.conduit.is_some(), "fluid_pressure", why)?;
         let why = "is not for quasi_dynamic steps: leave it out, and raise alpha_t";
         refuse_if(pair.stick.is_some(), "stick", why)?;
     }

@@ -6,6 +6,7 @@ use std::fmt::{Display, Formatter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::drainage::DrainageInput;
 use super::groups::Place;
 use super::load::{Change, Load, present};
 use crate::model::boundary::{BodyTemperature, Drive};
@@ -79,6 +80,10 @@ pub struct LoadStep {
     /// reaction remains as a force that fades linearly over the step
     #[serde(default)]
     pub supports: Vec<Support>,
+    /// Where water flows out of bodies whose pore_fluid has a permeability, or into them; inherited, and replaced where the same place is named
+    /// again
+    #[serde(default)]
+    pub drainage: Vec<DrainageInput>,
     /// Loads; inherited, and replaced where the same group and kind is named again. In any scheme null reduces a
     /// pressure, traction, force or gravity linearly to zero over the step, as the value 0 would, and ends springs,
     /// dashpots and absorbing sides at once. For a sudden end, use a table or expression
@@ -108,6 +113,10 @@ pub struct IncrementSettings {
     /// that give no `error`, and in all implicit ones. null: no control at all
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub error: Option<Change<f64>>,
+    /// Error control of water that flows: the longest increments in which the pressure of no corner changes by more than twice this beside what it
+    /// would at the last rate. Not controlled unless given [F/L²]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pore_pressure: Option<f64>,
     /// Allowed error of the slip of rate-and-state friction in D_c, where `error` leaves it open [-]
     #[serde(skip, default = "of_critical_slip")]
     #[doc(hidden)]
@@ -120,17 +129,17 @@ fn of_critical_slip() -> f64 {
 
 impl From<f64> for IncrementSettings {
     fn from(initial: f64) -> Self {
-        Self { initial, min: None, max: None, error: None, slip: OF_CRITICAL_SLIP }
+        Self { initial, min: None, max: None, error: None, pore_pressure: None, slip: OF_CRITICAL_SLIP }
     }
 }
 
 impl From<Increments> for IncrementSettings {
-    fn from(Increments { initial, min, max, error, slip }: Increments) -> Self {
+    fn from(Increments { initial, min, max, error, slip, pore_pressure }: Increments) -> Self {
         let error = match (error, slip) {
             (None, Some(_)) => None,
             (error, _) => Some(error.map_or(Change::End, Change::To)),
         };
-        Self { initial, min: Some(min), max: Some(max), error, slip: slip.unwrap_or(OF_CRITICAL_SLIP) }
+        Self { initial, min: Some(min), max: Some(max), error, pore_pressure, slip: slip.unwrap_or(OF_CRITICAL_SLIP) }
     }
 }
 
@@ -143,6 +152,9 @@ setters! { settings: IncrementSettings;
 
     /// Sets the error control: the estimated error per increment; [`Change::End`] switches it off [L].
     error(error: impl Into<Change<f64>>) { settings.error = Some(error.into()); }
+
+    /// Sets the error control of water that flows: the estimated error of a pressure per increment [F/L²].
+    pore_pressure(error: f64) { settings.pore_pressure = Some(error); }
 }
 
 /// Automatic switch of a step to explicit integration and back. An increment in which a contact point slips faster than
@@ -355,6 +367,9 @@ setters! { step: LoadStep;
 
     /// Adds a support.
     support(support: Support) { step.supports.push(support); }
+
+    /// Adds a place where water flows out of bodies, or into them.
+    drain(drainage: DrainageInput) { step.drainage.push(drainage); }
 
     /// Adds a load.
     load(load: Load) { step.loads.push(load); }

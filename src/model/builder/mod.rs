@@ -52,6 +52,7 @@ mod body;
 mod bond;
 mod checks;
 mod contact;
+mod drainage;
 mod error;
 mod facing;
 mod flow;
@@ -286,6 +287,10 @@ impl Builder {
         let laid = bars::lay(&self.bars, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
+        let mut flow = drainage::flow(&bodies, &solids, &mut self.mesh)?;
+        flow.iter_mut().for_each(|flow| {
+            flow.outlets = drainage::outlets(self.steps.iter().flat_map(|step| &step.drainage), &self.mesh)
+        });
         let mut model = Model {
             memories: Memories::new(&solids, &bodies, &body_of_element),
             title: self.title,
@@ -299,6 +304,7 @@ impl Builder {
             point_masses: Vec::new(),
             body_of_element,
             solids,
+            flow,
             bars: Vec::new(),
             contacts: Vec::new(),
             methods: Vec::new(),
@@ -326,6 +332,7 @@ impl Builder {
         model.requests.watch = requests::watched(&self.watch, &model)?;
         model.requests.times = requests::checked_times(self.times, &model.steps)?;
         model.requests.probes = requests::probes(&self.gauges, &model)?;
+        drainage::check(&self.contacts, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
         requests::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;

@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::body::{check_damping, prescribed_temperatures, temperatures};
+use super::drainage::DrainsInForce;
 use super::error::{Checked, ModelError, check_positive, refuse_if};
 use super::groups;
 use super::groups::nodes_at;
@@ -53,6 +54,7 @@ pub fn steps(given: &[LoadStep], model: &Model) -> Checked<Vec<Step>> {
         damping: model.bodies.iter().map(|body| body.damping).collect(),
         supports: Vec::new(),
         loads: LoadsInForce::default(),
+        drains: DrainsInForce::default(),
         temperatures: BTreeMap::new(),
         stages: Stages::new(given, model),
     };
@@ -72,6 +74,7 @@ struct Schedule<'m> {
     /// supports of the last step
     supports: Vec<Prescribed>,
     loads: LoadsInForce,
+    drains: DrainsInForce,
     temperatures: BTreeMap<usize, Amplitude>,
     /// bodies that come and go
     stages: Stages<'m>,
@@ -100,6 +103,8 @@ impl Schedule<'_> {
         let before = std::mem::replace(&mut self.supports, supports);
         let released = if fades { freed(&before, &self.supports) } else { Vec::new() };
         self.loads.step(&given.loads, place, span, &self.stages.absent(), self.model)?;
+        let outlets = self.model.flow.as_ref().map_or(&[][..], |flow| &flow.outlets);
+        let drains = self.drains.step(&given.drainage, place, outlets, self.model)?;
         self.damp(&given.damping, place)?;
         temperatures(&mut self.temperatures, given, place, span, self.model)?;
         check_defined(place, given, scheme, span, self.model)?;
@@ -115,6 +120,7 @@ impl Schedule<'_> {
             supports: self.supports.clone(),
             released,
             loads: self.loads.all(),
+            drains,
             entries: Entry::of_step(self.supports_in_force.entries().chain(self.loads.entries())),
             damping: self.damping.clone(),
             absent: self.stages.absent(),
@@ -176,18 +182,20 @@ pub fn increments(
     let has_estimate = scheme == Scheme::Static || scheme.error_constant().is_some();
     let error = given.error.as_ref().and_then(Change::given).copied();
     let is_open = given.error.is_none() || scheme != Scheme::Static && error.is_some();
+    let pore_pressure = given.pore_pressure;
+    check_positive(&format!("{place}.pore_pressure"), pore_pressure.unwrap_or(1.0), "")?;
     let slip = critical_slip.filter(|_| is_open && !scheme.is_integrated_explicitly()).map(|_| given.slip);
-    let default_min = match (error.is_some() || slip.is_some(), critical_slip) {
+    let default_min = match (error.is_some() || slip.is_some() || pore_pressure.is_some(), critical_slip) {
         (false, _) if scheme.is_quasi_dynamic() => least,
         (true, Some(_)) => least,
         (true, None) => (1e-6 * given.initial).max(least),
         (false, _) => 1e-3 * given.initial,
     };
     // A control that was not asked for shortens increments, and does not lengthen them.
-    let lengthens = scheme.is_quasi_dynamic() || error.is_some();
+    let lengthens = scheme.is_quasi_dynamic() || error.is_some() || pore_pressure.is_some();
     let default_max = if lengthens { given.initial.max(0.1 * duration) } else { given.initial };
     let (min, max) = (given.min.unwrap_or(default_min), given.max.unwrap_or(default_max));
-    let increments = Increments { initial: given.initial, min, max, error, slip };
+    let increments = Increments { initial: given.initial, min, max, error, slip, pore_pressure };
     check_positive(&format!("{place}.initial"), given.initial, "")?;
     check_positive(&format!("{place}.error"), error.unwrap_or(1.0), "")?;
     check_bounds(place, [min, max], span, scheme)?;

@@ -508,7 +508,8 @@ pub fn axis(mesh: &Mesh) -> Vec<f64> {
     if !mesh.section.is_axisymmetric() {
         return Vec::new();
     }
-    let mut near = vec![0.0f64; mesh.nodes.len()];
+    // Nodes that stand for pressures of water have no displacement that the axis holds.
+    let mut near = vec![0.0f64; mesh.nodes.len() - mesh.water_nodes];
     for element in &mesh.elements {
         let size = mesh.size_of(element.nodes.iter().copied());
         element.nodes.iter().for_each(|&node| near[node] = near[node].max(ON_AXIS * size));

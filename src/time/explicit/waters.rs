@@ -25,7 +25,7 @@ impl Explicit {
         let flows = model.contacts.iter().any(|pair| pair.conduit.is_some());
         let mut arrived = Vec::new();
         if flows {
-            arrived = self.flow(time, state, |k, _| state.water[k].walls.clone())?;
+            arrived = self.flow(time, state, |k, _| state.conduits[k].walls.clone())?;
             press(model, &arrived, state);
         }
         self.forces(time, velocity, state, assembler)?;
@@ -71,7 +71,7 @@ impl Explicit {
     ) -> Result<Vec<Option<ConduitState>>, IncrementFailure> {
         let one = |(k, pair): (usize, &crate::contact::pair::ContactPair)| {
             let Some(conduit) = pair.conduit.as_ref().filter(|_| self.step.joins(pair)) else { return Ok(None) };
-            let (old, walls) = (&state.water[k], walls(k, conduit));
+            let (old, walls) = (&state.conduits[k], walls(k, conduit));
             let course =
                 Course { span: [state.time, time], walls: [&old.walls, &walls], rates: None, gives_way: [&[], &[]] };
             let failed = |why: String| IncrementFailure::Water { contact: pair.name.clone(), why };

@@ -174,7 +174,7 @@ impl QuasiDynamic {
         }
         let (mut contacts, jumps) = self.contacts(&old, &steps, time);
         if let Some(waters) = steps.waters() {
-            waters.receive(&mut contacts, &mut state.water);
+            waters.receive(&mut contacts, &mut state.conduits);
         }
         let since = steps.since();
         self.follow(&old, time, since, contacts, &jumps, state)?;
@@ -341,7 +341,7 @@ impl Stepping<'_> {
     }
 
     /// Water that flows along the interface.
-    fn waters(&self) -> Option<&Waters> {
+    fn waters(&self) -> Option<&Waters<'_>> {
         match self {
             Self::Explicit(steps) => Some(&steps.waters),
             Self::Implicit(_) => None,

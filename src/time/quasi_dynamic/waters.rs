@@ -37,7 +37,7 @@ impl<'a> Waters<'a> {
         let mut flowing = Vec::new();
         for (number, (pair, start)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             if let Some(conduit) = &pair.conduit {
-                let state = state.water[number].clone();
+                let state = state.conduits[number].clone();
                 flowing.push(Flowing { number, conduit, first: count, start, state, stages: Vec::new() });
             }
             count += pair.points.len();

@@ -184,6 +184,13 @@ impl SolidElement {
         Ok(energy)
     }
 
+    /// ∂N_a/∂X, N_a/R (none in plane) and the reference volume of each quadrature point.
+    pub fn geometry(&self) -> impl Iterator<Item = (&[Vector2<f64>], &[f64], f64)> {
+        let n = self.kind.nodes();
+        let hoop = move |k: usize| self.hoop.as_ref().map_or(&[][..], |all| &all[k * n..(k + 1) * n]);
+        self.points().enumerate().map(move |(k, (gradients, volume))| (gradients, hoop(k), volume))
+    }
+
     /// Gradients and volume of each quadrature point.
     fn points(&self) -> impl Iterator<Item = (&[Vector2<f64>], f64)> {
         self.gradients.chunks_exact(self.kind.nodes()).zip(self.volumes.iter().copied())

@@ -1,0 +1,249 @@
+//! Water that flows through the pores of bodies.
+//!
+//! ```text
+//! Δm_a = ∫ (b (J − J_n) + (p − p_n)/Q) N_a dV + Σ_b (projection)_ab (p − p_n)_b          what comes to the pores of a corner           (1)
+//! β Δm − Δm_n ω²/(1 + ω) = −Δt (∫ v·∇N dV + ∫ q N ds),   β = (1 + 2ω)/(1 + ω),   ω = Δt/Δt_n                                  BDF2     (2)
+//! v = J_n F_n⁻¹ k/γ_w (F_n⁻ᵀ ∇p − γ_w g)                                                  flow in the body as it was                   (3)
+//! r_a = −s_a (Δm_a − Δm_n,a ω²/(1 + 2ω) + Δt/β (∫ v·∇N_a dV + ∫ q N_a ds))                                                             (4)
+//! ```
+//! The geometry and the permeability of (3) are those of the accepted state: with b p J F⁻ᵀ in the stress of the bodies, and (4) divided by β, the tangent is symmetric, and
+//! has as many negative eigenvalues as pressures. After a jump, at the start of a step, (2) begins with ω = 0: backward Euler. The integral of q over
+//! an outlet is taken by the same formula, so that what is stored and what has left add up to nothing.
+//!
+//! Source: M. A. Biot (1941), J. Appl. Phys. 12, 155; the projection: Dohrmann & Bochev (2004), Int. J. Numer. Meth. Fluids 46, 183; White & Borja
+//! (2008), Comput. Methods Appl. Mech. Eng. 197, 4353.
+
+use nalgebra::{Matrix2, Vector2};
+use rayon::prelude::*;
+
+use super::sums::{Dependence, Sums, TrialFailure};
+use super::trial::Trial;
+use crate::laws::bulk::{MaterialFailure, cofactor};
+use crate::mesh::configuration::vector;
+use crate::model::Model;
+use crate::model::pore_flow::{PoreFlow, WetElement, WetPoint};
+use crate::model::state::{Outflow, State, Water};
+
+/// The flow goes by the state at the start of the increment, and the volume by the displacement.
+pub(super) fn dependence(model: &Model) -> Dependence {
+    if model.flow.is_some() { Dependence::Displacement } else { Dependence::Nothing }
+}
+
+/// Coefficients of (2) and (4): ω²/(1 + 2ω), Δt/β.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Times {
+    memory: f64,
+    span: f64,
+}
+
+impl Times {
+    fn of(trial: Trial) -> Self {
+        let last = trial.old.last_increment.as_ref().map_or(0.0, |last| last.dt);
+        let ratio = if last > 0.0 { trial.dt / last } else { 0.0 };
+        Self { memory: ratio * ratio / (1.0 + 2.0 * ratio), span: trial.dt * (1.0 + ratio) / (1.0 + 2.0 * ratio) }
+    }
+}
+
+/// Adds the equations of the pressures, and what the bodies' forces change by with them to the tangent; stores the water at the end of the trial.
+pub(super) fn add(
+    model: &Model,
+    trial: Trial,
+    u: &[f64],
+    water: &mut Water,
+    sums: &mut Sums,
+) -> Result<(), TrialFailure> {
+    let Some(flow) = &model.flow else { return Ok(()) };
+    let (times, old) = (Times::of(trial), &trial.old.water);
+    let wanted = sums.tangent.is_some();
+    let of = |wet: &WetElement| {
+        Increment { flow, wet, trial, u, times }
+            .evaluate(wanted)
+            .map_err(|cause| TrialFailure::material(model, wet.element, cause))
+    };
+    let answers: Vec<Result<Answer, TrialFailure>> = flow.elements.par_iter().map(of).collect();
+    let mut change = vec![0.0; flow.count()];
+    let mut all = vec![[0.0; 2]; flow.count()];
+    for (answer, wet) in answers.into_iter().zip(&flow.elements) {
+        let answer = answer?;
+        for (a, &k) in wet.pressures.iter().enumerate() {
+            change[k] += answer.change[a];
+            all[k][0] += answer.change[a] + times.span * answer.flow[a];
+            all[k][1] += answer.size[a];
+        }
+        if wanted {
+            sums.couple(&wet.nodes, &answer.tangent);
+        }
+    }
+    for (k, [sum, size]) in all.iter_mut().enumerate() {
+        let before = times.memory * old.change[k];
+        *sum -= before;
+        *size += before.abs();
+    }
+    water.outlets.clone_from(&old.outlets);
+    // A case that goes on from the end of another may have further ones.
+    water.outlets.resize(flow.outlets.len(), Outflow::default());
+    water.outlets.iter_mut().for_each(|outlet| (outlet.rate, outlet.change) = (0.0, times.memory * outlet.change));
+    for drain in &trial.step.drains {
+        let outlet = &mut water.outlets[drain.outlet];
+        for &(k, at, area) in &drain.corners {
+            let [q, slope] = drain.flow(flow.pressure(k, Some(u)), at, trial.time);
+            if !q.is_finite() {
+                let node = flow.corners[k].unwrap_or_default();
+                return Err(TrialFailure::Undefined { node: model.mesh.node_tags[node], time: trial.time });
+            }
+            outlet.rate += area * q;
+            outlet.change += times.span * area * q;
+            all[k][0] += times.span * area * q;
+            all[k][1] += times.span * area * q.abs();
+            let (scale, dof) = (flow.scales[k], flow.dof(k));
+            sums.stiffen(dof, dof, -scale * scale * times.span * area * slope);
+        }
+    }
+    water.outlets.iter_mut().for_each(|outlet| outlet.volume += outlet.change);
+    for (k, [sum, size]) in all.into_iter().enumerate() {
+        let (dof, scale) = (flow.dof(k), flow.scales[k]);
+        if flow.corners[k].is_none() {
+            sums.force[dof] -= flow.spare() * u[dof];
+            sums.stiffen(dof, dof, -flow.spare());
+            continue;
+        }
+        sums.force[dof] -= scale * sum;
+        if let Some(magnitudes) = &mut sums.magnitudes {
+            magnitudes[dof] += scale * size;
+        }
+    }
+    water.change = change;
+    water.peaks.clone_from(&old.peaks);
+    Ok(())
+}
+
+/// An element in an increment.
+struct Increment<'a> {
+    flow: &'a PoreFlow,
+    wet: &'a WetElement,
+    trial: Trial<'a>,
+    u: &'a [f64],
+    times: Times,
+}
+
+/// What an element adds: Δm, ∫ v·∇N dV, the magnitudes of their parts, and the tangent of all its nodes, column by column.
+#[derive(Default)]
+struct Answer {
+    change: [f64; 4],
+    flow: [f64; 4],
+    size: [f64; 4],
+    tangent: Vec<f64>,
+}
+
+/// A body at a point: J, and ∂J/∂u of every node.
+struct Opened {
+    jacobian: f64,
+    by: Vec<Vector2<f64>>,
+}
+
+/// F in the plane, and the stretch out of it.
+fn deformed(point: &WetPoint, nodes: &[usize], u: &[f64]) -> (Matrix2<f64>, f64) {
+    let mut f = Matrix2::identity();
+    let mut hoop = 1.0;
+    for (a, &node) in nodes.iter().enumerate().take(point.gradients.len()) {
+        let moved = vector(u, node);
+        f += moved * point.gradients[a].transpose();
+        hoop += point.hoop.get(a).map_or(0.0, |share| share * moved.x);
+    }
+    (f, hoop)
+}
+
+fn opened(point: &WetPoint, nodes: &[usize], u: &[f64], is_linear: bool) -> Result<Opened, MaterialFailure> {
+    let (f, hoop) = deformed(point, nodes, u);
+    let around = |a: usize| point.hoop.get(a).copied().unwrap_or(0.0);
+    if is_linear {
+        let by = point.gradients.iter().enumerate().map(|(a, g)| g + Vector2::new(around(a), 0.0));
+        return Ok(Opened { jacobian: f.trace() - 1.0 + (hoop - 1.0), by: by.collect() });
+    }
+    let (area, plane) = (cofactor(&f), f.determinant());
+    if !(plane > 0.0 && hoop > 0.0) {
+        return Err(MaterialFailure::Inverted { jacobian: plane * hoop });
+    }
+    let by = point.gradients.iter().enumerate().map(|(a, g)| area * g * hoop + Vector2::new(plane * around(a), 0.0));
+    Ok(Opened { jacobian: plane * hoop, by: by.collect() })
+}
+
+/// J_n F_n⁻¹ k/γ_w F_n⁻ᵀ, and J_n F_n⁻¹ k/γ_w.
+fn conducts(wet: &WetElement, point: &WetPoint, old: &State) -> [Matrix2<f64>; 2] {
+    let mobility = Matrix2::new(wet.mobility[0], 0.0, 0.0, wet.mobility[1]);
+    if wet.is_linear {
+        return [mobility; 2];
+    }
+    let (f, hoop) = deformed(point, &wet.nodes, &old.displacement);
+    // J F⁻¹ = cofᵀ
+    let area = cofactor(&f).transpose() * hoop;
+    let inverse = cofactor(&f) / f.determinant();
+    [area * mobility * inverse, area * mobility]
+}
+
+impl Increment<'_> {
+    fn evaluate(&self, wanted: bool) -> Result<Answer, MaterialFailure> {
+        let Self { flow, wet, trial, u, times } = self;
+        let (old, corners) = (&trial.old.displacement, wet.pressures.len());
+        let now: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(u))).collect();
+        let before: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(old))).collect();
+        let scales: Vec<f64> = wet.pressures.iter().map(|&k| flow.scales[k]).collect();
+        let mut answer = Answer::default();
+        let dofs = 2 * wet.nodes.len();
+        if wanted {
+            answer.tangent.resize(dofs * dofs, 0.0);
+        }
+        for (a, b) in (0..corners).flat_map(|a| (0..corners).map(move |b| (a, b))) {
+            let takes = wet.storage[(a, b)] + wet.projection[(a, b)];
+            let part = takes * (now[b] - before[b]);
+            answer.change[a] += part;
+            answer.size[a] += part.abs();
+            if wanted {
+                answer.tangent[wet.places[b] * dofs + wet.places[a]] -= scales[a] * scales[b] * takes;
+            }
+        }
+        for point in &wet.points {
+            let is = opened(point, &wet.nodes, u, wet.is_linear)?;
+            let was = opened(point, &wet.nodes, old, wet.is_linear)?;
+            let share = wet.biot * point.volume;
+            let gross: f64 =
+                (is.by.iter().zip(&wet.nodes)).map(|(by, &n)| by.dot(&(vector(u, n) - vector(old, n))).abs()).sum();
+            let pressure: f64 = point.values.iter().zip(&before).map(|(n, p)| n * p).sum();
+            let share_of_k = wet.permeability(was.jacobian, pressure);
+            let [conducts, falls] = conducts(wet, point, trial.old).map(|part| part * share_of_k);
+            let slope: Vector2<f64> = point.slopes.iter().zip(&now).map(|(slope, p)| slope * *p).sum();
+            let v = conducts * slope + falls * Vector2::new(0.0, wet.weight);
+            for a in 0..corners {
+                answer.change[a] += point.values[a] * share * (is.jacobian - was.jacobian);
+                answer.size[a] += point.values[a].abs() * share * gross;
+                answer.flow[a] += point.volume * v.dot(&point.slopes[a]);
+                let driven = point.slopes[a].dot(&(falls * Vector2::new(0.0, wet.weight))).abs();
+                let size = (0..corners).map(|b| (point.slopes[a].dot(&(conducts * point.slopes[b])) * now[b]).abs());
+                answer.size[a] += times.span * point.volume * (driven + size.sum::<f64>());
+            }
+            if wanted {
+                self.couple(point, &is, &conducts, &scales, &mut answer.tangent);
+            }
+        }
+        Ok(answer)
+    }
+
+    /// Adds what couples displacements and pressures, and the flow, to the tangent.
+    fn couple(&self, point: &WetPoint, is: &Opened, conducts: &Matrix2<f64>, scales: &[f64], tangent: &mut [f64]) {
+        let (wet, dofs) = (self.wet, 2 * self.wet.nodes.len());
+        for (a, place) in wet.places.iter().copied().enumerate() {
+            let share = scales[a] * wet.biot * point.volume * point.values[a];
+            for (node, by) in is.by.iter().enumerate() {
+                for (i, by) in by.iter().enumerate() {
+                    let dof = 2 * node + i;
+                    tangent[place * dofs + dof] -= share * by;
+                    tangent[dof * dofs + place] -= share * by;
+                }
+            }
+            for (b, other) in wet.places.iter().copied().enumerate() {
+                let flows = point.slopes[a].dot(&(conducts * point.slopes[b]));
+                tangent[other * dofs + place] -= scales[a] * scales[b] * self.times.span * point.volume * flows;
+            }
+        }
+    }
+}

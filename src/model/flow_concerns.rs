@@ -1,0 +1,92 @@
+//! Warnings about water that flows, before the run starts.
+
+use super::Model;
+use super::pore_flow::{Drain, DrainKind, PoreFlow, WetElement};
+use super::text::number;
+use crate::mesh::ElementKind;
+
+/// What flows at the start into a corner that is no outlet, over all that passes it, above which water that weighs counts as not at rest [-]
+const AT_REST: f64 = 1e-4;
+
+/// Share of the least increment without overshoot, r h²/(6 c), below which pressures beside an outlet overshoot by a few hundredths [-]
+const OVERSHOOTS: f64 = 0.5;
+
+/// Warnings about the water.
+pub(super) fn concerns(model: &Model) -> Vec<String> {
+    let Some(flow) = &model.flow else { return Vec::new() };
+    moves(model, flow).into_iter().chain(overshoots(model, flow)).collect()
+}
+
+/// Water that is driven by its weight, and does not start at rest.
+fn moves(model: &Model, flow: &PoreFlow) -> Option<String> {
+    let mut sums = vec![[0.0; 2]; flow.count()];
+    let mut free = vec![true; flow.count()];
+    let drains = model.steps.first().map_or(&[][..], |step| &step.drains);
+    drains.iter().flat_map(|drain| &drain.corners).for_each(|(k, ..)| free[*k] = false);
+    for wet in &flow.elements {
+        let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, None)).collect();
+        for point in &wet.points {
+            let [kx, ky] = wet.mobility;
+            for (a, &k) in wet.pressures.iter().enumerate() {
+                let own = point.slopes[a];
+                let weighs = point.volume * ky * wet.weight * own.y;
+                sums[k][0] += weighs;
+                sums[k][1] += weighs.abs();
+                for (slope, pressure) in point.slopes.iter().zip(&pressures) {
+                    let part = point.volume * pressure * (kx * own.x * slope.x + ky * own.y * slope.y);
+                    sums[k][0] += part;
+                    sums[k][1] += part.abs();
+                }
+            }
+        }
+        if wet.weight == 0.0 {
+            wet.pressures.iter().for_each(|&k| free[k] = false);
+        }
+    }
+    let worst =
+        (0..flow.count()).filter(|&k| free[k] && sums[k][1] > 0.0).map(|k| (k, (sums[k][0] / sums[k][1]).abs()));
+    let (k, share) = worst.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, share)| *share > AT_REST)?;
+    let at = flow.corners[k].map(|node| model.mesh.nodes[node])?;
+    Some(format!(
+        "water flows at the start where nothing drains it, as at ({}, {}), where {} % of it comes to rest: it weighs, so give its `pressure` at the \
+         start as unit_weight (level - y), or what a state of flow has",
+        number(at.x),
+        number(at.y),
+        number((100.0 * share).round())
+    ))
+}
+
+/// r of an element: how long an increment after a jump is to be for pressures without overshoot, over h²/(6 c).
+fn least(kind: ElementKind) -> f64 {
+    match kind {
+        ElementKind::Q4 | ElementKind::T3 => 0.83,
+        ElementKind::Q8 | ElementKind::Q9 => 1.0,
+        ElementKind::T6 => 2.6,
+    }
+}
+
+/// Steps whose first increment is too short for the elements at an outlet.
+fn overshoots(model: &Model, flow: &PoreFlow) -> Option<String> {
+    let holds = |drain: &&Drain| drain.kind != DrainKind::Flux;
+    model.steps.iter().find_map(|step| {
+        let mut drained = vec![false; flow.count()];
+        let corners = step.drains.iter().filter(holds).flat_map(|drain| &drain.corners);
+        corners.for_each(|(k, ..)| drained[*k] = true);
+        let beside = |wet: &&WetElement| wet.pressures.iter().any(|&k| drained[k]);
+        let of = |wet: &WetElement| {
+            least(model.mesh.elements[wet.element].kind) * wet.size * wet.size / (6.0 * wet.diffusivity)
+        };
+        // The elements that follow the jump first.
+        let shortest = flow.elements.iter().filter(beside).map(of).fold(f64::INFINITY, f64::min);
+        let dt = step.increments.initial;
+        (shortest.is_finite() && dt < OVERSHOOTS * shortest).then(|| {
+            format!(
+                "the first increment of step `{}`, {}, is shorter than water takes through half an element beside an outlet, {}: where something \
+                 jumps, pressures there overshoot; give a longer `dt`, or finer elements",
+                step.name,
+                number(dt),
+                number(shortest)
+            )
+        })
+    })
+}

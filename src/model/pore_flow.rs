@@ -1,0 +1,444 @@
+//! Water that flows through the pores of bodies: its pressures, the elements that it fills, and where it leaves them.
+//!
+//! Every corner of an element has a pressure, linear or bilinear between corners. Two pressures stand in the place of the two displacements of a
+//! node of their own, which belongs to no element, so that matrices keep blocks of two by two:
+//!
+//! ```text
+//! p = p₀ + s û        s = M/h: stiffness of the skeleton over the size of an element, so that û is a length and its equation a force
+//! ```
+
+use nalgebra::{DMatrix, Vector2};
+
+use super::boundary::Profile;
+use super::element::SolidElement;
+use super::state::{Outflow, State, Water};
+use super::{Body, Model};
+use crate::laws::bulk::GIVEN_PRESSURE;
+use crate::mesh::Mesh;
+
+/// The water of all bodies in which it flows.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct PoreFlow {
+    /// First of the nodes that stand for pressures
+    pub first: usize,
+    /// Node whose pressure each number has; `None` of the last, if there is an odd number of them
+    pub corners: Vec<Option<usize>>,
+    /// Number of the pressure of each node
+    pub of_node: Vec<Option<usize>>,
+    /// p₀: pressure at the start [F/L²]
+    pub initial: Vec<f64>,
+    /// s [F/L³]
+    pub scales: Vec<f64>,
+    /// elements
+    pub elements: Vec<WetElement>,
+    /// Place of each element of the mesh among these
+    pub of_element: Vec<Option<usize>>,
+    /// Bodies
+    pub bodies: Vec<usize>,
+    /// Names of the outlets, over all steps
+    pub outlets: Vec<String>,
+    /// of the stiffest body [F/L]
+    stiffness: f64,
+}
+
+/// An element that water flows through.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct WetElement {
+    /// its number in the mesh
+    pub element: usize,
+    /// its nodes, then those that stand for its pressures
+    pub nodes: Vec<usize>,
+    /// number of the pressure of each corner
+    pub pressures: Vec<usize>,
+    /// place of the pressure of each corner among the dofs of the nodes
+    pub places: Vec<usize>,
+    /// quadrature points
+    pub points: Vec<WetPoint>,
+    /// ∫ N_a N_b dV/Q: what the pores take up by the pressure [L⁵/F]
+    pub storage: DMatrix<f64>,
+    /// ∫ (N_a − ΠN_a)(N_b − ΠN_b) dV/(2G) of linear elements, Π being the mean: without it pressures of neighbours alternate [L⁵/F]
+    pub projection: DMatrix<f64>,
+    /// ∫ N_a dV [L³]
+    pub volumes: Vec<f64>,
+    /// k/γ_w along x and y [L⁴/(F T)]
+    pub mobility: [f64; 2],
+    /// γ_w if its weight drives it, else 0 [F/L³]
+    pub weight: f64,
+    /// γ_w h of capillary water [F/L²]
+    pub suction: Option<f64>,
+    /// e₀, if the permeability follows the void ratio [-]
+    pub void_ratio: Option<f64>,
+    /// b [-]
+    pub biot: f64,
+    /// whether the body is linear: its water flows through the undeformed body
+    pub is_linear: bool,
+    /// c = k M/γ_w, and the size [L²/T], [L]
+    pub diffusivity: f64,
+    /// square root of the area [L]
+    pub size: f64,
+}
+
+/// A quadrature point of an element that water flows through.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct WetPoint {
+    /// N of the corners
+    pub values: Vec<f64>,
+    /// ∂N/∂X of the corners [1/L]
+    pub slopes: Vec<Vector2<f64>>,
+    /// ∂N/∂X of all nodes [1/L]
+    pub gradients: Vec<Vector2<f64>>,
+    /// N/R of all nodes of a ring; empty in plane [1/L]
+    pub hoop: Vec<f64>,
+    /// reference volume [L³]
+    pub volume: f64,
+}
+
+/// An outlet in a step: where water may leave the bodies, or enter them.
+#[derive(Clone, Debug)]
+#[doc(hidden)]
+pub struct Drain {
+    /// number among the outlets of the model
+    pub outlet: usize,
+    /// number of the pressure, reference position and area of each of its corners
+    pub corners: Vec<(usize, Vector2<f64>, f64)>,
+    /// what it does
+    pub kind: DrainKind,
+    /// p̄, or q of a flux
+    pub value: Profile,
+    /// γ_w where the value is a head: p̄ = γ_w (value − y) [F/L³]
+    pub head: Option<f64>,
+}
+
+/// What an outlet does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub enum DrainKind {
+    /// q = κ (p − p̄), κ [L³/(F T)]
+    Conducts(f64),
+    /// The same, but only outwards
+    Seeps(f64),
+    /// q is given
+    Flux,
+}
+
+impl Drain {
+    /// Flow q out of the body at a place, and ∂q/∂p [L/T], [L³/(F T)].
+    pub fn flow(&self, pressure: f64, at: Vector2<f64>, time: f64) -> [f64; 2] {
+        let value = self.value.value_at(at, time);
+        let held = self.head.map_or(value, |weight| weight * (value - at.y));
+        match self.kind {
+            DrainKind::Flux => [value, 0.0],
+            DrainKind::Seeps(_) if pressure <= held => [0.0; 2],
+            DrainKind::Conducts(conductance) | DrainKind::Seeps(conductance) => {
+                [conductance * (pressure - held), conductance]
+            }
+        }
+    }
+}
+
+#[doc(hidden)]
+impl PoreFlow {
+    /// The water of the bodies in which it flows, if there is any; adds its nodes to the mesh.
+    pub fn new(bodies: &[Body], solids: &[SolidElement], mesh: &mut Mesh) -> Option<Self> {
+        let wet: Vec<usize> = (0..bodies.len()).filter(|&body| bodies[body].flowing().is_some()).collect();
+        if wet.is_empty() {
+            return None;
+        }
+        let pairs = paired(wet.iter().flat_map(|&body| bodies[body].elements.iter().copied()), mesh);
+        let first = mesh.nodes.len();
+        let corners: Vec<Option<usize>> = pairs.into_iter().flatten().collect();
+        let mut of_node = vec![None; first];
+        corners.iter().enumerate().for_each(|(k, node)| node.iter().for_each(|&node| of_node[node] = Some(k)));
+        let tag = mesh.node_tags.iter().max().map_or(0, |tag| tag.saturating_add(1));
+        for (k, pair) in corners.chunks_exact(2).enumerate() {
+            mesh.nodes.push(pair[0].map_or_else(Vector2::zeros, |node| mesh.nodes[node]));
+            mesh.node_tags.push(tag.saturating_add(k as u64));
+        }
+        mesh.water_nodes = corners.len() / 2;
+        let mut flow = Self {
+            first,
+            initial: vec![0.0; corners.len()],
+            scales: vec![0.0; corners.len()],
+            of_element: vec![None; mesh.elements.len()],
+            corners,
+            of_node,
+            elements: Vec::new(),
+            bodies: wet.clone(),
+            outlets: Vec::new(),
+            stiffness: 0.0,
+        };
+        for &body in &wet {
+            for &e in &bodies[body].elements {
+                flow.of_element[e] = Some(flow.elements.len());
+                let element = WetElement::new(e, &bodies[body], &solids[e], mesh, &flow)?;
+                let modulus = bodies[body].material.description().p_wave_modulus;
+                let depth = solids[e].mean_weight();
+                flow.stiffness = flow.stiffness.max(modulus * depth);
+                for &k in &element.pressures {
+                    flow.scales[k] = flow.scales[k].max(modulus / element.size);
+                    let at = flow.corners[k].map_or_else(Vector2::zeros, |node| mesh.nodes[node]);
+                    flow.initial[k] = bodies[body].flowing()?.pressure.value(at);
+                }
+                flow.elements.push(element);
+            }
+        }
+        flow.scales.iter_mut().filter(|scale| **scale == 0.0).for_each(|scale| *scale = 1.0);
+        Some(flow)
+    }
+
+    /// Dof that stands for a pressure.
+    pub fn dof(&self, number: usize) -> usize {
+        2 * self.first + number
+    }
+
+    /// Number of pressures, with one that stands for none if they are odd.
+    pub fn count(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// A pressure at a displacement, or at the start [F/L²].
+    pub fn pressure(&self, number: usize, u: Option<&[f64]>) -> f64 {
+        self.initial[number] + u.map_or(0.0, |u| self.scales[number] * u[self.dof(number)])
+    }
+
+    /// The element of a number in the mesh, if water flows through it.
+    pub fn wet(&self, element: usize) -> Option<&WetElement> {
+        self.of_element.get(element).copied().flatten().map(|k| &self.elements[k])
+    }
+
+    /// Stiffness of the equation of a pressure that stands for none [F/L].
+    pub fn spare(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// Pressures at all nodes of the mesh, in the middle of an edge or element the mean of its ends or corners; NaN where no water flows [F/L²].
+    pub fn at_nodes(&self, mesh: &Mesh, u: &[f64]) -> Vec<f64> {
+        let mut all: Vec<f64> =
+            self.of_node.iter().map(|k| k.map_or(f64::NAN, |k| self.pressure(k, Some(u)))).collect();
+        for wet in &self.elements {
+            let element = &mesh.elements[wet.element];
+            let corners = element.kind.corners();
+            let own: Vec<f64> = wet.pressures.iter().map(|&k| self.pressure(k, Some(u))).collect();
+            for (local, &node) in element.nodes.iter().enumerate().skip(corners) {
+                all[node] = match local - corners {
+                    edge if edge < corners => 0.5 * (own[edge] + own[(edge + 1) % corners]),
+                    _ => own.iter().sum::<f64>() / corners as f64,
+                };
+            }
+        }
+        all
+    }
+}
+
+/// Pairs of neighbouring corners of some elements, the last one alone if they are odd.
+fn paired(elements: impl Iterator<Item = usize>, mesh: &Mesh) -> Vec<[Option<usize>; 2]> {
+    let mut beside: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
+    for e in elements {
+        let element = &mesh.elements[e];
+        for edge in 0..element.kind.corners() {
+            let [a, b] = element.kind.edge(edge).0.map(|local| element.nodes[local]);
+            beside.entry(a).or_default().push(b);
+            beside.entry(b).or_default().push(a);
+        }
+    }
+    let mut taken = std::collections::BTreeSet::new();
+    let (mut pairs, mut alone) = (Vec::new(), Vec::new());
+    for (&node, others) in &beside {
+        if !taken.insert(node) {
+            continue;
+        }
+        match others.iter().filter(|other| !taken.contains(other)).min() {
+            Some(&other) => {
+                taken.insert(other);
+                pairs.push([Some(node), Some(other)]);
+            }
+            None => alone.push(node),
+        }
+    }
+    pairs.extend(alone.chunks(2).map(|two| [two.first().copied(), two.get(1).copied()]));
+    pairs
+}
+
+impl WetElement {
+    fn new(e: usize, body: &Body, solid: &SolidElement, mesh: &Mesh, flow: &PoreFlow) -> Option<Self> {
+        let (element, fluid) = (&mesh.elements[e], body.flowing()?);
+        let kind = element.kind;
+        let (corners, law) = (kind.corners(), body.material.description());
+        let linear = if corners == 3 { crate::mesh::ElementKind::T3 } else { crate::mesh::ElementKind::Q4 };
+        let pressures: Vec<usize> = element.nodes[..corners].iter().filter_map(|&node| flow.of_node[node]).collect();
+        let mut nodes = element.nodes.clone();
+        let mut places = Vec::new();
+        for &k in &pressures {
+            let node = flow.dof(k) / 2;
+            let place = nodes.iter().position(|other| *other == node).unwrap_or_else(|| {
+                nodes.push(node);
+                nodes.len() - 1
+            });
+            places.push(2 * place + flow.dof(k) % 2);
+        }
+        let positions = mesh.places(e);
+        let slopes = |at: [f64; 2]| {
+            // ∂N/∂X = (∂X/∂ξ)⁻ᵀ ∂N/∂ξ with the geometry of all nodes
+            let map: nalgebra::Matrix2<f64> = positions
+                .iter()
+                .zip(kind.derivatives(at))
+                .map(|(x, d)| (x - positions[0]) * Vector2::from(d).transpose())
+                .sum();
+            let inverse = map.transpose().try_inverse().unwrap_or_default();
+            (
+                linear.derivatives(at).into_iter().map(|d| inverse * Vector2::from(d)).collect::<Vec<_>>(),
+                map.determinant(),
+            )
+        };
+        let quadrature = solid.quadrature();
+        let points = quadrature.iter().zip(solid.geometry()).map(|(point, (gradients, hoop, volume))| WetPoint {
+            values: linear.values(point.at),
+            slopes: slopes(point.at).0,
+            gradients: gradients.to_vec(),
+            hoop: hoop.to_vec(),
+            volume,
+        });
+        let mut mass = DMatrix::<f64>::zeros(corners, corners);
+        for point in kind.mass_quadrature() {
+            let values = nalgebra::DVector::from_vec(linear.values(point.at));
+            let place = positions.iter().zip(kind.values(point.at)).map(|(x, n)| x * n).sum();
+            mass.ger(point.weight * slopes(point.at).1 * mesh.section.weight(place), &values, &values, 1.0);
+        }
+        let (volumes, volume) = (mass.column_sum(), mass.sum());
+        let spread = &mass - &volumes * volumes.transpose() / volume;
+        let is_equal = kind.nodes() == corners;
+        let biot = fluid.coefficient();
+        // 1/Q = n/K_w + (b − n)/K_s,  K_s = K/(1 − b)
+        let bulk = law.p_wave_modulus - 4.0 / 3.0 * law.shear_modulus;
+        let storage = 1.0 / fluid.modulus() + (biot - fluid.porosity) * (1.0 - biot) / bulk;
+        let (along_x, weight) = (fluid.permeability?, fluid.unit_weight?);
+        let mobility = [along_x, fluid.permeability_y.unwrap_or(along_x)].map(|k| k / weight);
+        Some(Self {
+            element: e,
+            nodes,
+            pressures,
+            places,
+            points: points.collect(),
+            storage: mass * storage,
+            projection: if is_equal { spread / (2.0 * law.shear_modulus) } else { DMatrix::zeros(corners, corners) },
+            volumes: volumes.iter().copied().collect(),
+            mobility,
+            weight: if fluid.weighs { weight } else { 0.0 },
+            suction: fluid.capillary.map(|height| weight * height),
+            void_ratio: fluid.kozeny_carman.then(|| fluid.porosity / (1.0 - fluid.porosity)),
+            biot,
+            is_linear: law.is_linear,
+            diffusivity: mobility[0].max(mobility[1]) * law.p_wave_modulus,
+            size: solid.area().sqrt(),
+        })
+    }
+}
+
+/// Least permeability of ground above a free surface, and of pores that close, over that at the start [-]
+const LEAST: f64 = 1e-4;
+
+#[doc(hidden)]
+impl WetElement {
+    /// Permeability over that at the start, at a volume and a pressure.
+    pub fn permeability(&self, jacobian: f64, pressure: f64) -> f64 {
+        let of_pores = self.void_ratio.map_or(1.0, |start| {
+            let now = ((1.0 + start) * jacobian - 1.0).max(0.0);
+            ((now / start).powi(3) * (1.0 + start) / (1.0 + now)).max(LEAST)
+        });
+        let of_water = self.suction.map_or(1.0, |suction| (pressure.min(0.0) / suction).exp().max(LEAST));
+        of_pores * of_water
+    }
+}
+
+#[doc(hidden)]
+impl Model {
+    /// The water at the start of a run.
+    pub fn first_water(&self) -> Water {
+        self.flow.as_ref().map_or_else(Water::default, |flow| Water {
+            change: vec![0.0; flow.count()],
+            outlets: vec![Outflow::default(); flow.outlets.len()],
+            peaks: vec![0.0; flow.bodies.len()],
+        })
+    }
+
+    /// Water that all bodies have taken up and that has left through outlets, which is none but for errors, and how much has come and gone;
+    /// `None` where none flows [L³].
+    pub fn balance_of_water(&self, state: &State) -> Option<[f64; 2]> {
+        let flow = self.flow.as_ref()?;
+        let taken = flow.bodies.iter().filter_map(|&body| self.water_of(body, state)).map(|[taken, _]| taken);
+        let left = state.water.outlets.iter().map(|outlet| outlet.volume);
+        Some(taken.chain(left).fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()]))
+    }
+
+    /// Mean seepage through an element, −k/γ_w (∇p − γ_w g) in the place where it is now [L/T].
+    pub fn seepage(&self, wet: &WetElement, state: &State) -> Vector2<f64> {
+        let Some(flow) = &self.flow else { return Vector2::zeros() };
+        let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(&state.displacement))).collect();
+        let (mut sum, mut volume) = (Vector2::zeros(), 0.0);
+        for point in &wet.points {
+            let mut slope: Vector2<f64> = point.slopes.iter().zip(&pressures).map(|(slope, p)| slope * *p).sum();
+            if !wet.is_linear {
+                let f =
+                    point.gradients.iter().zip(&wet.nodes).fold(nalgebra::Matrix2::identity(), |sum, (g, &node)| {
+                        sum + crate::mesh::configuration::vector(&state.displacement, node) * g.transpose()
+                    });
+                slope = f.transpose().try_inverse().unwrap_or_default() * slope;
+            }
+            let driven = slope + Vector2::new(0.0, wet.weight);
+            let pressure: f64 = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
+            let share = point.volume * wet.permeability(self.opening(wet, point, state), pressure);
+            sum -= share * Vector2::new(wet.mobility[0] * driven.x, wet.mobility[1] * driven.y);
+            volume += point.volume;
+        }
+        sum / volume
+    }
+
+    /// J at a point.
+    fn opening(&self, wet: &WetElement, point: &WetPoint, state: &State) -> f64 {
+        let mut f = nalgebra::Matrix2::<f64>::identity();
+        let mut hoop = 1.0;
+        for (a, &node) in wet.nodes.iter().enumerate().take(point.gradients.len()) {
+            let moved = crate::mesh::configuration::vector(&state.displacement, node);
+            f += moved * point.gradients[a].transpose();
+            hoop += point.hoop.get(a).map_or(0.0, |share| share * moved.x);
+        }
+        if wet.is_linear { f.trace() - 1.0 + (hoop - 1.0) } else { f.determinant() * hoop }
+    }
+
+    /// Notes the largest mean pressure of each body.
+    pub fn note_water(&self, state: &mut State) {
+        for (k, &body) in self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate()) {
+            if let Some([_, excess]) = self.water_of(body, state) {
+                let peak = &mut state.water.peaks[k];
+                *peak = if excess.abs() > peak.abs() { excess } else { *peak };
+            }
+        }
+    }
+
+    /// What a body in which water flows has taken up of it since the start, ∫ (b (J − 1) + (p − p₀)/Q) dV, and its mean pressure in excess of that
+    /// at the start; `None` of any other [L³], [F/L²].
+    pub fn water_of(&self, body: usize, state: &State) -> Option<[f64; 2]> {
+        let flow = self.flow.as_ref().filter(|flow| flow.bodies.contains(&body))?;
+        let law = self.bodies[body].material.description();
+        let slot = law.slot(&GIVEN_PRESSURE)?;
+        let [mut taken, mut excess, mut volume] = [0.0; 3];
+        for wet in self.bodies[body].elements.iter().filter_map(|&e| flow.wet(e)) {
+            let memory = self.memories.of(wet.element, &state.memory);
+            for (point, own) in wet.points.iter().zip(memory.chunks_exact(law.variables.len())) {
+                taken += point.volume * slot.of(own)[1];
+            }
+            let risen: Vec<f64> = (wet.pressures.iter())
+                .map(|&k| flow.pressure(k, Some(&state.displacement)) - flow.initial[k])
+                .collect();
+            for (a, rise) in risen.iter().enumerate() {
+                taken += rise * wet.storage.column(a).sum();
+                excess += rise * wet.volumes[a];
+                volume += wet.volumes[a];
+            }
+        }
+        Some([taken, excess / volume])
+    }
+}
