@@ -22,7 +22,7 @@ from problems import digits
 from results import ROOT, committed, text_of
 from shafts_and_columns import G, column_case, compressible_shaft_case, rigid_shaft_case, tangent_modulus, way_of, yielding
 
-HEAD = ["problem", "number", "h", "h/2", "h/4", "bar of the last", "order"]
+HEAD = ["problem", "number", "h", "h/2", "h/4", "error bar", "order"]
 
 
 def converged(program, case, measures):

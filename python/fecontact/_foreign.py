@@ -7,6 +7,7 @@ everything else by ``meshio``.
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -46,16 +47,18 @@ def _parts(found: Found, bodies: Sequence[str] | str | None) -> dict[str, Any]:
     _numbers(found)
     nodes = _plane(found)
     edges = _edges(found)
-    members = _bodies(found, [bodies] if isinstance(bodies, str) else bodies)
+    members = _bodies(found, [bodies] if isinstance(bodies, str) else bodies or found.bodies or None)
+    ends = {frozenset(edge[:2]): edge for edge in edges.values()}
     lines: dict[str, list[tuple[int, ...]]] = {}
     for name, cells in found.sets.items():
         own = [found.cells[cell] for cell in cells if found.dimensions[cell] == 1]
         if own and name not in members:
-            lines[name] = [edges.get(frozenset(line), line) for line in own]
+            # A line of two nodes stands for a quadratic side as well.
+            lines[name] = [edges.get(frozenset(line)) or (ends.get(frozenset(line)) if len(line) == 2 else None) or line for line in own]
         alone = [found.cells[cell][0] for cell in cells if found.dimensions[cell] == 0]
         if alone:
             found.points.setdefault(name, []).extend(alone)
-    ends = {frozenset(edge[:2]): edge for edge in edges.values()}
+    _leave_out_inner(found, lines, members)
     for name, sides in found.sides.items():
         own_sides = [ends.get(frozenset(side), side) for side in sides]
         if {frozenset(side) for side in lines.setdefault(name, own_sides)} != {frozenset(side) for side in own_sides}:
@@ -75,6 +78,30 @@ def _parts(found: Found, bodies: Sequence[str] | str | None) -> dict[str, Any]:
         "edges": {name: _by_width(dict.fromkeys(cells)) for name, cells in lines.items()},
         "points": points,
     }
+
+
+def _leave_out_inner(found: Found, lines: dict[str, list[tuple[int, ...]]], members: dict[str, list[int]]) -> None:
+    """Lines inside a body, or between two that share nodes, are no sides: a group of them becomes a group of nodes, which is told."""
+    sides: dict[frozenset[int], int] = {}
+    for cells in members.values():
+        for cell in cells:
+            nodes = found.cells[cell]
+            corners = 3 if len(nodes) in (3, 6) else 4
+            for k in range(corners):
+                side = frozenset((nodes[k], nodes[(k + 1) % corners]))
+                sides[side] = sides.get(side, 0) + 1
+    for name, own in list(lines.items()):
+        inner = [line for line in own if sides.get(frozenset(line[:2]), 0) > 1]
+        if not inner:
+            continue
+        if len(inner) == len(own):
+            del lines[name]
+            found.points.setdefault(name, []).extend(dict.fromkeys(node for line in own for node in line))
+            told = f"its {len(inner)} lines lie inside a body, or between bodies that share nodes, and are no sides: it is a group of nodes"
+        else:
+            lines[name] = [line for line in own if line not in inner]
+            told = f"{len(inner)} of its {len(own)} lines lie inside a body, or between bodies that share nodes, and are no sides: they are left out"
+        warnings.warn(f"{found.file}: {name}: {told}", stacklevel=5)
 
 
 def _numbers(found: Found) -> None:
@@ -230,6 +257,10 @@ def _other(path: str, bodies: Sequence[str] | str | None) -> tuple[Found, Sequen
     there(path)
     try:
         mesh = meshio.read(path)
+    except ImportError as error:
+        # Meshio loads what a format needs when it reads one.
+        missing = (error.name or str(error)).partition(".")[0]
+        raise ImportError(f"{path}: reading it needs {missing}: pip install 'fecontact[meshio]', or pip install {missing}") from error
     except (Exception, SystemExit) as error:  # noqa: BLE001
         raise refused(path, "", f"cannot be read by meshio: {type(error).__name__}: {error}") from None
     found = Found(path, np.asarray(mesh.points))

@@ -25,6 +25,8 @@ class Found:
     #: sides of cells, given by the nodes at their ends
     sides: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
     points: dict[str, list[int]] = field(default_factory=dict)
+    #: sets that are bodies unless others are asked for; all sets of plane cells if none is named
+    bodies: list[str] = field(default_factory=list)
 
     def add(self, nodes: Sequence[int], dimension: int) -> int:
         """A cell, whose number it returns."""

@@ -16,6 +16,7 @@ from .result import Result, friction_ratio, labelled
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
     from .calibration import Fit
     from .convergence import Convergence
@@ -96,8 +97,99 @@ def interface(
     if y == "row":
         ticks = np.unique(np.linspace(0, times.size - 1, 7).astype(int))
         ax.set_yticks(ticks, [f"{times[tick]:.5g}" for tick in ticks])
-        ax.set_ylabel(labelled(result, "time") + ", a row of the history a step up")
+        ax.set_ylabel(labelled(result, "time") + " (rows of the history evenly spaced)")
     return ax
+
+
+#: Corners of the triangles of a cell, by VTK's number of its kind.
+_TRIANGLES = {
+    5: [(0, 1, 2)],
+    9: [(0, 1, 2), (0, 2, 3)],
+    22: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+    23: [(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)],
+    28: [(0, 4, 8), (0, 8, 7), (4, 1, 5), (4, 5, 8), (8, 5, 2), (8, 2, 6), (7, 8, 6), (7, 6, 3)],
+}
+#: Points around a cell, in order.
+_RINGS = {5: (0, 1, 2), 9: (0, 1, 2, 3), 22: (0, 3, 1, 4, 2, 5), 23: (0, 4, 1, 5, 2, 6, 3, 7), 28: (0, 4, 1, 5, 2, 6, 3, 7)}
+#: Components of arrays by their number.
+_COMPONENTS = {3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "xy", "yz", "xz")}
+
+
+def body(
+    result: Result,
+    field: str = "von_mises",
+    *,
+    time: float | None = None,
+    deformed: float = 1.0,
+    component: str | None = None,
+    edges: bool = False,
+    ax: Axes | None = None,
+    **colours: Any,
+) -> Axes:
+    """A field of the deformed bodies as a colour map.
+
+    Args:
+        result: the results; needs PyVista (``pip install 'fecontact[fields]'``).
+        field: of ``result.fields``, such as ``"von_mises"``, ``"displacement"``, ``"stress"`` or ``"mean_pressure"``.
+        time: the frame nearest to it is drawn [T]; the last unless given.
+        deformed: factor on the displacements; 0 draws the undeformed bodies.
+        component: of a vector ``"x"`` or ``"y"``, of a tensor ``"xx"``, ``"yy"``, ``"zz"`` or ``"xy"``; of vectors the length unless given.
+        edges: whether the edges of all elements are drawn, and not only the outline.
+        ax: where to draw.
+        **colours: for ``ax.tripcolor``, such as ``cmap``, ``vmin`` and ``vmax``.
+    """
+    from matplotlib.collections import LineCollection
+    from matplotlib.tri import Triangulation
+
+    frames = result.fields
+    at = float(frames.times[-1]) if time is None else float(time)
+    grid = frames.at(at)
+    if field not in grid.point_data:
+        raise KeyError(f"the bodies have no field {field}; they have {', '.join(sorted(grid.point_data))}")
+    values, label = _component(np.asarray(grid.point_data[field], dtype=float), field, component)
+    places = (np.asarray(grid.points, dtype=float) + deformed * np.asarray(grid.point_data["displacement"], dtype=float))[:, :2]
+    shown = np.asarray(grid.cell_data["vtkGhostType"]) == 0 if "vtkGhostType" in grid.cell_data else np.ones(grid.n_cells, dtype=bool)
+    triangles, lines = _cells(grid, shown, edges)
+    ax = _axes(ax)
+    style: dict[str, Any] = {"shading": "gouraud", **colours}
+    drawn = ax.tripcolor(Triangulation(places[:, 0], places[:, 1], triangles), values, **style)
+    ax.add_collection(LineCollection([places[list(pair)] for pair in lines], colors="black", linewidths=0.3 if edges else 0.7))
+    unit = _quantities.unit_in("solid.pvd", field, result.units)
+    ax.figure.colorbar(drawn, ax=ax, label=label + _unit(unit))
+    length = _unit(result.units.get("length"))
+    at_time = f"t = {frames.times[np.abs(frames.times - at).argmin()]:.6g} {result.units.get('time', '')}".rstrip()
+    ax.set(xlabel="x" + length, ylabel="y" + length, aspect="equal", title=at_time + ("" if deformed == 1 else f", displacement × {deformed:g}"))
+    return ax
+
+
+def _component(values: NDArray[np.float64], field: str, component: str | None) -> tuple[NDArray[np.float64], str]:
+    """One number a node of a field, and what it is called."""
+    spoken = _quantities.spoken(field)
+    if values.ndim == 1:
+        if component is not None:
+            raise ValueError(f"component: {field} is one number a node")
+        return values, spoken
+    names = _COMPONENTS.get(values.shape[1], tuple(str(k + 1) for k in range(values.shape[1])))
+    if component is None and values.shape[1] == 3 and not field.startswith("principal"):
+        return np.asarray(np.linalg.norm(values[:, :2], axis=1)), f"|{spoken}|"
+    if component not in names:
+        raise ValueError(f"component: is {component!r}: {field} has {', '.join(names)}")
+    return values[:, names.index(component)], f"{spoken} {component}"
+
+
+def _cells(grid: Any, shown: NDArray[np.bool_], edges: bool) -> tuple[NDArray[np.int64], list[tuple[int, int]]]:
+    """Triangles of the cells that are shown, and their edges: all of them, or those of one cell alone."""
+    triangles: list[NDArray[np.int64]] = []
+    count: dict[tuple[int, int], int] = {}
+    ends = grid.offset
+    for cell in np.flatnonzero(shown):
+        nodes, kind = grid.cell_connectivity[ends[cell] : ends[cell + 1]], int(grid.celltypes[cell])
+        triangles.extend(nodes[list(corners)] for corners in _TRIANGLES[kind])
+        ring = nodes[list(_RINGS[kind])]
+        for a, b in zip(ring, np.roll(ring, -1)):
+            pair = (int(min(a, b)), int(max(a, b)))
+            count[pair] = count.get(pair, 0) + 1
+    return np.array(triangles), [pair for pair, cells in count.items() if edges or cells == 1]
 
 
 def fronts(

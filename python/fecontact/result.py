@@ -323,7 +323,7 @@ def _with_derived(grid: Any) -> Any:
     of = grid.point_data
     for name, tensor in (("principal_stress", "stress"), ("principal_strain", "log_strain")):
         if tensor in of and name not in of:
-            of[name] = _principal_values(of[tensor])
+            of[name] = _principal_values(of[tensor][:, :4])
     if "log_strain" in of and "stretch_zz" not in of:
         of["stretch_zz"] = np.exp(of["log_strain"][:, 2])
     return grid

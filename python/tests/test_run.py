@@ -124,7 +124,7 @@ def test_fields(result: fc.Result) -> None:
     assert fields.at(0.9).point_data["displacement"][:, 1].min() == pytest.approx(-0.02, rel=0.2)
     assert result.fields.contact[-1].n_points > 0 and result.fields.points[-1].n_points > 0
     of = grid.point_data
-    xx, yy, zz, xy = of["stress"].T
+    xx, yy, zz, xy, yz, xz = of["stress"].T
     assert of["principal_stress"].shape == (grid.n_points, 3) and (np.diff(of["principal_stress"], axis=1) <= 0).all()
     assert of["principal_stress"].sum(axis=1) == pytest.approx(xx + yy + zz, rel=1e-5, abs=1e-5)
     tensors = np.array([[[x, s, 0], [s, y, 0], [0, 0, z]] for x, y, z, s in zip(xx, yy, zz, xy)])
@@ -308,6 +308,28 @@ def test_example(tmp_path: Path) -> None:
 
     block_on_ground.main([str(tmp_path / "figure.png")])
     assert (tmp_path / "figure.png").stat().st_size > 20_000
+
+
+def test_plot_of_bodies(result: fc.Result) -> None:
+    from matplotlib import pyplot as plt
+
+    grid = result.fields[-1]
+    ax = fc.plot.body(result, "von_mises", deformed=10)
+    [cells] = [drawn for drawn in ax.collections if drawn.get_array() is not None]
+    np.testing.assert_allclose(cells.get_array(), grid["von_mises"])
+    moved = (grid.points + 10 * grid["displacement"])[:, :2]
+    low, high = ax.dataLim.get_points()
+    np.testing.assert_allclose([low, high], [moved.min(axis=0), moved.max(axis=0)], rtol=1e-9)
+    assert ax.get_xlabel() == "x [mm]" and "displacement × 10" in ax.get_title()
+    assert [other.get_ylabel() for other in ax.figure.axes if other is not ax] == ["von Mises stress [N/mm²]"]
+    [cells] = [drawn for drawn in fc.plot.body(result, "stress", component="xy", time=0.0).collections if drawn.get_array() is not None]
+    np.testing.assert_allclose(cells.get_array(), result.fields[0]["stress"][:, 3])
+    assert fc.plot.body(result, "displacement", edges=True).has_data()
+    with pytest.raises(ValueError, match="xx, yy, zz, xy"):
+        fc.plot.body(result, "stress")
+    with pytest.raises(KeyError, match="von_mises"):
+        fc.plot.body(result, "mises")
+    plt.close("all")
 
 
 def test_plots(result: fc.Result) -> None:

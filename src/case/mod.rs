@@ -26,7 +26,7 @@ use serde_json::Value;
 
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, MeshError, gmsh};
-use crate::model::builder::{Builder, Checked, Contact, FluidPressure, Gauge, ModelError, refuse_if};
+use crate::model::builder::{Builder, Checked, Contact, FluidPressure, Gauge, ModelError, check_name, refuse_if};
 use crate::model::{Measured, Model, PoreField};
 pub use again::Opened;
 pub use error::CaseError;
@@ -86,6 +86,7 @@ fn built(case: &Case, mesh: Mesh, path: &Path) -> Checked<Model> {
 
 /// Returns the builder of a case on its mesh.
 fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
+    let mesh = with_groups(case, mesh)?;
     let section = if case.section == Section::PlaneStrain { mesh.section } else { case.section };
     units::check(&case.units, section)?;
     let given = case.clone();
@@ -133,6 +134,12 @@ fn read_measured(builder: &mut Builder, path: &Path) -> Checked<()> {
 /// Warnings about a case before it is run: those of its model, and labels of units that nothing checks.
 pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
     model.warnings().into_iter().chain(units::concerns(&case.units, model.mesh.section)).collect()
+}
+
+/// The mesh with the groups that the case gives by place.
+fn with_groups(case: &Case, mesh: Mesh) -> Checked<Mesh> {
+    case.groups.keys().try_for_each(|name| check_name("groups", name))?;
+    mesh.with_placed(&case.groups).map_err(|(name, defect)| ModelError::new(format!("groups.{name}"), defect))
 }
 
 fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {

@@ -8,11 +8,13 @@
 //! ```
 //! What the case leaves open has the default of the finer mesh; `alpha_n` then grows with 1/h.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::file::{Amount, BlockInput, BlocksInput, Case, GradingInput, MeshSource, MiddleInput, evaluated};
 use super::resolved::keep_opening;
-use super::{CaseError, Written, build, build_on, mesh};
+use super::{CaseError, Written, build, build_on, mesh, with_groups};
 use crate::mesh::{Block, Blocks, Grading, Group, MOST_ELEMENTS, Mesh};
 use crate::model::builder::{Checked, Load, LoadStep, ModelError, Place, nodes_at, refuse_if};
 use crate::model::scheme::Scheme;
@@ -50,7 +52,7 @@ pub fn refined(written: &Written, halvings: Halvings) -> Result<Written, CaseErr
         check(case, halvings.mesh)?;
         match &case.mesh {
             MeshSource::Blocks(input) => of_blocks(input, halvings.mesh),
-            given => divided(given, mesh(case, path)?, halvings.mesh),
+            given => divided(given, with_groups(case, mesh(case, path)?)?, halvings.mesh),
         }
     };
     let finer = refined_mesh().map_err(|complaint| complaint.in_file(path))?;
@@ -63,7 +65,10 @@ pub fn refined(written: &Written, halvings: Halvings) -> Result<Written, CaseErr
 /// The same as for [`refined`].
 pub fn refined_on(written: &Written, mesh: &Mesh, halvings: Halvings) -> Result<Written, CaseError> {
     let Written { path, case, .. } = written;
-    let refined_mesh = || check(case, halvings.mesh).and_then(|()| divided(&case.mesh, mesh.clone(), halvings.mesh));
+    let refined_mesh = || {
+        check(case, halvings.mesh)?;
+        divided(&case.mesh, with_groups(case, mesh.clone())?, halvings.mesh)
+    };
     let finer = refined_mesh().map_err(|complaint| complaint.in_file(path))?;
     with(written, finer, &build_on(case, mesh.clone(), path)?, halvings)
 }
@@ -163,7 +168,10 @@ fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) 
     if halvings.mesh > 0 {
         check_nodes(written, &model.mesh).map_err(|complaint| complaint.in_file(path))?;
     }
-    let mut case = Case { mesh, ..case.clone() };
+    // A mesh whose elements are divided has the groups by place as they are divided.
+    let is_divided = halvings.mesh > 0 && matches!(mesh, MeshSource::Inline(_));
+    let groups = if is_divided { BTreeMap::new() } else { case.groups.clone() };
+    let mut case = Case { mesh, groups, ..case.clone() };
     if halvings.mesh > 0 {
         check_near(written, &model.mesh, &case).map_err(|complaint| complaint.in_file(path))?;
     }

@@ -3,6 +3,7 @@
 //!
 //! Disk space is checked before a frame is written.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
@@ -14,7 +15,7 @@ use super::frames::{Shown, bars_frame, contact_frame, points_frame, solid_frame}
 use super::gradients::Motions;
 use super::recovery::NodalRecovery;
 use super::vtu::Grid;
-use super::{csv, files};
+use super::{csv, files, named};
 use crate::linear::memory::room_for;
 use crate::model::Model;
 use crate::model::boundary::Span;
@@ -101,7 +102,7 @@ struct Collection {
 }
 
 impl Fields {
-    /// Starts the series in `folder`, with the initial state as the first frame.
+    /// Starts the series in `folder`, with the initial state as the first frame; `units` has the known labels of units.
     ///
     /// # Errors
     /// Returns [`Error::Output`] if a file cannot be written.
@@ -111,8 +112,9 @@ impl Fields {
         start: &State,
         frames: Frames,
         motions: Motions,
+        units: &BTreeMap<String, String>,
     ) -> Result<Self, Error> {
-        let mut fields = Self::reopen(folder, model.clone(), frames, motions)?;
+        let mut fields = Self::reopen(folder, model.clone(), frames, motions, units)?;
         fields.write(&model, start)?;
         Ok(fields)
     }
@@ -121,7 +123,13 @@ impl Fields {
     ///
     /// # Errors
     /// Returns [`Error::Output`] if the disk space is insufficient.
-    pub fn reopen(folder: &Path, model: Arc<Model>, frames: Frames, motions: Motions) -> Result<Self, Error> {
+    pub fn reopen(
+        folder: &Path,
+        model: Arc<Model>,
+        frames: Frames,
+        motions: Motions,
+        units: &BTreeMap<String, String>,
+    ) -> Result<Self, Error> {
         let (frames_of, rows) = (frames, 0);
         let names = [
             ("solid", true),
@@ -130,7 +138,7 @@ impl Fields {
             ("points", frames_of.points),
         ];
         let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
-        let collection = |name: &&'static str| Collection::create(folder, name, frames_of);
+        let collection = |name: &&'static str| Collection::create(folder, name, frames_of, units);
         let collections = names.iter().map(collection).collect::<Result<_, _>>()?;
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
         let room = Room::of(folder, &model, motions.borrow().len());
@@ -263,10 +271,15 @@ fn file(series: &str, number: usize) -> String {
 }
 
 impl Collection {
-    fn create(folder: &Path, name: &'static str, asked: Frames) -> Result<Self, Error> {
+    fn create(
+        folder: &Path,
+        name: &'static str,
+        asked: Frames,
+        units: &BTreeMap<String, String>,
+    ) -> Result<Self, Error> {
         let frames = folder.join(name);
         files::folder(&frames).map_err(|cause| failed(&frames, &cause))?;
-        let (folder, grid) = (folder.to_owned(), Grid::new(asked.exact));
+        let (folder, grid) = (folder.to_owned(), Grid::new(asked.exact, named::of_frames(name, units)));
         let (times, recovery, derived) = (Vec::new(), None, asked.derived);
         Ok(Self { folder, name, times, listed: (0, None), grid, recovery, derived })
     }

@@ -71,6 +71,7 @@ pub fn solid_frame(
     for (place, motion) in motions {
         grid.vectors(&format!("d(displacement)/d({place})"), &motion[..2 * nodes]);
     }
+    grid.owners("body", model.bodies.iter().map(|body| &*body.name));
     grid.at_cells("body", body());
     grid.at_cells("material", body());
     hide_absent(model, state, &model.body_of_element, grid);
@@ -127,6 +128,7 @@ pub fn bars_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
         let all: Vec<f64> = values(name);
         grid.numbers_at_cells(name, all.into_iter());
     }
+    grid.owners("bar", model.bars.iter().map(|bar| &*bar.name));
     grid.at_cells("bar", model.bars.iter().enumerate().flat_map(|(k, bar)| bar.segments.iter().map(move |_| k as i32)));
     if bars().any(|(_, state)| !state.is_there) || model.steps.iter().any(|step| !step.bars.absent.is_empty()) {
         grid.hide(bars().flat_map(|(bar, state)| bar.segments.iter().map(|_| !state.is_there)));
@@ -200,6 +202,7 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
         .chain(&shown)
         .zip(variables.into_iter().chain(further))
         .for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
+    grid.owners("body", model.bodies.iter().map(|body| &*body.name));
     grid.at_cells("body", body.iter().map(|&body| body as i32));
     hide_absent(model, state, &body, grid);
 }
@@ -207,10 +210,10 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, derived: bool, g
 /// Stress and logarithmic strain, and on request what follows from them.
 fn add_fields(grid: &mut Grid, fields: &[(CauchyStress, [f64; 4])], derived: bool) {
     let (stresses, strains) = (|| fields.iter().map(|(stress, _)| stress), || fields.iter().map(|(_, strain)| *strain));
-    grid.at_points("stress", 4, stresses().flat_map(CauchyStress::components));
+    grid.tensors("stress", stresses().map(CauchyStress::components));
     grid.at_points("von_mises", 1, stresses().map(CauchyStress::von_mises));
-    grid.at_points("pressure", 1, stresses().map(CauchyStress::pressure));
-    grid.at_points("log_strain", 4, strains().flatten());
+    grid.at_points("mean_pressure", 1, stresses().map(CauchyStress::pressure));
+    grid.tensors("log_strain", strains());
     if derived {
         grid.at_points("principal_stress", 3, stresses().flat_map(|stress| principal_values(stress.components())));
         grid.at_points("principal_strain", 3, strains().flat_map(principal_values));
@@ -246,5 +249,6 @@ pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid
         };
         grid.at_points(name, 1, model.contacts.iter().zip(&state.contacts).flat_map(of));
     }
+    grid.owners("contact", model.contacts.iter().map(|pair| &*pair.name));
     grid.at_cells("contact", contact_id.into_iter());
 }

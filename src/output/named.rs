@@ -39,6 +39,13 @@ pub fn schema() -> Value {
     ALL.iter().map(|(file, groups)| (file.to_string(), groups.iter().flat_map(of_group).collect::<Value>())).collect()
 }
 
+/// Labels of the units of the arrays of frames, such as those of `solid`, by the names of the arrays.
+pub fn of_frames(series: &str, units: &BTreeMap<String, String>) -> BTreeMap<String, String> {
+    let file = format!("{series}.pvd");
+    let all = ALL.iter().filter(|(name, _)| *name == file).flat_map(|(_, groups)| *groups).flat_map(|(_, some)| *some);
+    all.filter_map(|of| Some((of.name.to_owned(), of.unit.label(units, Unit::made_of)?))).collect()
+}
+
 /// Data for a page: labels of units by their names, and label and unit name of every quantity.
 pub fn labels(units: &BTreeMap<String, String>) -> Value {
     let (mut of_units, mut quantities) = (Map::new(), Map::new());
@@ -46,7 +53,8 @@ pub fn labels(units: &BTreeMap<String, String>) -> Value {
     for of in ALL.iter().filter(|(file, _)| *file != "newton.csv").flat_map(|(_, all)| *all).flat_map(|(_, some)| *some)
     {
         let label = of.unit.label(units, Unit::made_of).unwrap_or_default();
-        quantities.insert(of.name.into(), json!([label, spoken(of.name)]));
+        // Of a name that occurs twice the first is meant: later ones are derivatives.
+        quantities.entry(of.name).or_insert_with(|| json!([label, spoken(of.name)]));
         of_units.insert(of.unit.name.into(), json!(label));
     }
     json!({ "units": of_units, "quantities": quantities })

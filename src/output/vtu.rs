@@ -14,6 +14,7 @@
 //! Source: VTK file formats, "XML file formats", inline binary data,
 //! <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 
+use std::collections::BTreeMap;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -73,6 +74,10 @@ pub struct Grid {
     mesh: Option<Mesh>,
     /// Arrays of values at points and cells
     values: [String; 2],
+    /// Labels of units by the names of arrays
+    units: BTreeMap<String, String>,
+    /// Numbers of bodies, contacts and bars by their names, as arrays of the whole grid
+    numbers: String,
 }
 
 /// Part that is the same in all frames.
@@ -91,9 +96,20 @@ const HIDDEN_CELL: u8 = 32;
 const SECTIONS: [&str; 2] = ["PointData", "CellData"];
 
 impl Grid {
-    /// Creates an empty grid; `exact`: values at points are written in double instead of single precision.
-    pub fn new(exact: bool) -> Self {
-        Self { exact, mesh: None, values: Default::default() }
+    /// Creates an empty grid; `exact`: values at points are written in double instead of single precision. `units` has labels
+    /// by the names of arrays, from which those of derivatives are left out.
+    pub fn new(exact: bool, units: BTreeMap<String, String>) -> Self {
+        Self { exact, units, mesh: None, values: Default::default(), numbers: String::new() }
+    }
+
+    /// Names what cells are numbered by: the k-th name is number k of the owners, such as `body`.
+    pub fn owners<'a>(&mut self, owner: &str, names: impl Iterator<Item = &'a str>) {
+        self.numbers.clear();
+        for (number, name) in names.enumerate() {
+            let name = format!("{owner} {name}");
+            let head = Head { kind: "Int32", name: &name, components: 1, unit: None, tuples: Some(1) };
+            array(&mut self.numbers, head, [(number as i32).to_le_bytes()].into_iter());
+        }
     }
 
     /// Starts a frame; `grid` is called once only.
@@ -107,14 +123,17 @@ impl Grid {
 
     /// Adds values at the points, with several components each.
     pub fn at_points(&mut self, name: &str, components: usize, values: impl Iterator<Item = f64>) {
-        let text = &mut self.values[0];
+        let (text, unit) = (&mut self.values[0], self.units.get(name).map(String::as_str));
+        let head = |kind| Head { unit, ..Head::of(kind, name, components) };
         match self.exact {
-            true => array(text, Head { kind: "Float64", name, components }, values.map(f64::to_le_bytes)),
-            false => {
-                let singles = values.map(|value| (value as f32).to_le_bytes());
-                array(text, Head { kind: "Float32", name, components }, singles);
-            }
+            true => array(text, head("Float64"), values.map(f64::to_le_bytes)),
+            false => array(text, head("Float32"), values.map(|value| (value as f32).to_le_bytes())),
         }
+    }
+
+    /// Adds symmetric tensors of the plane at the points, xx, yy, zz, xy, as the six components that VTK knows by these names.
+    pub fn tensors(&mut self, name: &str, values: impl Iterator<Item = [f64; 4]>) {
+        self.at_points(name, TENSOR.len(), values.flat_map(|[xx, yy, zz, xy]| [xx, yy, zz, xy, 0.0, 0.0]));
     }
 
     /// Adds vectors at the points; VTK requires a third component.
@@ -124,19 +143,23 @@ impl Grid {
 
     /// Adds integers at the cells.
     pub fn at_cells(&mut self, name: &str, values: impl Iterator<Item = i32>) {
-        array(&mut self.values[1], Head { kind: "Int32", name, components: 1 }, values.map(i32::to_le_bytes));
+        array(&mut self.values[1], Head::of("Int32", name, 1), values.map(i32::to_le_bytes));
     }
 
     /// Adds numbers at the cells.
     pub fn numbers_at_cells(&mut self, name: &str, values: impl Iterator<Item = f64>) {
         let values = values.map(|value| (value as f32).to_le_bytes());
-        array(&mut self.values[1], Head { kind: "Float32", name, components: 1 }, values);
+        let unit = self.units.get(name).map(String::as_str);
+        array(&mut self.values[1], Head { unit, ..Head::of("Float32", name, 1) }, values);
     }
 
     /// Hides cells, in the array by which VTK leaves them out of pictures and filters.
     pub fn hide(&mut self, cells: impl Iterator<Item = bool>) {
-        let head = Head { kind: "UInt8", name: GHOSTS, components: 1 };
-        array(&mut self.values[1], head, cells.map(|is_hidden| [if is_hidden { HIDDEN_CELL } else { 0 }]));
+        array(
+            &mut self.values[1],
+            Head::of("UInt8", GHOSTS, 1),
+            cells.map(|is_hidden| [if is_hidden { HIDDEN_CELL } else { 0 }]),
+        );
     }
 
     /// Writes the file.
@@ -149,9 +172,12 @@ impl Grid {
         writeln!(
             file,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-             header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n\
-             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
+             header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>"
         )?;
+        if !self.numbers.is_empty() {
+            writeln!(file, "<FieldData>\n{}</FieldData>", self.numbers)?;
+        }
+        writeln!(file, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">")?;
         for (name, arrays) in SECTIONS.iter().zip(&self.values) {
             writeln!(file, "<{name}>\n{arrays}</{name}>")?;
         }
@@ -170,9 +196,9 @@ impl Mesh {
             Some(*end)
         });
         let kinds = cells.iter().map(|(kind, _)| [*kind as u8]);
-        let of_one = |kind, name| Head { kind, name, components: 1 };
+        let of_one = |kind, name| Head::of(kind, name, 1);
         let mut text = String::from("<Points>\n");
-        array(&mut text, Head { kind: "Float64", name: "Points", components: 3 }, places);
+        array(&mut text, Head::of("Float64", "Points", 3), places);
         text += "</Points>\n<Cells>\n";
         array(&mut text, of_one("UInt64", "connectivity"), connectivity);
         array(&mut text, of_one("UInt64", "offsets"), ends.map(number));
@@ -182,21 +208,42 @@ impl Mesh {
     }
 }
 
-/// Description of an array: its VTK type, its name and the number of components.
+/// Description of an array: its VTK type, its name and the number of components; its unit, and for arrays of the whole grid
+/// the number of their values.
 struct Head<'a> {
     kind: &'a str,
     name: &'a str,
     components: usize,
+    unit: Option<&'a str>,
+    tuples: Option<usize>,
 }
+
+impl<'a> Head<'a> {
+    /// An array without a unit, of points or cells.
+    fn of(kind: &'a str, name: &'a str, components: usize) -> Self {
+        Self { kind, name, components, unit: None, tuples: None }
+    }
+}
+
+/// Components of a symmetric tensor in VTK's order.
+const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 
 /// Appends an array.
 fn array<const N: usize>(text: &mut String, is: Head, values: impl Iterator<Item = [u8; N]>) {
-    let Head { kind, name, components } = is;
-    let name = SIGNS.iter().fold(name.to_owned(), |name, (sign, text)| name.replace(sign, text));
+    let Head { kind, name, components, unit, tuples } = is;
+    let safe = |text: &str| SIGNS.iter().fold(text.to_owned(), |text, (sign, written)| text.replace(sign, written));
+    let name = safe(name);
     let bytes: Vec<u8> = values.flatten().collect();
-    *text +=
-        &format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">");
+    *text += &format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\"");
+    if components == TENSOR.len() {
+        let named = TENSOR.iter().enumerate().map(|(k, of)| format!(" ComponentName{k}=\"{of}\""));
+        text.extend(named);
+    }
+    text.extend(tuples.map(|count| format!(" NumberOfTuples=\"{count}\"")));
+    *text += " format=\"binary\">";
     encode(&bytes, text);
+    let key = |unit| format!("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{unit}</InformationKey>");
+    text.extend(unit.map(safe).map(key));
     *text += "</DataArray>\n";
 }
 
@@ -247,7 +294,8 @@ fn read(text: &str) -> Result<Array, Unreadable> {
         let (tag, rest) = text.split_once('>')?;
         let of = |key: &str| tag.split_once(&format!("{key}=\""))?.1.split('"').next();
         let (kind, name, components) = (of("type")?, of("Name")?, of("NumberOfComponents")?.parse().ok()?);
-        Some((kind, name, components, rest.split_once("</DataArray>")?.0.trim()))
+        // The unit follows the values.
+        Some((kind, name, components, rest.split_once("</DataArray>")?.0.split('<').next()?.trim()))
     };
     let (kind, name, components, packed) =
         parts().ok_or_else(|| Unreadable("has an array without an end, or a name".into()))?;
@@ -255,7 +303,14 @@ fn read(text: &str) -> Result<Array, Unreadable> {
     let values =
         numbers(kind, &bytes).ok_or_else(|| Unreadable(format!("has an array `{name}` of an unknown type")))?;
     let name = SIGNS.iter().rfold(name.to_owned(), |name, (sign, text)| name.replace(text, sign));
-    Ok(Array { name, components, values })
+    match components == TENSOR.len() && text.contains("ComponentName0=\"XX\"") {
+        // Of a tensor of the plane the first four components are not zero.
+        true => {
+            let values = values.chunks(TENSOR.len()).flat_map(|tensor| tensor.iter().take(4).copied()).collect();
+            Ok(Array { name, components: 4, values })
+        }
+        false => Ok(Array { name, components, values }),
+    }
 }
 
 /// The bytes that [`encode`] has packed, if they are undamaged.

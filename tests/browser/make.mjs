@@ -44,6 +44,8 @@ run("stopped", "tube.json", (written) => {
   written.newton = { ...written.newton, max_iterations: 3 };
 });
 page("two", "tube", "tube_soft");
+run("anchored_wall", "anchored_wall.json");
+run("fault", "templates/fault.json");
 
 /** A committed test of a law. */
 const law = (name) => execFileSync(program, ["law", join(cases, "law", `${name}.json`), "--out", join(work, name)], { stdio: "ignore" });

@@ -1,49 +1,11 @@
 // report.html in Chromium: opened from file://, looked at, clicked, zoomed, exported; with faults in its folder; measured.
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync, readdirSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
-
-const { PAGES, PICTURES, PROGRAM } = process.env;
-let browser;
-before(async () => {
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM || "/usr/bin/chromium",
-    args: ["--no-sandbox", "--enable-unsafe-swiftshader"],
-  });
-});
-after(() => browser.close());
-
-/** A page from file://; what its console says against it is found in `complaints`, and what it loads beside itself. */
-async function open(path, options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, ...options });
-  page.setDefaultTimeout(180_000);
-  page.complaints = [];
-  page.on("console", (message) => message.type() === "error" && page.complaints.push(message.text()));
-  page.on("pageerror", (error) => page.complaints.push(error.message));
-  page.on("request", (request) => {
-    if (!/^(file|data|blob):/.test(request.url())) page.complaints.push(`asks the network: ${request.url()}`);
-  });
-  await page.goto(`file://${path}`);
-  await page.waitForSelector("html[data-ready]", { state: "attached" });
-  return page;
-}
-const of = (name) => join(PAGES, name, "report.html");
-const made = (name) => join(PAGES, `${name}.html`);
-
-async function close(page, picture) {
-  if (PICTURES && picture) {
-    await page.waitForTimeout(400);
-    await page.screenshot({ path: join(PICTURES, `${picture}.png`), fullPage: true });
-  }
-  assert.deepEqual(page.complaints, []);
-  await page.close();
-}
-
-const text = (page, selector) => page.locator(selector).innerText();
-const picture = (page, selector) => page.locator(selector).evaluate((canvas) => canvas.toDataURL());
+import { PAGES, PROGRAM, close, made, of, open, picture, text } from "./common.mjs";
 
 for (const name of ["block_on_ground", "tube", "slip_front", "spring_mass_3", "stopped"]) {
   test(`${name} opens from a file, without errors and without a network, below 30 MB`, async () => {
@@ -208,11 +170,11 @@ test("a click into the interface chooses a profile and a history", async () => {
 
 test("charts zoom by the mouse and by keys, are read off, and are saved as SVG and CSV", async () => {
   const page = await open(of("tube"));
-  const chart = page.locator("#histories figure.chart").first();
+  const chart = page.locator("#histories details figure.chart").first();
   await chart.scrollIntoViewIfNeeded();
-  await page.waitForFunction(() => charts.find((one) => one.host.closest("#histories")).plot);
+  await page.waitForFunction(() => charts.find((one) => one.host.closest("#histories details")).plot);
   const span = () => page.evaluate(() => {
-    const { min, max } = charts.find((one) => one.host.closest("#histories")).plot.scales.x;
+    const { min, max } = charts.find((one) => one.host.closest("#histories details")).plot.scales.x;
     return max - min;
   });
   const whole = await span();
@@ -343,7 +305,7 @@ const colours = (page, bytes, type) => page.evaluate(async ([text, type]) => {
 test("every picture is saved as SVG, PNG and CSV", async () => {
   const page = await open(of("block_on_ground"));
   await page.evaluate(() => charts.forEach((chart) => chart.draw()));
-  const histories = page.locator("#histories figure.chart").first();
+  const histories = page.locator("#histories details figure.chart").first();
   for (const [place, least, words] of [[page.locator("#bodies"), 100, "von Mises"], [page.locator("#interface > .controls"), 100, "position along"],
     [histories, 3, "tangential force"]]) {
     const svg = await saved(page, place, "SVG");

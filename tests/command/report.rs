@@ -194,7 +194,9 @@ fn a_page_holds_the_numbers_of_its_folder() {
             assert!((u[0] - shown[0]).hypot(u[1] - shown[1]) <= largest * 2f64.powi(-19), "{u:?} as {shown:?}");
         }
         let (components, stresses) = array(&file, "stress");
-        for i in 0..components {
+        assert_eq!(components, 6);
+        // The page has those of the plane.
+        for i in 0..4 {
             let shown = page.stepped(&frame["fields"]["stress"]["components"][i]["chunk"]);
             let largest = stresses.iter().skip(i).step_by(components).fold(0.0, |largest, s| s.abs().max(largest));
             for (stress, shown) in stresses.iter().skip(i).step_by(components).zip(shown) {

@@ -633,6 +633,7 @@ fn points_are_written_and_warned_of() {
         &model.initial_state(),
         Frames { of: Selection::Rows(1), points: false, exact: true, derived: false },
         Motions::default(),
+        &std::collections::BTreeMap::new(),
     )
     .unwrap();
     let mut warnings = Warnings::default();

@@ -35,6 +35,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         &["blocks", "apart", "joined", "arcs", "corners", "grading", "kind", "middle", "sides", "body"],
         "another way to write a mesh: tests/solver/blocks.rs",
     ),
+    (&["groups", "box", "center"], "another way to name sides and nodes: tests/solver/groups.rs"),
     (&["node"], "another way to name a node: tests/solver/boundary.rs"),
     (&["materials", "frictions"], "another way to write a law: tests/command/by_name.rs"),
     (&["area"], "slaves that are points: tests/contact/contact.rs"),

@@ -17,6 +17,7 @@ mod condensed;
 mod consolidation;
 mod constant;
 mod elements;
+mod groups;
 mod history;
 mod imposed;
 mod invariance;

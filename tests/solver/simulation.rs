@@ -498,6 +498,7 @@ fn observers_go_back_with_the_run() {
         &start,
         Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
         Motions::default(),
+        &BTreeMap::new(),
     )
     .expect("frames");
     let mut fronts =
@@ -542,6 +543,7 @@ fn observers_go_back_with_the_run() {
                 &start,
                 Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
                 Motions::default(),
+                &BTreeMap::new(),
             )
             .expect("frames"),
         ),

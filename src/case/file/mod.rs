@@ -10,8 +10,8 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::mesh::InlineMesh;
 use crate::mesh::section::Section;
+use crate::mesh::{InlineMesh, PlacedGroup};
 use crate::model::NewtonSettings;
 use crate::model::builder::{
     BarInput, BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, Place, PointMassInput, RigidBodyInput,
@@ -37,6 +37,9 @@ pub struct Case {
     /// Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given in place:
     /// blocks divided into elements, or node by node
     pub mesh: MeshSource,
+    /// Groups of sides or nodes by place, by a name of your choice, for meshes that lack them: `{"top": {"y": 1.0}}`
+    #[serde(default)]
+    pub groups: BTreeMap<String, PlacedGroup>,
     /// Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     #[serde(default)]
     pub section: Section,

@@ -96,7 +96,7 @@ impl Outputs {
         };
         let gradients = neighbours.as_ref().map(|of| Gradients::new(folder, model, of, asked, warn)).transpose()?;
         let motions = gradients.as_ref().map_or_else(Motions::default, Gradients::motions);
-        let series = || Fields::reopen(folder, model.clone(), frames, motions.clone());
+        let series = || Fields::reopen(folder, model.clone(), frames, motions.clone(), &labels);
         let mut outputs = Self {
             history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
             newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
@@ -125,7 +125,7 @@ impl Outputs {
             // Their first frame shows the derivatives with which the run goes on.
             let gradients = outputs.gradients.as_mut();
             saved.zip(gradients).map_or(Ok(()), |(saved, gradients)| saved.restore(gradients))?;
-            outputs.fields = Some(Fields::create(folder, model.clone(), &start, frames, motions)?);
+            outputs.fields = Some(Fields::create(folder, model.clone(), &start, frames, motions, &labels)?);
         }
         Ok(outputs)
     }

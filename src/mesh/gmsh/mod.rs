@@ -11,6 +11,7 @@
 //!
 //! The entities of the parsed file become named groups.
 
+mod entities;
 mod msh2;
 
 use std::collections::{BTreeMap, HashMap};
@@ -26,7 +27,8 @@ use crate::mesh::check::{RawCell, RawMesh};
 use crate::mesh::{Mesh, MeshError, check};
 
 /// Reads the mesh of a gmsh file: bodies are its physical surfaces, edge groups its physical curves, node groups its physical
-/// points. A physical group without a name is called `physical_<tag>`.
+/// points. A physical group without a name is called `physical_<tag>`. In a file without physical groups every entity is a group:
+/// `surface_1`, `curve_5`, `point_3`.
 ///
 /// # Errors
 /// Returns [`MeshError::InFile`] with the file, the defect and its remedy if the file is not a valid mesh.
@@ -277,7 +279,14 @@ fn assemble(
     check_bodies(&blocks, &groups)?;
     let mut raw = RawMesh { nodes: plane_nodes(nodes)?, ..named_groups(names)? };
     blocks.iter().for_each(|block| add_block(&mut raw, block, &groups));
-    Ok(raw)
+    Ok(if has_physical(&entities) { raw } else { entities::usable(raw) })
+}
+
+/// Whether any entity belongs to a physical group.
+fn has_physical(entities: &Entities<i32, f64>) -> bool {
+    entities.points.iter().any(|point| !point.physical_tags.is_empty())
+        || entities.curves.iter().any(|curve| !curve.physical_tags.is_empty())
+        || entities.surfaces.iter().any(|surface| !surface.physical_tags.is_empty())
 }
 
 fn check_total(section: &'static str, claimed: u64, found: usize) -> Result<(), MeshError> {
@@ -314,6 +323,12 @@ fn dimension(kind: ElementType) -> Option<i32> {
 type EntityGroups = HashMap<(i32, i32), Vec<String>>;
 
 fn groups_of_entities(entities: &Entities<i32, f64>, names: &Names) -> EntityGroups {
+    if !has_physical(entities) {
+        let of = |dimension: i32, tag: i32| ((dimension, tag), vec![entities::name(dimension, tag.into())]);
+        let points = entities.points.iter().map(|point| of(0, point.tag));
+        let curves = entities.curves.iter().map(|curve| of(1, curve.tag));
+        return points.chain(curves).chain(entities.surfaces.iter().map(|surface| of(2, surface.tag))).collect();
+    }
     // A negative physical tag only means that the group contains the entity reversed.
     let name =
         |dimension: i32, tag: u32| names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("physical_{tag}"));

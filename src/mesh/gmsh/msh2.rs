@@ -6,7 +6,9 @@
 //! tag x y z                               tag type number-of-tags physical elementary … node node …
 //! ```
 
-use super::{Names, check_plane, groups_of_dimension, named_groups, physical_names, required_section, section};
+use super::{
+    Names, check_plane, entities, groups_of_dimension, named_groups, physical_names, required_section, section,
+};
 use crate::mesh::MeshError;
 use crate::mesh::check::{RawCell, RawMesh};
 
@@ -28,15 +30,25 @@ pub fn parse(bytes: &[u8]) -> Result<RawMesh, MeshError> {
     let names = physical_names(bytes)?;
     let mut raw = named_groups(&names)?;
     raw.nodes = nodes.into_iter().map(|(tag, [x, y, _])| (tag, [x, y].into())).collect();
+    let is_grouped = !names.is_empty() || elements.iter().any(|element| element.physical != 0);
+    if !is_grouped && elements.iter().any(|element| element.elementary != 0) {
+        for Element { dimension, elementary, cell, .. } in elements {
+            if let Some(groups) = groups_of_dimension(&mut raw, dimension) {
+                groups.entry(entities::name(dimension, elementary)).or_default().push(cell);
+            }
+        }
+        return Ok(entities::usable(raw));
+    }
     check_bodies(&elements)?;
     elements.into_iter().filter(|element| element.physical != 0).for_each(|element| add(&mut raw, element, &names));
     Ok(raw)
 }
 
-/// An element line; physical group 0 means no group.
+/// An element line; physical group 0 means no group, elementary entity 0 that none is given.
 struct Element {
     dimension: i32,
     physical: u32,
+    elementary: i64,
     cell: RawCell,
 }
 
@@ -105,7 +117,8 @@ fn element(words: &[&str]) -> Result<Element, Bad> {
         .map_err(|_| Bad::Line("a tag is too large"))?;
     let nodes = nodes.iter().map(|&node| u64::try_from(node)).collect::<Result<_, _>>();
     let nodes = nodes.map_err(|_| Bad::Line("a node has a negative tag"))?;
-    Ok(Element { dimension, physical, cell: RawCell { tag, nodes } })
+    let elementary = tags.get(1).copied().unwrap_or(0);
+    Ok(Element { dimension, physical, elementary, cell: RawCell { tag, nodes } })
 }
 
 /// Checks that every solid element belongs to a body; an element of two bodies occurs twice and is found by the mesh check.
@@ -117,7 +130,7 @@ fn check_bodies(elements: &[Element]) -> Result<(), MeshError> {
     }
 }
 
-fn add(raw: &mut RawMesh, Element { dimension, physical, cell }: Element, names: &Names) {
+fn add(raw: &mut RawMesh, Element { dimension, physical, cell, .. }: Element, names: &Names) {
     let name = names.get(&(dimension, physical)).cloned().unwrap_or_else(|| format!("physical_{physical}"));
     if let Some(groups) = groups_of_dimension(raw, dimension) {
         groups.entry(name).or_default().push(cell);

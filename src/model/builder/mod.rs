@@ -82,7 +82,7 @@ pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use bond::FADES;
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
-pub(crate) use error::{check_line, check_positive, refuse_if};
+pub(crate) use error::{check_line, check_name, check_positive, refuse_if};
 pub use flow::{Flow, FlowLeak, FlowWell, Schedule};
 pub use fluid::FluidPressure;
 pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};

@@ -31,10 +31,11 @@ const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
 const ROOM: usize = 28_000_000;
 
 /// Scripts of the page, in the order of execution.
-const SCRIPTS: [&str; 19] = [
+const SCRIPTS: [&str; 26] = [
     include_str!("page/uplot/uPlot.iife.min.js"),
     include_str!("page/dom.js"),
     include_str!("page/data.js"),
+    include_str!("page/clock.js"),
     include_str!("page/colours.js"),
     include_str!("page/export.js"),
     include_str!("page/differences.js"),
@@ -42,12 +43,18 @@ const SCRIPTS: [&str; 19] = [
     include_str!("page/chart.js"),
     include_str!("page/head.js"),
     include_str!("page/scene.js"),
+    include_str!("page/plain.js"),
     include_str!("page/fields.js"),
     include_str!("page/stage.js"),
+    include_str!("page/bars.js"),
     include_str!("page/bodies.js"),
     include_str!("page/histories.js"),
+    include_str!("page/pairs.js"),
     include_str!("page/law.js"),
+    include_str!("page/surfaces.js"),
+    include_str!("page/profiles.js"),
     include_str!("page/map.js"),
+    include_str!("page/rates.js"),
     include_str!("page/interface.js"),
     include_str!("page/events.js"),
     include_str!("page/main.js"),

@@ -26,11 +26,13 @@ pub struct Run<'a> {
     room: usize,
     /// omissions and defects
     notes: Vec<String>,
+    /// last time of its table
+    until: Option<f64>,
 }
 
 impl<'a> Run<'a> {
     pub fn new(source: &'a Source, room: usize) -> Self {
-        Self { source, room, notes: Vec::new() }
+        Self { source, room, notes: Vec::new(), until: None }
     }
 
     /// Number of rows of `numbers` values each that fit into a fraction of the room.
@@ -50,7 +52,7 @@ impl<'a> Run<'a> {
         let events = self.small_table("events.csv", pack);
         let interfaces = self.maps(pack);
         let left = self.room.saturating_sub(pack.text.len() - start);
-        let [solid, contact] = self.frames(left, pack);
+        let [solid, contact, bars] = self.frames(left, pack);
         let about = &self.source.about;
         let bounds = about.friction.iter().map(|(name, law)| (name.clone(), json!(FrictionParameters::bounds(law))));
         json!({
@@ -67,6 +69,8 @@ impl<'a> Run<'a> {
             "interfaces": interfaces,
             "solid": solid,
             "contact": contact,
+            "bars": bars,
+            "until": self.until,
             "notes": self.notes,
         })
     }
@@ -95,6 +99,7 @@ impl<'a> Run<'a> {
         for (name, count) in table.not_numbers() {
             self.notes.push(format!("{file}: {count} values of {name} are not numbers and are left blank"));
         }
+        self.until = table.get("time").ok().and_then(|times| times.last().copied());
         let shown = table.spread(self.fit(0.2, table.count()).min(ROWS));
         if shown.len() < all {
             let shown = shown.len();
@@ -173,8 +178,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Bodies and contacts, frame by frame.
-    fn frames(&mut self, room: usize, pack: &mut Pack) -> [Value; 2] {
+    /// Bodies, contacts and bars, frame by frame.
+    fn frames(&mut self, room: usize, pack: &mut Pack) -> [Value; 3] {
         let start = pack.text.len();
         let contact = Series::read(&self.source.folder, "contact", room / 2, &mut self.notes);
         let left = |pack: &Pack| room.saturating_sub(pack.text.len() - start);
@@ -183,6 +188,8 @@ impl<'a> Run<'a> {
         let bodies = solid.as_ref().map_or(Value::Null, |solid| solid.show(&solid.times(), pack));
         let times = solid.as_ref().or(contact.as_ref()).map_or_else(Vec::new, Series::times);
         let contact = contact.map_or(Value::Null, |contact| contact.show(&times, pack));
-        [bodies, contact]
+        let bars = Series::read(&self.source.folder, "bars", left(pack), &mut self.notes);
+        let bars = bars.map_or(Value::Null, |bars| bars.show(&times, pack));
+        [bodies, contact, bars]
     }
 }

@@ -132,7 +132,10 @@ impl Series {
             let values: Vec<f64> = u.values.chunks_exact(u.components).flat_map(|u| [u[0], u[1]]).collect();
             Packed::stepped(&values, 2, size, DISPLACEMENT_ERROR)
         });
-        let fields = grid.at_points.iter().filter(|array| array.name != DISPLACEMENT).map(|array| {
+        // Bars have values of their segments, too.
+        let of_cells = grid.at_cells.iter().filter(|array| !NUMBERS_OF_CELLS.contains(&array.name.as_str()));
+        let of_points = grid.at_points.iter().filter(|array| array.name != DISPLACEMENT);
+        let fields = of_points.chain(of_cells).map(|array| {
             // VTK stores three components, the plane has two.
             let components = if array.components == 3 { 2 } else { array.components };
             let component = |i: usize| {
@@ -160,7 +163,7 @@ impl Series {
         let places: Vec<f64> = grid.points.iter().flat_map(|x| [x[0] - origin[0], x[1] - origin[1]]).collect();
         let of_cells = |name: &str| grid.at_cells.iter().find(|array| array.name == name);
         let ids = |array: &Array| Packed::counts(&array.values.iter().map(|id| *id as u32).collect::<Vec<_>>());
-        let body = of_cells("body").or_else(|| of_cells("contact")).map(|array| pack.add(&ids(array)));
+        let body = OWNERS.iter().find_map(|name| of_cells(name)).map(|array| pack.add(&ids(array)));
         let frames: Vec<Value> = packed.iter().map(|frame| shown(frame, pack)).collect();
         json!({
             "points": grid.points.len(),
@@ -187,6 +190,12 @@ const DISPLACEMENT_ERROR: f64 = 1.0 / 1_048_576.0;
 /// Upper bound of the number of frames of one kind.
 const MOST: usize = 2000;
 
+/// Arrays that number the owner of a cell: its body, its contact or its bar.
+const OWNERS: [&str; 3] = ["body", "contact", "bar"];
+
+/// Arrays of cells that are no quantities.
+const NUMBERS_OF_CELLS: [&str; 5] = [OWNERS[0], OWNERS[1], OWNERS[2], "material", GHOSTS];
+
 /// Array that displaces the points.
 const DISPLACEMENT: &str = "displacement";
 
@@ -194,10 +203,12 @@ fn displacement(grid: &Grid) -> Option<&Array> {
     grid.at_points.iter().find(|array| array.name == DISPLACEMENT && array.components >= 2)
 }
 
-/// Numbers of the bodies whose cells a frame hides.
+/// Numbers of the bodies or bars whose cells a frame hides.
 fn hidden(grid: &Grid) -> BTreeSet<u32> {
     let of = |name: &str| grid.at_cells.iter().find(|array| array.name == name);
-    let (Some(body), Some(ghosts)) = (of("body"), of(GHOSTS)) else { return BTreeSet::new() };
+    let (Some(body), Some(ghosts)) = (OWNERS.iter().find_map(|name| of(name)), of(GHOSTS)) else {
+        return BTreeSet::new();
+    };
     let cells = body.values.iter().zip(&ghosts.values);
     cells.filter(|(_, ghost)| **ghost != 0.0).map(|(body, _)| *body as u32).collect()
 }
@@ -284,7 +295,7 @@ fn thinned(name: &str, values: &[f32], shown: &[usize], points: usize) -> Vec<f6
 
 /// The map of the contact of a number for the page, with at most `most` values per quantity; what is left out goes to the notes.
 pub fn map(number: usize, map: &StoredContact, most: usize, pack: &mut Pack, notes: &mut Vec<String>) -> Value {
-    let StoredContact { name: contact, times, positions, quantities, .. } = map;
+    let StoredContact { name: contact, times, positions, places, lines, quantities } = map;
     let (points, rows) = (positions.len(), times.len());
     let group = (rows * points).div_ceil(most.max(points)).max(1);
     // The last row of each group is shown.
@@ -310,6 +321,7 @@ pub fn map(number: usize, map: &StoredContact, most: usize, pack: &mut Pack, not
     }
     let (along, several_lines) = end_to_end(positions);
     let times: Vec<f64> = shown.iter().map(|&row| times[row]).collect();
+    let coordinates = [0, 1].map(|i| pack.add(&Packed::exact(&places.iter().map(|x| x[i]).collect::<Vec<_>>())));
     json!({
         "contact": contact,
         "number": number,
@@ -319,6 +331,8 @@ pub fn map(number: usize, map: &StoredContact, most: usize, pack: &mut Pack, not
         "several_lines": several_lines,
         "times": pack.add(&Packed::exact(&times)),
         "positions": pack.add(&Packed::exact(&along)),
+        "places": coordinates,
+        "lines": pack.add(&Packed::counts(&lines.iter().map(|&line| line as u32).collect::<Vec<_>>())),
         "quantities": packed,
     })
 }

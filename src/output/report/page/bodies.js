@@ -6,7 +6,7 @@ class Bodies extends BodiesPicture {
     super();
     this.host = host;
     this.runs = DATA.runs.filter((run) => run.solid && run.solid.frames.length);
-    this.options = { map: "viridis", edges: null, tractions: true, range: "most", fixed: [0, 1] };
+    this.options = { map: "viridis", edges: null, tractions: true, bars: "axial_force", range: "most", fixed: [0, 1] };
     this.stage = el("div", { class: "view stage", tabindex: 0, role: "application",
       "aria-label": "Deformed bodies: left and right arrows step through time, space plays, plus and minus zoom" });
     this.over = el("canvas");
@@ -17,7 +17,9 @@ class Bodies extends BodiesPicture {
     this.play = button("▶", "Play", () => this.toggle());
     this.controls = el("div", { class: "controls" });
     this.precision = el("p", { class: "facts" });
-    host.append(this.controls, el("div", { class: "controls" }, this.play, this.slider, this.clock), this.stage, this.probe, this.bar.element, this.precision);
+    this.steps = el("div", { class: "steps" });
+    const times = el("div", { class: "times" }, this.slider, this.steps);
+    host.append(this.controls, el("div", { class: "controls" }, this.play, times, this.clock), this.stage, this.probe, this.bar.element, this.precision);
     this.stage.append(this.over);
     this.listen();
     now.hear(this, (time) => this.show(nearest(this.solid.frames.map((frame) => frame.time), time), true));
@@ -36,6 +38,8 @@ class Bodies extends BodiesPicture {
       solid.body ? unpack(solid.body, "u32") : []]);
     Object.assign(this, { places, mesh: { connectivity, ends, kinds, bodies } });
     this.contact = run.contact && run.contact.frames.length ? await this.surfaces(run.contact) : null;
+    this.bars = run.bars && run.bars.frames.length ? await barsOf(run, solid) : null;
+    this.listed = stepsOf(await table(run.history));
     if (this.scene) this.stage.querySelector("canvas:first-child").remove();
     this.scene = scene(this.stage, solid.cells);
     this.canvas = this.stage.querySelector("canvas");
@@ -52,6 +56,7 @@ class Bodies extends BodiesPicture {
       `${percent(solid.errors.displacement)} of the largest of the run; the files hold more digits.`;
     this.scale = niceScale(solid, bounds(places));
     this.slider.max = solid.frames.length - 1;
+    this.nameSteps();
     this.makeControls();
     this.resize();
     await this.fit();
@@ -113,6 +118,7 @@ class Bodies extends BodiesPicture {
       })), check("elements", options.edges, redraw((on) => (options.edges = on)))] : []),
       el("label", {}, "displacement × ", scale),
       this.contact && this.contact.largest > 0 ? check("tractions", options.tractions, redraw((on) => (options.tractions = on))) : null,
+      this.bars ? choice("bars", this.bars.choices, options.bars, redraw((name) => (options.bars = name))) : null,
       button("+", "Zoom in", () => this.zoom(1.4)), button("−", "Zoom out", () => this.zoom(1 / 1.4)),
       button("⤢", "Show all of the bodies", () => this.fit().then(() => this.draw())),
       ...exports(() => `${this.title()} ${this.frame}`, () => this.svg(), () => this.csv())].filter(Boolean));
@@ -145,6 +151,7 @@ class Bodies extends BodiesPicture {
       await Promise.all([contact.displacement, contact.fields.pressure?.components[0].chunk, contact.fields.traction?.components[0].chunk]
         .filter((chunk) => chunk && !peek(chunk)).map((chunk) => unpack(chunk)));
     }
+    if (this.bars) await this.bars.need(frame.time);
     if (this.wanted !== wanted) return;
     this.frame = wanted;
     if (this.hidden !== `${frame.hidden}`) this.uncover(frame.hidden);
@@ -152,10 +159,25 @@ class Bodies extends BodiesPicture {
     this.moved = (frame.displacement && peek(frame.displacement)) || new Float32Array(2 * this.solid.points);
     this.values = this.field.values(frame, this);
     this.scene.frame(this.moved, this.values);
-    this.clock.value = `t = ${told(frame.time, 7)} ${unitOf("time")} (${wanted + 1}/${this.solid.frames.length})`;
+    const step = stepAt(this.listed, frame.time);
+    this.clock.value = `${step ? `${step.name}, ` : ""}t = ${timed(frame.time)} (${wanted + 1}/${this.solid.frames.length})`;
+    this.steps.childNodes.forEach((one) => one.setAttribute("aria-current", String(one.step === step)));
     this.slider.setAttribute("aria-valuetext", this.clock.value);
     if (!quiet) now.set(frame.time, this);
     this.draw();
+  }
+
+  /** The names of the steps below the slider, each as wide as its frames are; a click goes to the end of a step. */
+  nameSteps() {
+    const { frames } = this.solid;
+    const of = frames.map((frame) => stepAt(this.listed, frame.time));
+    const named = this.listed.map((step) => ({ step, count: of.filter((other) => other === step).length })).filter(({ count }) => count > 0);
+    this.steps.hidden = named.length < 2;
+    this.steps.replaceChildren(...named.map(({ step, count }) => {
+      const made = button(step.name, `Step ${step.name}: to its end`, () => this.show(of.lastIndexOf(step)));
+      made.style.flexGrow = count;
+      return Object.assign(made, { step });
+    }));
   }
 
   toggle() {

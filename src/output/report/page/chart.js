@@ -115,8 +115,8 @@ class Chart {
   }
 
   /** Other curves; the axis stays logarithmic, or linear. */
-  set(series, title, y) {
-    Object.assign(this, { series, title, y: { ...y, log: this.y.log } });
+  set(series, title, y, x = this.x) {
+    Object.assign(this, { series, title, x, y: { ...y, log: this.y.log } });
     this.caption.textContent = title;
     if (this.plot) this.redraw();
     else if (this.seen) this.draw();
@@ -135,7 +135,8 @@ class Chart {
 
   csv() {
     const names = [this.x.label, ...this.series.map((one) => one.name)];
-    return csv(names, this.data());
+    const [x, ...columns] = this.data();
+    return csv(names, [this.x.size > 1 ? x.map((value) => value / this.x.size) : x, ...columns]);
   }
 
   options() {
@@ -147,27 +148,29 @@ class Chart {
     const axis = (of, size, room) => ({
       stroke: ink, grid: line(of), ticks: line(of), label: of.label, size, labelSize: 20,
       font: "11px sans-serif", labelFont: `${Math.min(12, (12 * room) / (7 * of.label.length)).toFixed(1)}px sans-serif`,
-      values: (u, splits) => (of.log ? splits.map((value) => (value == null ? "" : told(value, 2))) : tickTexts(splits)),
+      values: (u, splits) => (of.log ? splits.map((value) => (value == null ? "" : told(value, 2))) : tickTexts(splits.map((value) => value / (of.size || 1)))),
+      // Ticks are round in the unit that is shown.
+      ...(of.size > 1 && { splits: (u, _, low, high) => ticks(low / of.size, high / of.size, room / 80).map((value) => value * of.size) }),
     });
     const series = this.series.map((one) => ({
       label: one.name, stroke: one.colour, width: one.points ? 0 : 1.6, dash: one.dash, spanGaps: false,
       paths: this.path ? ownWay : undefined,
       points: one.points ? { show: true, size: 7, fill: one.colour, stroke: one.colour } : { show: this.series[0].x.length < 30 && !one.plain, size: 4 },
-      value: (u, value) => told(value, 6),
+      value: (u, value) => (value == null ? "" : told(value, 6)),
     }));
     const include = this.y.include || [];
     return {
       width: this.width(), height: this.height, padding: [8, 24, 0, 0],
       legend: { live: true },
       scales: {
-        x: { time: false, ...(this.x.log && { distr: 3 }), ...(this.path && { range: (u, low, high) => this.across(u, low, high) }) },
+        x: { time: false, ...(this.x.log && { distr: 3 }), ...(this.x.reverse && { dir: -1 }), ...(this.path && { range: (u, low, high) => this.across(u, low, high) }) },
         y: {
           ...(this.y.log && { distr: 3 }),
           ...((this.path || !this.y.log) && { range: (u, low, high) => this.upwards(low, high, include) }),
         },
       },
       axes: [axis(this.x, 42, this.width() - 86), axis(this.y, besides, this.height - 50)],
-      series: [{ label: this.x.label, value: (u, value) => told(value, 8) }, ...series],
+      series: [{ label: this.x.label, value: (u, value) => (value == null ? "" : told(value / (this.x.size || 1), 8)) }, ...series],
       cursor: {
         drag: { x: true, y: true, uni: 30 }, focus: { prox: 24 },
         ...(this.time && { sync: { key: "time", setSeries: false, scales: ["x", null] } }),
@@ -175,6 +178,8 @@ class Chart {
       },
       hooks: {
         draw: [(u) => this.time && marked(u)],
+        // Where nothing is pointed at the legend has no values.
+        setCursor: [(u) => u.root.classList.toggle("pointed", u.cursor.left >= 0)],
         ready: [(u) => {
           u.over.addEventListener("click", () => this.clicked(u));
           const rows = u.root.querySelectorAll(".u-legend .u-series");
@@ -199,15 +204,31 @@ class Chart {
   across(u, low, high) {
     // uPlot takes the first and the last for the least and the largest; the first is no number where a curve begins with a break.
     const [first, last] = [u.data[0][0], u.data[0][u.data[0].length - 1]];
-    if (!Object.is(low, first) || !Object.is(high, last)) return [low, high];
-    return padded(...bounds(this.series.flatMap((one) => [...bounds(one.x), ...(this.x.include || [])])));
+    const isTold = ![[first, last], [last, first]].some(([a, b]) => Object.is(low, a) && Object.is(high, b));
+    if (isTold) return [low, high];
+    const { log, include } = this.x;
+    if (log) return decades(...bounds(this.series.flatMap((one) => [...bounds(one.x.filter((value) => value > 0))])));
+    return this.reach("x", include);
+  }
+
+  /** What is seen of curves along an axis: with what bounds them, unless the curves were a speck then. */
+  reach(axis, include = []) {
+    const of = (some) => some.flatMap((one) => bounds(one[axis]));
+    const [own, all] = [this.series.filter((one) => !one.plain), [...of(this.series), ...include]];
+    const shares = ["x", "y"].map((name) => {
+      const [low, high] = bounds(own.flatMap((one) => bounds(one[name])));
+      const [least, most] = bounds([...this.series.flatMap((one) => bounds(one[name])), ...(this[name].include || [])]);
+      return (high - low) / (most - least || 1);
+    });
+    return padded(...bounds(own.length && Math.max(...shares) < SPECK ? of(own) : all));
   }
 
   /** What is seen along y; uPlot takes the rows between two of ascending x, which such curves do not have. */
   upwards(low, high, include) {
     const { log } = this.y;
-    if (this.path) [low, high] = bounds(this.series.flatMap((one) => [...bounds(log ? one.y.filter((value) => value > 0) : one.y)]));
-    if (log) return low > 0 ? [10 ** Math.floor(Math.log10(low)), 10 ** Math.ceil(Math.log10(high * (1 + 1e-9)))] : [0.1, 1];
+    if (this.path && !log) return this.reach("y", include);
+    if (this.path) [low, high] = bounds(this.series.flatMap((one) => [...bounds(one.y.filter((value) => value > 0))]));
+    if (log) return decades(low, high);
     return padded(Math.min(low, ...include), Math.max(high, ...include));
   }
 
@@ -262,6 +283,12 @@ function powers(splits) {
   const isPower = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-6;
   return splits.filter(isPower).length > 4 ? splits.map((value) => (isPower(value) ? value : null)) : splits;
 }
+
+/** Curves that fill less of a chart are shown without what bounds them. */
+const SPECK = 0.15;
+
+/** Whole decades about two numbers. */
+const decades = (low, high) => (low > 0 ? [10 ** Math.floor(Math.log10(low)), 10 ** Math.ceil(Math.log10(high * (1 + 1e-9)))] : [0.1, 1]);
 
 /** A little more than what is between two numbers. */
 function padded(low, high) {

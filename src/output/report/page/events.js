@@ -80,6 +80,24 @@ function eventsOf(fronts) {
   }).sort((a, b) => a.onset - b.onset);
 }
 
+/** Rows of a table of events without those that set out again, before as long a time has passed as it lasted, from where an event
+ * had just ruptured: their nucleation is one. */
+function nucleations(events) {
+  const [contact, onset, duration, place, length] = ["contact", "onset", "duration", "position", "length"].map((name) => events.get(name));
+  const all = Array.from({ length: events.rows }, (_, row) => row);
+  if (!contact || !onset || !duration || !place) return all;
+  const last = new Map();
+  return all.filter((row) => {
+    const before = last.get(contact[row]);
+    const again = before && onset[row] - before.until < Math.max(before.lasted, duration[row]) && Math.abs(place[row] - before.place) <= before.reach;
+    const until = onset[row] + duration[row];
+    const first = again ? before.first : onset[row];
+    const reach = Math.max(length?.[row] ?? 0, again ? before.reach : 0);
+    last.set(contact[row], { first, until, lasted: until - first, place: again ? before.place : place[row], reach });
+    return !again;
+  });
+}
+
 /** Events of an interface by its slip rates: rows in which some point is fast. What slips again before it has rested as long as it
  * slipped is one event. */
 async function eventsByRates(run, map) {
@@ -120,18 +138,22 @@ async function showEvents() {
     const events = await table(run.events);
     const fronts = await table(run.fronts);
     if (events && events.rows) {
-      const columns = events.names.map((key) => [key, (row) => events.get(key)[row], withUnit(spoken(key), fieldUnit(key))]);
+      const columns = events.names.map((key) => (key === "onset"
+        ? [key, (row) => events.get(key)[row] / clock.size, withUnit(spoken(key), clock.unit)]
+        : [key, (row) => events.get(key)[row], withUnit(spoken(key), fieldUnit(key))]));
       const time = ["onset", "time", "start"].find((key) => events.get(key));
       const rows = Array.from({ length: events.rows }, (_, row) => row);
-      section.append(el("h3", {}, `${name}${events.rows} event${events.rows > 1 ? "s" : ""}`), tableOf(columns, rows, (row) => time && jump(run, events.get(time)[row],
+      const count = nucleations(events).length;
+      const again = count < events.rows ? `, ${events.rows} with those that set out again from where one had just been` : "";
+      section.append(el("h3", {}, `${name}${count} event${count > 1 ? "s" : ""}${again}`), tableOf(columns, rows, (row) => time && jump(run, events.get(time)[row],
         events.get("duration")?.[row], events.get("contact")?.[row])));
     } else if (fronts && fronts.rows) {
       const found = eventsOf(fronts);
-      const [time, length] = [unitOf("time"), unitOf("length")];
+      const [time, length] = [clock.unit, unitOf("length")];
       const columns = [
         ["event", (row) => row.event, "event"], ["contact", (row) => row.contact, "contact"],
-        ["onset", (row) => row.onset, withUnit("onset", time)], ["place", (row) => row.place, withUnit("place", length)],
-        ["duration", (row) => row.duration, withUnit("duration", time)], ["length", (row) => row.length, withUnit("length", length)],
+        ["onset", (row) => row.onset / clock.size, withUnit("onset", time)], ["place", (row) => row.place, withUnit("place", length)],
+        ["duration", (row) => row.duration, withUnit("duration", unitOf("time"))], ["length", (row) => row.length, withUnit("length", length)],
         ["speed", (row) => row.speed, withUnit("front speed (median)", unitOf("velocity"))],
         ["rayleigh", (row) => row.rayleigh, "speed/c_R"], ["shear", (row) => row.shear, "speed/c_s"],
         ["energy", (row) => row.energy, withUnit("energy released", unitOf("energy"))],
@@ -141,10 +163,10 @@ async function showEvents() {
     } else {
       const found = (await Promise.all(run.interfaces.map((map) => eventsByRates(run, map)))).flat();
       if (!found.length) continue;
-      const [time, length, velocity] = ["time", "length", "velocity"].map(unitOf);
+      const [length, velocity] = ["length", "velocity"].map(unitOf);
       const columns = [
-        ["contact", (row) => row.contact, "contact"], ["onset", (row) => row.onset, withUnit("onset", time)],
-        ["duration", (row) => row.duration, withUnit("duration", time)], ["place", (row) => row.place, withUnit("place", length)],
+        ["contact", (row) => row.contact, "contact"], ["onset", (row) => row.onset / clock.size, withUnit("onset", clock.unit)],
+        ["duration", (row) => row.duration, withUnit("duration", unitOf("time"))], ["place", (row) => row.place, withUnit("place", length)],
         ["share", (row) => row.share, "fraction of the points"], ["slip", (row) => row.slip, withUnit("mean slip", length)],
         ["peak", (row) => row.peak, withUnit("peak slip rate", velocity)],
       ];

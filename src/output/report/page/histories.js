@@ -40,10 +40,6 @@ const ENERGIES = [
   ["plastic_dissipation", "plastic"],
 ];
 
-function timeAxis() {
-  return { label: withUnit("time", unitOf("time")) };
-}
-
 /** Charts beside each other, and in a line below them what never changes; nothing if there is neither. */
 function grid(made) {
   const [all, constants] = [made.filter((one) => one instanceof Chart), made.filter((one) => typeof one === "string")];
@@ -79,6 +75,7 @@ async function showHistories() {
   const runs = all.filter(({ history }) => history && history.rows > 0);
   if (!runs.length) return runs;
   section.hidden = false;
+  showPair(section, runs);
   const contacts = owners(runs, "normal_force");
   contacts.forEach((contact, k) => group(section, `Contact ${contact}`, contactCharts(runs, contact), k < 3));
   const sets = owners(runs, "ux");
@@ -87,6 +84,7 @@ async function showHistories() {
     overTime(runs, `Reaction of ${set}`, directions(runs, set, ["fx", "fy"]), "reaction", unitOf("force")),
   ]);
   group(section, "Watched sets", watched, sets.length < 6);
+  group(section, "Bars", owners(runs, "axial_max").flatMap((bar) => barCharts(runs, bar)), true);
   group(section, "Energies", energyCharts(runs), true);
   return runs;
 }
@@ -104,11 +102,19 @@ function ratioChart(runs, contact, limits) {
   const largest = sizeOf(series);
   if (!(largest > 0)) return null;
   const { x, y } = series[0];
-  const peak = several ? "" : `: largest ${told(largest)} at t = ${told(x[y.findIndex((ratio) => Math.abs(ratio) === largest)])} ${unitOf("time")}`.trimEnd();
+  const peak = several ? "" : `: largest ${told(largest)} at t = ${timed(x[y.findIndex((ratio) => Math.abs(ratio) === largest)], 5)}${atLargestForce(pressed[0], tangential, y)}`;
   const backwards = series.some((one) => bounds(one.y)[0] < -0.25 * largest);
   const lines = limits.flatMap(([name, mu], k) => (backwards ? [1, -1] : [1]).map((sign) => (
     { name: `${sign < 0 ? "−" : ""}${name}`, x: [x[0], x[x.length - 1]], y: [sign * mu, sign * mu], colour: styled("--soft"), dash: BOUNDS[k % BOUNDS.length], plain: true })));
   return new Chart({ title: `F_t/F_n of ${contact}${peak}`, x: timeAxis(), y: { label: "tangential over normal force" }, series: [...series, ...lines], time: true });
+}
+
+/** F_t/F_n where F_t is largest, if that is at another time than the largest ratio. */
+function atLargestForce({ history }, tangential, ratios) {
+  const forces = Array.from(history.get(tangential), Math.abs);
+  const ratio = Math.abs(ratios[forces.indexOf(Math.max(...forces))]);
+  const text = told(ratio, 4);
+  return Number.isFinite(ratio) && text !== told(sizeOf([{ y: ratios }]), 4) ? `; ${text} at the largest force` : "";
 }
 
 function contactCharts(runs, contact) {
@@ -138,7 +144,7 @@ function contactCharts(runs, contact) {
     overTime(runs, `Normal force in ${contact}`, of([["normal_force", "normal"]]), "normal force", force),
     path.some((one) => sizeOf([one]) > 0) && new Chart({ title: `Friction path of ${contact}`, x: { label: withUnit("normal force", force), include: [0] },
       y: { label: withUnit("tangential force", force), include: [0] }, series: path, path: true }),
-    overTime(runs, `Slipping fraction of ${contact}`, of([["slip_fraction", "slipping fraction of the closed length"]]), "slipping share", "", { include: [0, 1], always: true }),
+    overTime(runs, `Slipping fraction of ${contact}`, of([["slip_fraction", "slipping fraction of the closed length"]]), "slipping fraction", "", { include: [0, 1], always: true }),
     overTime(runs, `Slip in ${contact}`, of([["mean_slip", "plastic slip"], ["mean_elastic_slip", "elastic slip"]]), "mean slip", unitOf("length")),
     overTime(runs, `Closed length of ${contact}`, of([["contact_length", "closed length"]]), "closed length", unitOf("length")),
     overTime(runs, `Penetration in ${contact}`, of([["max_penetration", "largest penetration"]]), "penetration", unitOf("length")),

@@ -23,7 +23,9 @@ class Interface extends InterfacePicture {
     this.history = new Chart({ title: "History", x: timeAxis(), y: { label: "" }, series: [], time: true });
     this.snapshots = new Chart({ title: "Snapshots", x: place, y: { label: "" }, series: [] });
     this.picture = el("div", {}, this.view, this.probe, this.bar.element);
-    host.append(this.controls, this.picture, el("div", { class: "grid" }, this.profile.element, this.history.element, this.snapshots.element));
+    this.rates = new Rates();
+    host.append(this.controls, this.picture, el("div", { class: "grid" }, this.profile.element, this.history.element, this.snapshots.element,
+      ...this.rates.charts.map((chart) => chart.element)));
     this.listen();
     now.hear(this, (time) => this.choose(time, null, true));
     addEventListener("theme", () => this.draw());
@@ -44,6 +46,7 @@ class Interface extends InterfacePicture {
     this.picture.hidden = map.points < 2;
     await this.show(known || (run.fronts || map.rows > 300 ? first.find(Boolean) : first.slice(1).find(Boolean)) || map.quantities[0]);
     if (now.time != null) this.choose(now.time, null, true);
+    await this.rates.show(run, map);
   }
 
   /** Another quantity. */
@@ -82,7 +85,7 @@ class Interface extends InterfacePicture {
       const from = 4 * Math.round(60 + (150 * k) / Math.max(1, rows.length - 1));
       const colour = `rgb(${lut.slice(from, from + 3).join(" ")})`;
       const along = (of) => Float64Array.from(places, (_, i) => of(row * places.length + i));
-      const name = `t = ${told(this.times[row], 7)} ${unitOf("time")}`.trimEnd();
+      const name = `t = ${timed(this.times[row])}`;
       const profile = { name, x: places, y: along((i) => values[i]), colour, plain: true };
       if (factors.length < 2) return [profile];
       return [profile, { name: `μ p, ${name}`, x: places, y: along((i) => factors[0][i] * factors[1][i]), colour, dash: [3, 3], plain: true, unlisted: true }];
@@ -162,7 +165,7 @@ class Interface extends InterfacePicture {
     const y = { label: withUnit(names.length > 1 ? "traction" : spoken(this.quantity.name), fieldUnit(this.quantity.name)) };
     const unit = (value, of) => `${value} ${unitOf(of)}`.trim();
     this.profile.element.hidden = this.map.points < 2;
-    if (this.map.points > 1) this.profile.set(series.profile, `${this.map.contact} at t = ${unit(told(time, 9), "time")}`, y);
+    if (this.map.points > 1) this.profile.set(series.profile, `${this.map.contact} at t = ${timed(time, 9)}`, y);
     this.history.set(series.history, `${this.map.contact} at position ${unit(told(this.places[point]), "length")}`, y);
   }
 
@@ -220,7 +223,7 @@ class Interface extends InterfacePicture {
       if (!this.values || !this.box) return;
       const [s, up] = inside(event);
       const [row, point] = [this.rowAt(up), nearest(this.places, s)];
-      this.probe.textContent = `t = ${told(this.times[row], 9)} ${unitOf("time")}, position ${told(this.places[point])} ${unitOf("length")}: ` +
+      this.probe.textContent = `t = ${timed(this.times[row], 9)}, position ${told(this.places[point])} ${unitOf("length")}: ` +
         `${spoken(this.quantity.name)} ${told(this.values[row * this.places.length + point])} ${fieldUnit(this.quantity.name)}`;
       if (!from) return;
       this.draw();

@@ -29,6 +29,7 @@ async function showAll() {
   const bodies = part("bodies", showBodies);
   const runs = await part("histories", showHistories);
   await part("law", showLaw);
+  await part("profiles", showProfiles);
   await part("interface", showInterface);
   await part("events", showEvents);
   await part("convergence", () => showConvergence(runs));

@@ -154,10 +154,14 @@ class InterfacePicture {
     });
     // Of times that differ only in their last digits the difference is told.
     const [low, high] = window.t;
-    const zero = this.settings.axis === "time" && high - low < 1e-3 * Math.abs(low) ? Number(low.toPrecision(8)) : 0;
-    const heights = ticks(low - zero, high - zero, box.h / 44);
+    const zero = this.settings.axis === "time" && high - low < 1e-3 * Math.abs(low) ? Number((low / clock.size).toPrecision(9)) * clock.size : 0;
+    const byTime = this.settings.axis === "time";
+    // Times have the unit of the run, or, close up, the one that suits what is seen.
+    const unit = !byTime ? "" : zero ? spanned(high - low)[1] : clock.unit;
+    const size = !byTime ? 1 : zero ? lengthOf(unit) : clock.size;
+    const heights = ticks((low - zero) / size, (high - zero) / size, box.h / 44).map((value) => value * size);
     context.textAlign = "right";
-    tickTexts(heights).forEach((text, k) => {
+    tickTexts(heights.map((value) => value / size)).forEach((text, k) => {
       const [, y] = this.at(0, heights[k] + zero);
       context.fillRect(box.x - 4, y, 4, 1);
       context.fillText(text, box.x - 7, y + 4);
@@ -165,7 +169,7 @@ class InterfacePicture {
     context.textAlign = "center";
     context.font = "12px sans-serif";
     context.fillText(withUnit("position along the slave", unitOf("length")), box.x + 0.5 * box.w, box.y + box.h + 36);
-    const what = this.settings.axis === "row" ? "output" : withUnit(zero ? `time − ${told(zero, 9)}` : "time", unitOf("time"));
+    const what = byTime ? withUnit(zero ? `time − ${clock.size > 1 ? timed(zero, 9) : told(zero, 9)}` : "time", unit) : "output";
     context.save();
     context.translate(13, box.y + 0.5 * box.h);
     context.rotate(-0.5 * Math.PI);

@@ -1,5 +1,5 @@
 "use strict";
-// Deformed bodies on a canvas: by WebGL 2, or by 2D drawing where there is none.
+// Deformed bodies on a canvas: by WebGL 2, or pixel by pixel where there is none.
 
 /** Corners of a cell in order with the nodes between them, by VTK's number of its kind. */
 const RINGS = { 5: [0, 1, 2], 9: [0, 1, 2, 3], 22: [0, 3, 1, 4, 2, 5], 23: [0, 4, 1, 5, 2, 6, 3, 7], 28: [0, 4, 1, 5, 2, 6, 3, 7] };
@@ -125,59 +125,6 @@ class WebGLScene {
   finish() {
     this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
-}
-
-/** The same without WebGL: a triangle has the mean value of its corners. */
-class PlainScene {
-  constructor(canvas) {
-    this.context = canvas.getContext("2d");
-    this.canvas = canvas;
-  }
-
-  mesh(places, parts) {
-    Object.assign(this, { places, parts });
-  }
-
-  frame(moved, values) {
-    Object.assign(this, { moved, values });
-  }
-
-  colours(map) {
-    this.lut = lutOf(map);
-  }
-
-  draw({ view, scale, range, edges }) {
-    const { context, canvas, places, moved, values, lut } = this;
-    context.clearRect(0, 0, canvas.width, canvas.height);
-    const x = (k) => 0.5 * canvas.width * (1 + (places[2 * k] + scale * moved[2 * k]) * view[0] + view[2]);
-    const y = (k) => 0.5 * canvas.height * (1 - (places[2 * k + 1] + scale * moved[2 * k + 1]) * view[1] - view[3]);
-    const { triangles, inner, outer } = this.parts;
-    for (let k = 0; k < triangles.length; k += 3) {
-      const [a, b, c] = triangles.subarray(k, k + 3);
-      const level = ((values[a] + values[b] + values[c]) / 3 - range[0]) / (range[1] - range[0] || 1);
-      const i = 4 * Math.round(255 * Math.max(0, Math.min(1, level)));
-      context.fillStyle = level < 1e6 ? `rgb(${lut[i]},${lut[i + 1]},${lut[i + 2]})` : `rgb(${BLANK})`;
-      context.beginPath();
-      context.moveTo(x(a), y(a));
-      context.lineTo(x(b), y(b));
-      context.lineTo(x(c), y(c));
-      context.fill();
-    }
-    const lines = (all) => {
-      context.beginPath();
-      for (let k = 0; k < all.length; k += 2) {
-        context.moveTo(x(all[k]), y(all[k]));
-        context.lineTo(x(all[k + 1]), y(all[k + 1]));
-      }
-      context.stroke();
-    };
-    context.strokeStyle = styled("--soft");
-    if (edges) lines(inner);
-    context.strokeStyle = styled("--ink");
-    lines(outer);
-  }
-
-  finish() {}
 }
 
 /** A scene on a canvas in a place; a canvas that failed at WebGL cannot draw in 2D any more. */

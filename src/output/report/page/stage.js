@@ -47,6 +47,7 @@ class BodiesPicture {
   decorate(context, w, h) {
     context.font = "12px sans-serif";
     if (!this.solid.cells) this.masses(context, w, h);
+    if (this.bars) this.bars.draw(context, this, w, h);
     if (this.options.tractions && this.contact && this.contact.largest > 0) this.tractions(context, w, h);
     context.fillStyle = context.strokeStyle = styled("--ink");
     const length = roundBelow(120 / this.camera.zoom);
