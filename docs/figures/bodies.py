@@ -10,6 +10,7 @@ the slave at several times. Needs numpy, matplotlib and pyvista.
 """
 
 import argparse
+import json
 import pathlib
 
 import matplotlib
@@ -29,6 +30,15 @@ arguments.add_argument("--at", type=float)
 arguments.add_argument("--edges", action="store_true")
 arguments.add_argument("--profile", nargs="+", metavar=("FIELD", "TIME"))
 told = arguments.parse_args()
+
+
+units = json.loads((told.folder / "summary.json").read_text())["units"]
+
+
+def unit(of):
+    """The label of a unit in brackets, if the case has it; that of stresses is made of force and length."""
+    label = units.get(of) or (f"{units['force']}/{units['length']}²" if of == "stress" and {"force", "length"} <= units.keys() else "")
+    return f" [{label}]" if label else ""
 
 
 def frame(name, at):
@@ -53,9 +63,11 @@ def bodies(axes):
     axes.add_collection(drawn)
     axes.autoscale()
     axes.set_aspect("equal")
+    axes.set(xlabel="x" + unit("length"), ylabel="y" + unit("length"))
     enlarged = f", displacements ×{told.scale:g}" if told.scale != 1 else ""
-    axes.set_title(f"t = {time:.3g}{enlarged}", fontsize=10)
-    plt.colorbar(drawn, ax=axes, label=told.field.replace("_", " "), shrink=0.7)
+    axes.set_title(f"t = {time:.3g} {units.get('time', '')}{enlarged}", fontsize=10)
+    label = "von Mises stress" + unit("stress") if told.field == "von_mises" else told.field.replace("_", " ")
+    plt.colorbar(drawn, ax=axes, label=label, shrink=0.7)
 
 
 def profiles(axes):
@@ -65,9 +77,9 @@ def profiles(axes):
         line, time = frame("contact.pvd", float(at))
         order = np.argsort(line.points[:, 0])
         colour = plt.cm.viridis(0.9 * number / max(1, len(times) - 1))
-        axes.plot(line.points[order, 0], line[name][order], color=colour, label=f"t = {time:.3g}")
-    axes.set_xlabel("x along the slave")
-    axes.set_ylabel(name)
+        axes.plot(line.points[order, 0], line[name][order], color=colour, label=f"t = {time:.3g} {units.get('time', '')}")
+    axes.set_xlabel("x along the slave" + unit("length"))
+    axes.set_ylabel(f"{name} [-]" if name in ("R", "mu", "structure") else name)
     axes.legend(fontsize=8)
 
 

@@ -31,12 +31,14 @@ for step, label in (("pull", "first pull"), ("pull again", "after 28 hours")):
     pull = np.array([float(row["head.fy"]) for row in own])
     left.plot(lift, pull, label=label)
     print(step, f"peak {pull.max():.1f} at {lift[pull.argmax()]:.1f} mm, last {pull[-1]:.1f}")
-left.set(xlabel="uplift of the head [mm]", title="pull [kN per full turn]", ylim=(0, None))
+left.set(xlabel="uplift of the head [mm]", ylabel="pull [kN per full turn]", ylim=(0, None))
 left.legend()
 for time in (2, 4, 6, 8, 11, 20):
     k = int(np.abs(times - time).argmin())
-    ratio = np.abs(store["shaft.traction"].values[k]) / store["shaft.pressure"].values[k]
-    right.plot(ratio[order], depth[order], label=f"{times[k]:.0f} mm")
-right.set(xlabel="q/p", ylabel="z [m]", title="friction along the shaft, first pull")
-right.legend(title="uplift", fontsize=8)
+    q, p = (np.abs(store[f"shaft.{name}"].values[k][order]) for name in ("traction", "pressure"))
+    # Weighted means of three neighbouring points.
+    means = lambda values: np.convolve(values, [0.25, 0.5, 0.25], mode="valid")
+    right.plot(means(q) / means(p), depth[order][1:-1], label=f"{times[k]:.0f} mm")
+right.set(xlabel="q/p along the shaft, first pull [-]", ylabel="z [m]", xlim=(0, 0.22))
+right.legend(title="uplift", fontsize=8, loc="center left")
 figure.savefig(target, dpi=100)

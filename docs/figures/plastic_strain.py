@@ -9,6 +9,7 @@ Needs numpy, matplotlib and pyvista.
 """
 
 import csv
+import json
 import pathlib
 import sys
 
@@ -31,23 +32,28 @@ places = grid.points[:, :2] + grid["displacement"][:, :2]
 cells = [np.array(grid.get_cell(cell).point_ids) for cell in range(grid.n_cells)]
 strain = [grid["equivalent_plastic_strain"][ids].mean() for ids in cells]
 
-figure, (above, below) = plt.subplots(2, 1, figsize=(8, 6), height_ratios=[1.4, 1], layout="constrained")
+# A strip is as wide as the figure and lower than a wall.
+size, ratios = ((8, 6), [1.4, 1]) if what == "wall" else ((8, 4.4), [0.55, 1])
+figure, (above, below) = plt.subplots(2, 1, figsize=size, height_ratios=ratios, layout="constrained")
+unit = json.loads((folder / "summary.json").read_text())["units"]["length"]
+above.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
 bodies = PolyCollection([places[ids[:4]] for ids in cells], array=np.array(strain), cmap="magma_r", edgecolors="face", linewidths=0.2)
 bodies.set_clim(0, 0.3 if what == "wall" else 1)
 above.add_collection(bodies)
 above.autoscale()
 above.set_aspect("equal")
-figure.colorbar(bodies, ax=above, label="equivalent plastic strain")
+where = {"ax": above} if what == "wall" else {"ax": above, "orientation": "horizontal", "location": "top", "aspect": 60}
+figure.colorbar(bodies, label="equivalent plastic strain [-]", **where)
 if what == "wall":
     above.set_xlim(-1, 10)
     below.plot(1e3 * column("back.ux"), column("back.fx"))
-    below.set(xlabel="way of the wall [mm]", ylabel="push [kN/m]")
+    below.set(xlabel="displacement of the wall [mm]", ylabel="reaction of the wall [kN/m]")
     friction = below.twinx()
     friction.plot(1e3 * column("back.ux"), -column("face.tangential_force") / column("face.normal_force"), "C1")
-    friction.set_ylabel("friction / normal force")
+    friction.set_ylabel("friction / normal force [-]")
 else:
-    below.plot(column("time"), -column("tool.fy"), label="press")
-    below.plot(column("time"), column("tool.fx"), label="drag")
+    below.plot(column("time"), -column("tool.fy"), label="normal force, −F_y")
+    below.plot(column("time"), column("tool.fx"), label="tangential force, F_x")
     below.set(xlabel="time [s]", ylabel="force [N/mm]")
     below.legend()
 figure.savefig(target, dpi=90)

@@ -91,7 +91,9 @@ def interface(
     times = data["time"].values
     rows = times if y == "time" else np.arange(times.size)
     colours = ax.pcolormesh(data[x].values[order], rows, shown, **{"shading": "nearest", **mesh})
-    label = _quantities.spoken(field) + _unit(data[field].attrs.get("units"))
+    # Of quantities of laws the store knows the unit.
+    unit = _quantities.unit_in("interface.zarr", field, result.units) or data[field].attrs.get("units")
+    label = _quantities.spoken(field) + _unit(None if unit == "1" else unit)
     ax.figure.colorbar(colours, ax=ax, label=label)
     ax.set(xlabel=x + _unit(result.units.get("length")), ylabel=labelled(result, "time"), title=name)
     if y == "row":

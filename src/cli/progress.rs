@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::say::note;
 use crate::equations::ContactCounts;
 use crate::mesh::names::in_line;
 use crate::model::Model;
@@ -44,7 +45,7 @@ impl Voice {
     /// Prints a line.
     pub fn say(&self, line: &str) {
         match self {
-            Self::Quiet => {}
+            Self::Quiet => note(line),
             Self::Lines => say!("{line}"),
             Self::Terminal(bar) => bar.suspend(|| say!("{line}")),
         }
@@ -117,11 +118,16 @@ impl Observer for Progress {
                 );
                 self.next = now + FRAME;
             }
-            Voice::Lines if tenths(share) > self.tenths => {
-                say!("{:3.0} %  {}", 100.0 * share, message(model, attempt, false));
-                self.tenths = tenths(share);
-            }
             Voice::Quiet | Voice::Lines | Voice::Terminal(_) => {}
+        }
+        if tenths(share) > self.tenths {
+            let line = format!("{:3.0} %  {}", 100.0 * share, message(model, attempt, false));
+            match &self.voice {
+                Voice::Lines => say!("{line}"),
+                // A terminal shows the line that is updated; the log has one per tenth.
+                Voice::Quiet | Voice::Terminal(_) => note(&line),
+            }
+            self.tenths = tenths(share);
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ use super::failure::Failure;
 use super::interrupt::Interrupt;
 use super::place::default_folder;
 use super::progress::{Progress, Voice};
+use super::say::{LOG, log_to};
 use super::threads::use_threads;
 use crate::case::job::{Callbacks, Job, Outcome};
 use crate::case::{Opened, Written, warnings};
@@ -52,6 +53,10 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
         true => Job::resume(&place, opened, &|text| voice.warn(text))?,
         false => Job::open(opened(None)?, &place)?,
     };
+    let goes_on = job.opened.resumes() && !job.begins_anew;
+    if let Err(cause) = log_to(&job.folder.path, goes_on) {
+        voice.warn(&format!("{}: {cause}", job.folder.path.join(LOG).display()));
+    }
     let messages = Messages::start(&job, &voice);
     let outcome = job.run(callbacks(&voice))?;
     messages.end(&outcome, &job);
