@@ -64,8 +64,9 @@ class Mesh:
 
         Bodies are the element sets of Abaqus and CalculiX (``.inp``), the blocks of Exodus (``.e``, ``.exo``), the groups of cells of
         MED (``.med``), and in other formats read by meshio, such as ``.vtu``, the values of a cell array (``NAME_1``, …). Element
-        surfaces, side sets, and groups of lines become edge groups; node sets become node groups. Of decks, keywords that change the
-        mesh and are not read (``*NGEN``, a second ``*INSTANCE``, …), and those that are not known, are refused.
+        surfaces, side sets, and groups of lines become edge groups; node sets become node groups. In an assembly of several instances
+        each instance is a body. Lines inside bodies become nodes, with a warning. Of decks, keywords that change the
+        mesh and are not read (``*NGEN``, ``*ELCOPY``, …), and those that are not known, are refused.
 
         All but ``.msh`` and ``.inp`` need ``pip install 'fecontact[meshio]'``. A node set with the nodes of edges, or of a body,
         of the same name is merged with that group; with other nodes it is called ``NAME_nodes``.
