@@ -19,12 +19,13 @@ const RUNS_AWAY: f64 = 2.0;
 
 /// Says why a static step may have no equilibrium further on, before a semicolon; empty unless something has begun to run away.
 pub fn limit(model: &Model, step: &Step, state: &State, cause: &IncrementFailure) -> String {
-    if !matches!(cause, IncrementFailure::Newton(_)) || step.scheme.is_dynamic() {
+    if !matches!(cause, IncrementFailure::Newton(_) | IncrementFailure::Torn { .. }) || step.scheme.is_dynamic() {
         return String::new();
     }
     let contacts = model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| step.joins(pair));
     let of_contact = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
-        unstable_slip(step, state, pair, states).unwrap_or_default() + &snaps(pair, states)
+        let slip = unstable_slip(step, state, pair, states).unwrap_or_default();
+        slip + &tears(step, state, pair, states) + &snaps(pair, states)
     };
     limit_point(step, state) + &contacts.map(of_contact).collect::<String>()
 }
@@ -121,6 +122,28 @@ fn softening(pair: &ContactPair, slave: &SlavePoint, point: &ContactState) -> f6
 
 /// Share of its strength from which on a bond is about to slip [-]
 const NEARLY: f64 = 0.9;
+
+/// A bond that pulls with nearly all of its strength, or is partly torn, under forces that grow: once it tears it bears less.
+fn tears(step: &Step, state: &State, pair: &ContactPair, states: &[ContactState]) -> String {
+    let pulls = |(slave, point): (&SlavePoint, &ContactState)| match (&pair.law(slave).cohesion, &point.bond) {
+        (Some(Cohesion::Beside(bond)), Some(state)) => {
+            let intact = bond.intact(state);
+            intact > 0.0 && state.tension > 0.0 && (intact < 1.0 || state.tension > NEARLY * bond.tension())
+        }
+        _ => false,
+    };
+    let loads = growing_loads(step, state.time);
+    if loads.is_empty() || !pair.points.iter().zip(states).any(pulls) {
+        return String::new();
+    }
+    format!(
+        "the bond of contact `{}` has come to its tensile strength under loads that grow ({} had been reached): once it tears it bears less, and \
+         no static equilibrium under more load need follow: prescribe the displacement of what is loaded instead, which the tear can follow \
+         (`until` ends a step at a force), or take a step with inertia; ",
+        pair.name,
+        loads.join(" and ")
+    )
+}
 
 /// Strength without pressure that falls faster than an element follows, where a point has come to it.
 fn snaps(pair: &ContactPair, states: &[ContactState]) -> String {

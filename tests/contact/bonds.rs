@@ -341,3 +341,28 @@ fn a_strip_does_not_come_off_all_at_once() {
         }
     }
 }
+
+/// The same strip under a force that grows, with brittle glue: more than the glue bears has no equilibrium, and the stop says what had been reached and
+/// what to do.
+#[test]
+fn a_stop_under_force_says_what_to_do() {
+    let block = |left: f64, right: f64, n: usize, sides: Value| json!({"body": "b", "corners": [[left, 0], [right, 0], [right, 0.1], [left, 0.1]], "elements": [n, 2], "kind": "Q8", "sides": sides});
+    let mut blocks = vec![
+        block(0.0, 0.5, 8, json!([null, null, null, null])),
+        block(0.5, 2.0, 50, json!(["bottom", "far", null, null])),
+    ];
+    blocks[0]["points"] = json!({"end": [0, 0]});
+    let case = json!({
+        "section": {"plane_stress": {"thickness": 1}},
+        "mesh": {"blocks": blocks},
+        "bodies": {"b": {"material": {"model": "linear", "E": 2000, "nu": 0}, "element": "reduced"}},
+        "contacts": {"c": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
+            "friction": {"law": "frictionless"}, "bond": {"strength": 1e-6, "tension": 2.5, "opening": 4e-3}}},
+        "steps": [{"name": "pull", "duration": 1, "dt": {"initial": 0.05},
+            "supports": [{"on": "far", "ux": 0}], "loads": [{"on": "end", "force": {"y": 0.2}}]}]
+    });
+    let model = std::sync::Arc::new(common::model(&case));
+    let told = fecontact::run::run(&model, &mut []).1.expect_err("it stops").to_string();
+    assert!(told.contains("has come to its tensile strength under loads that grow (load along y 0."), "{told}");
+    assert!(told.contains("prescribe the displacement of what is loaded"), "{told}");
+}
