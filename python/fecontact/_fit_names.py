@@ -29,9 +29,11 @@ def check_names(law: str, names: Iterable[str]) -> None:
 
 
 def _known(law: str) -> list[str]:
-    laws = json.loads(schema("law"))["$defs"]["FrictionParameters"]["oneOf"]
+    definitions = json.loads(schema("law"))["$defs"]
+    laws = definitions["FrictionParameters"]["oneOf"]
+    bond = [f"bond.{name}" for name in definitions["BondParameters"]["properties"]]
     own = [list(one["properties"]) for one in laws if one["properties"]["law"].get("const") == law]
-    return [name for name in own[0] if name != "law"] + list(OF_RECORDS) if own and law != "registered" else []
+    return [name for name in own[0] if name != "law"] + bond + list(OF_RECORDS) if own and law != "registered" else []
 
 
 def no_room(ranges: Ranges, why: str) -> ValueError | None:

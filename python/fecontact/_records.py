@@ -31,6 +31,7 @@ class Interface:
         sigma: standard deviation of the noise of ``traction``: a number or shape (n,); by default estimated by the fit [F/L²].
         weight: weight of this record relative to others.
         initial: traction at the start [F/L²].
+        opening: of the surfaces, under which a bond acts, shape (n,); default: 0 [L].
 
     A record may have the parameter ``drift`` [F/L³], given or free, which no law has: D times the slip since its first row is added to the traction of the law.
     """
@@ -50,6 +51,7 @@ class Interface:
         sigma: ArrayLike | None = None,
         weight: float = 1.0,
         initial: float = 0.0,
+        opening: ArrayLike | None = None,
     ) -> None:
         self.time = array_of("time", time)
         size = self.time.size
@@ -57,6 +59,7 @@ class Interface:
         self.pressure = np.broadcast_to(array_of("pressure", pressure, size), size)
         self.initial = float(array_of("initial", initial, 1).ravel()[0])
         self.sigma, self.weight = noise_of(sigma, weight, size)
+        self.opening = None if opening is None else np.broadcast_to(array_of("opening", opening, size), size)
 
     def scales(self) -> tuple[float, float, float]:
         """Coefficient of friction, slip [L] and time [T] that the record covers."""
@@ -66,8 +69,11 @@ class Interface:
 
     def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
         """Prediction of the measured quantity by the law, shape (sets, n)."""
-        driven = law(_of_law(parameters)).drive(self.time, self.slip, self.pressure, traction=self.initial, threads=threads)
-        return self._drifted(driven["traction"], parameters)
+        return self._drifted(self._driven(parameters, threads)["traction"], parameters)
+
+    def _driven(self, parameters: Parameters, threads: int | None) -> Drive:
+        path = (self.time, self.slip, self.pressure)
+        return law(_of_law(parameters)).drive(*path, opening=self.opening, traction=self.initial, threads=threads)
 
     def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
         """How that varies with parameters of one set, shape (n, by)."""
@@ -147,6 +153,41 @@ class SpringSlider(Interface):
                 raise ValueError(f"{name}: a spring-slider needs it: give it, or a range to find it in")
 
 
+class PullOff(Interface):
+    """Opening and stress over time of a joint that is pulled apart, whose law has a bond with a ``bond.tension``.
+
+    Args:
+        time: ascending, shape (n,) [T].
+        opening: of the surfaces, shape (n,) [L].
+        stress: measured tensile stress, shape (n,) [F/L²].
+        sigma: standard deviation of the noise of ``stress``; by default estimated by the fit [F/L²].
+        weight: weight of this record relative to others.
+    """
+
+    kind = "tension"
+    led = "opening"
+
+    def __init__(self, time: ArrayLike, opening: ArrayLike, stress: ArrayLike, *, sigma: ArrayLike | None = None, weight: float = 1.0) -> None:
+        none = np.zeros(np.size(np.asarray(time)))
+        super().__init__(time, none, 0.0, stress, sigma=sigma, weight=weight, opening=opening)
+
+    def scales(self) -> tuple[float, float, float]:
+        """Coefficient of friction, slip [L] and time [T] that the record covers: no friction."""
+        return 0.0, 0.0, float(np.ptp(self.time))
+
+    def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
+        """Predicted tensile stress, shape (sets, n).
+
+        Raises:
+            ValueError: a drift is asked for.
+        """
+        _no_drift(parameters)
+        return -self._driven(parameters, threads)["pressure"]
+
+    def __repr__(self) -> str:
+        return _shown(self, time=self.time, opening=self.opening, stress=self.measured)
+
+
 class Holds:
     """Peaks of the coefficient of friction after holds, in one slide-hold-slide sequence of a stiff machine.
 
@@ -197,8 +238,7 @@ class Holds:
         Raises:
             ValueError: a drift is asked for.
         """
-        if "drift" in parameters:
-            raise ValueError("drift: it is along the way of a record, which peaks after holds are not: fit it to an Interface or SpringSlider")
+        _no_drift(parameters)
         drive = law(_of_law(parameters)).drive(self._time, self._slip, self.pressure, threads=threads)
         return np.asarray(self._slides(drive["traction"]).max(axis=-1) / self.pressure)
 
@@ -218,7 +258,7 @@ class Holds:
         return sampled.reshape(*sampled.shape[:-1], self.hold.size + 1, self.SAMPLES.size)[..., 1:, :]
 
 
-Record = Interface | SpringSlider | Holds
+Record = Interface | SpringSlider | PullOff | Holds
 
 
 def _shown(record: Record, **ranges: Array | float) -> str:
@@ -226,6 +266,11 @@ def _shown(record: Record, **ranges: Array | float) -> str:
     spans = {name: np.unique([np.min(values, initial=np.inf), np.max(values, initial=-np.inf)]) for name, values in ranges.items()}
     told = ", ".join(f"{name} {' to '.join(f'{end:.6g}' for end in span)}" for name, span in spans.items())
     return f"<{type(record).__name__} of {record.measured.size} samples: {told}>"
+
+
+def _no_drift(parameters: Parameters) -> None:
+    if "drift" in parameters:
+        raise ValueError("drift: it is along the slip of a record, which this one has none of: fit it to an Interface or SpringSlider")
 
 
 def _of_law(parameters: Parameters) -> dict[str, Any]:

@@ -27,7 +27,7 @@ from ._fit_problem import Problem as _Problem
 from ._fit_space import Array, Space
 from ._fit_words import COMPUTED, NOISE, Evidence, words
 from ._plain import a_name, count, names, number
-from ._records import OF_RECORDS, Holds, Interface, Record, SpringSlider
+from ._records import OF_RECORDS, Holds, Interface, PullOff, Record, SpringSlider
 from ._run_problem import RunProblem, run_problem
 from ._run_record import DisplacementField, Run
 from ._table_file import read
@@ -35,7 +35,9 @@ from .case import Case
 from .law import Law
 from .law import law as law_of
 
-__all__ = ["DisplacementField", "ElementTest", "Fit", "Holds", "Interface", "Oedometer", "Run", "SpringSlider", "Triaxial", "compare", "fit", "read"]
+__all__ = [
+    "DisplacementField", "ElementTest", "Fit", "Holds", "Interface", "Oedometer", "PullOff", "Run", "SpringSlider", "Triaxial", "compare", "fit", "read",
+]  # fmt: skip
 
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128
@@ -345,7 +347,7 @@ def fit(
     Tests of samples are fitted so as well, through the run of one element.
 
     Args:
-        data: records: :class:`Interface`, :class:`SpringSlider`, :class:`Holds`, or several of them; or :class:`Run`, one or several; or tests
+        data: records: :class:`Interface`, :class:`SpringSlider`, :class:`PullOff`, :class:`Holds`, or several of them; or :class:`Run`, one or several; or tests
             of samples, :class:`Triaxial` and :class:`Oedometer`. Records of different kinds need a ``sigma`` each.
         law: name of the law of an interface; of tests of samples the ``material`` of the body with its constants, at which the search begins:
             ``{"model": "cam_clay", "lambda": 0.2, …}``; cases have theirs.
@@ -473,7 +475,7 @@ def _records(data: Any) -> list[Any]:
     records: list[Any] = [data] if isinstance(data, np.ndarray) or not isinstance(data, Iterable) else list(data)
     for record in records:
         if not isinstance(record, (Interface, Holds, Run, ElementTest)):
-            raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider, Holds, Run, Triaxial or Oedometer, or several of them")
+            raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider, PullOff, Holds, Run, Triaxial or Oedometer, or several of them")
     return records
 
 

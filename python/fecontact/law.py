@@ -22,7 +22,7 @@ class Drive(Mapping[str, Array]):
     ``time`` (n,) [T], ``slip`` [L], ``pressure``, ``traction`` [F/L²], ``R``, ``mu``, ``structure`` [-], ``plastic_slip`` [L],
     ``dissipation`` [F/L], the consistent tangents of every step ``dtraction_dslip`` [F/L³] and ``dtraction_dpressure`` [-],
     ``evaluations`` of the law's equation, and further variables of the law; of an interface that opens also ``dilation``, ``wear`` and
-    its ``gap`` [L]. Also available as attributes: ``drive.traction``.
+    its ``gap`` [L]; beside a bond also its ``opening`` [L] and ``bond``, what is left of it; traction, pressure and dissipation include it. Also available as attributes: ``drive.traction``.
     """
 
     def __init__(self, arrays: Mapping[str, Array]) -> None:
@@ -55,6 +55,7 @@ class Law:
     """A friction law with its parameters, each a number, or an array of any shape with one set of parameters per entry."""
 
     def __init__(self, parameters: Mapping[str, Any]) -> None:
+        parameters = _flat(parameters)
         arrays = {name: _array(name, value) for name, value in parameters.items() if _is_array(value)}
         try:
             self.shape: tuple[int, ...] = np.broadcast_shapes(*(array.shape for array in arrays.values()))
@@ -67,7 +68,7 @@ class Law:
         self._sets = []
         for index in np.ndindex(self.shape):
             one = {name: np.broadcast_to(array, self.shape)[index] for name, array in arrays.items()}
-            self._sets.append(json.dumps(plain({**parameters, **one}, file="law")))
+            self._sets.append(json.dumps(plain(_nested({**parameters, **one}), file="law")))
 
     def check(self) -> None:
         """Check the parameters of all sets.
@@ -83,6 +84,7 @@ class Law:
         slip: ArrayLike,
         pressure: ArrayLike,
         *,
+        opening: ArrayLike | None = None,
         traction: float = 0.0,
         dilatancy: Mapping[str, Any] | None = None,
         wear: float | None = None,
@@ -99,6 +101,8 @@ class Law:
             time: ascending, shape (n,), n ≥ 2 [T].
             slip: total slip since the start, shape (n,), or (..., n) with a path for every set of parameters [L].
             pressure: the same, or a number; at or below 0 the surfaces are separated [F/L²].
+            opening: opening of the surfaces under which a ``bond`` of the law acts, in the same forms; where it is positive friction has no
+                pressure. Default: 0 [L].
             traction: traction at the start [F/L²].
             dilatancy: opening by plastic slip, as of a contact: ``model.Dilatancy(structure=0.3)``.
             wear: k of Archard's law, as of a contact [L²/F].
@@ -119,10 +123,12 @@ class Law:
         by = self._checked(by, self.sensitivities())
         if by and normal is not None:
             raise refused("law", "by", "the traction is differentiated at given pressures: leave out normal")
-        opening = {"dilatancy": dilatancy, "wear": wear, "normal": normal}
-        given = {name: value for name, value in opening.items() if value is not None}
+        besides = {"dilatancy": dilatancy, "wear": wear, "normal": normal}
+        given = {name: value for name, value in besides.items() if value is not None}
+        opened = None if opening is None else self._course("opening", opening, times.size)
         interface = json.dumps(plain({"initial": {"traction": number(traction, "traction", "law")}, **given}, file="law"))
-        arrays = _native.drive(self._sets, times, courses["slip"], courses["pressure"], interface, by, count(threads, "threads"))
+        path = (times, courses["slip"], courses["pressure"], opened)
+        arrays = _native.drive(self._sets, *path, interface, by, count(threads, "threads"))
         answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
         slips = np.broadcast_to(courses["slip"], (len(self._sets), times.size)).reshape(*self.shape, times.size)
         return Drive({"time": times, "slip": slips, **answers})
@@ -166,6 +172,8 @@ class Law:
             Stopped: the law has no answer somewhere.
         """
         times = _times(time)
+        if any(name.startswith("bond.") for name in self.parameters):
+            raise refused("law", "bond", "a spring-slider has friction alone: leave it out, or drive the law along the measured slip")
         if known := self.sensitivities():
             known += ["stiffness", "mass"]
         by, machine = self._checked(by, known), []
@@ -234,7 +242,8 @@ class Law:
 
 def law(law: str | Mapping[str, Any], **parameters: Any) -> Law:
     """Create a friction law without a mesh: ``law("coulomb", mu=[0.3, 0.4], alpha_t=1e5)``, from an object of :mod:`fecontact.model`, or
-    from the ``friction`` of a contact; ``alpha_t`` is required, since there is no mesh for a default.
+    from the ``friction`` of a contact; ``alpha_t`` is required, since there is no mesh for a default. ``bond`` is a bond beside it,
+    ``bond={"strength": 40, "tension": 15, "opening": 0.002}``, whose ``opening`` is required likewise; its values may be arrays, too.
 
     Args:
         law: its name, or all its parameters; see ``fecontact.model`` for the available laws.
@@ -295,6 +304,21 @@ def friction_law(
         return function
 
     return register
+
+
+def _flat(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters of a law, those of its bond by names such as ``bond.strength``."""
+    bond = parameters.get("bond")
+    if not isinstance(bond, Mapping):
+        return dict(parameters)
+    return {**{name: value for name, value in parameters.items() if name != "bond"}, **{f"bond.{name}": value for name, value in bond.items()}}
+
+
+def _nested(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """The same as a document has them."""
+    bond = {name.removeprefix("bond."): value for name, value in parameters.items() if name.startswith("bond.")}
+    own = {name: value for name, value in parameters.items() if not name.startswith("bond.")}
+    return {**own, "bond": bond} if bond else own
 
 
 def _array(name: str, given: Any) -> NDArray[Any]:

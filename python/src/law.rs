@@ -4,8 +4,8 @@ use std::path::Path;
 
 use fecontact::case::{CaseError, law_test};
 use fecontact::laws::friction::sensitivity::{Direction, Variation};
-use fecontact::laws::friction::{FrictionState, LawFailure, SensitiveLaw, Sliding, observables};
-use fecontact::output::quantities::OPENED;
+use fecontact::laws::friction::{Cohesion, FrictionState, LawFailure, SensitiveLaw, Sliding, observables};
+use fecontact::output::quantities::{BONDED, OPENED, names};
 use fecontact::run::error::Error;
 use fecontact::run::law::{LawRow, LawTest};
 use numpy::ndarray::{Array2, Axis};
@@ -37,12 +37,14 @@ pub struct LawPath<'a> {
     pub time: &'a [f64],
     pub slip: &'a Array2<f64>,
     pub pressure: &'a Array2<f64>,
+    /// under which a bond acts
+    pub opening: Option<&'a Array2<f64>>,
 }
 
 impl LawPath<'_> {
     /// Time, slip and pressure of one set of parameters.
     pub fn rows(&self, k: usize) -> Vec<[f64; 3]> {
-        let row = |array: &Array2<f64>, i: usize| array[[k.min(array.nrows() - 1), i]];
+        let row = |array: &Array2<f64>, i: usize| value(array, k, i);
         self.time.iter().enumerate().map(|(i, time)| [*time, row(self.slip, i), row(self.pressure, i)]).collect()
     }
 
@@ -53,10 +55,20 @@ impl LawPath<'_> {
         for (key, value) in interface.as_object().into_iter().flatten() {
             document[key] = value.clone();
         }
+        // The bond of a set of parameters stands among them.
+        if let Some(bond) = document["friction"].as_object_mut().and_then(|law| law.remove("bond")) {
+            document["bond"] = bond;
+        }
         let mut input = law_test::from_text(&document.to_string(), path)?;
         input.table = Some(self.rows(k));
+        input.opening = self.opening.map(|opening| (0..self.time.len()).map(|i| value(opening, k, i)).collect());
         law_test::build(&input, path)
     }
+}
+
+/// Value of an array at a sample, for every set of parameters or for one of them.
+fn value(array: &Array2<f64>, k: usize, i: usize) -> f64 {
+    array[[k.min(array.nrows() - 1), i]]
 }
 
 /// Answers of one law along the whole path: a row a column, and names and rows of what else it shows.
@@ -78,12 +90,15 @@ struct Step {
 pub fn sensitivities(py: Python, parameters: &str) -> PyResult<Vec<&'static str>> {
     let parameters = document(parameters)?;
     let still = Array2::zeros((1, 2));
-    let course = LawPath { time: &[0.0, 1.0], slip: &still, pressure: &still };
+    let course = LawPath { time: &[0.0, 1.0], slip: &still, pressure: &still, opening: None };
     let test = course.test(0, &parameters, &json!({})).map_err(|error| case_error(py, &error))?;
+    if test.law.cohesion.is_some_and(|cohesion| matches!(cohesion, Cohesion::Beside(_))) {
+        return Ok(Vec::new());
+    }
     Ok(test.law.law.sensitivities().map_or(Vec::new(), |law| law.parameters().to_vec()))
 }
 
-/// Drive laws along a path: `time` (n), `slip` and `pressure` (sets or 1, n), `parameters` a JSON text a set. Returns arrays
+/// Drive laws along a path: `time` (n), `slip`, `pressure` and `opening` (sets or 1, n), `parameters` a JSON text a set. Returns arrays
 /// (sets, n) by name, NaN where a law does not know it, and of ∂q/∂parameter for the parameters of `by`. `interface` is a JSON text.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)] // those of Python
@@ -93,6 +108,7 @@ pub fn drive<'py>(
     time: PyReadonlyArray1<f64>,
     slip: PyReadonlyArray2<f64>,
     pressure: PyReadonlyArray2<f64>,
+    opening: Option<PyReadonlyArray2<f64>>,
     interface: &str,
     by: Vec<String>,
     threads: Option<i64>,
@@ -100,7 +116,8 @@ pub fn drive<'py>(
     let parameters = documents(&parameters)?;
     let interface = document(interface)?;
     let (time, slip, pressure) = (time.as_array().to_vec(), slip.as_array().to_owned(), pressure.as_array().to_owned());
-    let course = LawPath { time: &time, slip: &slip, pressure: &pressure };
+    let opening = opening.map(|opening| opening.as_array().to_owned());
+    let course = LawPath { time: &time, slip: &slip, pressure: &pressure, opening: opening.as_ref() };
     let pool = Pool::new(threads)?;
     let ask = Ask { interface: &interface, by: &by, raised: &pool.raised };
     let answered: Vec<Result<Answers, Refusal>> = pool.watched(py, || {
@@ -173,7 +190,9 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
     let law = &test.law;
     let further = observables::further([&law.description]);
     let gap = (!law.description.opening.is_empty()).then_some(OPENED.name);
-    let names: Vec<String> = further.iter().copied().chain(gap).map(String::from).collect();
+    let bonded = law.cohesion.is_some_and(|cohesion| matches!(cohesion, Cohesion::Beside(_)));
+    let of_bond = names(&BONDED).filter(|_| bonded);
+    let names: Vec<String> = further.iter().copied().chain(gap).map(String::from).chain(of_bond).collect();
     let mut answers =
         Answers { rows: Vec::with_capacity(course.time.len()), further: vec![Vec::new(); names.len()], names };
     // Between two samples there are stops where the surfaces touch or part.
@@ -181,7 +200,7 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
     let mut steps = Vec::new();
     let (mut old, mut before) =
         (test.start.clone(), test.path.first().map_or([0.0; 2], |first| [first.start(), first.slip(first.start())]));
-    let (_, ended) = test.run(|LawRow { time, slip, response, gap, .. }| {
+    let (_, ended) = test.run(|LawRow { time, slip, response, gap, bond, .. }| {
         goes_on(raised)?;
         let state = &response.state;
         let sampled = samples.next_if(|sample| *sample == time).is_some();
@@ -196,20 +215,24 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
         }
         let [r, mu, structure] = observables::ALWAYS.map(|(name, _)| law.observe(name, state));
         let tangent = [response.dtraction_dslip, response.dtraction_dpressure];
+        let of_friction = [state.traction, state.dissipation, state.pressure];
+        let [traction, dissipation, pressure] =
+            bond.map_or(of_friction, |bond| [bond.traction, bond.dissipation, bond.pressure]);
         answers.rows.push([
-            state.traction,
+            traction,
             r,
             mu,
             structure,
             state.plastic_slip,
-            state.dissipation,
+            dissipation,
             tangent[0],
             tangent[1],
             response.evaluations as f64,
-            state.pressure,
+            pressure,
         ]);
         let observed = further.iter().map(|name| law.observe(name, state));
         let shown = observed.chain((!law.description.opening.is_empty()).then_some(*gap));
+        let shown = shown.chain(bond.into_iter().flat_map(|bond| [bond.opening, bond.intact]));
         answers.further.iter_mut().zip(shown).for_each(|(values, value)| values.push(value));
         Ok(())
     });

@@ -33,7 +33,7 @@ pub fn ride<'py>(
     let parameters = documents(&parameters)?;
     let (machine, time) = (machine.as_array().to_owned(), time.as_array().to_vec());
     let (load_point, pressure) = (load_point.as_array().to_owned(), pressure.as_array().to_owned());
-    let course = LawPath { time: &time, slip: &load_point, pressure: &pressure };
+    let course = LawPath { time: &time, slip: &load_point, pressure: &pressure, opening: None };
     let pool = Pool::new(threads)?;
     let one = |(k, parameters): (usize, &Value)| {
         ridden(&course, (k, parameters), [machine[[k, 0]], machine[[k, 1]]], start, (&by, &pool.raised))

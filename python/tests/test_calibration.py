@@ -233,7 +233,7 @@ def test_a_drift_of_the_record_is_found_beside_the_law(machine: dict[str, float]
 
 def test_holds_have_no_drift() -> None:
     record = Holds([1.0, 10.0, 100.0], [0.5, 0.55, 0.6], rate=0.1, slide=0.5, pressure=2.0)
-    with pytest.raises(ValueError, match="drift: it is along the way"):
+    with pytest.raises(ValueError, match="drift: it is along the slip"):
         fc.fit(record, free={"mu_s": (0.45, 1.0), "drift": (-1.0, 1.0)}, mu_k=0.3, r=400, kappa=40, xi=0.01, alpha_t=2e3)
 
 

@@ -52,6 +52,8 @@ pub struct LawTestInput {
     pub path: Option<Vec<PhaseInput>>,
     /// Rows [time, slip, pressure] with increasing times, interpolated linearly; either this or a path
     pub table: Option<Vec<[f64; 3]>>,
+    /// Opening of the surfaces at the rows of the table, under which a `bond` acts, as in the phases of a path; default: 0 [L]
+    pub opening: Option<Vec<f64>>,
 }
 
 /// State at the start; the structure variable is given with the law.
@@ -148,7 +150,10 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     let law = law(&input.friction)?;
     let confinement = confinement(&input.normal)?;
     let path = match (&input.path, &input.table) {
-        (Some(phases), None) => phases_of(input, phases)?,
+        (Some(phases), None) => {
+            refuse_if(input.opening.is_some(), "opening", "is for the rows of a table: give that of each phase")?;
+            phases_of(input, phases)?
+        }
         (None, Some(table)) => vec![table_of(input, table)?],
         _ => return Err(ModelError::new("", "must give either \"path\", a list of phases, or \"table\"")),
     };
@@ -164,8 +169,9 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     let of_friction = law.description.starting_limit(start.pressure);
     let Some(bond) = &input.bond else {
         let opens = input.path.iter().flatten().position(|phase| phase.opening.is_some());
-        let place = format!("path[{}].opening", opens.unwrap_or_default());
-        refuse_if(opens.is_some(), place, "is for a `bond` beside friction, and there is none: leave it out")?;
+        let place = opens.map_or("opening".into(), |k| format!("path[{k}].opening"));
+        let message = "is for a `bond` beside friction, and there is none: leave it out";
+        refuse_if(opens.is_some() || input.opening.is_some(), place, message)?;
         return Ok(LawTest { law, start, path, of_bond: 0.0, confinement });
     };
     let law = bonded(law, bond, input)?;
@@ -355,7 +361,13 @@ fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
         let message = format!("is {given}, but the table starts at {pressure}: leave it out");
         return Err(ModelError::new("initial.pressure", message));
     }
-    Phase::new(span, slip, pressures, input.dt.unwrap_or(f64::INFINITY)).map_err(|Undefined { quantity, time }| {
+    let openings = input.opening.clone().unwrap_or_else(|| vec![0.0; table.len()]);
+    let message = format!("has {} values for the {} rows of the table: give one for each", openings.len(), table.len());
+    refuse_if(openings.len() != table.len(), "opening", message)?;
+    let openings = table.iter().zip(openings).map(|(row, opening)| [row[0], opening]).collect();
+    let opening = PathDrive { drive: Drive::Table(openings), start: 0.0 };
+    let dt = input.dt.unwrap_or(f64::INFINITY);
+    Phase::opened(span, [slip, pressures, opening], dt).map_err(|Undefined { quantity, time }| {
         ModelError::new("table", format!("the {quantity} is not a finite number at the time {time}"))
     })
 }
