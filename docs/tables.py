@@ -27,6 +27,7 @@ from faults_and_water import SLOW_WATER, WATER
 from forming import FORMING
 from limit_loads import LIMIT
 from penalties import PENALTIES
+from piles_in_clay import SLOW_PILES
 from problems import COST, QUICK
 from results import text_of
 from shafts_and_columns import SHAFTS
@@ -70,6 +71,7 @@ SLOW = {
     "numerical_choices": (PUBLISHED + "answers_do", 0),
     "spring_mass_resolved": (PUBLISHED + "resolved_runs", 0),
     **{name: (f"python3 docs/error_bars.py target/release/fecontact {name}", 0) for name in SLOW_BARS},
+    **{name: (f"python3 docs/piles_in_clay.py target/release/fecontact {name}", 0) for name in SLOW_PILES},
     **{name: (f"python3 docs/faults_and_water.py target/release/fecontact {name}", 0) for name in SLOW_WATER},
 }
 

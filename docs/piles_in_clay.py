@@ -1,0 +1,91 @@
+"""Tables of the slow tier: a pile in clay, its base on finer meshes, and its shaft, with the opening of its bond halved and doubled.
+
+    python3 docs/piles_in_clay.py target/release/fecontact pile_bases
+    python3 docs/piles_in_clay.py target/release/fecontact pile_openings
+
+Every function runs cases and returns rows, the head first. Needs numpy.
+"""
+
+import sys
+from math import pi
+
+import numpy as np
+
+from results import Run, text_of
+
+LONG, RADIUS, STRENGTH, ADHESION, WEIGHT = 8, 0.5, 40, 0.8, 18
+GROUND = {"geostatic": {"surface": 0, "weight": WEIGHT, "K0": 1}}
+GRADINGS = ([1, 0.2], [30, 0.2], [30, 0.05], [1, 0.05])
+
+
+def pile(kind, element, nu, finer, opening=0.005, down=0.05):
+    """A pile that is pushed into clay: `finer` times as many elements along every side as the coarsest mesh with this number of nodes."""
+    half = 1 if kind == "Q4" else 2
+
+    def block(body, low, high, elements, sides, grading):
+        count = [max(1, round(n * finer / half)) for n in elements]
+        corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
+        return {"body": body, "corners": corners, "elements": count, "sides": sides, "grading": grading, "kind": kind}
+
+    def contact(slave, master):
+        return {"slave": slave, "master": master, "interface": {"reduction": ADHESION}, "bond": {"opening": opening}, "initial": {"of_bodies": True}}
+
+    blocks = [
+        block("pile", (0, -LONG), (RADIUS, 0), (6, 16), ["pile_base", "pile_side", "head", None], GRADINGS[0]),
+        block("soil", (RADIUS, -LONG), (10, 0), (14, 16), [None, "outer", None, "soil_side"], GRADINGS[1]),
+        block("soil", (RADIUS, -2 * LONG), (10, -LONG), (14, 18), ["bottom", "outer", None, None], GRADINGS[2]),
+        block("soil", (0, -2 * LONG), (RADIUS, -LONG), (6, 18), ["bottom", None, "soil_base", None], GRADINGS[3]),
+    ]
+    clay = {"model": "mohr_coulomb", "E": 20000, "nu": nu, "c": STRENGTH, "phi": 0, "psi": 0, "density": WEIGHT / 10}
+    own = {"element": "reduced"} if kind == "Q8" else {}
+    gravity = [{"on": body, "gravity": {"y": "-10"}} for body in ("soil", "pile")]
+    return {
+        "section": "axisymmetric", "mesh": {"blocks": blocks},
+        "bodies": {"pile": {"material": {"model": "linear", "E": 3e7, "nu": 0.2, "density": WEIGHT / 10}, "initial_stress": GROUND, **own},
+                   "soil": {"material": clay, "element": element, "initial_stress": GROUND}},
+        "contacts": {"base": contact("soil_base", "pile_base"), "shaft": contact("soil_side", "pile_side")},
+        "steps": [
+            {"name": "rest", "duration": 1, "dt": {"initial": 1}, "loads": gravity,
+             "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "outer", "ux": 0}]},
+            {"name": "push", "duration": 1, "dt": {"initial": 0.05}, "supports": [{"on": "head", "uy": -down}]},
+        ],
+        "watch": ["head"], "output": {"fields": False, "report": False},
+    }
+
+
+def borne(run, share):
+    """Shaft and base, without the weight that the base bore before, at a share of the way."""
+    k = int(np.abs(run.history["time"] - 1 - share).argmin())
+    shaft, base = abs(run.history["shaft.tangential_force"][k]), abs(run.history["base.normal_force"][k])
+    return shaft, base - WEIGHT * LONG * pi * RADIUS**2
+
+
+def pile_bases(program):
+    rows = [["elements", "across the radius", "ν", "base at 5 % of D", "N_c", "base at 10 % of D", "N_c", "shaft"]]
+    for kind, element, nu, finer in (("Q4", "f_bar", 0.49, 1), ("Q4", "f_bar", 0.49, 2), ("Q4", "f_bar", 0.49, 3), ("Q4", "f_bar", 0.45, 1), ("Q4", "f_bar", 0.45, 2),
+                                     ("Q8", "reduced", 0.49, 1), ("Q8", "reduced", 0.49, 2), ("Q8", "reduced", 0.45, 2)):
+        run = Run(program, pile(kind, element, nu, finer, down=0.1))
+        [_, first], [shaft, last] = borne(run, 0.5), borne(run, 1)
+        by = STRENGTH * pi * RADIUS**2
+        across = 6 * finer if kind == "Q4" else 3 * finer
+        name = "Q4, F-bar" if kind == "Q4" else "Q8, reduced"
+        rows.append([name, f"{across}", f"{nu}", f"{first:.0f}", f"{first / by:.2f}", f"{last:.0f}", f"{last / by:.2f}", f"{shaft:.1f}"])
+    return rows
+
+
+def pile_openings(program):
+    rows = [["δ [mm]", "δ E/(c h)", "shaft", "of α s_u π D L", "base"]]
+    whole = ADHESION * STRENGTH * pi * 2 * RADIUS * LONG
+    for opening in (0.00125, 0.0025, 0.005, 0.01, 0.02):
+        run = Run(program, pile("Q4", "f_bar", 0.49, 1, opening))
+        shaft, base = borne(run, 1)
+        shrink = 0.2 ** (1 / 15)
+        edge = LONG * (1 - shrink) / (1 - shrink**16)
+        rows.append([f"{1e3 * opening:g}", f"{opening * 20000 / (ADHESION * STRENGTH * edge):.2g}", f"{shaft:.1f}", f"{100 * shaft / whole:.1f} %", f"{base:.0f}"])
+    return rows
+
+
+SLOW_PILES = {"pile_bases": pile_bases, "pile_openings": pile_openings}
+
+if __name__ == "__main__":
+    print(text_of(SLOW_PILES[sys.argv[2]](sys.argv[1])))
