@@ -1,9 +1,9 @@
-"""A pile pulled out of clay, left, and pulled again: the pull over the uplift of its head, and q/p along the shaft.
+"""A load test of a pile in clay: load over settlement of its head, with what shaft and base bear, and its normal force over depth.
 
     fecontact run cases/pile_in_clay.json
     python3 docs/figures/pile_in_clay.py out/pile_in_clay cases/pile_in_clay.png
 
-Needs numpy, matplotlib, xarray and zarr.
+Needs numpy and matplotlib.
 """
 
 import csv
@@ -15,30 +15,34 @@ import matplotlib
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
-import xarray
 
 folder, target = pathlib.Path(sys.argv[1]), sys.argv[2]
-rows = list(csv.DictReader((folder / "history.csv").open()))
-store = xarray.open_zarr(folder / "interface.zarr")
-depth = store["shaft.y"].values
-order = depth.argsort()
-times = store["time"].values
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.8), layout="constrained")
-for step, label in (("pull", "first pull"), ("pull again", "after 28 hours")):
-    own = [row for row in rows if row["step"] == step]
-    lift = 1e3 * np.array([float(row["head.uy"]) for row in own])
-    pull = np.array([float(row["head.fy"]) for row in own])
-    left.plot(lift, pull, label=label)
-    print(step, f"peak {pull.max():.1f} at {lift[pull.argmax()]:.1f} mm, last {pull[-1]:.1f}")
-left.set(xlabel="uplift of the head [mm]", ylabel="pull [kN per full turn]", ylim=(0, None))
+
+def table(name):
+    rows = list(csv.DictReader((folder / name).open()))
+    return rows, lambda column: np.array([float(row[column]) for row in rows])
+
+
+rows, column = table("history.csv")
+figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.8), width_ratios=[1.6, 1], layout="constrained")
+down = -1e3 * column("head.uy")
+base = column("base.normal_force") - column("base.normal_force")[0]
+shaft = -column("shaft.tangential_force") - column("soft_shaft.tangential_force")
+left.plot(down, -column("head.fy"), label="head")
+left.plot(down, shaft, label="shaft")
+left.plot(down, base, label="base")
+left.set(xlabel="settlement of the head [mm]", title="load [kN]")
 left.legend()
-for time in (2, 4, 6, 8, 11, 20):
-    k = int(np.abs(times - time).argmin())
-    q, p = (np.abs(store[f"shaft.{name}"].values[k][order]) for name in ("traction", "pressure"))
-    # Weighted means of three neighbouring points.
-    means = lambda values: np.convolve(values, [0.25, 0.5, 0.25], mode="valid")
-    right.plot(means(q) / means(p), depth[order][1:-1], label=f"{times[k]:.0f} mm")
-right.set(xlabel="q/p along the shaft, first pull [-]", ylabel="z [m]", xlim=(0, 0.22))
-right.legend(title="uplift", fontsize=8, loc="center left")
+sections, force = table("sections.csv")
+stations = [name.removesuffix(".y") for name in sections[0] if name.endswith(".y")]
+depth = [float(sections[0][f"{name}.y"]) for name in stations]
+times = column("time")
+ends = {step: max(k for k, row in enumerate(rows) if row["step"] == step) for step in ("load", "unload", "load again")}
+for step, k in ends.items():
+    at = int(np.abs(force("time") - times[k]).argmin())
+    right.plot([-force(f"{name}.axial_force")[at] for name in stations], depth, label=f"{step}: {-float(rows[k]['head.fy']):.0f} kN")
+    print(step, rows[k]["head.fy"], shaft[k], base[k], down[k])
+right.set(xlabel="normal force [kN]", ylabel="y [m]", title="in the pile")
+right.legend(fontsize=8)
 figure.savefig(target, dpi=100)
