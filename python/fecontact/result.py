@@ -115,6 +115,21 @@ class Result:
         return self._table("probes.csv", "the case asks for them by probes")
 
     @cached_property
+    def sections(self) -> pd.DataFrame:
+        """Forces of the sections of bodies, one row per time [T] and station: ``name`` of the sections, number of the ``station`` from 1,
+        its place ``x``, ``y`` in the mesh [L], ``axial_force``, ``shear_force`` [F] and ``moment`` [F·L]; requires ``sections`` in the case."""
+        wide = self._table("sections.csv", "the case asks for them by sections")
+        stations = list(dict.fromkeys(column.rsplit(".", 1)[0] for column in wide if column != "time"))
+        parts = []
+        for station in stations:
+            own = wide[[column for column in wide if column.rsplit(".", 1)[0] == station]]
+            name, number = station.rsplit(".", 1)
+            own = own.rename(columns=lambda column: column.rsplit(".", 1)[-1])
+            parts.append(own.assign(time=wide["time"], name=name, station=int(number)))
+        order = ["time", "name", "station", "x", "y", "axial_force", "shear_force", "moment"]
+        return pd.concat(parts).sort_values(["time", "name", "station"], ignore_index=True)[order]
+
+    @cached_property
     def gradients(self) -> pd.DataFrame:
         """Derivatives of the history by values of the case, with its rows: ``d(base.tangential_force)/d(contacts.base.friction.mu_k)`` for
         every quantity and place; requires ``gradients`` in the case or its run."""

@@ -28,7 +28,7 @@ use crate::output::gradients::Parameter;
 use crate::run::{Saved, SavedRun};
 
 /// Keys that never affect how a run continues.
-const FREE: [&str; 5] = ["title", "units", "watch", "probes", "output"];
+const FREE: [&str; 6] = ["title", "units", "watch", "probes", "sections", "output"];
 
 /// Relative difference below which values are equal.
 const SAME: f64 = 1e-9;

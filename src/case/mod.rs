@@ -26,7 +26,9 @@ use serde_json::Value;
 
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, MeshError, gmsh};
-use crate::model::builder::{Builder, Checked, Contact, FluidPressure, Gauge, ModelError, check_name, refuse_if};
+use crate::model::builder::{
+    Builder, Checked, Contact, FluidPressure, Gauge, ModelError, SectionsInput, check_name, refuse_if,
+};
 use crate::model::{Measured, Model, PoreField};
 pub use again::Opened;
 pub use error::CaseError;
@@ -92,6 +94,7 @@ fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
     let given = case.clone();
     let contact = |(name, contact)| Contact { name, ..contact };
     let gauge = |(name, gauge)| Gauge { name, ..gauge };
+    let sections = |(name, sections)| SectionsInput { name, ..sections };
     Ok(Builder {
         title: given.title,
         bodies: given.bodies.into_iter().collect(),
@@ -108,6 +111,7 @@ fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
         interval: given.output.interval,
         times: given.output.times,
         gauges: given.probes.into_iter().map(gauge).collect(),
+        sections: given.sections.into_iter().map(sections).collect(),
         ..Model::builder(mesh).section(section)
     })
 }

@@ -182,6 +182,7 @@ impl PointEvaluation<'_> {
             bond: (!is_own)
                 .then_some(BondState { elastic_slip: if is_own { 0.0 } else { state.elastic_slip }, ..state }),
             water: old.water,
+            came: old.came,
         }
     }
 

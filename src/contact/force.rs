@@ -269,6 +269,7 @@ impl<'a> PointEvaluation<'a> {
             pores,
             bond: held.map(|held| held.response.state),
             water: old.water,
+            came: old.came,
         })
     }
 
@@ -362,7 +363,7 @@ pub fn place(
     k: &mut Kinematics,
 ) -> PointPlace {
     let Some(projection) = projection else { return PointPlace::default() };
-    let gap = slave.gap(projection.gap, increment.during.fading);
+    let gap = slave.gap(projection.gap - old.came.gap, increment.during.fading);
     let closes = closes(pair, slave, gap, old, increment);
     let fluid = pair.acting_pressure(slave, old, x, increment.during.time);
     let bonded = pair.reaches(slave, gap, old, increment);

@@ -1,7 +1,7 @@
 //! Projection of the points of a pair on the master, and its uses: initial state of a contact, slip rates, penetration of
 //! master nodes.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -10,7 +10,7 @@ use super::master::Master;
 use super::mortar::{Overlaps, Room};
 use super::nodal_forces::nodal_forces;
 use super::pair::{BothSurfaces, ContactPair, InitialTraction};
-use super::point::ContactState;
+use super::point::{Came, ContactState};
 use super::pores::effective;
 use super::search::Index;
 use super::small_sliding::{SmallPoint, SmallSliding};
@@ -125,6 +125,7 @@ impl ContactPair {
                 fluid: if foot.is_some() { self.fluid_pressure(slave, x, 0.0) } else { 0.0 },
                 pores: total - pressure,
                 water: None,
+                came: Came::default(),
             }
         };
         let mut states: Vec<ContactState> =
@@ -134,6 +135,56 @@ impl ContactPair {
             states.iter_mut().zip(water).for_each(|(state, water)| state.water = Some(water));
         }
         states
+    }
+
+    /// States of a contact that comes under stress: each point projected in the configuration `x`, under the tractions of the stress that
+    /// the nodes of one side have there, as far as it presses and friction holds it. Gaps count from there, so that the pressure acts at
+    /// once; points that bear nothing begin with the gap that they have in the mesh.
+    ///
+    /// ```text
+    /// p = −n·σ n − p_w,   q = s·σ n,   σ = Σ w_a σ_a           w_a: weights of the nodes of that side at the point, or at its projection
+    /// ```
+    pub fn states_under(
+        &self,
+        stress: &BTreeMap<usize, Matrix2<f64>>,
+        [mesh, x]: [&Configuration; 2],
+        time: f64,
+    ) -> Vec<ContactState> {
+        let given = self.meetings(mesh, false);
+        let state = |(((slave, met), given), apart): (((&SlavePoint, Met), Met), ContactState)| {
+            let Some((Meeting { gap, foot }, kinematics)) = met else { return apart };
+            let fluid = self.fluid_pressure(slave, x, time);
+            let ends = self.master.segments().get(foot.segment).map(|segment| segment.ends);
+            let [near, far] = ends.unwrap_or_default();
+            let on_master = [(near, 1.0 - foot.xi), (far, foot.xi)];
+            let sum = |weights: &[(usize, f64)]| -> Option<Matrix2<f64>> {
+                weights.iter().map(|(node, w)| Some(stress.get(node)? * *w)).sum()
+            };
+            let own = sum(&slave.position).or_else(|| sum(&on_master)).unwrap_or_default();
+            let carried = own * kinematics.normal;
+            let pressure = (-kinematics.normal.dot(&carried) - fluid).max(0.0);
+            let law = self.law(slave);
+            let released = law.description.released_above.map_or(f64::INFINITY, |[c, mu]| c + mu * pressure);
+            let limit = law.starting_limit(pressure).min(released);
+            let traction = if pressure > 0.0 { kinematics.tangent.dot(&carried).clamp(-limit, limit) } else { 0.0 };
+            let of_bond = law.share_of_bond(pressure, traction);
+            let give = if self.penetration.is_some() { 0.0 } else { pressure / self.alpha_n };
+            let of_mesh = given.map_or(0.0, |(met, _)| slave.gap(met.gap, 1.0).max(0.0));
+            let own = if pressure > 0.0 { -give } else { of_mesh };
+            ContactState {
+                bond: self.bond_at_start(slave, (own > self.touch).then_some(own), of_bond),
+                friction: law.law.initial_state(pressure, traction - of_bond),
+                foot: Some(foot),
+                length: kinematics.length,
+                gap: own,
+                multiplier: if self.penetration.is_some() { pressure } else { 0.0 },
+                fluid,
+                came: Came { gap: slave.gap(gap, 0.0) - own, pressure, traction },
+                ..apart
+            }
+        };
+        let points = self.points.iter().zip(self.meetings(x, false)).zip(given).zip(self.apart());
+        points.map(state).collect()
     }
 
     /// The states of all points while one of the sides is not there.
@@ -152,6 +203,7 @@ impl ContactPair {
             fluid: 0.0,
             pores: 0.0,
             water: None,
+            came: Came::default(),
         };
         self.points.iter().map(state).collect()
     }

@@ -87,6 +87,8 @@ pub struct ContactPair {
     pub truncated: BTreeMap<String, usize>,
     /// Initial tractions of every point of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
+    /// Whether it comes in a later step, under the stress that is in force between its bodies by then
+    pub comes_stressed: bool,
     /// Both surfaces whole, for what lies between the points of the slave; `None` for self-contact and slaves without edges
     pub both: Option<BothSurfaces>,
     /// Surface nodes of the slave's bodies that belong to no contact point, if the master is rigid

@@ -261,6 +261,19 @@ pub struct ContactState {
     pub bond: Option<BondState>,
     /// Water that flows along the contact, in one that has it
     pub water: Option<WaterPoint>,
+    /// How the point came, in a contact that has come under stress; nothing in others
+    pub came: Came,
+}
+
+/// How a point of a contact came that has come under stress.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Came {
+    /// Gap of the surfaces from which that of the point is counted [L]
+    pub gap: f64,
+    /// p that acted at once [F/L²]
+    pub pressure: f64,
+    /// q that acted at once [F/L²]
+    pub traction: f64,
 }
 
 impl ContactState {

@@ -331,7 +331,7 @@ fn averaged(
     x: &Configuration,
 ) -> PointPlace {
     let Some(Meeting { gap, foot }) = meeting else { return PointPlace::default() };
-    let gap = slave.gap(gap, increment.during.fading);
+    let gap = slave.gap(gap - old.came.gap, increment.during.fading);
     let fluid = pair.acting_pressure(slave, old, x, increment.during.time);
     PointPlace {
         gap,

@@ -84,7 +84,8 @@ impl ContactPair {
         is_held: impl Fn(usize, Vector2<f64>) -> bool,
     ) -> Option<Stretch> {
         let offset = |slave: &SlavePoint| slave.touch != 0.0 || slave.overlap != 0.0;
-        let excluded = self.tied || self.is_own() || self.initial.is_some() || self.modulus <= 0.0;
+        let excluded =
+            self.tied || self.comes_stressed || self.is_own() || self.initial.is_some() || self.modulus <= 0.0;
         if excluded || self.points.iter().any(offset) {
             return None;
         }

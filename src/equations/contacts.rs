@@ -100,7 +100,9 @@ impl Springs {
         let mut springs = Self::default();
         for (k, (point, state)) in pair.points.iter().zip(states).enumerate() {
             let length = state.length;
-            let start = pair.initial.as_ref().map_or(InitialTraction::default(), |initial| initial[k]);
+            // Zero where it did not come under stress
+            let came = InitialTraction { pressure: state.came.pressure, traction: state.came.traction };
+            let start = pair.initial.as_ref().map_or(came, |initial| initial[k]);
             let law = pair.law(point);
             let (stiffness, stiffness_is_penalty) = (law.stiffness, law.description.stiffness_is_penalty);
             let clearance = if state.is_closed() { state.clearance() } else { 0.0 };
@@ -128,7 +130,7 @@ impl Springs {
             springs.changed += of_bond;
             springs.numerical[1] += of_bond;
         }
-        if pair.initial.is_none() {
+        if pair.initial.is_none() && !pair.comes_stressed {
             springs.changed = springs.stored;
         }
         springs

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use nalgebra::Vector2;
 
 use super::outline::Line;
-use super::{Edge, Element, Group, Mesh, MeshError};
+use super::{Between, Edge, Element, Group, Mesh, MeshError};
 use crate::mesh::shape::ElementKind;
 
 /// Returns the checked mesh: elements counter-clockwise, edges oriented, unused nodes removed.
@@ -174,18 +174,24 @@ fn add_edges(mesh: &mut Mesh, numbers: &NodeNumbers, curves: BTreeMap<String, Ve
         lines.iter().filter(|(_, _, nodes)| !sides[&ends(nodes)].is_empty()).map(|(name, ..)| *name).collect();
     let mut groups: BTreeMap<String, Vec<Edge>> = BTreeMap::new();
     let mut outlines: BTreeMap<String, Vec<Line>> = BTreeMap::new();
+    let mut between: BTreeMap<String, Vec<Between>> = BTreeMap::new();
     let mut seen = HashSet::new();
     for (name, tag, nodes) in &lines {
         if !seen.insert((name, ends(nodes))) {
             return Err(MeshError::EdgeRepeated { line: *tag, group: name.to_string() });
         }
         if on_bodies.contains(name) {
-            let edge = edge(mesh, &sides[&ends(nodes)], nodes, *tag, name)?;
-            groups.entry(name.to_string()).or_default().push(edge);
+            let (edge, other) = edge(mesh, &sides[&ends(nodes)], nodes, *tag, name)?;
+            let group = groups.entry(name.to_string()).or_default();
+            if let Some(other) = other {
+                between.entry(name.to_string()).or_default().push(Between { at: group.len(), line: *tag, other });
+            }
+            group.push(edge);
         } else {
             outlines.entry(name.to_string()).or_default().push(along(mesh, nodes));
         }
     }
+    mesh.between = between;
     mesh.groups.extend(groups.into_iter().map(|(name, edges)| (name, Group::Edges(edges))));
     mesh.groups.extend(outlines.into_iter().map(|(name, lines)| (name, Group::Lines(lines))));
     Ok(())
@@ -230,19 +236,19 @@ fn adjacent_sides(mesh: &Mesh, wanted: impl Iterator<Item = [usize; 2]>) -> Hash
     sides
 }
 
-/// Returns the one side with which a line coincides.
-fn edge(mesh: &Mesh, sides: &[Edge], line: &[usize], tag: u64, group: &str) -> Result<Edge, MeshError> {
+/// Returns the one side with which a line coincides, or both between two bodies.
+fn edge(mesh: &Mesh, sides: &[Edge], line: &[usize], tag: u64, group: &str) -> Result<(Edge, Option<Edge>), MeshError> {
     let group = group.to_string();
     match sides {
         [] => Err(MeshError::EdgeOutside { line: tag, group }),
-        [side] if side.nodes.get(2) != line.get(2) => Err(MeshError::EdgeOrder { line: tag, group }),
-        [side] => Ok(side.clone()),
+        [side, ..] if side.nodes.get(2) != line.get(2) => Err(MeshError::EdgeOrder { line: tag, group }),
+        [side] => Ok((side.clone(), None)),
         [one, other, ..] => {
             let (first, second) = (body(mesh, one.element), body(mesh, other.element));
             if first == second {
                 Err(MeshError::EdgeInside { line: tag, group, body: first })
             } else {
-                Err(MeshError::EdgeShared { line: tag, group, first, second })
+                Ok((one.clone(), Some(other.clone())))
             }
         }
     }
@@ -289,6 +295,7 @@ fn used_nodes(mesh: &Mesh) -> Vec<bool> {
 fn renumber_nodes(mesh: &mut Mesh, number: &[usize]) {
     let renumber = |nodes: &mut Vec<usize>| nodes.iter_mut().for_each(|node| *node = number[*node]);
     mesh.elements.iter_mut().for_each(|element| renumber(&mut element.nodes));
+    mesh.between.values_mut().flatten().for_each(|side| renumber(&mut side.other.nodes));
     for group in mesh.groups.values_mut() {
         match group {
             Group::Elements(_) | Group::Lines(_) => {}

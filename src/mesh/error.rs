@@ -284,7 +284,7 @@ pub enum MeshError {
     #[error(
         "line {line} of `{group}` lies between `{first}` and `{second}`, which share its nodes and so cannot slide or \
          separate; contact needs separate nodes on the two sides: draw the curve once for each body (in gmsh without \
-         Coherence or fragments)"
+         Coherence or fragments). It is a side of the one body only if a step removes the other"
     )]
     EdgeShared {
         /// tag of the line

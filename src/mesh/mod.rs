@@ -82,6 +82,37 @@ pub struct Edge {
     pub element: usize,
 }
 
+/// An edge of a group that lies between two bodies which share its nodes: it is the side of one of them.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct Between {
+    /// position in the group
+    pub at: usize,
+    /// tag of the line, for messages
+    pub line: u64,
+    /// the edge as a side of the other body
+    pub other: Edge,
+}
+
+#[doc(hidden)]
+impl Between {
+    /// Names of the bodies: of that whose side the edge is, and of the other.
+    pub fn bodies(&self, mesh: &Mesh, group: &str) -> [String; 2] {
+        let own = match mesh.groups.get(group) {
+            Some(Group::Edges(edges)) => edges[self.at].element,
+            _ => self.other.element,
+        };
+        [own, self.other.element].map(|element| mesh.body_of(element).unwrap_or_default().into())
+    }
+
+    /// Makes it the side of the other body.
+    pub fn swap(&mut self, mesh: &mut Mesh, group: &str) {
+        if let Some(Group::Edges(edges)) = mesh.groups.get_mut(group) {
+            std::mem::swap(&mut edges[self.at], &mut self.other);
+        }
+    }
+}
+
 /// A named set of the mesh.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -110,6 +141,9 @@ pub struct Mesh {
     pub element_tags: Vec<u64>,
     /// Named groups
     pub groups: BTreeMap<String, Group>,
+    /// Edges of groups that lie between two bodies, by group
+    #[doc(hidden)]
+    pub between: BTreeMap<String, Vec<Between>>,
     /// The kind of plane section
     pub section: Section,
     /// Rigid bodies, whose nodes belong to no element

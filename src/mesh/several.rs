@@ -48,6 +48,11 @@ impl Mesh {
                 Group::Lines(_) => {}
             }
         }
+        for side in other.between.values_mut().flatten() {
+            moved(&mut side.other.nodes, nodes);
+            side.other.element += elements;
+        }
+        self.between.append(&mut other.between);
         self.nodes.append(&mut other.nodes);
         self.node_tags.append(&mut other.node_tags);
         self.elements.append(&mut other.elements);

@@ -7,6 +7,7 @@ pub mod boundary;
 pub mod builder;
 mod expression;
 mod flow_concerns;
+mod in_force;
 mod random;
 mod requests;
 mod stages;
@@ -70,7 +71,7 @@ pub use measured::{Coordinate, Measured, MeasuredTable, PoreField};
 use method::Chosen;
 pub use method::Method;
 use pore_flow::PoreFlow;
-pub use requests::{OutputRequests, Probe, WatchedSet};
+pub use requests::{Axis, OutputRequests, Probe, Station, WatchedSet};
 pub use scheme::Scheme;
 #[doc(hidden)]
 pub use stages::Born;

@@ -1,6 +1,8 @@
 //! Output requests: what of a run is recorded, and when. Observers read them, and increments end at their times; no equation
 //! knows them.
 
+use nalgebra::Vector2;
+
 use crate::mesh::Edge;
 
 /// Results to be recorded, and when.
@@ -11,6 +13,8 @@ pub struct OutputRequests {
     pub watch: Vec<WatchedSet>,
     /// points of the bodies
     pub probes: Vec<Probe>,
+    /// axes of bodies along which sections are cut
+    pub sections: Vec<Axis>,
     /// Least time between two rows of the history of implicit steps, and between the results of explicit ones [T]
     pub interval: Option<f64>,
     /// Times that increments end at, ascending, because fields are written then [T]
@@ -41,6 +45,34 @@ pub struct Probe {
     pub element: usize,
     /// its coordinates (ξ, η) in it
     pub at: [f64; 2],
+}
+
+/// An axis of a body with stations at which it is cut.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct Axis {
+    /// name in results
+    pub name: String,
+    /// number of the body
+    pub body: usize,
+    /// from one end to the other
+    pub stations: Vec<Station>,
+}
+
+/// A place of an axis, and the nodes between the two parts into which it divides the body.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct Station {
+    /// in the mesh [L]
+    pub place: Vector2<f64>,
+    /// the element it lies in
+    pub element: usize,
+    /// its coordinates (ξ, η) in it
+    pub at: [f64; 2],
+    /// nodes of both parts, ascending; at an end of the body those of the end
+    pub cut: Vec<usize>,
+    /// elements at these nodes: of the part before, and of that beyond
+    pub parts: [Vec<usize>; 2],
 }
 
 impl OutputRequests {

@@ -18,6 +18,7 @@ use nalgebra::Vector2;
 
 use super::Model;
 use super::element::{ElementError, SolidElement};
+use super::in_force;
 use super::state::{Births, State};
 use super::step::Step;
 use crate::contact::conduit::Conduit;
@@ -126,10 +127,20 @@ impl Model {
                 own.copy_from_slice(initial);
             }
         }
+        let comes = |pair: &&ContactPair| pair.comes_stressed && step.joins(pair) && step.changes(pair);
+        let stressed = self.contacts.iter().filter(comes);
+        let stresses: BTreeMap<String, _> =
+            stressed.map(|pair| (pair.name.clone(), in_force::across(self, pair, step, state))).collect();
         let x = self.configuration(&state.displacement);
         for (pair, states) in self.contacts.iter().zip(&mut state.contacts) {
             if step.changes(pair) {
-                *states = if step.joins(pair) { pair.initial_states(&x) } else { pair.apart() };
+                *states = match step.joins(pair) {
+                    true if pair.comes_stressed => {
+                        pair.states_under(&stresses[&pair.name], [&self.mesh.undeformed(), &x], state.time)
+                    }
+                    true => pair.initial_states(&x),
+                    false => pair.apart(),
+                };
             }
         }
     }

@@ -406,7 +406,8 @@ fn changed(model: &Model, state: &State, stresses: &[Stress]) -> f64 {
     let first_order: f64 = there.map(|(node, force)| force.dot(&vector(&state.displacement, *node))).sum();
     let mut elastic = state.energy.strain - first_order + state.energy.contact_elastic;
     let mut behind = 0.0;
-    for (pair, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.initial.is_some()) {
+    let closed = |pair: &ContactPair| pair.initial.is_some() || pair.comes_stressed;
+    for (pair, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| closed(pair)) {
         let Springs { stored, changed, numerical } = Springs::of(pair, states);
         elastic += changed.max(REST * stored) - stored;
         behind += numerical[0] * pair.alpha_n * pair.compliance;
@@ -439,6 +440,7 @@ impl Give {
             ],
             on_bodies: pair.compliance > 0.0,
             starts_free: pair.initial.is_none()
+                && !pair.comes_stressed
                 && pair.bodies.iter().flatten().any(|&body| model.bodies[body].is_stressed()),
             by_steps: solved,
             rings: moves && !pair.tied && has_mass(pair),

@@ -13,7 +13,7 @@ use super::{checkpoint, files, gradients, report, store};
 use crate::run::error::Error;
 
 /// Files written by the commands; a name that ends in `/` is a folder of numbered frames.
-const KNOWN: [&str; 21] = [
+const KNOWN: [&str; 22] = [
     "history.csv",
     "newton.csv",
     "slip_map.csv",
@@ -25,6 +25,7 @@ const KNOWN: [&str; 21] = [
     "points.pvd",
     "points/",
     "probes.csv",
+    "sections.csv",
     gradients::FILE,
     INTERFACE,
     GRADIENTS,

@@ -36,6 +36,7 @@ cfg_if::cfg_if! {
         pub mod quantities;
         pub mod recovery;
         pub mod report;
+        pub mod sections;
         pub mod summary;
         pub mod vtu;
         pub mod warnings;
@@ -64,6 +65,7 @@ cfg_if::cfg_if! {
         pub(crate) mod quantities;
         pub(crate) mod recovery;
         pub(crate) mod report;
+        pub(crate) mod sections;
         pub(crate) mod summary;
         pub(crate) mod vtu;
         pub(crate) mod warnings;

@@ -2,7 +2,7 @@
 //! and unit of each. Columns and arrays follow this order, readers of results identify quantities by it, and `fecontact schema
 //! results` prints it.
 //!
-//! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY`, `BAR` and `PROBE` stand
+//! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY`, `BAR`, `PROBE` and `SECTION` stand
 //! for names of the case.
 
 use super::units::{
@@ -195,6 +195,23 @@ pub const PROBE: [Quantity; 11] = [
 
 /// Column of every probe in axisymmetric bodies, after its other columns.
 pub const HOOP: Quantity = q("strain_zz", NONE, "hoop strain, of axisymmetric bodies");
+
+/// Columns of every station of the sections of a body.
+pub const SECTION: [Quantity; 5] = [
+    q("x", LENGTH, "x of the station, undeformed"),
+    q("y", LENGTH, "y of the station, undeformed"),
+    q(
+        "axial_force",
+        FORCE,
+        "N, positive in tension, along the axis by then; per unit of thickness in plane strain, of a full turn in axisymmetry",
+    ),
+    q("shear_force", FORCE, "Q = dM/ds along the axis"),
+    q(
+        "moment",
+        ENERGY,
+        "bending moment M about the station, positive where the right of the way along the axis is pulled",
+    ),
+];
 
 /// Positions of the points of a contact in the undeformed configuration.
 pub const PLACE: [Quantity; 4] = [
@@ -445,7 +462,7 @@ const INTEGRATION_POINTS: [Quantity; 10] = [
 pub type Group = (&'static str, &'static [Quantity]);
 
 /// All quantities by their files, in the order of their columns.
-pub const ALL: [(&str, &[Group]); 13] = [
+pub const ALL: [(&str, &[Group]); 14] = [
     (
         "history.csv",
         &[
@@ -484,6 +501,7 @@ pub const ALL: [(&str, &[Group]); 13] = [
     ("bars.pvd", &[("", &[SOLID[0]]), ("", &BAR_FRAMES)]),
     ("points.pvd", &[("", &INTEGRATION_POINTS), ("", &OF_YIELDING)]),
     ("probes.csv", &[("", &[INCREMENT[0]]), ("PROBE", &PROBE), ("PROBE", &[HOOP])]),
+    ("sections.csv", &[("", &[INCREMENT[0]]), ("SECTION", &SECTION)]),
     (
         "gradients.zarr",
         &[

@@ -158,7 +158,7 @@ impl Observer for Warnings {
                     self.list.push(format!("{}: {message}", place(pair, at, state.time)));
                 }
             }
-            if !(fading || explicit || pair.initial.is_some()) {
+            if !(fading || explicit || pair.comes_stressed || pair.initial.is_some()) {
                 self.deep_master_node(number, pair, state, &x);
                 self.deep_slave_node(number, pair, state, &x);
             }

@@ -60,6 +60,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
     ContactPair {
         conduit: None,
+        comes_stressed: false,
         bodies: Default::default(),
         name: "test".into(),
         tied: false,
@@ -226,6 +227,7 @@ fn committed(friction: FrictionState, foot: MasterPoint, gap: f64) -> ContactSta
     let (foot, slip, radiation, radiated) = (Some(foot), 0.0, 0.0, 0.0);
     ContactState {
         water: None,
+        came: Default::default(),
         bond: None,
         friction,
         foot,
@@ -628,6 +630,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let old = vec![
                     ContactState {
                         water: None,
+                        came: Default::default(),
                         bond: None,
                         friction,
                         foot,
@@ -792,6 +795,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         let friction = pair.laws[0].law.initial_state(0.0, 0.0);
         let old = ContactState {
             water: None,
+            came: Default::default(),
             bond: None,
             friction,
             foot: None,
@@ -1063,6 +1067,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
     let old = ContactState {
         water: None,
+        came: Default::default(),
         bond: None,
         friction: pressed,
         foot: Some(MasterPoint { segment: 0, xi: 0.9 }),

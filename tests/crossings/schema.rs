@@ -64,6 +64,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         ],
         "water that flows in static steps alone: tests/solver/consolidation.rs",
     ),
+    (&["sections"], "forces of sections, which nothing depends on: tests/solver/cuts.rs"),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 

@@ -15,6 +15,7 @@ use crate::mesh::{InlineMesh, PlacedGroup};
 use crate::model::NewtonSettings;
 use crate::model::builder::{
     BarInput, BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, Place, PointMassInput, RigidBodyInput,
+    SectionsInput,
 };
 use crate::model::written::Written;
 use blocks::MeshKeys;
@@ -87,6 +88,10 @@ pub struct Case {
     /// the history (probes.csv)
     #[serde(default)]
     pub probes: BTreeMap<String, Gauge>,
+    /// Sections across bodies by a name of your choice: normal force, shear force and bending moment along an axis, such as the depth
+    /// of a wall, at every row of the history (sections.csv)
+    #[serde(default)]
+    pub sections: BTreeMap<String, SectionsInput>,
     /// Places of values by which the history is differentiated (gradients.csv): "contacts.base.friction.mu_k",
     /// "bodies.block.material.E", "steps.drag.supports[0].uy". The derivatives are those of the run with its increments as they are;
     /// not for explicit and quasi-dynamic steps, nor where a step may become explicit

@@ -18,6 +18,7 @@ use crate::output::gradients::{self, Asked, Gradients, Motions};
 use crate::output::history::History;
 use crate::output::newton_log::NewtonLog;
 use crate::output::probes::Probes;
+use crate::output::sections::Sections;
 use crate::output::store::InterfaceStore;
 use crate::output::warnings::{Warn, Warnings};
 use crate::output::{checkpoint, report};
@@ -46,6 +47,9 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     if !model.requests.probes.is_empty() {
         files.push("probes.csv");
     }
+    if !model.requests.sections.is_empty() {
+        files.push("sections.csv");
+    }
     if !case.gradients.is_empty() {
         files.extend([gradients::FILE, GRADIENTS]);
     }
@@ -68,6 +72,7 @@ pub(super) struct Outputs {
     pub warnings: Warnings,
     interface: Option<InterfaceStore>,
     probes: Option<Probes>,
+    sections: Option<Sections>,
     fields: Option<Fields>,
     pub fronts: Option<Fronts>,
     pub gradients: Option<Gradients>,
@@ -103,6 +108,7 @@ impl Outputs {
             warnings,
             interface: (goes_on("interface") && has_contacts).then(store),
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
+            sections: goes_on("sections").then(|| Sections::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
             fronts: case.output.fronts.map(|criterion| Fronts::new(folder, model, &start, criterion)),
             gradients,
@@ -120,6 +126,9 @@ impl Outputs {
         }
         if outputs.probes.is_none() && !model.requests.probes.is_empty() {
             outputs.probes = Some(Probes::create(folder, model)?);
+        }
+        if outputs.sections.is_none() && !model.requests.sections.is_empty() {
+            outputs.sections = Some(Sections::create(folder, model)?);
         }
         if outputs.fields.is_none() && has_fields {
             // Their first frame shows the derivatives with which the run goes on.
@@ -143,7 +152,7 @@ impl Outputs {
         fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
             observer.as_mut().map(|observer| observer as &mut dyn Observer)
         }
-        let Self { history, newton_log, warnings, interface, probes, fields, fronts, gradients } = self;
+        let Self { history, newton_log, warnings, interface, probes, sections, fields, fronts, gradients } = self;
         let warnings: Option<&mut dyn Observer> = Some(warnings);
         let all = [
             watch(history),
@@ -151,6 +160,7 @@ impl Outputs {
             warnings,
             watch(interface),
             watch(probes),
+            watch(sections),
             // Before the frames that show its derivatives.
             watch(gradients),
             watch(fields),

@@ -31,6 +31,9 @@ pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
         lines.push(pair.name.clone());
         lines.extend(contact(case, model, pair, chosen.as_ref()).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
+            Some(_) if pair.comes_stressed => {
+                "comes later, closed under the stress that is in force there by then".into()
+            }
             Some(initial) => initial_tractions(initial, pair),
             None => gaps(model, pair, case.contacts[&pair.name].shrink_fit),
         };

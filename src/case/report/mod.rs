@@ -316,6 +316,9 @@ fn output(case: &Case, model: &Model) -> Vec<String> {
     if !model.requests.probes.is_empty() {
         lines.push(format!("{} in probes.csv", count(model.requests.probes.len(), "probe")));
     }
+    for axis in &model.requests.sections {
+        lines.push(format!("{} of `{}` in sections.csv", count(axis.stations.len(), "section"), axis.name));
+    }
     if let Some(fronts) = case.output.fronts {
         let rate = number(fronts.slip_rate);
         lines.push(match fronts.arrival {

@@ -120,7 +120,7 @@ impl Join<'_> {
         Ok(())
     }
 
-    /// Checks that two sides are joined to each other, to no third one, and have no names.
+    /// Checks that two sides are joined to each other and to no third one, and have no names inside a body.
     fn partners(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
         for (side, partner) in [(one, other), (other, one)] {
             if let Some(third) = self.partner[side.0][side.1].replace(partner) {
@@ -129,9 +129,12 @@ impl Join<'_> {
             }
             if let Some(name) = &self.blocks.blocks[side.0].sides[side.1] {
                 let bodies = [side, partner].map(|(block, _)| &self.blocks.blocks[block].body);
-                let inside = if bodies[0] == bodies[1] { "inside the body" } else { "between bodies that are joined" };
+                if bodies[0] != bodies[1] {
+                    // A side of that which stays when the other goes, as far as the steps tell.
+                    continue;
+                }
                 let message = format!(
-                    "is joined to side {} of blocks[{}], so `{name}` lies {inside}: leave the name out, or list it in `apart` if \
+                    "is joined to side {} of blocks[{}], so `{name}` lies inside the body: leave the name out, or list it in `apart` if \
                      the two sides can part",
                     partner.1, partner.0
                 );

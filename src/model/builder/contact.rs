@@ -233,7 +233,8 @@ pub struct InitialTractions {
     #[serde(default)]
     pub balanced: bool,
     /// Instead of pressure and traction: those of the `initial_stress` of the slave's body at the contact, p = −n·σn
-    /// (minus an initial fluid pressure) and q = s·σn, with the normal n and the tangent s of the master
+    /// (minus an initial fluid pressure) and q = s·σn, with the normal n and the tangent s of the master. Of a contact that comes in
+    /// a later step: those of the stress in force by then, in the body that was there before, with surfaces that fit
     #[serde(default)]
     pub of_bodies: bool,
 }

@@ -235,6 +235,24 @@ fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: 
     Ok(initial)
 }
 
+/// Checks the initial tractions of a contact that comes later, under the stress in force by then.
+pub fn check_of_bodies(given: &InitialTractions, contact: &Contact, place: &str) -> Checked<()> {
+    check_alone(given, place)?;
+    let message = "needs a slave of edges, behind which there is a stress: leave it out";
+    refuse_if(contact.area.is_some(), format!("{place}.of_bodies"), message)
+}
+
+/// Checks that tractions that follow from the stress of bodies are not given besides.
+fn check_alone(given: &InitialTractions, place: &str) -> Checked<()> {
+    let besides = [("pressure", &given.pressure), ("traction", &given.traction)];
+    if let Some((key, _)) = besides.iter().find(|(_, it)| it.is_some()) {
+        let message = "has no meaning together with of_bodies: leave one out";
+        return Err(ModelError::new(format!("{place}.{key}"), message));
+    }
+    let message = "counts the stress of the bodies, and balanced would count it again: leave one out";
+    refuse_if(given.balanced, format!("{place}.of_bodies"), message)
+}
+
 /// Returns the tractions of the initial stress of the slave's body at the contact.
 fn of_bodies(
     pair: &ContactPair,
@@ -243,15 +261,9 @@ fn of_bodies(
     model: &Model,
     place: &str,
 ) -> Checked<Vec<InitialTraction>> {
-    let besides = [("pressure", &given.pressure), ("traction", &given.traction)];
-    if let Some((key, _)) = besides.iter().find(|(_, it)| it.is_some()) {
-        let message = "has no meaning together with of_bodies: leave one out";
-        return Err(ModelError::new(format!("{place}.{key}"), message));
-    }
+    check_alone(given, place)?;
     let place = format!("{place}.of_bodies");
     let refused = |message: String| Err(ModelError::new(place.clone(), message));
-    let message = "counts the stress of the bodies, and balanced would count it again: leave one out";
-    refuse_if(given.balanced, &place, message)?;
     let Some(Group::Edges(edges)) = model.mesh.groups.get(slave) else {
         return refused("needs a slave of edges: give pressure and traction".into());
     };

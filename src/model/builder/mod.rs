@@ -70,6 +70,7 @@ mod reduction;
 mod requests;
 mod rigid;
 pub(crate) mod schedule;
+mod sections;
 mod stages;
 mod supports;
 pub(crate) mod thickness;
@@ -100,6 +101,7 @@ pub use reduction::with_friction;
 pub use requests::Gauge;
 pub use rigid::{LoadingPlateInput, MovingPlateInput, Plate, RigidBodyInput};
 pub use schedule::regime;
+pub use sections::SectionsInput;
 
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
@@ -132,6 +134,7 @@ pub struct Builder {
     pub(crate) interval: Option<f64>,
     pub(crate) times: Vec<f64>,
     pub(crate) gauges: Vec<Gauge>,
+    pub(crate) sections: Vec<SectionsInput>,
 }
 
 impl Model {
@@ -222,6 +225,9 @@ setters! { builder: Builder;
     /// Adds a gauge: a point, or points along a line, at which motion, strain and stress are evaluated.
     probe(gauge: Gauge) { builder.gauges.push(gauge); }
 
+    /// Adds sections across a body along an axis, at which its normal force, shear force and bending moment are recorded.
+    sections(sections: SectionsInput) { builder.sections.push(sections); }
+
     /// Sets output times of fields, at which increments end [T].
     times(times: impl Into<Vec<f64>>) { builder.times = times.into(); }
 
@@ -283,6 +289,7 @@ impl Builder {
     pub fn build(mut self) -> Checked<Model> {
         self.check_names()?;
         checks::check_section(&self.mesh)?;
+        stages::give_sides_owners(&mut self.mesh, &self.steps)?;
         rigid::add_bodies(&self.rigid_bodies, &self.contacts, &mut self.mesh)?;
         let laid = bars::lay(&self.bars, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
@@ -324,7 +331,8 @@ impl Builder {
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
         model.linkage = rigid::linkage(&self.plates, &self.steps, &model)?;
         let regime = schedule::regime(&self.steps);
-        model.contacts = pair::pairs(&self.contacts, &model, regime)?;
+        let absent = stages::absent_at_start(&self.steps, &model);
+        model.contacts = pair::pairs(&self.contacts, &model, regime, &absent)?;
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh, regime)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
@@ -333,6 +341,7 @@ impl Builder {
         model.requests.times = requests::checked_times(self.times, &model.steps)?;
         model.requests.probes = requests::probes(&self.gauges, &model)?;
         drainage::check(&self.contacts, &model)?;
+        model.requests.sections = sections::sections(&self.sections, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
         requests::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;

@@ -73,11 +73,20 @@ use crate::model::Model;
 use crate::model::method::{Asked, Chosen, Method, Tool, choose, nodes_meet};
 use crate::model::scheme::Regime;
 
-/// The pairs of contacts, in a run of this regime.
-pub fn pairs(contacts: &[Contact], model: &Model, regime: Regime) -> Checked<Vec<ContactPair>> {
+/// The pairs of contacts, in a run of this regime that begins without these bodies.
+pub fn pairs(
+    contacts: &[Contact],
+    model: &Model,
+    regime: Regime,
+    absent: &BTreeSet<usize>,
+) -> Checked<Vec<ContactPair>> {
     check_allowed(contacts, &model.mesh)?;
     let outline = contacts.iter().any(|contact| contact.master_group().is_some()).then(|| Outline::new(&model.mesh));
-    let pair = |contact| pair(contact, model, regime, outline.as_ref());
+    let pair = |contact| {
+        let mut pair = pair(contact, model, regime, outline.as_ref())?;
+        begin(&mut pair, contact, model, absent)?;
+        Ok(pair)
+    };
     let mut pairs = contacts.iter().map(pair).collect::<Checked<Vec<_>>>()?;
     unseen::undetected(contacts, &mut pairs, model);
     Ok(pairs)
@@ -137,6 +146,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         in_time,
         truncated,
         initial: None,
+        comes_stressed: false,
         unseen: Vec::new(),
         modulus: modulus(contact, model),
         both: unseen::both_surfaces(contact, model, outline),
@@ -156,8 +166,6 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         pair.slide_little(&model.mesh.undeformed());
     }
     check_stick(&pair, &place)?;
-    start(&mut pair, contact, model, &place)?;
-    fluid::check_fluid(&pair, &place, model, 0.0)?;
     Ok(pair)
 }
 
@@ -214,9 +222,20 @@ fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<
     }
 }
 
+/// Lets a contact begin with its tractions or its overlap, or come later under stress.
+fn begin(pair: &mut ContactPair, contact: &Contact, model: &Model, absent: &BTreeSet<usize>) -> Checked<()> {
+    let place = format!("contacts.{}", contact.name);
+    pair.comes_stressed = pair.bodies.iter().flatten().any(|body| absent.contains(body))
+        && contact.initial.as_ref().is_some_and(|initial| initial.of_bodies);
+    start(pair, contact, model, &place)?;
+    fluid::check_fluid(pair, &place, model, 0.0)
+}
+
 /// Sets the initial state of the surfaces: as in the mesh, closed, or with an overlap to be fitted.
 fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) -> Checked<()> {
-    if let Some(initial) = &contact.initial {
+    if let Some(initial) = contact.initial.as_ref().filter(|_| pair.comes_stressed) {
+        initial::check_of_bodies(initial, contact, &format!("{place}.initial"))?;
+    } else if let Some(initial) = &contact.initial {
         initial::close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
     }
     if contact.shrink_fit {

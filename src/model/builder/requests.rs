@@ -113,7 +113,7 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     Ok(probes)
 }
 
-fn outside(model: &Model, at: Vector2<f64>, body: Option<&str>) -> String {
+pub(super) fn outside(model: &Model, at: Vector2<f64>, body: Option<&str>) -> String {
     let bodies = model.bodies.iter().filter(|other| body.is_none_or(|body| other.name == body));
     let nodes = bodies.flat_map(|body| body.nodes.iter().map(move |&node| (model.mesh.nodes[node], &body.name)));
     let nearest = nodes.min_by(|(a, _), (b, _)| (a - at).norm().total_cmp(&(b - at).norm()));

@@ -1,9 +1,13 @@
 //! Bodies that come or go with the steps.
 
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
 use super::error::{Checked, ModelError, refuse_if};
 use super::groups;
 use super::load_step::{LoadStep, Support};
 use crate::contact::pair::ContactPair;
+use crate::mesh::{Mesh, MeshError};
 use crate::model::boundary::{Drive, Span};
 use crate::model::scheme::Scheme;
 use crate::model::support::Prescribed;
@@ -25,12 +29,8 @@ pub struct Stages<'m> {
 impl<'m> Stages<'m> {
     /// Before the first step, bodies are absent which a step adds before any removes them.
     pub fn new(given: &[LoadStep], model: &'m Model) -> Self {
-        let comes = |name: &String| {
-            let first = given.iter().find(|step| step.add.contains(name) || step.remove.contains(name));
-            first.is_some_and(|step| step.add.contains(name))
-        };
-        let absent = model.bodies.iter().map(|body| comes(&body.name)).collect();
-        let bars_absent = model.bars.iter().map(|bar| comes(&bar.name)).collect();
+        let absent = model.bodies.iter().map(|body| comes(given, &body.name)).collect();
+        let bars_absent = model.bars.iter().map(|bar| comes(given, &bar.name)).collect();
         Self { model, absent, bars_absent, bars_changed: Vec::new(), has_begun: false }
     }
 
@@ -198,6 +198,9 @@ impl<'m> Stages<'m> {
             let parted = |side: &Vec<usize>| side.iter().any(|body| self.absent[*body] != self.absent[side[0]]);
             let message = "has a side on bodies of which only some are there: divide the side, body by body";
             refuse_if(pair.bodies.iter().any(parted), place, format!("the contact `{name}` {message}"))?;
+            let message = "has a side on an edge that a body shares which is there with it: what shares nodes cannot slide. Let the \
+                           contact come with the step that removes the other body";
+            refuse_if(self.joins(pair) && self.is_shared(pair), place, format!("the contact `{name}` {message}"))?;
             let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair);
             let why = format!(
                 "changes the bodies of the contact `{name}`, along which water flows: let them be there from the start to the end"
@@ -205,11 +208,28 @@ impl<'m> Stages<'m> {
             let changes = pair.bodies.iter().flatten().any(|body| changed.contains(body));
             refuse_if(changes && pair.conduit.is_some(), place, why)?;
             let message = "comes in this step, and is tied, starts closed, overlaps or has pores at mesh positions, which are not those of \
-                           then: let the bodies share nodes, or touch without `initial`, and what a body that goes in the same step exerted passes to the contact \
-                           over the step";
+                           then: let the bodies share nodes, or begin under the stress in force by then, \"initial\": {\"of_bodies\": true}, \
+                           with a body that is absent before";
             refuse_if(is_new(pair) && at_places, place, format!("the contact `{name}` {message}"))?;
         }
         Ok(())
+    }
+
+    /// Whether the bodies of both sides are there.
+    fn joins(&self, pair: &ContactPair) -> bool {
+        pair.bodies.iter().flatten().all(|&body| !self.absent[body])
+    }
+
+    /// Whether a side lies on an edge that another body shares, which is there.
+    fn is_shared(&self, pair: &ContactPair) -> bool {
+        let mesh = &self.model.mesh;
+        let nodes: BTreeSet<usize> = pair.nodes().collect();
+        let others = mesh.between.values().flatten().map(|side| &side.other);
+        let mut shared = others.filter(|other| other.nodes.iter().all(|node| nodes.contains(node)));
+        shared.any(|edge| {
+            let other = self.model.body_of_element[edge.element];
+            !self.absent[other] && !pair.bodies.iter().flatten().any(|body| *body == other)
+        })
     }
 
     /// Refuses a body that comes or goes with forces that stand for its initial stress.
@@ -224,6 +244,43 @@ impl<'m> Stages<'m> {
         );
         refuse_if(groups::dofs_of(&body.nodes).any(has_force), place, message)
     }
+}
+
+/// Whether a body or bar is absent before the first step: one that is added before it is ever removed.
+fn comes(given: &[LoadStep], name: &String) -> bool {
+    let first = given.iter().find(|step| step.add.contains(name) || step.remove.contains(name));
+    first.is_some_and(|step| step.add.contains(name))
+}
+
+/// Bodies that are absent at the start of a run.
+pub fn absent_at_start(given: &[LoadStep], model: &Model) -> BTreeSet<usize> {
+    let bodies = model.bodies.iter().enumerate();
+    bodies.filter(|(_, body)| comes(given, &body.name)).map(|(number, _)| number).collect()
+}
+
+/// Gives the named sides between two bodies that share their nodes to the one that is there without the other at the end, or goes later.
+pub fn give_sides_owners(mesh: &mut Mesh, given: &[LoadStep]) -> Checked<()> {
+    // The step in which a body goes for good, none of one that stays.
+    let goes = |name: &String| {
+        let last = given.iter().rposition(|step| step.add.contains(name) || step.remove.contains(name));
+        last.filter(|k| given[*k].remove.contains(name)).unwrap_or(given.len())
+    };
+    let mut between = std::mem::take(&mut mesh.between);
+    for (group, sides) in &mut between {
+        for side in sides {
+            let [first, second] = side.bodies(mesh, group);
+            match goes(&first).cmp(&goes(&second)) {
+                Ordering::Greater => {}
+                Ordering::Less => side.swap(mesh, group),
+                Ordering::Equal => {
+                    let (line, group) = (side.line, group.clone());
+                    return Err(ModelError::new("mesh", MeshError::EdgeShared { line, group, first, second }));
+                }
+            }
+        }
+    }
+    mesh.between = between;
+    Ok(())
 }
 
 fn overlaps(pair: &ContactPair) -> bool {
