@@ -150,9 +150,8 @@ impl Mesh {
             };
         }
         let faces = |edge: &Edge| group.faces(self.nodes[edge.nodes[0]], self.nodes[edge.nodes[1]]);
-        let is_member = |edge: &&Edge| {
-            elements.contains(&edge.element) && edge.nodes.iter().all(is_there) && faces(edge)
-        };
+        let is_member =
+            |edge: &&Edge| elements.contains(&edge.element) && edge.nodes.iter().all(is_there) && faces(edge);
         let edges: Vec<Edge> = sides.iter().filter(is_member).cloned().collect();
         match edges.is_empty() {
             true => Err(format!("has no free side of an element: {}", self.extents())),

@@ -81,7 +81,8 @@ fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             let name = path.file_name().expect("a name").to_string_lossy().into_owned();
             if path.is_dir() {
                 collect(root, &path, found);
-            } else if !(["summary.json", "report.html", "run.log"].contains(&&*name) || name.starts_with("checkpoint")) {
+            } else if !(["summary.json", "report.html", "run.log"].contains(&&*name) || name.starts_with("checkpoint"))
+            {
                 found.insert(path.strip_prefix(root).expect("below").to_owned(), fs::read(&path).expect("a file"));
             }
         }
