@@ -10,6 +10,7 @@ use super::fluid::FluidPressure;
 use super::friction::check_in_time;
 use super::groups::{edges, node_lists};
 use crate::contact::conduit::{Conduit, Gives, InTime, Leak, Line, Piece, SourceAt, Transmissivity, Well};
+use crate::contact::pair::Fluid;
 use crate::contact::point::linear_shares;
 use crate::contact::surface::{SlavePoint, in_order};
 use crate::mesh::Group;
@@ -362,4 +363,10 @@ fn check_apart(place: &str, wells: &[Well]) -> Checked<()> {
         refuse_if(wells[..k].iter().filter(held).any(|other| clashes(&other)), format!("{place}.wells[{k}]"), message)?;
     }
     Ok(())
+}
+
+/// The fluid of a contact along which water flows, at the start.
+pub fn at_start(conduit: &Conduit, model: &Model) -> Fluid {
+    let ties = model.ties.clone();
+    conduit.at_start(move |node| ties.original(node))
 }

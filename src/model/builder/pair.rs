@@ -57,10 +57,9 @@ use super::load_step::LoadStep;
 use super::schedule::regime;
 use super::thickness::Outline;
 use super::{contact, flow, fluid, friction, initial, pores, rigid, unseen, water};
-use crate::contact::conduit::Conduit;
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
-use crate::contact::pair::{ContactPair, Fluid};
+use crate::contact::pair::ContactPair;
 use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, gauss_points_and_corners, in_order, is_corner, lone_point, nodal_points,
     nodal_points_of_rings,
@@ -139,7 +138,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         penetration: contact.normal.penetration,
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
-        fluid: of_bodies.or(given).or_else(|| conduit.as_ref().map(|conduit| at_start(conduit, model))),
+        fluid: of_bodies.or(given).or_else(|| conduit.as_ref().map(|conduit| flow::at_start(conduit, model))),
         conduit,
         pores,
         laws,
@@ -167,12 +166,6 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     }
     check_stick(&pair, &place)?;
     Ok(pair)
-}
-
-/// The fluid of a contact along which water flows, at the start.
-fn at_start(conduit: &Conduit, model: &Model) -> Fluid {
-    let ties = model.ties.clone();
-    conduit.at_start(move |node| ties.original(node))
 }
 
 /// Gap at which surfaces touch, as a fraction of the shortest edge of the slave.
