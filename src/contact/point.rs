@@ -421,14 +421,22 @@ impl Tractions {
     }
 }
 
-/// Shares of neighbouring nodes of an edge at a contact point: linear between nodes, also of quadratic edges.
+/// Shares of nodes at a contact point: linear between neighbours at a place on an edge, also of quadratic ones; those of its position where it
+/// is a mean.
 pub fn linear_shares(point: &SlavePoint) -> Weights {
     match point.position[..] {
-        [(a, at_a), (b, at_b), (middle, _)] => {
+        [(a, at_a), (b, at_b), (middle, at_middle)] => {
             let xi = at_b - at_a;
+            let is_place = (at_middle - (1.0 - xi * xi)).abs() < PLACE && (at_a + at_b - xi * xi).abs() < PLACE;
+            if !is_place {
+                return point.position.clone();
+            }
             let end = if xi < 0.0 { a } else { b };
             vec![(end, xi.abs()), (middle, 1.0 - xi.abs())]
         }
         _ => point.position.clone(),
     }
 }
+
+/// Difference of weights from shape functions that is round-off [-]
+const PLACE: f64 = 1e-12;

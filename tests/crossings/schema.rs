@@ -65,6 +65,10 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "water that flows in static steps alone: tests/solver/consolidation.rs",
     ),
     (&["sections"], "forces of sections, which nothing depends on: tests/solver/cuts.rs"),
+    (
+        &["aperture", "per_slip", "closing", "wells", "rate", "from", "leak", "coefficient"],
+        "water along a contact that goes by the surfaces, wells and leaks: tests/contact/flow.rs, tests/time/flow.rs",
+    ),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];
 

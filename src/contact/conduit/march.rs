@@ -221,15 +221,15 @@ impl Conduit {
         let mut amounts = Amounts::default();
         let coefficient = self.leak.as_ref().map_or(0.0, |leak| leak.coefficient);
         let mut transmissivity = Vec::with_capacity(n);
-        for (node, length) in self.line.lengths().iter().enumerate() {
+        for (node, (length, holds)) in self.line.lengths().iter().zip(&self.holds).enumerate() {
             let [before, after] = shares.map(|share| course.wall(node, share));
             transmissivity.push(self.transmissivity.at(node, after));
             let (softness, presumed) = (course.compliance(node), course.gives_way[1].get(node).copied());
             let foreseen = softness * presumed.map_or(0.0, |presumed| presumed - start[node]) * (shares[1] - shares[0]);
             let source = self.source.as_ref().map_or(0.0, |source| h * source(self.line.nodes[node], t1));
             let leaks = self.leak.as_ref().map_or(0.0, |leak| h * coefficient * (leak.pressure[node] - from[node]));
-            own_part.push(length * (self.storage + softness + h * coefficient));
-            right.push(length * (before.opening - after.opening + foreseen + source + leaks));
+            own_part.push(length * (self.storage + h * coefficient) + holds * softness);
+            right.push(length * (source + leaks) + holds * (before.opening - after.opening + foreseen));
             amounts.injected += length * source;
             amounts.throughput += (length * source).abs();
         }

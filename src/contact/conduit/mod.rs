@@ -9,7 +9,8 @@
 //! over- or undershoots, and what leaves one node enters the next. Ends of the contact are impervious; a well holds the pressure of a
 //! node, or gives a rate to the place between two nodes. What is divided by a periodic side is joined.
 //!
-//! Between nodes the pressure is linear, and the surfaces at a node are the mean of the points about it with the same weights.
+//! Between nodes the pressure is linear, and the surfaces at a node are the mean of the points about it with the same weights: what opens is the
+//! volume that the pressure works on.
 //!
 //! The penetration of a penalty is no change of volume: w counts what is open and what the law has lifted.
 
@@ -157,6 +158,8 @@ pub struct Conduit {
     pub shares: Vec<Weights>,
     /// Volume of a point per opening, undeformed [L]
     pub lengths: Vec<f64>,
+    /// The same of every node [L]
+    pub holds: Vec<f64>,
     /// S [L³/F]
     pub storage: f64,
     /// T [L³]
@@ -189,18 +192,24 @@ impl Conduit {
 
     /// The surfaces at every node from those at the contact points.
     pub fn averaged(&self, points: impl Iterator<Item = Wall>) -> Vec<Wall> {
-        let count = self.line.count();
-        let (mut walls, mut lengths) = (vec![Wall::default(); count], vec![0.0; count]);
+        let mut walls = vec![Wall::default(); self.line.count()];
         for ((own, shares), length) in points.zip(&self.shares).zip(&self.lengths) {
             for &(node, share) in shares {
                 walls[node] = walls[node].combined(1.0, own, share * length);
-                lengths[node] += share * length;
             }
         }
-        // A node on the axis of rings has no length.
-        let mean =
-            |(wall, length): (&Wall, f64)| wall.combined(1.0 / length.max(f64::MIN_POSITIVE), Wall::default(), 0.0);
-        walls.iter().zip(lengths).map(mean).collect()
+        for (wall, length) in walls.iter_mut().zip(&self.holds).filter(|(_, length)| **length > 0.0) {
+            *wall = wall.combined(1.0 / length, Wall::default(), 0.0);
+        }
+        // A node without points of its own, as that on the axis of rings, is as its neighbour.
+        for (a, b) in self.line.pieces() {
+            match [a, b].map(|node| self.holds[node] > 0.0) {
+                [false, true] => walls[a] = walls[b],
+                [true, false] => walls[b] = walls[a],
+                _ => {}
+            }
+        }
+        walls
     }
 
     /// Values at the contact points from those of the nodes.
@@ -245,8 +254,8 @@ impl Conduit {
     pub fn gained(&self, [p0, p1]: [&[f64]; 2], [from, to]: [&[Wall]; 2]) -> f64 {
         let pressures = p0.iter().zip(p1).map(|(p0, p1)| p1 - p0);
         let openings = from.iter().zip(to).map(|(from, to)| to.opening - from.opening);
-        let volumes = pressures.zip(openings).zip(self.line.lengths());
-        volumes.map(|((p, opening), length)| length * (self.storage * p + opening)).sum()
+        let volumes = pressures.zip(openings).zip(self.line.lengths().iter().zip(&self.holds));
+        volumes.map(|((p, opening), (length, holds))| length * self.storage * p + holds * opening).sum()
     }
 
     /// The lowest pressure with its node, if it is below zero by more than the error of the steps, or the round-off of `floor`.

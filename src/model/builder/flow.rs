@@ -11,7 +11,7 @@ use super::friction::check_in_time;
 use super::groups::{edges, node_lists};
 use crate::contact::conduit::{Conduit, Gives, InTime, Leak, Line, Piece, SourceAt, Transmissivity, Well};
 use crate::contact::pair::Fluid;
-use crate::contact::point::linear_shares;
+use crate::contact::point::{Weights, linear_shares};
 use crate::contact::surface::{SlavePoint, in_order};
 use crate::mesh::Group;
 use crate::model::Model;
@@ -262,9 +262,16 @@ pub fn conduit(place: &str, contact: &Contact, points: &[SlavePoint], model: &Mo
         .map(|(k, given)| well(&format!("{place}.wells[{k}]"), given, &line, model))
         .collect::<Checked<Vec<_>>>()?;
     check_apart(place, &wells)?;
+    let shares: Vec<Weights> = shares.collect();
+    let lengths: Vec<f64> = points.iter().map(|point| point.current_length(&undeformed)).collect();
+    let mut holds = vec![0.0; nodes.len()];
+    for (shares, length) in shares.iter().zip(&lengths) {
+        shares.iter().for_each(|&(node, share)| holds[node] += share * length);
+    }
     Ok(Some(Conduit {
-        shares: shares.collect(),
-        lengths: points.iter().map(|point| point.current_length(&undeformed)).collect(),
+        shares,
+        lengths,
+        holds,
         storage: flow.storage,
         transmissivity: Transmissivity {
             at_rest,

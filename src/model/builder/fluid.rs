@@ -55,7 +55,7 @@ pub enum FluidForms {
     /// By flow along the contact
     Flow {
         /// Water that flows along the contact
-        flow: Flow,
+        flow: Box<Flow>,
     },
 }
 
