@@ -20,6 +20,8 @@ fn law(m: f64, approach: Approach, integration: Integration) -> SuperSubloading 
         xi: 0.002,
         m,
         n: 1.0,
+        a: 0.0,
+        reference_rate: None,
         structure: None,
         approach,
         elastic_core: 0.0,

@@ -13,6 +13,7 @@ mod faults;
 mod fracture;
 mod ground_and_metal;
 mod healing;
+mod law_cycles;
 mod limit_loads;
 mod paper;
 mod published;

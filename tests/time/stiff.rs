@@ -66,7 +66,7 @@ fn a_spring_slider_sticks_and_slips_by_its_differential_equation() {
         println!("{tolerance:e}: {} steps, {events:?}", run.report.increments);
         assert_eq!(events.len(), 3);
         let off = |(event, onset): (&[f64; 3], f64)| (event[0] / onset - 1.0).abs();
-        let onsets = [3093.492_7, 4189.132_8, 5284.773_0];
+        let onsets = [3_093.492_7, 4_189.132_8, 5_284.773_0];
         errors.push(events.iter().zip(onsets).map(off).fold(0.0, f64::max));
         let last = run.last();
         let contact = &last.contacts[0][0];

@@ -3,6 +3,7 @@ mod direct;
 mod increment;
 mod path;
 mod peak;
+mod with_rate;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
