@@ -310,6 +310,29 @@ fn sensitivities_are_those_of_differences() {
     assert_eq!(without.sensitivities().unwrap().parameters().len(), 10);
 }
 
+/// ∫ (1/R* − 1) dλ, by which surfaces dilate with their structure: of one increment as of many, with its derivatives.
+#[test]
+fn slip_is_weighed_by_the_structure() {
+    let law = law(&ROCK);
+    let start = law.initial_state(PRESSURE, 0.5);
+    let at = |slip: f64, pressure: f64| {
+        law.structured_slip(&start, Sliding::new(slip, pressure, 10.0)).expect("structure").expect("an answer")
+    };
+    let [found, by_slip, by_pressure] = at(0.02, 5.5);
+    let (mut state, mut sum) = (start.clone(), 0.0);
+    for k in 1..=1000 {
+        let share = f64::from(k) / 1000.0;
+        let next = respond(&law, &state, Sliding::new(2e-5, PRESSURE + 0.5 * share, 0.01)).state;
+        let mean = 0.5 * (state.variables[0] + next.variables[0]);
+        sum += next.plastic_increment * (mean / 0.2 - 1.0);
+        state = next;
+    }
+    assert!((found - sum).abs() < 2e-8, "{found} {sum}");
+    let difference = |above: [f64; 3], below: [f64; 3], step: f64| (above[0] - below[0]) / (2.0 * step);
+    assert!((by_slip - difference(at(0.02 + 1e-7, 5.5), at(0.02 - 1e-7, 5.5), 1e-7)).abs() < 1e-6);
+    assert!((by_pressure - difference(at(0.02, 5.5 + 1e-5), at(0.02, 5.5 - 1e-5), 1e-5)).abs() < 1e-8);
+}
+
 #[test]
 fn bad_parameters_are_refused() {
     let refused = |parameters: SuperSubloadingParameters| {
