@@ -120,6 +120,11 @@ fn laws_that_heal_are_refused() {
     let coulomb = json!({"law": "coulomb", "mu": 0.5});
     refused(&case(coulomb.clone()), &["--body", "block"], "bodies.block.material: `linear` has no strength");
     refused(&case(coulomb.clone()), &["--contact", "bas"], "contacts: `bas` is not known here; did you mean `base`?");
+    let mut wet = case(coulomb.clone());
+    wet["bodies"]["block"]["pore_fluid"] =
+        json!({"bulk_modulus": 1e6, "porosity": 0.5, "permeability": 1, "unit_weight": 1});
+    wet["contacts"]["base"]["fluid_pressure"] = json!(0);
+    refused(&wet, &[], "bodies.block.pore_fluid.permeability: the trials of a factor of safety do not follow");
     let mut damped = case(coulomb.clone());
     damped["contacts"]["base"]["radiation_damping"] = json!(true);
     refused(&damped, &[], "contacts.base.radiation_damping: bears load as long as anything moves");

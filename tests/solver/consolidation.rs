@@ -290,7 +290,7 @@ fn what_cannot_flow_is_refused() {
         ("/steps/0/dt/pore_pressure", json!(-1), "steps[0].dt.pore_pressure"),
         ("/bodies/soil/thermal", json!({"expansion": 1e-3}), "bodies.soil.thermal: is heated"),
         ("/steps/0/scheme", json!({"explicit": {}}), "in static steps alone"),
-        ("/steps/0/scheme", json!({"hht": {}}), "in static steps alone"),
+        ("/steps/0/scheme", json!({"hht": {"alpha": -0.05}}), "in static steps alone"),
         (
             fluid,
             json!({"bulk_modulus": 1, "porosity": 0.5, "permeability": 1, "unit_weight": 1, "capillary": 0.1}),
