@@ -9,9 +9,7 @@ use std::sync::Mutex;
 use super::failure::Failure;
 use crate::mesh::names::printable;
 use crate::output::files;
-
-/// Log of a run in its results folder: what it printed on stderr.
-pub const LOG: &str = "run.log";
+pub use crate::output::files::LOG;
 
 /// First words of a log of this program, by which it is told from a user's own file of this name.
 const HEAD: &str = "fecontact log, version ";

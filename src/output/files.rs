@@ -20,6 +20,9 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Log of a run in its results folder: what it printed.
+pub const LOG: &str = "run.log";
+
 /// Creates a new file in place of an earlier one.
 ///
 /// # Errors

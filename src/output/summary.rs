@@ -179,8 +179,8 @@ pub fn unfinished(folder: &Path) -> Result<Option<About>, String> {
         #[serde(flatten)]
         about: About,
     }
-    // A run killed right after its start leaves its lock and an incomplete summary.
-    let passing = [files::LOCK.into(), files::aside(Path::new(SUMMARY)).into_os_string()];
+    // A run killed right after its start leaves its lock, its log and an incomplete summary.
+    let passing = [files::LOCK.into(), files::LOG.into(), files::aside(Path::new(SUMMARY)).into_os_string()];
     let is_empty = match folder.read_dir() {
         Ok(mut entries) => entries.all(|entry| entry.is_ok_and(|entry| passing.contains(&entry.file_name()))),
         Err(cause) if cause.kind() == ErrorKind::NotFound => true,

@@ -23,6 +23,7 @@ mod readme;
 mod report;
 mod resolved;
 mod results;
+mod run_log;
 mod schema;
 mod surface;
 mod survive;
