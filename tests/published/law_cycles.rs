@@ -44,7 +44,7 @@ fn events(case: &Value) -> Vec<[f64; 2]> {
     let middle = (0..pair.points.len()).min_by(|a, b| place(a).total_cmp(&place(b))).expect("a point");
     let mut run = Simulation::new(shared.clone());
     let (mut events, mut before): (Vec<[f64; 2]>, [f64; 3]) = (Vec::new(), [0.0, 0.0, LOADING]);
-    let mut begun = None;
+    let mut begun: Option<[f64; 2]> = None;
     while run.next_increment().unwrap_or_else(|error| panic!("{error}")).is_some() {
         let state = &run.state().contacts[0][middle];
         let now = [run.state().time, state.friction.plastic_slip, (state.radiation / DAMPING).max(1e-12)];

@@ -205,7 +205,7 @@ fn a_crack_grows_with_the_water_that_flows_along_it() {
         println!("T = {ratio}: {}, tip at {tip} a", slip(0.0));
         close("slip at the middle", slip(0.0) / middle, 1.0, within);
         close("tip", tip, 1.0, within);
-        let water = &run.last().water[0];
+        let water = &run.last().conduits[0];
         assert!(water.mass_error.abs() < 1e-10 * water.amounts.throughput, "{:e}", water.mass_error);
     }
 }
@@ -250,7 +250,7 @@ fn water_that_flows_makes_a_fault_slip_slowly() {
     close("slip after 100 d", found[0] / 0.17511, 1.0, 0.01);
     close("slip after 365 d", found[1] / 0.20683, 1.0, 0.005);
     close("log V", found[2], -6.758, 0.1);
-    let water = &run.last().water[0];
+    let water = &run.last().conduits[0];
     close("injected", water.amounts.injected, 1.25e-6 * 8640000.0, 1e-9);
     assert!(water.mass_error.abs() < 1e-10 * water.amounts.throughput, "{:e}", water.mass_error);
 }
