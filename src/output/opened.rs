@@ -4,10 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::point::ContactState;
 use crate::model::Model;
 use crate::model::scheme::time_text;
 use crate::model::state::State;
 use crate::model::text::{number, vector};
+
+/// Share of the pressure that a point has lost as it opens by which that of the water has risen [-]
+const BY_WATER: f64 = 0.5;
 
 /// Contacts that water has opened, and what is to be said of each.
 #[derive(Clone, Default, Serialize, Deserialize)]
@@ -29,10 +33,12 @@ impl Opened {
             }
             let x = model.configuration(&state.displacement);
             let points = pair.points.iter().zip(old.contacts[k].iter().zip(&state.contacts[k]));
-            let opens = |(old, new): (&crate::contact::point::ContactState, &crate::contact::point::ContactState)| {
-                old.is_closed() && new.apart(pair.touch) && new.fluid > 0.0
+            // Where the water has risen by less, something else parts the surfaces.
+            let opens = |old: &ContactState, new: &ContactState| {
+                let rise = new.fluid - old.fluid;
+                old.is_closed() && new.apart(pair.touch) && rise > BY_WATER * old.friction.pressure && rise > 0.0
             };
-            let mut opened = points.filter(|(_, (old, new))| opens((old, new)));
+            let mut opened = points.filter(|(_, (old, new))| opens(old, new));
             if let Some((point, (_, new))) = opened.next() {
                 let message = format!(
                     "contact `{}` at {}, t = {}: its water opens it, at the pressure {}, and goes on flowing by the transmissivity of closed \

@@ -131,6 +131,21 @@ fn what_a_schedule_has_let_in_spreads_evenly() {
     balances(&run);
 }
 
+/// A rate into the axis of rings (Theis): p = q η/(4π T) E₁(r²/(4 D t)), E₁(¼) = 1.044283, E₁(1) = 0.219384.
+#[test]
+fn rings_take_a_rate_from_their_axis() {
+    let mut case = block(80, water(json!({"wells": [{"at": [0, 0], "rate": 0.1}]})), 1.0, 1.0);
+    case["section"] = json!("axisymmetric");
+    case["contacts"]["base"]["method"] = json!("node_to_segment");
+    case["steps"][0]["supports"] = json!([{"on": "block_top", "ux": 0, "uy": 0}, {"on": "block_left", "ux": 0}]);
+    let run = finish(&case);
+    for (k, exponential) in [(8, 1.044283), (16, 0.219384)] {
+        let p = run.last().contacts[0][k].fluid;
+        close("Theis", p / (0.1 * VISCOSITY / (4.0 * PI * TRANSMISSIVITY) * exponential), 1.0, 0.01);
+    }
+    balances(&run);
+}
+
 /// Walls that leak in proportion to the pressure: p = P cosh((L − x)/ℓ)/cosh(L/ℓ) in the end, ℓ² = T/(η c).
 #[test]
 fn walls_that_leak_take_what_the_well_gives() {
@@ -304,6 +319,21 @@ fn a_crack_by_the_cubic_law_resumes_to_the_bit() {
     assert!(apart(fine.last(), whole.last()) < 0.05, "{}", apart(fine.last(), whole.last()));
 }
 
+/// Water that parts surfaces by a transmissivity that is given is told of; by the cubic law it is meant.
+#[test]
+fn water_that_opens_by_the_transmissivity_of_closed_surfaces_is_told() {
+    for (key, value, told) in [("transmissivity", 1e-2, true), ("aperture", 1e-2, false)] {
+        let mut flow =
+            json!({"storage": 1e-4, "viscosity": 1e-3, "initial": 0.5, "wells": [{"at": [0, 0], "rate": 4e-3}]});
+        flow[key] = json!(value);
+        let mut case = crack(&json!({"flow": flow}), 1.0, 0.25);
+        case["contacts"]["crack"]["initial"] = json!({"pressure": 0.5, "balanced": true});
+        let warned = crate::warned::warnings(&case);
+        let says = warned.iter().any(|warning| warning.contains("and goes on flowing by the transmissivity of closed"));
+        assert_eq!(says, told, "{warned:?}");
+    }
+}
+
 /// Implicit dynamics whose motion is slow has the pressures of statics.
 #[test]
 fn slow_motion_has_the_water_of_statics() {
@@ -357,6 +387,10 @@ fn what_water_cannot_do_is_refused_with_its_place() {
     refused(
         &flow("wells", json!([{"at": [3, 0], "rate": {"table": [[1, 0], [0, 1]]}}])),
         &["wells[0].rate: the times of the table must increase"],
+    );
+    refused(
+        &flow("wells", json!([{"at": [3, 0], "pressure": -1}])),
+        &["wells[0].pressure: is -1: must be zero or positive"],
     );
     let two = json!([{"at": [0, 0], "pressure": 1}, {"at": [0.1, 0], "pressure": 2}]);
     refused(&flow("wells", two), &["wells[1]: holds a pressure at the same node"]);

@@ -13,7 +13,7 @@ const E: f64 = 1000.0;
 const NU: f64 = 0.25;
 
 /// Warnings of a run that ends as it should.
-fn warnings(case: &Value) -> Vec<String> {
+pub fn warnings(case: &Value) -> Vec<String> {
     let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(case)));
     fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
     for told in &warnings.list {

@@ -130,6 +130,16 @@ impl Schedule {
         }
     }
 
+    /// Values that are given.
+    fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        let (constant, table) = match self {
+            Self::Constant(value) => (Some(*value), &[][..]),
+            Self::Table(table) => (None, &table[..]),
+            Self::Expression(_) => (None, &[][..]),
+        };
+        constant.into_iter().chain(table.iter().map(|row| row[1]))
+    }
+
     fn corners(&self) -> Vec<f64> {
         match self {
             Self::Table(table) => table.iter().map(|row| row[0]).collect(),
@@ -341,6 +351,9 @@ fn well(place: &str, given: &FlowWell, line: &Line, model: &Model) -> Checked<We
     let (at, gives, schedule) = match (&given.pressure, &given.rate) {
         (Some(pressure), None) => {
             pressure.check(&format!("{place}.pressure"))?;
+            let least = pressure.values().fold(0.0, f64::min);
+            let message = format!("is {}: must be zero or positive", number(least));
+            refuse_if(least < 0.0, format!("{place}.pressure"), message)?;
             (vec![(nearest, 1.0)], Gives::Pressure(pressure.in_time()), pressure)
         }
         (None, Some(rate)) => {
