@@ -222,10 +222,6 @@ fn bad_inline_meshes_are_refused() {
             json!({"elements": {"a": [[0, 1, 2], [0, 2, 3]]}, "edges": {"e": [[0, 2]]}}),
             &["line 0 of `e` lies inside `a`"],
         ),
-        (
-            json!({"elements": {"a": [[0, 1, 2, 3]], "b": [[1, 4, 5, 2]]}, "edges": {"e": [[1, 2]]}}),
-            &["line 0 of `e` lies between `a` and `b`", "separate nodes"],
-        ),
         (json!({"elements": {"a": [[0, 1, 2]]}, "points": {"p": [99]}}), &["point 0 of `p` uses node 99"]),
     ] {
         let mut mesh = rest.clone();
@@ -420,8 +416,14 @@ fn bodies_that_share_nodes_cannot_be_in_contact() {
         assert!(text.contains(piece), "{piece}");
         text = text.replacen(piece, replacement, 1);
     }
+    // It may be the side of one of them if a step removes the other, which the mesh does not know.
+    let mesh = gmsh::from_bytes(text.as_bytes().into()).unwrap();
+    let body = || crate::common::neo_hookean(1.0, 0.3, 0.0);
+    let step = fecontact::model::builder::LoadStep::new("rest", 1.0);
+    let model = fecontact::model::Model::builder(mesh).body("body", body()).body("physical_9", body()).step(step);
+    let said = model.build().unwrap_err().to_string();
     let fragments = ["line 2 of `bottom` lies between `body` and `physical_9`", "contact needs separate nodes"];
-    assert_says(&verdict(text.as_bytes()), &fragments);
+    assert_says(&said, &fragments);
 }
 
 #[test]
