@@ -51,6 +51,7 @@ mod besides;
 mod body;
 mod bond;
 mod checks;
+mod conduit;
 mod contact;
 mod drainage;
 mod error;

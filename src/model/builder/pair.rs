@@ -56,7 +56,7 @@ use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::regime;
 use super::thickness::Outline;
-use super::{contact, flow, fluid, friction, initial, pores, rigid, unseen, water};
+use super::{conduit, contact, fluid, friction, initial, pores, rigid, unseen, water};
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
@@ -123,7 +123,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     };
     let slaves: Vec<usize> = points.iter().flat_map(|point| point.position.iter().map(|(node, _)| *node)).collect();
     let given = fluid::fluid(&place, contact.fluid_pressure.as_ref(), &slaves, &model.mesh)?;
-    let conduit = flow::conduit(&place, contact, &points, model)?;
+    let conduit = conduit::conduit(&place, contact, &points, model)?;
     let pores = if of_bodies.is_some() { None } else { pores::pores(&place, contact, &points, model)? };
     let mut pair = ContactPair {
         name: contact.name.clone(),
@@ -138,7 +138,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         penetration: contact.normal.penetration,
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
-        fluid: of_bodies.or(given).or_else(|| conduit.as_ref().map(|conduit| flow::at_start(conduit, model))),
+        fluid: of_bodies.or(given).or_else(|| conduit.as_ref().map(|conduit| conduit::at_start(conduit, model))),
         conduit,
         pores,
         laws,
