@@ -1,4 +1,4 @@
-//! The pressure at the end of an increment: (1) of [`super`] in as many steps as its error asks for.
+//! The pressure at the end of an increment: (1) of [`super::channel`] in as many steps as its error asks for.
 //!
 //! ```text
 //! V (S (p₁ − p₀) + w₁ − w₀) = h (Σ T̄/η b/ℓ (p_j − p_i) + V Q + wells − V c (p₁ − p̄))       all at the end of a step: implicit Euler (4)
@@ -12,10 +12,8 @@
 //! w(t) = w₀ + s (w₁ − w₀ − c_w (p̂₁ − p₀)) + c_w (p(t) − p₀)        p̂₁: pressure by which w₁ was found, s = 0 … 1            (6)
 //! ```
 
-use serde::{Deserialize, Serialize};
-
+use super::channel::{Amounts, Conduit, Gives, Wall};
 use super::line::Room;
-use super::{Conduit, Gives, Wall};
 
 /// What the surfaces do in an increment.
 #[derive(Clone, Copy, Debug)]
@@ -51,30 +49,6 @@ impl Course<'_> {
 
     fn compliance(&self, node: usize) -> f64 {
         self.gives_way[0].get(node).copied().unwrap_or(0.0)
-    }
-}
-
-/// Volumes, over the thickness of the section [L³]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Amounts {
-    /// What wells and sources have let in
-    pub injected: f64,
-    /// What has leaked through the walls
-    pub leaked: f64,
-    /// What has gone through wells, sources and walls in either direction
-    pub throughput: f64,
-}
-
-impl Amounts {
-    /// Sum of both, each with a factor.
-    #[must_use]
-    pub fn combined(self, factor: f64, other: Self, of_other: f64) -> Self {
-        let sum = |own: f64, other: f64| factor * own + of_other * other;
-        Self {
-            injected: sum(self.injected, other.injected),
-            leaked: sum(self.leaked, other.leaked),
-            throughput: sum(self.throughput, other.throughput),
-        }
     }
 }
 
@@ -268,12 +242,6 @@ impl Conduit {
             left[a] -= flows;
             left[b] += flows;
         }
-    }
-}
-
-impl Amounts {
-    fn with_throughput(self, throughput: f64) -> Self {
-        Self { throughput, ..self }
     }
 }
 
