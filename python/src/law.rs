@@ -232,7 +232,7 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
         ]);
         let observed = further.iter().map(|name| law.observe(name, state));
         let shown = observed.chain((!law.description.opening.is_empty()).then_some(*gap));
-        let shown = shown.chain(bond.into_iter().flat_map(|bond| [bond.opening, bond.intact]));
+        let shown = shown.chain(bond.iter().flat_map(|bond| [bond.opening, bond.intact]));
         answers.further.iter_mut().zip(shown).for_each(|(values, value)| values.push(value));
         Ok(())
     });
