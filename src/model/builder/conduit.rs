@@ -9,6 +9,7 @@ use super::fluid::FluidPressure;
 use super::friction::check_in_time;
 use super::groups::{edges, node_lists};
 use crate::contact::conduit::{Conduit, Gives, Leak, Line, Piece, SourceAt, Transmissivity, Well};
+use crate::contact::fluid::Fluid;
 use crate::contact::point::{Weights, linear_shares};
 use crate::contact::surface::{SlavePoint, in_order};
 use crate::mesh::Group;
