@@ -144,7 +144,7 @@ class Body(dict[str, Any]):
         damping: Damping of the body in dynamic steps; default: none
         element: Element formulation
         initial_stress: Stress of the undeformed body at the start; default: none
-        pore_fluid: Fluid in the pores that has no time to flow: an undrained body; default: none
+        pore_fluid: Fluid in the pores, which is trapped in an undrained body, or flows; default: none
         pore_pressure: Pressure given in the pores, by place and time; default: none
         thermal: Thermal expansion; default: none
     """
@@ -645,17 +645,32 @@ class Components(dict[str, Any]):
 
 
 class PoreFluid(dict[str, Any]):
-    """A fluid in the pores of a body that has no time to flow. The material, and the initial stress, are those of the
-    effective stress; stresses and what contacts feel are total. Elements are nearly incompressible from the start:
-    take f_bar, reduced Q8 or T6.
+    """A fluid in the pores of a body. Without a permeability it has no time to flow, and elements are nearly
+    incompressible from the start: take f_bar, reduced Q8 or T6. With one it flows in static steps, whose time is
+    that of consolidation. The material, and the initial stress, are those of the effective stress; stresses and
+    what contacts feel are total.
 
     Args:
         bulk_modulus: K_w: bulk modulus of the fluid, 2.2 GPa of water, K_w > 0; K_w/n of 100 times the
             stiffness of the material is enough [F/L²]
         porosity: n: volume of the pores per volume, 0 < n < 1 [-]
+        biot: b of a fluid that flows: Biot's coefficient, porosity ≤ b ≤ 1, 1 − K/K_s with the bulk moduli of
+            the body and of its grains; 1 of soil unless given [-]
+        capillary: Height that the fluid rises to in the pores, h > 0, of one that weighs: where p_w is below 0
+            the permeability falls by exp(p_w/(γ_w h)), to a ten-thousandth at least, as above a free surface.
+            Unless given the ground stays saturated, and as permeable, under any suction [L]
         cavitation: Pressure below which the fluid cavitates and p_w does not fall; −100 kPa of water below the
             atmosphere. No limit unless given [F/L²]
+        kozeny_carman: Whether the permeability follows the void ratio e by Kozeny and Carman, k ~ e³/(1 + e),
+            from that of the undeformed body at the porosity
+        permeability: k: speed at which the fluid seeps under a gradient of head of 1, k > 0; given, the fluid
+            flows [L/T]
+        permeability_y: k along y; as `permeability` unless given [L/T]
         pressure: p_w at the start, by place; 0 for pressures that count from the start [F/L²]
+        unit_weight: γ_w: weight of the fluid per volume, by which k is divided; required with a permeability
+            [F/L³]
+        weighs: Whether its weight, along −y, drives a fluid that flows: p_w is then the whole pressure, and
+            rests where it is hydrostatic. Otherwise p_w is the pressure in excess of that
     """
 
     def __init__(
@@ -663,10 +678,17 @@ class PoreFluid(dict[str, Any]):
         *,
         bulk_modulus: float,
         porosity: float,
+        biot: float | None | Given = NOT_GIVEN,
+        capillary: float | None | Given = NOT_GIVEN,
         cavitation: float | None | Given = NOT_GIVEN,
+        kozeny_carman: bool | Given = NOT_GIVEN,
+        permeability: float | None | Given = NOT_GIVEN,
+        permeability_y: float | None | Given = NOT_GIVEN,
         pressure: Profile | Given = NOT_GIVEN,
+        unit_weight: float | None | Given = NOT_GIVEN,
+        weighs: bool | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"bulk_modulus": bulk_modulus, "porosity": porosity, "cavitation": cavitation, "pressure": pressure}))
+        super().__init__(_given({"bulk_modulus": bulk_modulus, "porosity": porosity, "biot": biot, "capillary": capillary, "cavitation": cavitation, "kozeny_carman": kozeny_carman, "permeability": permeability, "permeability_y": permeability_y, "pressure": pressure, "unit_weight": unit_weight, "weighs": weighs}))
 
 
 class PorePressure(dict[str, Any]):
@@ -749,10 +771,10 @@ class Contact(dict[str, Any]):
             the slave projects onto the master, closed or open, in addition to the contact pressure p; friction,
             `initial.pressure` and all outputs called pressure use this effective p only. What acts at t = 0 of
             a contact with `initial` is there before anything moves, in addition to `initial.pressure`; what the
-            run raises is 0 at t = 0. The pressure is prescribed: there is no flow. "of_bodies" takes it from
-            the pores of the slave's bodies (`pore_fluid`), whose total stress the contact carries: friction
-            goes by what p_w leaves of it. {"measured": {"file": …}} takes it from a table of time and place
-            [F/L²]
+            run raises is 0 at t = 0. A pressure that is given does not flow; {"flow": {…}} is that of water
+            which flows along the contact. "of_bodies" takes it from the pores of the slave's bodies
+            (`pore_fluid`), whose total stress the contact carries: friction goes by what p_w leaves of it.
+            {"measured": {"file": …}} takes it from a table of time and place [F/L²]
         friction: Friction law; only surfaces that are tied have none. Text is the name of a law in `frictions`
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
             point is then measured, throughout the run, relative to the gap at which this pressure acts in its
@@ -806,7 +828,7 @@ class Contact(dict[str, Any]):
         area: float | None | Given = NOT_GIVEN,
         bond: Bond | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
-        fluid_pressure: GivenPressure | None | Given = NOT_GIVEN,
+        fluid_pressure: FluidForms | None | Given = NOT_GIVEN,
         friction: Friction | str | Given = NOT_GIVEN,
         initial: Initial | None | Given = NOT_GIVEN,
         interface: Interface | None | Given = NOT_GIVEN,
@@ -964,6 +986,10 @@ class SuperSubloading(dict[str, Any]):
         mu_s: μ_s: static friction coefficient, μ_s ≥ μ_k [-]
         mu_k: μ_k: kinetic friction coefficient, μ_k > 0 [-]
         r: r: rate at which R approaches 1 with plastic slip, r > 0 [1/L]
+        V_0: V₀: slip rate from which on the direct effect grows, V₀ > 0; needed with `a` alone [L/T]
+        a: a: direct effect of the rate of plastic slip λ, by which the strength is multiplied by 1 + a ln(1 +
+            λ/V₀), a ≥ 0; none by default. R is then a state of its own, and steady sliding may strengthen with
+            the rate [-]
         alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
             [F/L³]
         approach: U(R): approach of R to 1
@@ -984,6 +1010,8 @@ class SuperSubloading(dict[str, Any]):
         mu_s: float,
         mu_k: float,
         r: float,
+        V_0: float | None | Given = NOT_GIVEN,
+        a: float | Given = NOT_GIVEN,
         alpha_t: float | None | Given = NOT_GIVEN,
         approach: Approach | Given = NOT_GIVEN,
         elastic_core: float | Given = NOT_GIVEN,
@@ -995,7 +1023,7 @@ class SuperSubloading(dict[str, Any]):
         tolerance: float | None | Given = NOT_GIVEN,
         xi: float | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__({"law": "super_subloading", **_given({"mu_s": mu_s, "mu_k": mu_k, "r": r, "alpha_t": alpha_t, "approach": approach, "elastic_core": elastic_core, "integration": integration, "kappa": kappa, "m": m, "n": n, "structure": structure, "tolerance": tolerance, "xi": xi})})
+        super().__init__({"law": "super_subloading", **_given({"mu_s": mu_s, "mu_k": mu_k, "r": r, "V_0": V_0, "a": a, "alpha_t": alpha_t, "approach": approach, "elastic_core": elastic_core, "integration": integration, "kappa": kappa, "m": m, "n": n, "structure": structure, "tolerance": tolerance, "xi": xi})})
 
 
 class SlipWeakening(dict[str, Any]):
@@ -1029,7 +1057,8 @@ class RateAndState(dict[str, Any]):
         f_0: f₀: friction coefficient in steady sliding at V₀, f₀ > 0 [-]
         V_0: V₀: reference slip rate, V₀ > 0 [L/T]
         a: a: direct effect of the slip rate, a > 0 [-]
-        b: b: effect of the state, b ≥ 0; steady sliding weakens with the rate where b > a [-]
+        b: b: effect of the state; steady sliding weakens with the rate where b > a, and where b < 0 slip
+            strengthens [-]
         D_c: D_c: slip over which the state evolves, D_c > 0 [L]
         alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
             [F/L³]
@@ -1149,6 +1178,93 @@ class Dilatancy(dict[str, Any]):
         super().__init__(_given({"limit": limit, "rate": rate, "structure": structure}))
 
 
+class FlowLeak(dict[str, Any]):
+    """Flow c (p − p̄) through the walls of a contact.
+
+    Args:
+        coefficient: c: volume per length, pressure and time, zero or positive [L³/(F T)]
+        pressure: p̄ by place; default: `initial` [F/L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        coefficient: float,
+        pressure: Profile | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"coefficient": coefficient, "pressure": pressure}))
+
+
+class FlowWell(dict[str, Any]):
+    """Well of a contact, which has either a pressure or a rate.
+
+    Args:
+        at: Reference position [x, y] on the slave: a pressure is held at the nearest node, a rate is shared by
+            the two beside it [L]
+        from_: Start; it is shut before. Default: that of the run [T]
+        pressure: Pressure that is held, from its start on [F/L²]
+        rate: Volume that flows in, out if negative; over the thickness of the section, 1 unless given [L³/T]
+        until: End; it is shut from then on. Default: never [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        at: Vector,
+        from_: float | None | Given = NOT_GIVEN,
+        pressure: Schedule | None | Given = NOT_GIVEN,
+        rate: Schedule | None | Given = NOT_GIVEN,
+        until: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"at": at, "from_": from_, "pressure": pressure, "rate": rate, "until": until}))
+
+
+class Table(dict[str, Any]):
+    """Pairs of run time and value, times ascending; linear between, constant outside."""
+
+    def __init__(self, table: Pairs) -> None:
+        super().__init__({"table": table})
+
+
+class Flow(dict[str, Any]):
+    """By flow along the contact.
+
+    Args:
+        storage: S: volume per length and pressure that is stored, S > 0 [L³/F]
+        viscosity: η: viscosity [F T/L²]
+        aperture: w_h: hydraulic aperture of closed surfaces, for T = (w_h + w)³/12 (cubic law) [L]
+        closing: σ: T is multiplied by exp(−p′/σ), p′ the effective pressure of the contact; default: it does
+            not depend on it [F/L²]
+        error: Error of the pressure that is allowed by what the surfaces do within an increment, over its
+            largest change in the run so far: it takes part in the choice of static and implicit increments;
+            default 0.01
+        initial: p_w at the start by place, zero or positive; default 0 [F/L²]
+        leak: Flow through the walls into the bodies; default: none
+        per_slip: k₁: T grows by k₁ |slip|; default 0 [L²]
+        source: Q: what flows in per length, by place and time; default 0 [L/T]
+        transmissivity: T: transmissivity, permeability times thickness, zero or positive, by place. Or
+            `aperture` [L³]
+        wells: Wells
+    """
+
+    def __init__(
+        self,
+        *,
+        storage: float,
+        viscosity: float,
+        aperture: float | None | Given = NOT_GIVEN,
+        closing: float | None | Given = NOT_GIVEN,
+        error: float | Given = NOT_GIVEN,
+        initial: Profile | Given = NOT_GIVEN,
+        leak: FlowLeak | None | Given = NOT_GIVEN,
+        per_slip: float | Given = NOT_GIVEN,
+        source: Profile | None | Given = NOT_GIVEN,
+        transmissivity: Profile | None | Given = NOT_GIVEN,
+        wells: Sequence[FlowWell] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"flow": _given({"storage": storage, "viscosity": viscosity, "aperture": aperture, "closing": closing, "error": error, "initial": initial, "leak": leak, "per_slip": per_slip, "source": source, "transmissivity": transmissivity, "wells": wells})})
+
+
 class Initial(dict[str, Any]):
     """Initial state of a contact that starts closed.
 
@@ -1157,7 +1273,8 @@ class Initial(dict[str, Any]):
             and stresses of the run are then changes from the initial stress
         of_bodies: Instead of pressure and traction: those of the `initial_stress` of the slave's body at the
             contact, p = −n·σn (minus an initial fluid pressure) and q = s·σn, with the normal n and the tangent
-            s of the master
+            s of the master. Of a contact that comes in a later step: those of the stress in force by then, in
+            the body that was there before, with surfaces that fit
         pressure: p: contact pressure, zero or positive [F/L²]. Where it is 0, and no traction acts, the deepest
             overlap and 10⁻⁶ of the slave's edge are taken out of all gaps, and what is left of them stays open
         structure: 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; default: that of the law [-]
@@ -1221,6 +1338,54 @@ class Normal(dict[str, Any]):
         penetration: float | None | Given = NOT_GIVEN,
     ) -> None:
         super().__init__(_given({"alpha_n": alpha_n, "penetration": penetration}))
+
+
+class PlacedGroup(dict[str, Any]):
+    """Group of the sides, or nodes, that lie at a place: all conditions given hold for all of their nodes.
+
+    Args:
+        angle: Directions between which the outward normal of a side lies, counter-clockwise from the first to
+            the second [degrees from x]: [45, 135] are sides that face upwards
+        bodies: Bodies whose sides or nodes are meant; those of all bodies unless given
+        box: Box around the nodes: its lower left and its upper right corner [L]
+        circle: Circle on which the nodes lie
+        nodes: Whether it is a group of nodes, also of those inside bodies, instead of free sides
+        tolerance: Distance within which a node lies at the place; a millionth of the size of the mesh unless
+            given [L]
+        x: x of the nodes [L]
+        y: y of the nodes [L]
+    """
+
+    def __init__(
+        self,
+        *,
+        angle: Vector | None | Given = NOT_GIVEN,
+        bodies: Sequence[str] | None | Given = NOT_GIVEN,
+        box: Pairs | None | Given = NOT_GIVEN,
+        circle: PlacedCircle | None | Given = NOT_GIVEN,
+        nodes: bool | Given = NOT_GIVEN,
+        tolerance: float | None | Given = NOT_GIVEN,
+        x: float | None | Given = NOT_GIVEN,
+        y: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"angle": angle, "bodies": bodies, "box": box, "circle": circle, "nodes": nodes, "tolerance": tolerance, "x": x, "y": y}))
+
+
+class PlacedCircle(dict[str, Any]):
+    """A circle.
+
+    Args:
+        center: Its centre [L]
+        radius: Its radius [L]
+    """
+
+    def __init__(
+        self,
+        *,
+        center: Vector,
+        radius: float,
+    ) -> None:
+        super().__init__(_given({"center": center, "radius": radius}))
 
 
 class Blocks(dict[str, Any]):
@@ -1370,6 +1535,8 @@ class Fronts(dict[str, Any]):
         slip_rate: Slip rate that marks the arrival of a front when it is exceeded; a slip event lasts while any
             point of the contact slips faster [L/T]
         arrival: Criterion for arrivals instead of the slip rate
+        seismic_rate: Slip rate from which slip counts as seismic, above `slip_rate`: `events.csv` then tells
+            when an event became seismic, and which share of its slip was [L/T]
     """
 
     def __init__(
@@ -1377,8 +1544,9 @@ class Fronts(dict[str, Any]):
         *,
         slip_rate: float,
         arrival: Arrival | None | Given = NOT_GIVEN,
+        seismic_rate: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slip_rate": slip_rate, "arrival": arrival}))
+        super().__init__(_given({"slip_rate": slip_rate, "arrival": arrival, "seismic_rate": seismic_rate}))
 
 
 class ArrivalR(dict[str, Any]):
@@ -1489,6 +1657,29 @@ class PlaneStress(dict[str, Any]):
         super().__init__({"plane_stress": _given({"thickness": thickness})})
 
 
+class Sections(dict[str, Any]):
+    """Sections across a body along an axis, such as the depth of a wall: its normal force N, shear force Q and bending
+    moment M at stations from one end of the axis to the other.
+
+    Args:
+        body: The body that is cut
+        from_: Start of the axis [x, y], in the body of the mesh or on its outline [L]
+        to: End of the axis [x, y] [L]
+        number: Number of stations, including both ends; the k-th is called NAME.k, from 1. By default there is
+            one at every line of the mesh across the axis, or 51 where there are more than 200
+    """
+
+    def __init__(
+        self,
+        *,
+        body: str,
+        from_: Vector,
+        to: Vector,
+        number: int | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"body": body, "from_": from_, "to": to, "number": number}))
+
+
 class Step(dict[str, Any]):
     """A step: a time span with its scheme and increments, supports and loads.
 
@@ -1501,6 +1692,8 @@ class Step(dict[str, Any]):
             force between its points as they are then
         damping: Damping of bodies from this step on, replacing that of the body or of an earlier step;
             inherited. No effect in static steps
+        drainage: Where water flows out of bodies whose pore_fluid has a permeability, or into them; inherited,
+            and replaced where the same place is named again
         dt: Increments; by default inherited from the previous step, a tenth of the first step
         loads: Loads; inherited, and replaced where the same group and kind is named again. In any scheme null
             reduces a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
@@ -1536,6 +1729,7 @@ class Step(dict[str, Any]):
         duration: float,
         add: Sequence[str] | Given = NOT_GIVEN,
         damping: Mapping[str, Damping] | Given = NOT_GIVEN,
+        drainage: Sequence[Drainage] | Given = NOT_GIVEN,
         dt: Increments | None | Given = NOT_GIVEN,
         loads: Sequence[Load] | Given = NOT_GIVEN,
         prestress: Mapping[str, float] | Given = NOT_GIVEN,
@@ -1548,7 +1742,55 @@ class Step(dict[str, Any]):
         until: Until | None | Given = NOT_GIVEN,
         velocity: Mapping[str, Vector] | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"name": name, "duration": duration, "add": add, "damping": damping, "dt": dt, "loads": loads, "prestress": prestress, "remove": remove, "rupture": rupture, "scheme": scheme, "stabilize": stabilize, "supports": supports, "temperature": temperature, "until": until, "velocity": velocity}))
+        super().__init__(_given({"name": name, "duration": duration, "add": add, "damping": damping, "drainage": drainage, "dt": dt, "loads": loads, "prestress": prestress, "remove": remove, "rupture": rupture, "scheme": scheme, "stabilize": stabilize, "supports": supports, "temperature": temperature, "until": until, "velocity": velocity}))
+
+
+class Drainage(dict[str, Any]):
+    """Where water flows out of bodies, or into them: exactly one of `pressure`, `head`, `seepage`, `flux` and
+    `impervious`. Values count from the first increment of the step on, and may jump there. What no entry names is
+    impervious.
+
+    Args:
+        on: Group of edges or nodes, or a single node, of bodies whose water flows
+        filter: κ of a filter before a `pressure` or `head`: the flow out is κ times what p_w exceeds it by, κ >
+            0; unless given so large that p_w is held [L³/(F T)]
+        flux: Flow out of the body, per reference area of edges, or per node [L/T], [L³/T]
+        head: Level of free water that stands there: p_w = γ_w (head − y) of the reference position, of water
+            that `weighs` [L]
+        impervious: true: ends what an earlier step has said of this place
+        pressure: p_w that is held there, by the reference position x, y and in expressions the run time t; 0
+            where water drains freely [F/L²]
+        seepage: true: water leaves where its pressure is above 0, and none enters
+    """
+
+    def __init__(
+        self,
+        *,
+        on: Place,
+        filter: float | None | Given = NOT_GIVEN,
+        flux: Profile | None | Given = NOT_GIVEN,
+        head: Profile | None | Given = NOT_GIVEN,
+        impervious: bool | None | Given = NOT_GIVEN,
+        pressure: Profile | None | Given = NOT_GIVEN,
+        seepage: bool | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"on": on, "filter": filter, "flux": flux, "head": head, "impervious": impervious, "pressure": pressure, "seepage": seepage}))
+
+
+class Node(dict[str, Any]):
+    """Single node: its tag in the mesh file (its number from 0 in a mesh given in place)."""
+
+    def __init__(self, node: int) -> None:
+        super().__init__({"node": node})
+
+
+class Near(dict[str, Any]):
+    """Single node of the undeformed mesh nearest to this point [x, y]. It must be unique, and no farther away than the
+    length of the elements there [L].
+    """
+
+    def __init__(self, near: Vector) -> None:
+        super().__init__({"near": near})
 
 
 class Increments(dict[str, Any]):
@@ -1567,6 +1809,9 @@ class Increments(dict[str, Any]):
         min: Shortest increment [T]; default initial/1000, with `error` initial/10⁶. With rate-and-state
             friction under error control and in quasi_dynamic steps it is the shortest that round-off of the
             time allows, since slip may take any rate
+        pore_pressure: Error control of water that flows: the longest increments in which the pressure of no
+            corner changes by more than twice this beside what it would at the last rate. Not controlled unless
+            given [F/L²]
     """
 
     def __init__(
@@ -1576,8 +1821,9 @@ class Increments(dict[str, Any]):
         error: float | None | Given = NOT_GIVEN,
         max: float | None | Given = NOT_GIVEN,
         min: float | None | Given = NOT_GIVEN,
+        pore_pressure: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"initial": initial, "error": error, "max": max, "min": min}))
+        super().__init__(_given({"initial": initial, "error": error, "max": max, "min": min, "pore_pressure": pore_pressure}))
 
 
 class Load(dict[str, Any]):
@@ -1621,22 +1867,6 @@ class Load(dict[str, Any]):
         super().__init__(_given({"on": on, "absorbing": absorbing, "dashpot": dashpot, "dead_pressure": dead_pressure, "force": force, "gravity": gravity, "moment": moment, "pressure": pressure, "spring": spring, "total_force": total_force, "traction": traction}))
 
 
-class Node(dict[str, Any]):
-    """Single node: its tag in the mesh file (its number from 0 in a mesh given in place)."""
-
-    def __init__(self, node: int) -> None:
-        super().__init__({"node": node})
-
-
-class Near(dict[str, Any]):
-    """Single node of the undeformed mesh nearest to this point [x, y]. It must be unique, and no farther away than the
-    length of the elements there [L].
-    """
-
-    def __init__(self, near: Vector) -> None:
-        super().__init__({"near": near})
-
-
 class Dashpot(dict[str, Any]):
     """A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
 
@@ -1661,13 +1891,6 @@ class Rate(dict[str, Any]):
 
     def __init__(self, rate: float) -> None:
         super().__init__({"rate": rate})
-
-
-class Table(dict[str, Any]):
-    """Pairs of run time and value, times ascending; linear between, constant outside."""
-
-    def __init__(self, table: Pairs) -> None:
-        super().__init__({"table": table})
 
 
 class Spring(dict[str, Any]):
@@ -1777,9 +2000,9 @@ class Explicit(dict[str, Any]):
 
 class QuasiDynamic(dict[str, Any]):
     """Quasi-dynamic: no inertia, linear bodies and contacts in small sliding with radiation damping; slip and state of
-    the interface are integrated explicitly with error control. For friction laws that define a slip rate by
-    traction and state (rate_and_state, prescribed), matching nodes, and loads and supports that vary linearly
-    within the step.
+    the interface are integrated with error control, explicitly if all friction laws define a slip rate by traction
+    and state (rate_and_state, prescribed), else implicitly. For matching nodes, and loads and supports that vary
+    linearly within the step.
 
     Args:
         every: Steps per row of results, at least 1; default 10
@@ -1933,6 +2156,9 @@ Integration = Union[Literal["controlled"], Literal["backward_euler"]]
 # Evolution of the state θ of rate-and-state friction.
 StateEvolution = Union[Literal["ageing"], Literal["slip"]]
 
+# A quantity that varies in time.
+Schedule = Union[Table, float, str]
+
 # Contact method: evaluation points of contact.
 Method = Union[Literal["node_to_segment"], Literal["gauss_to_segment"], Literal["mortar"]]
 
@@ -1982,6 +2208,9 @@ Temperature = Union[Rate, Table, AlongX, AlongY, float, str]
 # Forms of a pressure that is given, for the schema.
 GivenPressure = Union[Profile, Measured]
 
+# Forms of a fluid pressure, for the schema.
+FluidForms = Union[Profile, Measured, Flow]
+
 
 class CaseKeys(TypedDict, total=False):
     """The keys of a case."""
@@ -2002,6 +2231,8 @@ class CaseKeys(TypedDict, total=False):
     # "bodies.block.material.E", "steps.drag.supports[0].uy". The derivatives are those of the run with its
     # increments as they are; not for explicit and quasi-dynamic steps, nor where a step may become explicit
     gradients: Sequence[str]
+    # Groups of sides or nodes by place, by a name of your choice, for meshes that lack them: `{"top": {"y": 1.0}}`
+    groups: Mapping[str, PlacedGroup]
     # Initial velocity [x, y] of whole bodies; supported nodes follow their supports
     initial_velocity: Mapping[str, Vector]
     # Laws by names of your choice, which may stand for them wherever the case has a `material`
@@ -2033,6 +2264,9 @@ class CaseKeys(TypedDict, total=False):
     rigid_bodies: Mapping[str, RigidBody]
     # Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     section: Section
+    # Sections across bodies by a name of your choice: normal force, shear force and bending moment along an axis,
+    # such as the depth of a wall, at every row of the history (sections.csv)
+    sections: Mapping[str, Sections]
     # Steps, one after the other
     steps: Sequence[Step]
     # Title of the case, in one line
