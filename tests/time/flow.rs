@@ -169,8 +169,11 @@ fn water_rises_into_a_rupture_and_after_it() {
     for state in &run.states {
         for (slave, contact) in run.model.contacts[0].points.iter().zip(&state.contacts[0]) {
             let (t, x) = (state.time, slave.at(&x).x);
-            // But for what opens at the ends: a micrometre of a slab of one metre.
-            close("p_w", contact.fluid, 2.5e-4 * t.min(1.0) * (1.0 + 0.1 * x), 5e-6);
+            // But for what opens at the ends, some micrometres, which sucks: S p_w + w is what has come in.
+            let opening = contact.water.expect("water").aperture;
+            // The source ends with a jump, within an increment.
+            let allowed = if t < 1.0 { 1e-8 } else { 1e-6 };
+            close("p_w + w/S", contact.fluid + opening / 0.5, 2.5e-4 * t.min(1.0) * (1.0 + 0.1 * x), allowed);
         }
         close("energy", state.energy.error(), 0.0, 0.01 * run.last().energy.friction_dissipation);
     }
