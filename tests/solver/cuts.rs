@@ -39,7 +39,7 @@ fn a_cantilever_has_its_moments() {
         for (k, SectionForces { place, axial_force, shear_force, moment }) in found.iter().enumerate() {
             let rest = LONG - place.x;
             // At the free end the pressure of half an element acts at the cut; where it is held, all acts but that of the first.
-            let share = [0.0, LONG].contains(&place.x).then_some(0.5 * p * LONG / elements[0] as f64).unwrap_or(0.0);
+            let share = if [0.0, LONG].contains(&place.x) { 0.5 * p * LONG / elements[0] as f64 } else { 0.0 };
             close(&format!("{kind} N {k}"), *axial_force, pull, 1e-7);
             close(&format!("{kind} Q {k}"), *shear_force, p * rest + force, share + 1e-7);
             close(
