@@ -35,6 +35,8 @@ fn surfaces(n: usize) -> Surfaces {
     let slave: Vec<Vec<usize>> = (0..n / 2).map(|k| vec![n + 1 + k, n + 2 + k]).collect();
     let law = Coulomb::new(&CoulombParameters { mu: 0.3, alpha_t: Some(1e3) }, f64::NAN).expect("valid parameters");
     let pair = ContactPair {
+        comes_stressed: false,
+        conduit: None,
         bodies: Default::default(),
         name: "wavy".into(),
         points: gauss_points(&slave, 2),
