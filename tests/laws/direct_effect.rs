@@ -149,7 +149,7 @@ fn increments_are_answered_by_the_differential_equations() {
 /// Vanishing a, or a V₀ never reached, is the law without; a = 0 is that law in every bit, whatever V₀.
 #[test]
 fn without_an_effect_it_is_the_law_without() {
-    let plain = law(&SuperSubloadingParameters { ..ROCK }.rate_effect(0.0, 1e-6));
+    let plain = law(&ROCK.rate_effect(0.0, 1e-6));
     let bare = law(&SuperSubloadingParameters::new(0.4, 0.2, 100.0).kappa(10.0).xi(0.002).alpha_t(ALPHA_T));
     let small = law(&ROCK.rate_effect(1e-9, 1e-3));
     let never = law(&ROCK.rate_effect(0.01, 1e9));
@@ -209,8 +209,7 @@ fn all_kinds_of_increments_are_answered_with_their_tangent() {
             let pressure = if k == 33 { -1.0 } else { PRESSURE * random.between(0.5, 1.5) };
             let at = |slip: f64, pressure: f64| respond(&law, &state, Sliding::new(slip, pressure, dt));
             let answer = at(slip, pressure);
-            let mirror =
-                FrictionState { traction: -state.traction, plastic_slip: -state.plastic_slip, ..state.clone() };
+            let mirror = with!(state.clone(), traction: -state.traction, plastic_slip: -state.plastic_slip);
             let mirrored = respond(&law, &mirror, Sliding::new(-slip, pressure, dt));
             assert_eq!(mirrored.state.traction, -answer.state.traction);
             let (du, dp) = (1e-9, 1e-6 * PRESSURE);
