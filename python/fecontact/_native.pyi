@@ -102,6 +102,7 @@ def drive(
     time: NDArray[np.float64],
     slip: NDArray[np.float64],
     pressure: NDArray[np.float64],
+    opening: NDArray[np.float64] | None,
     interface: str,
     by: list[str],
     threads: int | None,

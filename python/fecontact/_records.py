@@ -185,7 +185,8 @@ class PullOff(Interface):
         return -self._driven(parameters, threads)["pressure"]
 
     def __repr__(self) -> str:
-        return _shown(self, time=self.time, opening=self.opening, stress=self.measured)
+        opening = np.zeros(0) if self.opening is None else self.opening
+        return _shown(self, time=self.time, opening=opening, stress=self.measured)
 
 
 class Holds:

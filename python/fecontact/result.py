@@ -119,10 +119,11 @@ class Result:
         """Forces of the sections of bodies, one row per time [T] and station: ``name`` of the sections, number of the ``station`` from 1,
         its place ``x``, ``y`` in the mesh [L], ``axial_force``, ``shear_force`` [F] and ``moment`` [F·L]; requires ``sections`` in the case."""
         wide = self._table("sections.csv", "the case asks for them by sections")
-        stations = list(dict.fromkeys(column.rsplit(".", 1)[0] for column in wide if column != "time"))
+        columns = [str(column) for column in wide]
+        stations = list(dict.fromkeys(column.rsplit(".", 1)[0] for column in columns if column != "time"))
         parts = []
         for station in stations:
-            own = wide[[column for column in wide if column.rsplit(".", 1)[0] == station]]
+            own = wide[[column for column in columns if column.rsplit(".", 1)[0] == station]]
             name, number = station.rsplit(".", 1)
             own = own.rename(columns=lambda column: column.rsplit(".", 1)[-1])
             parts.append(own.assign(time=wide["time"], name=name, station=int(number)))
