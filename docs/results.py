@@ -102,7 +102,7 @@ class Run:
         file = frames[-1][1] if time is None else min(frames, key=lambda frame: abs(float(frame[0]) - time))[1]
         text = (self.folder / file).read_text()
         arrays = {}
-        for head, data in re.findall(r"<DataArray ([^>]*)>([^<]*)</DataArray>", text):
+        for head, data in re.findall(r"<DataArray ([^>]*)>([^<]*)<", text):
             told = dict(re.findall(r'(\w+)="([^"]*)"', head))
             values = decoded(data.strip(), TYPES[told["type"]])
             width = int(told.get("NumberOfComponents", 1))
