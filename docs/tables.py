@@ -61,6 +61,7 @@ SLOW = {
     "laboratory": (LABORATORY, 0),
     "laboratory_fronts": (LABORATORY, 1),
     "record_basalt": ("python3 cases/laboratory/velocity_step.py", 0),
+    "record_sepiolite": ("python3 cases/laboratory/rising_step.py", 0),
     "record_pile": ("python3 cases/laboratory/pile_load_test.py docs/figures/pile_load_test.svg", 0),
     "fronts_weakening": (FRONTS, 0),
     "fronts_super_subloading": (FRONTS, 1),

@@ -81,6 +81,16 @@ def test_a_velocity_step_of_basalt_has_the_constants_of_its_authors() -> None:
     assert not found.words
 
 
+def test_friction_that_rises_after_a_step_asks_for_a_negative_b() -> None:
+    step = loaded("rising_step")
+    positive, negative = (step.fitted(name) for name in ("b positive", "b negative"))
+    # Friction before the step is f₀ at that rate; a jump of friction and a rise follow, as a − b per e-fold of the rate: (0.50 − 0.4546)/ln 10.
+    value = negative.table["value"]
+    assert value["f_0"] == pytest.approx(step.BEFORE, abs=1e-3)
+    assert value["a"] - value["b"] == pytest.approx((0.501 - 0.4546) / np.log(10), rel=0.05)
+    assert negative.noise < 0.3 * positive.noise
+
+
 def test_the_shaft_of_a_pile_carries_what_its_head_did() -> None:
     test = loaded("pile_load_test")
     found = test.fitted(test.PRESSURES["from 50 kPa on"])
