@@ -84,7 +84,7 @@ def test_a_velocity_step_of_basalt_has_the_constants_of_its_authors() -> None:
 def test_friction_that_rises_after_a_step_asks_for_a_negative_b() -> None:
     step = loaded("rising_step")
     positive, negative = (step.fitted(name) for name in ("b positive", "b negative"))
-    # Friction before the step is f₀ at that rate; a jump of friction and a rise follow, as a − b per e-fold of the rate: (0.50 − 0.4546)/ln 10.
+    # Before the step friction is f₀; from rate to rate steady friction differs by a − b per e-fold, (0.501 − 0.4546)/ln 10.
     value = negative.table["value"]
     assert value["f_0"] == pytest.approx(step.BEFORE, abs=1e-3)
     assert value["a"] - value["b"] == pytest.approx((0.501 - 0.4546) / np.log(10), rel=0.05)
