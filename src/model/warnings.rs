@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::balance;
-use super::flow_concerns;
+use super::pore_flow_concerns;
 use super::text::{count, number, vector};
 use super::unfit;
 use crate::contact::master::{Master, Rigid, Shape};
@@ -51,7 +51,7 @@ impl Model {
         let of_model = of_model
             .chain(sheared_beside_faults(self))
             .chain(unfit::concerns(self))
-            .chain(flow_concerns::concerns(self));
+            .chain(pore_flow_concerns::concerns(self));
         let of_model = of_model.chain(self.bodies.iter().filter_map(concern_of_law));
         let concerns =
             self.about_methods(|chosen, pair| chosen.concern.map(String::from).or_else(|| uneven(self, pair, chosen)));

@@ -2,6 +2,7 @@
 //! of unconstrained rigid-body modes.
 
 pub mod condensed_newton;
+pub mod conduits;
 pub mod contact_iteration;
 pub mod equilibrium;
 pub mod failure;
@@ -9,7 +10,6 @@ pub mod floating;
 pub mod limit;
 pub mod neighbour;
 pub mod newton;
-pub mod water;
 
 use std::sync::Arc;
 

@@ -7,9 +7,9 @@ use crate::equations::inertia::kinetic_energy;
 use crate::equations::{Evaluation, Trial, links};
 use crate::model::state::{LastIncrement, State};
 use crate::model::{Model, Step};
+use crate::solve::conduits::{receive, settle};
 use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
-use crate::solve::water::{receive, settle};
 use crate::solve::{IterationRecord, Pass, Solved, Workspace};
 
 /// What one increment came to.

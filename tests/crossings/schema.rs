@@ -46,7 +46,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         &["gradients", "displacement_gradients"],
         "the relation `derivatives` asks for them, tests/command/gradients.rs for those of all nodes",
     ),
-    (&["measured", "file"], "a table in a file: tests/time/water.rs"),
+    (&["measured", "file"], "a table in a file: tests/time/fluid_pressure.rs"),
     (
         &[
             "permeability",
@@ -67,7 +67,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     (&["sections"], "forces of sections, which nothing depends on: tests/solver/cuts.rs"),
     (
         &["aperture", "per_slip", "closing", "wells", "rate", "from", "leak", "coefficient"],
-        "water along a contact that goes by the surfaces, wells and leaks: tests/contact/flow.rs, tests/time/flow.rs",
+        "water along a contact that goes by the surfaces, wells and leaks: tests/contact/conduit.rs, tests/time/conduit.rs",
     ),
     (&["begin_with"], "the relation `begun with` does it without folders"),
 ];

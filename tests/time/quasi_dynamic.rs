@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, close, finish, finish_at, model, refusal, turned};
+use crate::slabs::{differences, slabs};
 use fecontact::model::Model;
 use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
@@ -113,33 +114,16 @@ fn static_increments_come_to_the_same() {
     close("extrapolated", 2.0 * off[1] - off[0], 0.0, 0.01);
 }
 
-/// Two slabs with a fault between them, node facing node, the upper one twice as fine in height; it slips under a rate-and-state
-/// law but for its ends, which creep.
-fn slabs(scheme: &Value, duration: f64) -> Value {
-    let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
-        "upper",
-        [12, 4],
-        [0.0, 0.0],
-        [6.0, 1.0],
-    );
-    let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.25, "density": 1e-6}});
-    json!({
-        "mesh": mesh.json(),
-        "bodies": {"lower": body(200.0), "upper": body(120.0)},
-        "contacts": {"fault": {
-            "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small",
-            "normal": {"alpha_n": 4000}, "radiation_damping": 0.02,
-            "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.01, "b": 0.016, "D_c": 2e-3, "theta": 20,
-                         "alpha_t": 4000},
-            "along": {"a": "0.01 + 0.002*(x - 3)^2",
-                      "law": [{"where": "abs(x - 3) - 2.6", "friction": {"law": "prescribed", "slip_rate": 1e-3, "alpha_t": 4000}}]},
-            "initial": {"pressure": "2 + 0.1*x", "traction": 1.1, "balanced": true},
-        }},
-        "newton": {"tolerance": 1e-12},
-        "steps": [{"name": "shear", "duration": duration, "scheme": scheme, "dt": {"initial": 1e-3}, "supports": [
-            {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": {"rate": 1e-3}, "uy": {"rate": -1e-5}},
-        ]}],
-    })
+/// The slabs, moved faster and apart; the fault weakens but for its ends, which creep.
+fn weak_slabs(scheme: &Value, duration: f64) -> Value {
+    let creeps = json!({"law": "prescribed", "slip_rate": 1e-3, "alpha_t": 4000});
+    let along = json!({"a": "0.01 + 0.002*(x - 3)^2", "law": [{"where": "abs(x - 3) - 2.6", "friction": creeps}]});
+    let mut case = slabs(scheme, duration, &json!({"along": along}));
+    let friction = &mut case["contacts"]["fault"]["friction"];
+    (friction["a"], friction["b"]) = (json!(0.01), json!(0.016));
+    let top = &mut case["steps"][0]["supports"][1];
+    (top["ux"], top["uy"]) = (json!({"rate": 1e-3}), json!({"rate": -1e-5}));
+    case
 }
 
 /// Slip, traction and pressure of every point of the fault.
@@ -150,28 +134,20 @@ fn fault(run: &Finished) -> Vec<[f64; 3]> {
     run.last().contacts[0].iter().map(of).collect()
 }
 
-/// Largest difference of two faults in each of the three, over the largest value.
-fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> [f64; 3] {
-    [0, 1, 2].map(|i| {
-        let largest = a.iter().fold(0.0f64, |most, a| most.max(a[i].abs()));
-        a.iter().zip(b).fold(0.0f64, |most, (a, b)| most.max((a[i] - b[i]).abs())) / largest
-    })
-}
-
 /// A whole interface: static increments come nearer and nearer to it as they are shorter, in slip, traction and pressure, and the
 /// bodies' displacements are those of equilibrium.
 #[test]
 fn an_interface_between_bodies() {
-    let exact = finish(&slabs(&quasi_dynamic(1e-8, 20), 30.0));
+    let exact = finish(&weak_slabs(&quasi_dynamic(1e-8, 20), 30.0));
     let errors = [0.2, 0.1].map(|dt| {
-        let mut case = slabs(&json!("static"), 30.0);
+        let mut case = weak_slabs(&json!("static"), 30.0);
         case["steps"][0]["dt"] = json!({"initial": dt, "min": 1e-6, "max": dt});
         let run = finish(&case);
         let (one, other) = (&run.last().displacement, &exact.last().displacement);
         let far = one.iter().zip(other).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
         let largest = other.iter().fold(0.0f64, |most, u| most.max(u.abs()));
-        println!("{dt}: {:?}, displacement {}", apart(&fault(&exact), &fault(&run)), far / largest);
-        let [slip, traction, pressure] = apart(&fault(&exact), &fault(&run));
+        println!("{dt}: {:?}, displacement {}", differences(&fault(&exact), &fault(&run)), far / largest);
+        let [slip, traction, pressure] = differences(&fault(&exact), &fault(&run));
         [slip, traction, pressure, far / largest]
     });
     for (coarse, fine) in errors[0].iter().zip(errors[1]) {
@@ -185,7 +161,7 @@ fn an_interface_between_bodies() {
 /// hardly any length nothing moves, and all is in equilibrium.
 #[test]
 fn steps_of_other_schemes_follow_and_precede() {
-    let mut case = slabs(&json!("static"), 5.0);
+    let mut case = weak_slabs(&json!("static"), 5.0);
     case["steps"][0]["dt"] = json!({"initial": 0.1, "min": 1e-6, "max": 0.1});
     let go_on = json!({"name": "go on", "duration": 10, "scheme": quasi_dynamic(1e-6, 10), "dt": {"initial": 1e-3}});
     let rest = json!({"name": "rest", "duration": 1e-5, "scheme": "static", "dt": {"initial": 1e-5}});
@@ -200,7 +176,7 @@ fn steps_of_other_schemes_follow_and_precede() {
         close("p", after.friction.pressure, before.friction.pressure, 1e-6);
     }
     // All in one go is the same but for the error of static increments in the first step.
-    let whole = finish(&slabs(&quasi_dynamic(1e-6, 10), 15.0));
+    let whole = finish(&weak_slabs(&quasi_dynamic(1e-6, 10), 15.0));
     let slip = |state: &fecontact::model::state::State| state.contacts[0][6].friction.plastic_slip;
     close("slip", slip(before) / slip(whole.last()), 1.0, 0.01);
 }
@@ -208,7 +184,7 @@ fn steps_of_other_schemes_follow_and_precede() {
 /// After a dynamic step what was left out of balance moves the bodies at once, and the audit knows of it.
 #[test]
 fn motion_before_comes_to_rest() {
-    let mut case = slabs(&json!({"newmark": {}}), 1e-3);
+    let mut case = weak_slabs(&json!({"newmark": {}}), 1e-3);
     case["steps"][0]["dt"] = json!({"initial": 5e-5});
     case["steps"][0]["supports"][1]["ux"] = json!({"rate": 1.0});
     let go_on = json!({"name": "go on", "duration": 10, "scheme": quasi_dynamic(1e-6, 10), "dt": {"initial": 1e-3},
@@ -227,7 +203,7 @@ fn motion_before_comes_to_rest() {
 #[test]
 fn what_is_turned_slips_alike() {
     let run = |angle: f64| {
-        let mut case = slabs(&json!({"newmark": {}}), 1e-3);
+        let mut case = weak_slabs(&json!({"newmark": {}}), 1e-3);
         let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
             "upper",
             [12, 4],
@@ -261,7 +237,7 @@ fn what_is_turned_slips_alike() {
         finish(&case)
     };
     let [plain, other] = [0.0, 0.5].map(run);
-    let apart = apart(&fault(&plain), &fault(&other));
+    let apart = differences(&fault(&plain), &fault(&other));
     assert!(apart.iter().all(|apart| *apart < 1e-6), "{apart:?}");
     let largest = plain.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
     for (u, v) in plain.last().displacement.chunks(2).zip(other.last().displacement.chunks(2)) {
@@ -274,7 +250,7 @@ fn what_is_turned_slips_alike() {
 /// A run that was stopped goes on to the same bits; so does one on another number of threads, and one in other units.
 #[test]
 fn bits() {
-    let case = slabs(&quasi_dynamic(1e-5, 7), 20.0);
+    let case = weak_slabs(&quasi_dynamic(1e-5, 7), 20.0);
     let whole = finish(&case);
     let shared: Arc<Model> = model(&case).into();
     let mut run = Simulation::new(shared.clone());
@@ -290,7 +266,7 @@ fn bits() {
     let scaled = |units: [f64; 3]| {
         let [l, f, t] = units;
         let (stress, time) = (f / (l * l), t);
-        let mut case = slabs(&quasi_dynamic(1e-5, 7), 20.0 * time);
+        let mut case = weak_slabs(&quasi_dynamic(1e-5, 7), 20.0 * time);
         let scale = |value: &mut Value, by: f64| *value = json!(value.as_f64().expect("a number") * by);
         for node in case["mesh"]["nodes"].as_array_mut().expect("nodes") {
             (0..2).for_each(|i| scale(&mut node[i], l));
@@ -332,7 +308,7 @@ fn bits() {
 #[test]
 fn what_it_cannot_do_is_refused() {
     let refused = |change: &dyn Fn(&mut Value)| {
-        let mut case = slabs(&quasi_dynamic(1e-5, 10), 1.0);
+        let mut case = weak_slabs(&quasi_dynamic(1e-5, 10), 1.0);
         change(&mut case);
         refusal(&case)
     };
@@ -379,7 +355,7 @@ fn what_it_cannot_do_is_refused() {
 /// Where the interface opens, the run stops with the place and the reason.
 #[test]
 fn an_interface_that_opens_stops_the_run() {
-    let mut case = slabs(&quasi_dynamic(1e-5, 10), 100.0);
+    let mut case = weak_slabs(&quasi_dynamic(1e-5, 10), 100.0);
     case["steps"][0]["supports"][1]["uy"] = json!({"rate": 1e-3});
     let mut run = Simulation::new(model(&case));
     let told = loop {
@@ -399,7 +375,7 @@ fn an_interface_that_opens_stops_the_run() {
 /// Strength that varies in time acts at its time in the middle of steps: a given rate is integrated by the scheme itself.
 #[test]
 fn given_rates_may_vary_in_time() {
-    let mut case = slabs(&quasi_dynamic(1e-7, 10), 10.0);
+    let mut case = weak_slabs(&quasi_dynamic(1e-7, 10), 10.0);
     case["contacts"]["fault"]["along"]["law"][0]["along"] = json!({"slip_rate": "1e-3*(1 + sin(t))"});
     let run = finish_at(&case, Path::new("test.json"));
     let slip = run.last().contacts[0][0].friction.plastic_slip;

@@ -1,4 +1,4 @@
-"""Spring-slider of rate-and-state friction with radiation damping: the numbers of `quasi_dynamic.rs` and `water.rs`.
+"""Spring-slider of rate-and-state friction with radiation damping: the numbers of `quasi_dynamic.rs` and `fluid_pressure.rs`.
 
     python3 tests/time/spring_slider.py
 

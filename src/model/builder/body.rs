@@ -8,13 +8,13 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::drainage;
 use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size, refuse_if};
 use super::friction::{check_profile, defined};
 use super::groups;
 use super::groups::{TIMES, group, kind, some_of};
 use super::load_step::LoadStep;
-use super::water;
+use super::pore_flow;
+use super::pore_pressure;
 use crate::laws::bulk::{self, BodyLaw, Material, MaterialParameters, Sections, Surroundings};
 use crate::mesh::section::Section;
 use crate::mesh::{Group, Mesh};
@@ -95,14 +95,14 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
         check_imposed(&*law, initial_stress.is_some(), *thermal, &place)?;
         if let Some(fluid) = pore_fluid {
             check_fluid(&*law, fluid, &mesh.nodes_of(group), mesh, &format!("{place}.pore_fluid"))?;
-            drainage::check_fluid(&*law, fluid, *element, &place)?;
+            pore_flow::check_fluid(&*law, fluid, *element, &place)?;
         }
         let mut pore_pressure = pore_pressure.clone();
         if let Some(given) = &mut pore_pressure {
             let place = format!("{place}.pore_pressure");
             let message = "is given beside a pore_fluid, which has a pressure of its own: leave one of them out";
             refuse_if(pore_fluid.is_some(), &place, message)?;
-            *given = water::checked(&*law, given, &mesh.nodes_of(group), mesh, &place)?;
+            *given = pore_pressure::checked(&*law, given, &mesh.nodes_of(group), mesh, &place)?;
         }
         check_section(&*law, *element == Formulation::FBar, mesh.section, &place)?;
         let fluid = pore_fluid.as_ref();
@@ -133,8 +133,10 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             damping: *damping,
             initial_stress: initial_stress.clone(),
             pore_fluid: pore_fluid.clone(),
-            starts_pressed: pore_pressure.as_ref().is_some_and(|given| water::acts_at_start(given, &nodes, mesh))
-                || drainage::acts_at_start(fluid, &nodes, mesh),
+            starts_pressed: pore_pressure
+                .as_ref()
+                .is_some_and(|given| pore_pressure::acts_at_start(given, &nodes, mesh))
+                || pore_flow::acts_at_start(fluid, &nodes, mesh),
             pore_pressure,
             thermal: *thermal,
             elements,

@@ -2,9 +2,9 @@
 
 use nalgebra::Vector2;
 
+use super::conduit_input::FlowWell;
 use super::contact::Contact;
 use super::error::{Checked, ModelError, check_finite, refuse_if};
-use super::flow::FlowWell;
 use super::fluid::FluidPressure;
 use super::friction::check_in_time;
 use super::groups::{edges, node_lists};

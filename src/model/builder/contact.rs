@@ -4,8 +4,8 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::conduit_input::Flow;
 use super::error::{Checked, ModelError, check_place, check_positive, refuse_if};
-use super::flow::Flow;
 use super::fluid::{FluidForms, FluidPressure};
 use super::friction::{Along, Friction};
 use super::groups;

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::conduit_input::Flow;
 use super::error::{Checked, ModelError};
-use super::flow::Flow;
 use super::friction::check_in_time;
 use super::groups::TIMES;
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};

@@ -6,9 +6,9 @@ use std::fmt::{Display, Formatter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::drainage::DrainageInput;
 use super::groups::Place;
 use super::load::{Change, Load, present};
+use super::pore_flow::DrainageInput;
 use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::ForceComponent;

@@ -29,6 +29,10 @@
 //!
 //! A load step inherits scheme, increments, supports and loads from the previous one. Errors are reported with their
 //! place, in the terms of a case file: `steps[1].supports[0].on: the mesh has no group …`.
+//!
+//! A file has the name of what it builds. Of water, `pore_pressure` is given in bodies and `pore_flow` flows through them; `fluid` is the
+//! pressure at a contact, given or flowing, `conduit` the water that flows along it (its keys: `conduit_input`), and `pores` the effective stress
+//! of a contact beside bodies with a fluid.
 
 /// Methods that change one thing of an input and return it, for chains: `setters! { contact: Contact; area(area: f64) { … } }`.
 macro_rules! setters {
@@ -52,11 +56,10 @@ mod body;
 mod bond;
 mod checks;
 mod conduit;
+mod conduit_input;
 mod contact;
-mod drainage;
 mod error;
 mod facing;
-mod flow;
 mod fluid;
 mod friction;
 mod groups;
@@ -66,6 +69,8 @@ mod load;
 mod load_step;
 mod loads;
 mod pair;
+mod pore_flow;
+mod pore_pressure;
 mod pores;
 mod reduction;
 mod requests;
@@ -77,15 +82,14 @@ mod supports;
 pub(crate) mod thickness;
 mod unconstrained;
 mod unseen;
-mod water;
 
 pub use bar::{BarBond, BarEnd, BarInput, Embedding};
 pub use body::{BodyInput, BulkLaw, PointMassInput};
 pub use bond::FADES;
+pub use conduit_input::{Flow, FlowLeak, FlowWell, Schedule};
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub(crate) use error::{check_line, check_name, check_positive, refuse_if};
-pub use flow::{Flow, FlowLeak, FlowWell, Schedule};
 pub use fluid::FluidPressure;
 pub use friction::{Along, DefaultAlphaT, Friction, LawChoice};
 pub use groups::Place;
@@ -295,9 +299,9 @@ impl Builder {
         let laid = bars::lay(&self.bars, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
-        let mut flow = drainage::flow(&bodies, &solids, &mut self.mesh)?;
+        let mut flow = pore_flow::flow(&bodies, &solids, &mut self.mesh)?;
         flow.iter_mut().for_each(|flow| {
-            flow.outlets = drainage::outlets(self.steps.iter().flat_map(|step| &step.drainage), &self.mesh)
+            flow.outlets = pore_flow::outlets(self.steps.iter().flat_map(|step| &step.drainage), &self.mesh)
         });
         let mut model = Model {
             memories: Memories::new(&solids, &bodies, &body_of_element),
@@ -341,7 +345,7 @@ impl Builder {
         model.requests.watch = requests::watched(&self.watch, &model)?;
         model.requests.times = requests::checked_times(self.times, &model.steps)?;
         model.requests.probes = requests::probes(&self.gauges, &model)?;
-        drainage::check(&self.contacts, &model)?;
+        pore_flow::check(&self.contacts, &model)?;
         model.requests.sections = sections::sections(&self.sections, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
         requests::check_rows(&model)?;
@@ -349,7 +353,7 @@ impl Builder {
         initial::check_excess(&model)?;
         let fluids = self.contacts.iter().map(|contact| contact.fluid_pressure.as_ref());
         fluid::check_fluids_in_time(fluids, &model)?;
-        water::check_in_time(&model)?;
+        pore_pressure::check_in_time(&model)?;
         unconstrained::check(&self.steps, &model)?;
         Ok(model)
     }

@@ -56,7 +56,7 @@ use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::regime;
 use super::thickness::Outline;
-use super::{conduit, contact, fluid, friction, initial, pores, rigid, unseen, water};
+use super::{conduit, contact, fluid, friction, initial, pore_pressure, pores, rigid, unseen};
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
@@ -118,7 +118,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
     let of_bodies = match contact.fluid_pressure {
-        Some(FluidPressure::OfBodies) => water::fluid_of_bodies(&contact.slave, model, &place)?,
+        Some(FluidPressure::OfBodies) => pore_pressure::fluid_of_bodies(&contact.slave, model, &place)?,
         _ => None,
     };
     let slaves: Vec<usize> = points.iter().flat_map(|point| point.position.iter().map(|(node, _)| *node)).collect();

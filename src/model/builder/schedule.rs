@@ -7,7 +7,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::body::{check_damping, prescribed_temperatures, temperatures};
-use super::drainage::DrainsInForce;
 use super::error::{Checked, ModelError, check_positive, refuse_if};
 use super::groups;
 use super::groups::nodes_at;
@@ -15,6 +14,7 @@ use super::initial::launch;
 use super::load::Change;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UNTIL_TOLERANCE, UntilSettings};
 use super::loads::{LoadsInForce, check_defined};
+use super::pore_flow::DrainsInForce;
 use super::stages::Stages;
 use super::supports::{SupportsInForce, freed};
 use crate::contact::pair::ContactPair;

@@ -24,10 +24,10 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
+mod conduits;
 mod motion;
 mod plates;
 mod stability;
-mod waters;
 
 use std::sync::Arc;
 

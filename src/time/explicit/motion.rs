@@ -12,8 +12,8 @@ use crate::model::scheme::{start_acceleration, supported_rates};
 use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
+use crate::solve::conduits::receive;
 use crate::solve::failure::IncrementFailure;
-use crate::solve::water::receive;
 use crate::time::accept::{accept, heat, take_stock};
 use crate::time::beginning::{keep_to_supports, launch};
 

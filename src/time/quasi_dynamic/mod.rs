@@ -9,18 +9,18 @@
 //! Source: Rice (1993), J. Geophys. Res. 98, 9885; Erickson et al. (2023), Bull. Seismol. Soc. Am. 113, 499 (community
 //! benchmarks).
 
+mod conduits;
 mod slip_equations;
 mod steps;
 mod stiff;
 mod tableau;
-mod waters;
 
 use std::sync::Arc;
 
+use self::conduits::Conduits;
 use self::slip_equations::{Rates, SlipEquations, with_rates};
 use self::steps::{Steps, Tried};
 use self::stiff::Stiff;
-use self::waters::Waters;
 use super::accept::{accept, take_stock};
 use crate::contact::conduit::Conduit;
 use crate::contact::force::ContactState;
@@ -124,7 +124,9 @@ impl QuasiDynamic {
         let places = model.mesh.undeformed();
         let interface = self.interface(&old, places);
         let mut steps = match self.slips {
-            Slips::Plastic => Stepping::Explicit(Steps::new(interface, Waters::new(&model, &old), old.time, tolerance)),
+            Slips::Plastic => {
+                Stepping::Explicit(Steps::new(interface, Conduits::new(&model, &old), old.time, tolerance))
+            }
             Slips::All => Stepping::Implicit(Stiff::new(interface, old.time, tolerance)),
         };
         let (mut gone, mut next, mut last, mut ended) = (0, dt, 0.0, false);
@@ -165,7 +167,7 @@ impl QuasiDynamic {
             let (contact, at) = (pair.name.clone(), [at.x, at.y]);
             return Err(IncrementFailure::Start(TrialFailure::FluidPressure { contact, at, pressure, time }));
         }
-        let below_zero = steps.waters().and_then(|waters| waters.below_zero(&model.contacts));
+        let below_zero = steps.conduits().and_then(|conduits| conduits.below_zero(&model.contacts));
         if let Some((pair, pressure)) = below_zero {
             let why = format!(
                 "its pressure has fallen to {pressure:e} at t = {time:e}: raise `initial`, the ground water that is there, or lower what a well takes"
@@ -173,8 +175,8 @@ impl QuasiDynamic {
             return Err(IncrementFailure::Water { contact: pair.name.clone(), why });
         }
         let (mut contacts, jumps) = self.contacts(&old, &steps, time);
-        if let Some(waters) = steps.waters() {
-            waters.receive(&mut contacts, &mut state.conduits);
+        if let Some(conduits) = steps.conduits() {
+            conduits.receive(&mut contacts, &mut state.conduits);
         }
         let since = steps.since();
         self.follow(&old, time, since, contacts, &jumps, state)?;
@@ -341,9 +343,9 @@ impl Stepping<'_> {
     }
 
     /// Water that flows along the interface.
-    fn waters(&self) -> Option<&Waters<'_>> {
+    fn conduits(&self) -> Option<&Conduits<'_>> {
         match self {
-            Self::Explicit(steps) => Some(&steps.waters),
+            Self::Explicit(steps) => Some(&steps.conduits),
             Self::Implicit(_) => None,
         }
     }

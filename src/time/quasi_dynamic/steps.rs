@@ -5,9 +5,9 @@
 //! h ← h × 0.9 (tolerance/e)^⅕                                       within a fifth and five times
 //! ```
 
+use super::conduits::Conduits;
 use super::slip_equations::{Rates, SlipEquations, with_rates};
 use super::tableau::{A, C, E, STAGES};
-use super::waters::Waters;
 
 /// Safety factor on the length that the error allows.
 pub(super) const SAFETY: f64 = 0.9;
@@ -27,7 +27,7 @@ pub enum Tried {
 pub struct Steps<'a> {
     interface: SlipEquations<'a>,
     /// Water that flows along contacts
-    pub waters: Waters<'a>,
+    pub conduits: Conduits<'a>,
     /// w, and |∂τ/∂s|/p [-], [1/L]
     weights: Vec<[f64; 2]>,
     tolerance: f64,
@@ -48,8 +48,8 @@ pub struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// Starts at a time.
-    pub fn new(mut interface: SlipEquations<'a>, waters: Waters<'a>, start: f64, tolerance: f64) -> Self {
-        interface.water = waters.now();
+    pub fn new(mut interface: SlipEquations<'a>, conduits: Conduits<'a>, start: f64, tolerance: f64) -> Self {
+        interface.water = conduits.now();
         let n = interface.points.len();
         let state = |&(pair, slave, state): &(_, _, &crate::contact::force::ContactState)| {
             with_rates(pair, slave, start, |law| law.evolving(&state.friction)).unwrap_or(f64::NAN)
@@ -63,7 +63,7 @@ impl<'a> Steps<'a> {
         let mut rates = vec![Vec::new(); STAGES];
         interface.rates(start, 0.0, &z, &mut rates[0]);
         let (trial, last, works) = (z.clone(), vec![0.0; n], vec![[0.0; 2]; n]);
-        Self { interface, waters, weights, tolerance, start, since: 0.0, z, last, works, rates, trial }
+        Self { interface, conduits, weights, tolerance, start, since: 0.0, z, last, works, rates, trial }
     }
 
     /// Current rates.
@@ -79,10 +79,10 @@ impl<'a> Steps<'a> {
     /// Tries a step of length `h`.
     pub fn attempt(&mut self, h: f64) -> Tried {
         let n = self.last.len();
-        self.waters.foresee(self.start + self.since, h, &self.z[..n], &self.rates[0]);
+        self.conduits.foresee(self.start + self.since, h, &self.z[..n], &self.rates[0]);
         let tried = self.go_through(h);
         // What was foreseen is of a step that is refused, or has come true.
-        self.interface.water = self.waters.now();
+        self.interface.water = self.conduits.now();
         tried
     }
 
@@ -92,8 +92,8 @@ impl<'a> Steps<'a> {
             self.advance(A[stage], h);
             let since = self.since + C[stage] * h;
             let mut rates = std::mem::take(&mut self.rates[stage]);
-            if !self.waters.is_empty() {
-                self.interface.water = self.waters.at(stage);
+            if !self.conduits.is_empty() {
+                self.interface.water = self.conduits.at(stage);
             }
             self.interface.rates(self.start + since, since, &self.trial, &mut rates);
             self.rates[stage] = rates;
@@ -150,6 +150,6 @@ impl<'a> Steps<'a> {
         rates.swap(0, STAGES - 1);
         self.since += h;
         let n = self.last.len();
-        self.waters.accept(h, &self.z[..n], &self.rates[0]);
+        self.conduits.accept(h, &self.z[..n], &self.rates[0]);
     }
 }

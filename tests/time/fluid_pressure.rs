@@ -3,6 +3,7 @@
 use std::fs;
 
 use crate::common::{Blocks, Finished, close, finish, finish_at, refusal};
+use crate::slabs::{differences, slabs};
 use fecontact::contact::force::ContactState;
 use fecontact::model::state::State;
 use serde_json::{Value, json};
@@ -57,31 +58,9 @@ fn a_spring_slider_under_water_follows_its_differential_equation() {
     close("energy", energy.error(), 0.0, 2e-3 * energy.friction_dissipation);
 }
 
-/// Two unequal slabs with a fault between them, node facing node, into which water comes from a place.
-fn slabs(scheme: &Value, duration: f64, fluid: &Value) -> Value {
-    let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
-        "upper",
-        [12, 4],
-        [0.0, 0.0],
-        [6.0, 1.0],
-    );
-    let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.25, "density": 1e-6}});
-    json!({
-        "mesh": mesh.json(),
-        "bodies": {"lower": body(200.0), "upper": body(120.0)},
-        "contacts": {"fault": {
-            "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small",
-            "normal": {"alpha_n": 4000}, "radiation_damping": 0.02,
-            "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.012, "b": 0.010, "D_c": 2e-3, "theta": 20,
-                         "alpha_t": 4000},
-            "fluid_pressure": fluid,
-            "initial": {"pressure": "2 + 0.1*x", "traction": 1.1, "balanced": true},
-        }},
-        "newton": {"tolerance": 1e-12},
-        "steps": [{"name": "inject", "duration": duration, "scheme": scheme, "dt": {"initial": 1e-3}, "supports": [
-            {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": {"rate": 1e-4}, "uy": 0},
-        ]}],
-    })
+/// The slabs with a pressure of water in their fault.
+fn wet_slabs(scheme: &Value, duration: f64, fluid: &Value) -> Value {
+    slabs(scheme, duration, &json!({"fluid_pressure": fluid}))
 }
 
 /// Slip, traction, pressure and gap of every point of the fault.
@@ -95,11 +74,7 @@ fn fault(run: &Finished) -> Vec<[f64; 4]> {
 
 /// Largest difference of two faults in each of the four, over the largest value.
 fn apart(a: &Finished, b: &Finished) -> [f64; 4] {
-    let (a, b) = (fault(a), fault(b));
-    [0, 1, 2, 3].map(|i| {
-        let largest = a.iter().fold(0.0f64, |most, a| most.max(a[i].abs()));
-        a.iter().zip(&b).fold(0.0f64, |most, (a, b)| most.max((a[i] - b[i]).abs())) / largest
-    })
+    differences(&fault(a), &fault(b))
 }
 
 /// Water that spreads along a fault between unequal bodies: static increments come nearer and nearer to the stages of quasi-dynamic
@@ -107,10 +82,10 @@ fn apart(a: &Finished, b: &Finished) -> [f64; 4] {
 #[test]
 fn water_at_the_stages_is_that_of_static_increments() {
     let fluid = json!("1.2*(1 - exp(-t/5))*exp(-(x - 2)^2/(0.5 + 0.2*t))");
-    let exact = finish(&slabs(&quasi_dynamic(1e-8, 20), 10.0, &fluid));
+    let exact = finish(&wet_slabs(&quasi_dynamic(1e-8, 20), 10.0, &fluid));
     let slips = fault(&exact).iter().fold(0.0f64, |most, point| most.max(point[0].abs()));
     let errors = [0.05, 0.0125].map(|dt| {
-        let mut case = slabs(&json!("static"), 10.0, &fluid);
+        let mut case = wet_slabs(&json!("static"), 10.0, &fluid);
         case["steps"][0]["dt"] = json!({"initial": dt, "min": 1e-6, "max": dt});
         let run = finish(&case);
         println!("{dt}: {:?}", apart(&exact, &run));
@@ -123,7 +98,7 @@ fn water_at_the_stages_is_that_of_static_increments() {
     for state in &exact.states {
         close("energy", state.energy.error(), 0.0, 1e-3 * exact.last().energy.external_work);
     }
-    let mut case = slabs(&quasi_dynamic(1e-8, 20), 10.0, &fluid);
+    let mut case = wet_slabs(&quasi_dynamic(1e-8, 20), 10.0, &fluid);
     let rest = json!({"name": "rest", "duration": 1e-6, "scheme": "static", "dt": {"initial": 1e-6}});
     case["steps"] = json!([case["steps"][0], rest]);
     let run = finish(&case);
@@ -146,13 +121,13 @@ fn a_measured_pressure_is_linear_between_times_and_places() {
     let measured = json!({"measured": {"file": "water.csv", "along": "x"}});
     let [left, right] = ["max(0, 1 - x/3)", "max(0, 1 - abs(x - 3)/3)"];
     let written = json!(format!("0.8*min(t/4, 1)*{right} + 0.2*min(max((t - 4)/8, 0), 1)*{left}"));
-    let mut told = slabs(&json!("static"), 16.0, &measured);
+    let mut told = wet_slabs(&json!("static"), 16.0, &measured);
     told["steps"][0]["dt"] = json!({"initial": 0.2, "max": 0.2});
     let mut plain = told.clone();
     plain["contacts"]["fault"]["fluid_pressure"] = written.clone();
     let gap = apart(&finish(&plain), &finish_at(&told, &path));
     assert!(gap.iter().all(|gap| *gap < 1e-9), "static: {gap:?}");
-    let fast = |fluid: &Value| finish_at(&slabs(&quasi_dynamic(1e-8, 1), 16.0, fluid), &path);
+    let fast = |fluid: &Value| finish_at(&wet_slabs(&quasi_dynamic(1e-8, 1), 16.0, fluid), &path);
     let [one, other] = [fast(&written), fast(&measured)];
     let gap = apart(&one, &other);
     assert!(gap.iter().all(|gap| *gap < 1e-6), "quasi-dynamic: {gap:?}");
@@ -181,7 +156,7 @@ fn a_measured_pressure_is_linear_between_times_and_places() {
 /// Where water bears all of the pressure a quasi-dynamic step ends with what to do.
 #[test]
 fn water_that_bears_all_is_told_of() {
-    let case = slabs(&quasi_dynamic(1e-5, 20), 20.0, &json!("0.2*t"));
+    let case = wet_slabs(&quasi_dynamic(1e-5, 20), 20.0, &json!("0.2*t"));
     let mut run = fecontact::run::Simulation::new(crate::common::model(&case));
     let told = loop {
         match run.next_increment() {
@@ -191,7 +166,7 @@ fn water_that_bears_all_is_told_of() {
         }
     };
     assert!(told.contains("the pressure has dropped to") && told.contains("or lower fluid_pressure"), "{told}");
-    let mut case = slabs(&quasi_dynamic(1e-5, 20), 20.0, &json!("of_bodies"));
+    let mut case = wet_slabs(&quasi_dynamic(1e-5, 20), 20.0, &json!("of_bodies"));
     case["bodies"]["upper"]["pore_fluid"] = json!({"bulk_modulus": 1e3, "porosity": 0.3});
     assert!(refusal(&case).contains("quasi_dynamic"), "{}", refusal(&case));
 }
@@ -255,7 +230,7 @@ fn water_goes_on_in_a_rupture_and_after_it() {
 
 /// A fault between periodic sides, under conditions that vary along it with its period and are shifted by a part of it.
 fn periodic(scheme: &Value, shift: f64) -> Value {
-    let mut case = slabs(scheme, 20.0, &json!(format!("0.6*(1 - exp(-t/5))*(1 + cos(2*pi*(x - {shift})/6))")));
+    let mut case = wet_slabs(scheme, 20.0, &json!(format!("0.6*(1 - exp(-t/5))*(1 + cos(2*pi*(x - {shift})/6))")));
     case["periodic"] = json!([["lower_left", "lower_right"], ["upper_left", "upper_right"]]);
     let fault = &mut case["contacts"]["fault"];
     fault["along"] = json!({"a": format!("0.014 + 0.003*sin(2*pi*(x - {shift})/6)")});

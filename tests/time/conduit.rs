@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, close, finish};
+use crate::slabs::{differences, slabs};
 use fecontact::contact::force::ContactState;
 use fecontact::model::state::State;
 use fecontact::run::{Saved, Simulation};
@@ -12,31 +13,9 @@ fn quasi_dynamic(tolerance: f64) -> Value {
     json!({"quasi_dynamic": {"tolerance": tolerance, "every": 10}})
 }
 
-/// Two unequal slabs with a fault between them, node facing node, along which water flows from a well.
-fn slabs(scheme: &Value, flow: &Value) -> Value {
-    let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
-        "upper",
-        [12, 4],
-        [0.0, 0.0],
-        [6.0, 1.0],
-    );
-    let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.25, "density": 1e-6}});
-    json!({
-        "mesh": mesh.json(),
-        "bodies": {"lower": body(200.0), "upper": body(120.0)},
-        "contacts": {"fault": {
-            "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small",
-            "normal": {"alpha_n": 4000}, "radiation_damping": 0.02,
-            "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.012, "b": 0.010, "D_c": 2e-3, "theta": 20,
-                         "alpha_t": 4000},
-            "fluid_pressure": {"flow": flow},
-            "initial": {"pressure": "2 + 0.1*x", "traction": 1.1, "balanced": true},
-        }},
-        "newton": {"tolerance": 1e-12},
-        "steps": [{"name": "inject", "duration": 10, "scheme": scheme, "dt": {"initial": 1e-3}, "supports": [
-            {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": {"rate": 1e-4}, "uy": 0},
-        ]}],
-    })
+/// The slabs with water that flows along their fault.
+fn wet_slabs(scheme: &Value, flow: &Value) -> Value {
+    slabs(scheme, 10.0, &json!({"fluid_pressure": {"flow": flow}}))
 }
 
 /// Slip, pressure and p_w of every point of the fault.
@@ -47,11 +26,7 @@ fn fault(run: &Finished) -> Vec<[f64; 3]> {
 
 /// Largest difference of two faults in each of the three, over the largest value.
 fn apart(a: &Finished, b: &Finished) -> [f64; 3] {
-    let (a, b) = (fault(a), fault(b));
-    [0, 1, 2].map(|i| {
-        let largest = a.iter().fold(0.0f64, |most, a| most.max(a[i].abs()));
-        a.iter().zip(&b).fold(0.0f64, |most, (a, b)| most.max((a[i] - b[i]).abs())) / largest
-    })
+    differences(&fault(a), &fault(b))
 }
 
 fn balances(run: &Finished) {
@@ -70,12 +45,12 @@ fn quasi_dynamic_water_is_that_of_static_increments() {
         "storage": 0.05, "transmissivity": 0.01, "viscosity": 1, "per_slip": 0.5, "closing": 4,
         "wells": [{"at": [2, 0], "rate": 0.03, "until": 6}],
     });
-    let case = slabs(&quasi_dynamic(1e-7), &flow);
+    let case = wet_slabs(&quasi_dynamic(1e-7), &flow);
     let exact = finish(&case);
     balances(&exact);
     close("injected", exact.last().conduits[0].amounts.injected, 0.18, 1e-12);
     let errors = [0.1, 0.025].map(|dt| {
-        let mut case = slabs(&json!("static"), &flow);
+        let mut case = wet_slabs(&json!("static"), &flow);
         case["steps"][0]["dt"] = json!({"initial": dt, "min": 1e-6, "max": dt});
         let run = finish(&case);
         balances(&run);
@@ -101,7 +76,7 @@ fn quasi_dynamic_water_is_that_of_static_increments() {
 fn water_goes_round_a_periodic_fault() {
     let [one, other] = [0.0, 2.5].map(|shift| {
         let flow = json!({"storage": 0.05, "transmissivity": 0.01, "viscosity": 1, "wells": [{"at": [(5.0 + shift) % 6.0, 0], "rate": 0.015}]});
-        let mut case = slabs(&quasi_dynamic(1e-7), &flow);
+        let mut case = wet_slabs(&quasi_dynamic(1e-7), &flow);
         case["periodic"] = json!([["lower_left", "lower_right"], ["upper_left", "upper_right"]]);
         case["contacts"]["fault"]["initial"] = json!({"pressure": 2, "traction": 1.1, "balanced": true});
         let run = finish(&case);

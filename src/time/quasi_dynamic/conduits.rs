@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::model::state::State;
 
 /// Water of all contacts along which it flows.
-pub struct Waters<'a> {
+pub struct Conduits<'a> {
     flowing: Vec<Flowing<'a>>,
     /// Number of points of all contacts
     count: usize,
@@ -30,7 +30,7 @@ struct Flowing<'a> {
     stages: Vec<(Vec<f64>, Amounts)>,
 }
 
-impl<'a> Waters<'a> {
+impl<'a> Conduits<'a> {
     /// Water at t₀.
     pub fn new(model: &'a Model, state: &'a State) -> Self {
         let mut count = 0;
