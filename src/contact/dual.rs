@@ -18,7 +18,7 @@ pub trait Number: Clone + Default {
     fn map(&self, value: f64, derivative: f64) -> Self;
 
     /// A function of two numbers, given its value and partial derivatives.
-    fn join(value: f64, a: (&Self, f64), b: (&Self, f64)) -> Self;
+    fn join(value: f64, of: [&Self; 2], by: [f64; 2]) -> Self;
 
     /// Adds `factor · other`.
     fn accumulate(&mut self, factor: f64, other: &Self);
@@ -36,23 +36,23 @@ pub trait Number: Clone + Default {
 
     /// self + other.
     fn plus(&self, other: &Self) -> Self {
-        Self::join(self.value() + other.value(), (self, 1.0), (other, 1.0))
+        Self::join(self.value() + other.value(), [self, other], [1.0, 1.0])
     }
 
     /// self − other.
     fn minus(&self, other: &Self) -> Self {
-        Self::join(self.value() - other.value(), (self, 1.0), (other, -1.0))
+        Self::join(self.value() - other.value(), [self, other], [1.0, -1.0])
     }
 
     /// self · other.
     fn times(&self, other: &Self) -> Self {
-        Self::join(self.value() * other.value(), (self, other.value()), (other, self.value()))
+        Self::join(self.value() * other.value(), [self, other], [other.value(), self.value()])
     }
 
     /// self/other.
     fn over(&self, other: &Self) -> Self {
         let value = self.value() / other.value();
-        Self::join(value, (self, 1.0 / other.value()), (other, -value / other.value()))
+        Self::join(value, [self, other], [1.0 / other.value(), -value / other.value()])
     }
 }
 
@@ -77,7 +77,7 @@ impl Number for f64 {
         value
     }
 
-    fn join(value: f64, _: (&Self, f64), _: (&Self, f64)) -> Self {
+    fn join(value: f64, _: [&Self; 2], _: [f64; 2]) -> Self {
         value
     }
 
@@ -136,7 +136,7 @@ impl Number for Dual {
         mapped
     }
 
-    fn join(value: f64, (a, da): (&Self, f64), (b, db): (&Self, f64)) -> Self {
+    fn join(value: f64, [a, b]: [&Self; 2], [da, db]: [f64; 2]) -> Self {
         if b.count == 0 {
             return a.map(value, da);
         }

@@ -65,7 +65,7 @@ impl SegmentSearch for SegmentTree {
             Some(near) => self.climb(point, &exact, &counts, near, &mut nearest),
             None => self.descend(point, &exact, &counts, self.root()?, &mut nearest),
         }
-        nearest.map(|(_, number)| number)
+        nearest.map(|nearest| nearest.segment)
     }
 
     fn by_distance(&self, slave: &SlavePoint, surface: &Surface, x: &Configuration) -> impl Iterator<Item = usize> {
@@ -151,32 +151,32 @@ impl SegmentTree {
         exact: &impl Fn(usize) -> f64,
         counts: &impl Fn(Branch) -> bool,
         near: usize,
-        nearest: &mut Option<(f64, usize)>,
+        nearest: &mut Option<Nearest>,
     ) {
         self.descend(point, exact, counts, Branch::of(near), nearest);
         for (level, boxes) in self.levels.iter().enumerate() {
             let other = Branch { level, number: (near >> level) ^ 1 };
             let Some(half) = boxes.get(other.number) else { continue };
-            if nearest.is_none_or(|(best, _)| half.squared_distance(point) <= best) {
+            if nearest.is_none_or(|best| half.squared_distance(point) <= best.distance) {
                 self.descend(point, exact, counts, other, nearest);
             }
         }
     }
 
-    /// Searches for a nearer segment in a branch, the nearer half first; `nearest` is the best so far and its distance.
+    /// Searches for a nearer segment in a branch, the nearer half first; `nearest` is the best so far.
     fn descend(
         &self,
         point: Vector2<f64>,
         exact: &impl Fn(usize) -> f64,
         counts: &impl Fn(Branch) -> bool,
         branch: Branch,
-        nearest: &mut Option<(f64, usize)>,
+        nearest: &mut Option<Nearest>,
     ) {
         if !counts(branch) {
             return;
         }
         if branch.level == 0 {
-            let found = (exact(branch.number), branch.number);
+            let found = Nearest { distance: exact(branch.number), segment: branch.number };
             if nearest.is_none_or(|nearest| found < nearest) {
                 *nearest = Some(found);
             }
@@ -191,11 +191,18 @@ impl SegmentTree {
             halves.swap(0, 1);
         }
         for (distance, half) in halves.into_iter().flatten() {
-            if nearest.is_none_or(|(best, _)| distance <= best) {
+            if nearest.is_none_or(|best| distance <= best.distance) {
                 self.descend(point, exact, counts, half, nearest);
             }
         }
     }
+}
+
+/// The nearest segment so far, by its squared distance, then its number.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+struct Nearest {
+    distance: f64,
+    segment: usize,
 }
 
 /// A branch or segment that may be the nearest; the nearest is at the top of the heap.

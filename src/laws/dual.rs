@@ -106,7 +106,7 @@ impl<const N: usize> Number for Dual<N> {
 impl<const N: usize> Dual<N> {
     /// A function of two numbers, given its value and partial derivatives.
     #[inline]
-    fn join(value: f64, (a, by_a): (Self, f64), (b, by_b): (Self, f64)) -> Self {
+    fn join(value: f64, [a, b]: [Self; 2], [by_a, by_b]: [f64; 2]) -> Self {
         Self { value, by: std::array::from_fn(|k| by_a * a.by[k] + by_b * b.by[k]) }
     }
 }
@@ -120,7 +120,7 @@ macro_rules! operators {
             #[inline]
             fn $name(self, other: Self) -> Self {
                 let ($a, $b) = (self.value, other.value);
-                Self::join($value, (self, $by_a), (other, $by_b))
+                Self::join($value, [self, other], [$by_a, $by_b])
             }
         }
 

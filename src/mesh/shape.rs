@@ -147,7 +147,7 @@ impl ElementKind {
     pub fn quadrature(self) -> Vec<QuadraturePoint> {
         match self {
             Self::T3 => vec![QuadraturePoint { at: [1.0 / 3.0; 2], weight: 0.5 }],
-            Self::T6 => triangle_rule(&[(1.0 / 6.0, 1.0 / 6.0)]),
+            Self::T6 => triangle_rule([1.0 / 6.0], [1.0 / 6.0]),
             Self::Q4 => square_rule(2),
             Self::Q8 | Self::Q9 => square_rule(3),
         }
@@ -167,12 +167,12 @@ impl ElementKind {
     #[doc(hidden)]
     pub fn mass_quadrature(self) -> Vec<QuadraturePoint> {
         match self {
-            Self::T3 => triangle_rule(&[(1.0 / 6.0, 1.0 / 6.0)]),
+            Self::T3 => triangle_rule([1.0 / 6.0], [1.0 / 6.0]),
             // Degree 4, six points: D. A. Dunavant (1985), Int. J. Numer. Meth. Engng 21, 1129.
-            Self::T6 => triangle_rule(&[
-                (0.445_948_490_915_965, 0.223_381_589_678_011 / 2.0),
-                (0.091_576_213_509_771, 0.109_951_743_655_322 / 2.0),
-            ]),
+            Self::T6 => triangle_rule(
+                [0.445_948_490_915_965, 0.091_576_213_509_771],
+                [0.223_381_589_678_011 / 2.0, 0.109_951_743_655_322 / 2.0],
+            ),
             Self::Q4 => square_rule(2),
             Self::Q8 | Self::Q9 => square_rule(3),
         }
@@ -189,10 +189,11 @@ fn lagrange3(node: f64, x: f64) -> (f64, f64) {
 }
 
 /// Symmetric triangle rule: each (a, weight) represents the three points with barycentric coordinates (a, a, 1 − 2a).
-fn triangle_rule(orbits: &[(f64, f64)]) -> Vec<QuadraturePoint> {
-    orbits
-        .iter()
-        .flat_map(|&(a, weight)| {
+fn triangle_rule<const N: usize>(places: [f64; N], weights: [f64; N]) -> Vec<QuadraturePoint> {
+    places
+        .into_iter()
+        .zip(weights)
+        .flat_map(|(a, weight)| {
             let b = 1.0 - 2.0 * a;
             [[a, a], [b, a], [a, b]].map(|at| QuadraturePoint { at, weight })
         })

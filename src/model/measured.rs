@@ -103,11 +103,7 @@ impl Measured {
 
     /// The pressure at a node of a table of nodes, and time.
     pub fn at_node(&self, node: usize, time: f64) -> f64 {
-        self.columns
-            .get(node)
-            .copied()
-            .flatten()
-            .map_or(f64::NAN, |column| self.table.at(time, ([column, column], 0.0)))
+        self.columns.get(node).copied().flatten().map_or(f64::NAN, |column| self.table.at(time, [column, column], 0.0))
     }
 
     /// Whether it is a table of nodes.
@@ -185,11 +181,12 @@ impl MeasuredTable {
 
     /// Value at a time and place.
     pub fn value(&self, time: f64, place: f64) -> f64 {
-        self.at(time, between(&self.places, place))
+        let (columns, right) = between(&self.places, place);
+        self.at(time, columns, right)
     }
 
-    /// Value at a time, between two columns.
-    fn at(&self, time: f64, ([column, next_column], right): ([usize; 2], f64)) -> f64 {
+    /// Value at a time, a share `right` of the way between two columns.
+    fn at(&self, time: f64, [column, next_column]: [usize; 2], right: f64) -> f64 {
         let ([row, next_row], up) = between(&self.times, time);
         let value = |row: usize, column: usize| self.values[row * self.places.len() + column];
         let along = |row: usize| value(row, column) + right * (value(row, next_column) - value(row, column));

@@ -110,8 +110,8 @@ impl SlipEvent {
     }
 
     /// Adds an increment; `over` if no point slips any more. Slip faster than `seismic` is summed separately.
-    pub fn go_on(&mut self, state: &State, marks: impl Iterator<Item = (Mark, f64)>, seismic: f64, over: bool) {
-        for (course, (mark, rate)) in self.courses.iter_mut().zip(marks) {
+    pub fn go_on(&mut self, state: &State, marks: &[Mark], rates: &[f64], seismic: f64, over: bool) {
+        for (course, (&mark, rate)) in self.courses.iter_mut().zip(marks.iter().zip(rates)) {
             if rate.abs() > seismic {
                 course.seismic_slip += mark.slip - course.last.slip;
                 self.seismic_onset.get_or_insert(self.until);
@@ -399,7 +399,7 @@ impl ContactPoints {
         let event = if slipping || goes_on { self.events.len() } else { 0 };
         if let Some(last) = self.events.last_mut().filter(|event| !event.over) {
             let seismic = criterion.seismic_rate.unwrap_or(f64::INFINITY);
-            last.go_on(after, marks.iter().copied().zip(rates.iter().copied()), seismic, !slipping);
+            last.go_on(after, &marks, &rates, seismic, !slipping);
         }
         let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
         for ((point, (mark, rate)), (slave, state)) in points {

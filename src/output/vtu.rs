@@ -7,6 +7,10 @@
 //! A frame is a grid that hardly ever changes, and values that do: the text of the grid is made once and kept. Places have 64
 //! bits; values at points have 32, unless they are asked for as they are.
 //!
+//! They are written here, and read with `vtkio` in tests: its writer (0.7.0-rc2) has no names of components, no units, no arrays of the
+//! whole grid and no `.pvd`; it lets nobody add to what it has encoded, nor keep the text of a grid; and it passes its numbers to
+//! zlib one by one, so that a frame of 90 000 nodes takes it 2.5 s instead of 0.13 s.
+//!
 //! # Read back
 //!
 //! The arrays of such a file, of which nothing else is understood.

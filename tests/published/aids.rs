@@ -70,29 +70,29 @@ fn first_tenth(case: &mut Value) {
 }
 
 /// A block dragged over the end of its ground, by nodes.
-fn off_an_end() -> Model {
+fn off_an_end([pressed, mu, length]: [f64; 3]) -> Model {
     let body = json!({"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}});
     model(&json!({
         "mesh": Blocks::default()
             .rectangle("ground", [8, 3], [-2.0, -0.8], [2.0, 0.0])
-            .rectangle("block", [5, 3], [0.9, 0.0], [1.9, 0.6]).json(),
+            .rectangle("block", [5, 3], [0.9, 0.0], [0.9 + length, 0.6]).json(),
         "bodies": {"ground": body, "block": body},
         "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": "node_to_segment",
-                              "friction": {"law": "coulomb", "mu": 0.3}}},
+                              "friction": {"law": "coulomb", "mu": 0.3 * mu}}},
         "steps": [
             {"name": "press", "duration": 1, "dt": {"initial": 0.5},
-             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.01}]},
+             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.01 * pressed}]},
             {"name": "drag", "duration": 1, "dt": {"initial": 0.04}, "supports": [{"on": "block_top", "ux": 1.3}]},
         ],
     }))
 }
 
-fn slotted_ring() -> Model {
+fn slotted_ring([slot, mu, thickness]: [f64; 3]) -> Model {
     use std::f64::consts::PI;
     let [across, around] = [4, 48];
     let map = |s: f64, t: f64| {
-        let radius = 1.0 + 0.3 * s.powf(1.0 + 0.3 * t);
-        let angle = (2.0 * t - 1.0) * (PI - (0.05 / radius).asin());
+        let radius = 1.0 + 0.3 * thickness * s.powf(1.0 + 0.3 * t);
+        let angle = (2.0 * t - 1.0) * (PI - (0.05 * slot / radius).asin());
         [radius * angle.cos(), radius * angle.sin()]
     };
     let mut mesh = Blocks::default().block("ring", [across, around], map).json();
@@ -104,7 +104,7 @@ fn slotted_ring() -> Model {
     model(&json!({
         "mesh": mesh,
         "bodies": {"ring": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}},
-        "contacts": {"lips": {"slave": "lips", "master": "lips", "friction": {"law": "coulomb", "mu": 0.2}}},
+        "contacts": {"lips": {"slave": "lips", "master": "lips", "friction": {"law": "coulomb", "mu": 0.2 * mu}}},
         "steps": [{"name": "squeeze", "duration": 1, "dt": {"initial": 0.1}, "supports": [
             {"on": "north", "ux": 0, "uy": -0.042}, {"on": "south", "ux": 0, "uy": 0.042}]}],
     }))
@@ -123,9 +123,9 @@ fn slab(gap: f64, dt: f64, m: usize, alpha: f64, mu: f64) -> Model {
 }
 
 /// Slabs of many kinds, pressed and sheared from touch: all their counts together.
-fn ridge(slope: f64, mu: f64) -> Model {
+fn ridge(slope: f64, mu: f64, length: f64) -> Model {
     let top = |x: f64| slope * x.abs();
-    let block = |s: f64| -0.75 + 0.3 * s;
+    let block = |s: f64| -0.75 + 0.3 * length * s;
     model(&json!({
         "mesh": Blocks::default()
             .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
@@ -145,10 +145,11 @@ fn ridge(slope: f64, mu: f64) -> Model {
 }
 
 /// A cantilever 10 long and 0.25 high, pushed on the end of one like it.
-fn cantilevers() -> Model {
+fn cantilevers([height, length, overlap]: [f64; 3]) -> Model {
     model(&json!({
         "mesh": Blocks::default()
-            .rectangle("lower", [80, 2], [0.0, -0.25], [10.0, 0.0]).rectangle("upper", [83, 2], [5.0, 0.0], [15.0, 0.25]).json(),
+            .rectangle("lower", [80, 2], [0.0, -0.25 * height], [10.0 * length, 0.0])
+            .rectangle("upper", [83, 2], [5.0 * overlap, 0.0], [15.0, 0.25]).json(),
         "bodies": {
             "lower": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
             "upper": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
@@ -161,9 +162,9 @@ fn cantilevers() -> Model {
 }
 
 /// A softer block pushed by its top over a faceted ridge, with an α_t of 5 (λ + 2G)/h.
-fn faceted(height: f64, method: &str, mu: f64) -> Model {
+fn faceted(height: f64, mu: f64, length: f64) -> Model {
     let top = |x: f64| -height * x.abs();
-    let block = |s: f64| -0.75 + 0.5 * s;
+    let block = |s: f64| -0.75 + 0.5 * length * s;
     let mut case = json!({
         "mesh": Blocks::default()
             .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
@@ -172,7 +173,8 @@ fn faceted(height: f64, method: &str, mu: f64) -> Model {
             "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
             "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}},
         },
-        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "friction": {"law": "coulomb", "mu": mu}}},
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": "node_to_segment",
+                              "friction": {"law": "coulomb", "mu": mu}}},
         "steps": [
             {"name": "press", "duration": 1, "dt": {"initial": 0.25},
              "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.04}]},
@@ -233,16 +235,16 @@ const CASES: [Case; 27] = [
     quick("wedge", || committed("validation/wedge", as_it_is)),
     slow("ironing_q4", || committed("validation/ironing_q4", first_tenth)),
     slow("ironing_q8", || committed("validation/ironing_q8", first_tenth)),
-    quick("self_contact", slotted_ring),
+    quick("self_contact", || slotted_ring(AS_IT_IS)),
     slow("tube", || committed("tube", as_it_is)),
-    quick("off_an_end", off_an_end),
+    quick("off_an_end", || off_an_end(AS_IT_IS)),
     quick("impact", || struck_bar(None)),
     quick("impact_error", || struck_bar(Some(1e-6))),
     quick("slope", || committed("paper/slope", |case| case["steps"][0]["duration"] = json!(5))),
     quick("thrown", || thrown(1e5)),
-    quick("cantilevers", cantilevers),
-    quick("ridge", || faceted(0.2, "node_to_segment", 0.3)),
-    quick("valley", || ridge(0.1, 0.5)),
+    quick("cantilevers", || cantilevers(AS_IT_IS)),
+    quick("ridge", || faceted(0.2, 0.3, 1.0)),
+    quick("valley", || ridge(0.1, 0.5, 1.0)),
     quick("slab_touch", || slab(0.0, 0.1, 8, 1e6, 0.5)),
     quick("slab_touch_once", || slab(0.0, 1.0, 4, 1e6, 5.0)),
     quick("slab_gap", || slab(0.001, 1.0, 8, 1e6, 5.0)),
@@ -253,6 +255,19 @@ const CASES: [Case; 27] = [
             case["contacts"]["base"]["normal"] = json!({"alpha_n": 1e5, "penetration": 1e-7});
         })
     }),
+];
+
+/// Three numbers of a case, unchanged.
+const AS_IT_IS: [f64; 3] = [1.0; 3];
+
+/// Cases in which many states are on edge, with three of their numbers times what is given: slope, slot or gap; μ; an edge of the mesh.
+const ON_EDGE: [(&str, fn([f64; 3]) -> Model); 6] = [
+    ("ridge", |[slope, mu, length]| faceted(0.2 * slope, 0.3 * mu, length)),
+    ("valley", |[slope, mu, length]| ridge(0.1 * slope, 0.5 * mu, length)),
+    ("self_contact", slotted_ring),
+    ("off_an_end", off_an_end),
+    ("cantilevers", cantilevers),
+    ("slab_gap", |[gap, mu, stiff]| slab(0.001 * gap, 1.0, 8, 1e6 * stiff, 5.0 * mu)),
 ];
 
 fn case(name: &str) -> &'static Case {
@@ -443,7 +458,7 @@ fn every_aid_saves_solves_or_a_failure() {
 /// value lifts a little stayed closed, and softer penalties were tried first.
 #[test]
 fn slender_bodies_press_on_each_other() {
-    let cost = cost(cantilevers());
+    let cost = cost(cantilevers(AS_IT_IS));
     assert!(!cost.stopped && cost.cutbacks <= 10 && cost.solves <= 400, "{cost:?}");
 }
 
@@ -465,6 +480,37 @@ fn ablation() {
             } else if without.is_saved(with, factorizations) {
                 println!("| {aid} | {} (worse with it) | {} | {} |", case.name, with.print(), without.print());
             }
+        }
+    }
+}
+
+/// What each aid saves among twenty neighbours of each case that is on edge, whose numbers differ by up to 2 %: runs that end, and
+/// the solves without it over those with it in pairs that both end, their geometric mean.
+#[test]
+#[ignore = "slow: minutes; prints the table of neighbours of docs/aids.md"]
+fn neighbours() {
+    let wanted = std::env::var("AIDS").unwrap_or_default();
+    let share = |k: usize, base: f64| 1.0 + 0.02 * (2.0 * (base * (k + 1) as f64).fract() - 1.0);
+    // Multiples of these irrational numbers fill a cube evenly.
+    let changes: Vec<[f64; 3]> =
+        (0..20).map(|k| [0.8191725, 0.6710436, 0.5497005].map(|base| share(k, base))).collect();
+    println!("| without | case | ended with it | without it | solves, ratio |\n|---|---|---|---|---|");
+    for (name, model) in ON_EDGE {
+        let with: Vec<Cost> = changes.iter().map(|change| cost(model(*change))).collect();
+        for (aid, off) in SWITCHES.iter().filter(|(aid, _)| wanted.is_empty() || wanted.split(',').any(|of| of == *aid))
+        {
+            let without = |(change, with): (&[f64; 3], &Cost)| {
+                let mut model = model(*change);
+                off(&mut model.aids);
+                cost_until(20 * with.solves, model)
+            };
+            let without: Vec<Cost> = changes.iter().zip(&with).map(without).collect();
+            let ended = |all: &[Cost]| all.iter().filter(|cost| !cost.stopped).count();
+            let both = with.iter().zip(&without).filter(|(with, without)| !with.stopped && !without.stopped);
+            let ratios: Vec<f64> =
+                both.map(|(with, without)| (without.solves as f64 / with.solves as f64).ln()).collect();
+            let mean = (ratios.iter().sum::<f64>() / ratios.len() as f64).exp();
+            println!("| {aid} | {name} | {} | {} | {mean:.2} |", ended(&with), ended(&without));
         }
     }
 }

@@ -453,7 +453,7 @@ fn bar(name: &str, input: &BarInput, laid: Laid, model: &Model) -> Checked<Bar> 
     if let Some(bond) = input.embedded.as_ref().and_then(|embedded| embedded.bond) {
         for (k, edge) in edges.iter().enumerate() {
             for vertex in [k, k + 1] {
-                grips.push(grip(name, bond, (vertex, edge), &laid, model)?);
+                grips.push(grip(name, bond, vertex, edge, &laid, model)?);
             }
         }
     }
@@ -476,7 +476,7 @@ fn bar(name: &str, input: &BarInput, laid: Laid, model: &Model) -> Checked<Bar> 
 }
 
 /// The bond at an end of a segment.
-fn grip(name: &str, given: BarBond, (k, edge): (usize, &Linear), laid: &Laid, model: &Model) -> Checked<Grip> {
+fn grip(name: &str, given: BarBond, k: usize, edge: &Linear, laid: &Laid, model: &Model) -> Checked<Grip> {
     let (host, bar) = (&laid.hosts[k], &laid.vertices[k]);
     let size = edge.at.norm();
     let depth = model.mesh.section.weight(bar.at);

@@ -235,11 +235,10 @@ impl Store {
 
     /// Writes the number of records.
     fn write_shapes(&self) -> Result<(), Error> {
-        let shapes: Vec<(String, Value)> = self.shapes().collect();
-        for (name, shape) in &shapes {
-            put(&self.folder.join(name).join(ARRAY), &json_bytes(shape))?;
+        for (name, shape) in self.shapes() {
+            put(&self.folder.join(name).join(ARRAY), &json_bytes(&shape))?;
         }
-        let metadata = self.metadata(shapes);
+        let metadata = self.metadata();
         put(&self.folder.join(METADATA), &json_bytes(&metadata))
     }
 
@@ -279,11 +278,11 @@ impl Store {
         fixed.chain(growing)
     }
 
-    fn metadata(&self, shapes: Vec<(String, Value)>) -> Value {
+    fn metadata(&self) -> Value {
         let mut all = Map::new();
         all.insert(GROUP.into(), group());
         all.insert(ATTRIBUTES.into(), self.attributes.clone());
-        all.extend(shapes.into_iter().map(|(name, shape)| (format!("{name}/{ARRAY}"), shape)));
+        all.extend(self.shapes().map(|(name, shape)| (format!("{name}/{ARRAY}"), shape)));
         all.extend(self.descriptions().map(|is| (format!("{}/{ATTRIBUTES}", is.name), all_attributes(is))));
         json!({"metadata": all, "zarr_consolidated_format": 1})
     }

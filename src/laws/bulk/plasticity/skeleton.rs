@@ -157,7 +157,7 @@ impl<T: Number> Trial<T> {
 
 impl Skeleton {
     /// P: size of the surface through a stress, its pressure where q* = 0; infinite where there is no pressure.
-    pub fn size<T: Number>(&self, (pressure, deviator): (T, &Tensor<T>), rotation: &Tensor<T>) -> T {
+    pub fn size<T: Number>(&self, pressure: T, deviator: &Tensor<T>, rotation: &Tensor<T>) -> T {
         if pressure.value() <= 0.0 {
             return T::from(f64::INFINITY);
         }
@@ -171,17 +171,17 @@ impl Skeleton {
     /// P = p + w/p,   w = w₀ + w₁ t + w₂ t²,   p = p₀ + Δp t:     A Δp t² + 2A p₀ t + C = 0 where P does not change
     /// A = Δp² + w₂,   C = Δp (p₀² − w₀) + w₁ p₀ = p₀² dP/dt at the start
     /// ```
-    pub fn least(&self, [from, to]: [(f64, &Tensor<f64>); 2], rotation: &Tensor<f64>) -> f64 {
-        let apart = [from, to].map(|(pressure, deviator)| sum([1.0, -pressure], [deviator, rotation]));
-        let (rise, change) = (to.0 - from.0, sum([1.0, -1.0], [&apart[1], &apart[0]]));
+    pub fn least(&self, [from, to]: [f64; 2], deviators: [&Tensor<f64>; 2], rotation: &Tensor<f64>) -> f64 {
+        let apart = [0, 1].map(|k| sum([1.0, -[from, to][k]], [deviators[k], rotation]));
+        let (rise, change) = (to - from, sum([1.0, -1.0], [&apart[1], &apart[0]]));
         let share = 1.5 / (self.critical * self.critical);
         let w = [dot(&apart[0], &apart[0]), 2.0 * dot(&apart[0], &change), dot(&change, &change)].map(|w| share * w);
-        let (a, c) = (rise * rise + w[2], rise * (from.0 * from.0 - w[0]) + w[1] * from.0);
-        if from.0 <= 0.0 || c >= 0.0 {
+        let (a, c) = (rise * rise + w[2], rise * (from * from - w[0]) + w[1] * from);
+        if from <= 0.0 || c >= 0.0 {
             return 0.0;
         }
-        let root = (a * a * from.0 * from.0 - a * rise * c).max(0.0).sqrt();
-        (-c / (a * from.0 + root)).min(1.0)
+        let root = (a * a * from * from - a * rise * c).max(0.0).sqrt();
+        (-c / (a * from + root)).min(1.0)
     }
 
     /// R after a plastic strain ‖Δε_p‖, (4).
@@ -320,13 +320,12 @@ impl Skeleton {
         strain: &Tensor<Varied>,
     ) -> Result<State<Varied>, f64> {
         let [before, after] = [&old.strain, strain].map(|strain| elastic.stress(strain));
-        let ratio_of = |stress: &(Varied, Tensor<Varied>)| {
-            self.size((stress.0, &stress.1), &old.rotation) * old.structure / old.p_c
-        };
+        let ratio_of =
+            |stress: &(Varied, Tensor<Varied>)| self.size(stress.0, &stress.1, &old.rotation) * old.structure / old.p_c;
         let mut start = Varied::from(1.0);
         if self.loosening.is_some() {
             let [from, to] = [&before, &after].map(|stress| (stress.0.value, values(&stress.1)));
-            let share = self.least([(from.0, &from.1), (to.0, &to.1)], &values(&old.rotation));
+            let share = self.least([from.0, to.0], [&from.1, &to.1], &values(&old.rotation));
             // Where P does not change with the share, neither does R with its derivatives.
             let [rest, share] = [1.0 - share, share].map(Varied::from);
             let lowest = (before.0 * rest + after.0 * share, sum([rest, share], [&before.1, &after.1]));

@@ -263,7 +263,7 @@ impl ReturnMap for SysCamClay {
         let tensor = Vector4::from(stress.components());
         let (pressure, deviator) = split(&tensor);
         let rotation = self.initial_rotation(&deviator);
-        let size = if pressure > 0.0 { self.skeleton.size((pressure, &deviator), &rotation) } else { 0.0 };
+        let size = if pressure > 0.0 { self.skeleton.size(pressure, &deviator, &rotation) } else { 0.0 };
         let p_c = self.clay.initial_p_c(size, self.structure);
         SHEAR.set(history, self.clay.initial_shear(pressure));
         P_C.set(history, p_c);
@@ -339,7 +339,7 @@ impl ReturnMap for SysCamClay {
         match self.skeleton.loosening {
             Some(_) => {
                 let [from, to] = &ways;
-                self.skeleton.least([(from.0, &from.1), (to.0, &to.1)], ROTATION.of(history))
+                self.skeleton.least([from.0, to.0], [&from.1, &to.1], ROTATION.of(history))
             }
             None => share_within(|share| self.yield_indicator(&(before + share * (trial - before)), history)),
         }
