@@ -24,6 +24,7 @@ cfg_if::cfg_if! {
         pub mod measured;
         pub mod method;
         pub mod pore_flow;
+        pub mod resistance;
         pub mod scheme;
         pub mod state;
         pub mod step;
@@ -39,6 +40,7 @@ cfg_if::cfg_if! {
         pub(crate) mod measured;
         pub(crate) mod method;
         pub(crate) mod pore_flow;
+        pub(crate) mod resistance;
         pub(crate) mod scheme;
         pub(crate) mod state;
         pub(crate) mod step;

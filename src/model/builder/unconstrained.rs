@@ -4,19 +4,7 @@
 //! # Unconstrained bodies
 //!
 //! A shared node, a periodic copy, a follower of a platen, a support, a spring and a dashpot are equations between the rigid
-//! motions of the parts of a model, one row of numbers each. A motion orthogonal to all of them meets no resistance.
-//!
-//! # Parts
-//!
-//! The parts of a model move as rigid bodies:
-//!
-//! ```text
-//! u(X) = (U, V) + Θ J (X − X_c)/R          R: to the farthest node, so that all three numbers are lengths
-//! ```
-//!
-//! # Resistance
-//!
-//! The resisted motions form a vector space.
+//! motions of the parts of a model, one row of numbers each. A motion orthogonal to all of them meets no resistance ([`Resistance`]).
 
 use std::collections::BTreeMap;
 
@@ -33,6 +21,7 @@ use crate::contact::pair::ContactPair;
 use crate::contact::surface::Surface;
 use crate::mesh::joined::Joined;
 use crate::mesh::rigid::RigidBody;
+use crate::model::resistance::{FEW_PARTS, Frame, MOTIONS, Resistance, Term};
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
@@ -118,10 +107,6 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
     Err(ModelError::new("point_masses", message))
 }
 
-/// Number of parts of a group up to which motions are checked here; larger groups are left to the solver, which reports free
-/// modes.
-const FEW_PARTS: usize = 32;
-
 /// Fraction of the largest motion below which motions are not reported.
 const NAMED: f64 = 0.1;
 
@@ -140,9 +125,16 @@ fn check_floating(given: &[LoadStep], model: &Model) -> Checked<()> {
 fn check_floating_in(steps: &[(usize, &Step)], given: &[LoadStep], model: &Model) -> Checked<()> {
     let Some((_, first)) = steps.first() else { return Ok(()) };
     let parts = Parts::of(model, first);
-    let groups = Groups::of(&parts);
+    let mut coupled = Resistance::nothing(parts.parts.len());
+    parts.couplings().iter().for_each(|row| coupled.equate(row));
+    // Larger groups are left to the solver, which reports free motions.
+    let groups = coupled.groups().into_iter().filter(|group| group.len() <= FEW_PARTS && parts.are_checked(group));
+    let groups: Vec<_> = groups.collect();
     for &(k, step) in steps {
-        let Some(free) = groups.free_motion(step) else { continue };
+        let mut resistance = coupled.clone();
+        constraints(step).for_each(|at| resistance.equate(&parts.row(&[at])));
+        let free = groups.iter().find_map(|group| Some(parts.described(group, &resistance.free_motion(group)?)));
+        let Some(free) = free else { continue };
         let constrained = if given[k].supports.is_empty() && step.supports.is_empty() {
             "there is no support at all"
         } else {
@@ -164,76 +156,6 @@ fn constraints(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
     supports.chain(dofs.map(Direction::from)).map(|at| (at.node(), at.vector()))
 }
 
-/// Groups of parts that are coupled, directly or through others.
-struct Groups<'m> {
-    parts: &'m Parts<'m>,
-    members: Vec<Vec<usize>>,
-    /// group of each part and its index there; `None` for parts left to the solver
-    place: Vec<Option<(usize, usize)>>,
-    /// motions resisted by couplings in each group
-    resisted: Vec<Resisted>,
-}
-
-impl<'m> Groups<'m> {
-    fn of(parts: &'m Parts<'m>) -> Self {
-        let couplings = parts.couplings();
-        let mut joined = Joined::new(parts.parts.len());
-        for row in &couplings {
-            row.windows(2).for_each(|two| joined.join(two[0].0, two[1].0));
-        }
-        let is_checked = |group: &Vec<usize>| {
-            let has_bodies = group.iter().any(|&part| !parts.parts[part].bodies.is_empty());
-            let is_there = group.iter().any(|&part| !parts.parts[part].nodes.is_empty());
-            is_there && has_bodies && group.len() <= FEW_PARTS && !group.iter().any(|&part| parts.parts[part].on_rigid)
-        };
-        let members: Vec<Vec<usize>> = joined.groups().into_iter().filter(is_checked).collect();
-        let mut place = vec![None; parts.parts.len()];
-        for (g, group) in members.iter().enumerate() {
-            group.iter().enumerate().for_each(|(slot, &part)| place[part] = Some((g, slot)));
-        }
-        let resisted = members.iter().map(|group| Resisted::nothing(3 * group.len())).collect();
-        let mut groups = Self { parts, members, place, resisted };
-        let mut resisted = std::mem::take(&mut groups.resisted);
-        couplings.iter().for_each(|row| groups.add(row, &mut resisted));
-        Self { resisted, ..groups }
-    }
-
-    /// Adds a row to the resisted motions.
-    fn add(&self, row: &Row, resisted: &mut [Resisted]) {
-        let Some((group, _)) = row.first().and_then(|(part, _)| self.place[*part]) else { return };
-        let mut sum = DVector::zeros(3 * self.members[group].len());
-        for (part, share) in row {
-            let Some((_, slot)) = self.place[*part] else { return };
-            (0..3).for_each(|i| sum[3 * slot + i] += share[i]);
-        }
-        // Cancelling terms leave round-off relative to their size.
-        let size = row.iter().map(|(_, share)| share.norm_squared()).sum::<f64>().sqrt();
-        resisted[group].add(sum, size);
-    }
-
-    /// Describes the unconstrained motion in a step, if there is one.
-    fn free_motion(&self, step: &Step) -> Option<String> {
-        let mut resisted = self.resisted.clone();
-        constraints(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
-        let mut motions = resisted.iter().zip(&self.members);
-        motions.find_map(|(resisted, group)| Some(self.message(group, &resisted.free()?)))
-    }
-
-    fn message(&self, group: &[usize], motion: &DVector<f64>) -> String {
-        let moves = |k: usize| motion[k].abs() > NAMED * motion.amax();
-        let moving = (0..group.len()).filter(|slot| (0..3).any(|i| moves(3 * slot + i)));
-        let mut names: Vec<String> = moving.flat_map(|slot| self.parts.names(group[slot])).collect();
-        names.dedup();
-        let words = ["along x", "along y", "in rotation"];
-        let free: Vec<&str> =
-            (0..3).filter(|i| (0..group.len()).any(|slot| moves(3 * slot + i))).map(|i| words[i]).collect();
-        format!("{} can move freely {}", names.join(" with "), free.join(" with "))
-    }
-}
-
-/// An equation between the motions of parts: coefficients of U, V and Θ of each.
-type Row = Vec<(usize, Vector3<f64>)>;
-
 /// A part: bodies in contact or with two shared nodes, or a node outside all bodies.
 struct Part {
     /// bodies
@@ -241,8 +163,7 @@ struct Part {
     /// whether it touches a rigid body
     on_rigid: bool,
     nodes: Vec<usize>,
-    centre: Vector2<f64>,
-    radius: f64,
+    frame: Frame,
 }
 
 /// All parts of a model.
@@ -288,20 +209,34 @@ impl<'m> Parts<'m> {
         }
     }
 
+    /// Whether a group is checked: it has bodies that are there, and touches no rigid body.
+    fn are_checked(&self, group: &[usize]) -> bool {
+        let any = |has: fn(&Part) -> bool| group.iter().any(|&part| has(&self.parts[part]));
+        any(|part| !part.bodies.is_empty()) && any(|part| !part.nodes.is_empty()) && !any(|part| part.on_rigid)
+    }
+
+    /// Describes a motion of a group.
+    fn described(&self, group: &[usize], motion: &DVector<f64>) -> String {
+        let moves = |k: usize| motion[k].abs() > NAMED * motion.amax();
+        let moving = (0..group.len()).filter(|slot| (0..3).any(|i| moves(3 * slot + i)));
+        let mut names: Vec<String> = moving.flat_map(|slot| self.names(group[slot])).collect();
+        names.dedup();
+        let free = (0..3).filter(|i| (0..group.len()).any(|slot| moves(3 * slot + i))).map(|i| MOTIONS[i]);
+        format!("{} can move freely {}", names.join(" with "), free.collect::<Vec<_>>().join(" with "))
+    }
+
     /// Σ d·u of nodes and vectors d.
-    fn row(&self, terms: &[(usize, Vector2<f64>)]) -> Row {
+    fn row(&self, terms: &[(usize, Vector2<f64>)]) -> Vec<Term> {
         terms.iter().map(|&(node, d)| self.term(self.of_node[node][0], node, d)).collect()
     }
 
     /// d·u of a node as part of a rigid motion.
-    fn term(&self, part: usize, node: usize, d: Vector2<f64>) -> (usize, Vector3<f64>) {
-        let Part { centre, radius, .. } = self.parts[part];
-        let arm = (self.model.mesh.nodes[node] - centre) / radius;
-        (part, Vector3::new(d.x, d.y, d.y * arm.x - d.x * arm.y))
+    fn term(&self, part: usize, node: usize, d: Vector2<f64>) -> Term {
+        Term { part, share: self.parts[part].frame.motion(self.model.mesh.nodes[node]).tr_mul(&d) }
     }
 
     /// All expressions that are zero in every step.
-    fn couplings(&self) -> Vec<Row> {
+    fn couplings(&self) -> Vec<Vec<Term>> {
         let mut rows = self.of_shape();
         for (node, parts) in self.of_node.iter().enumerate() {
             let hinge = |d: Vector2<f64>, other: usize| vec![self.term(parts[0], node, d), self.term(other, node, -d)];
@@ -330,7 +265,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Equations of bars: their segments keep their length and their angles, and bond keeps their place.
-    fn of_bars(&self) -> Vec<Row> {
+    fn of_bars(&self) -> Vec<Vec<Term>> {
         let row = |vectors: &Vectors, d: [Vector2<f64>; 2]| {
             let terms = vectors.terms().map(|(node, share)| (node, d[0] * share[0] + d[1] * share[1]));
             self.row(&terms.collect::<Vec<_>>())
@@ -353,7 +288,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Intrinsic constraints of a part: in axisymmetry all motions except the axial one, and the rotation of a node.
-    fn of_shape(&self) -> Vec<Row> {
+    fn of_shape(&self) -> Vec<Vec<Term>> {
         let axisymmetric = self.model.mesh.section.is_axisymmetric();
         let of = |(part, Part { bodies, nodes, .. }): (usize, &Part)| {
             let hoops = axisymmetric && !bodies.is_empty();
@@ -361,7 +296,7 @@ impl<'m> Parts<'m> {
             [(u, 0), (turn, 2)]
                 .into_iter()
                 .filter(|(resisted, _)| *resisted)
-                .map(move |(_, i)| vec![(part, Vector3::ith(i, 1.0))])
+                .map(move |(_, i)| vec![Term { part, share: Vector3::ith(i, 1.0) }])
         };
         self.parts.iter().enumerate().flat_map(of).collect()
     }
@@ -371,11 +306,9 @@ const AXES: [Vector2<f64>; 2] = [Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)]
 
 impl Part {
     fn of(owners: &[usize], nodes: Vec<usize>, model: &Model) -> Self {
-        let place = |node: &usize| model.mesh.nodes[*node];
-        let centre = nodes.iter().map(place).sum::<Vector2<f64>>() / nodes.len() as f64;
-        let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, node| r.max((place(node) - centre).norm()));
+        let frame = Frame::of(nodes.iter().map(|&node| model.mesh.nodes[node]));
         let bodies = owners.iter().copied().filter(|owner| *owner < model.bodies.len()).collect();
-        Self { bodies, on_rigid: false, nodes, centre, radius }
+        Self { bodies, on_rigid: false, nodes, frame }
     }
 }
 
@@ -419,57 +352,4 @@ fn bonded(model: &Model, owners: &[Vec<usize>]) -> Vec<(usize, usize)> {
         }
     }
     bonded
-}
-
-/// Relative remainder below which an equation is linearly dependent on the others.
-const NOTHING_NEW: f64 = 1e-5;
-
-/// Motions resisted by equations: an orthonormal basis.
-#[derive(Clone)]
-struct Resisted {
-    size: usize,
-    basis: Vec<DVector<f64>>,
-}
-
-impl Resisted {
-    /// Creates an empty basis for motions with `size` components.
-    fn nothing(size: usize) -> Self {
-        Self { size, basis: Vec::new() }
-    }
-
-    /// Component of a vector orthogonal to the basis.
-    fn rest(&self, mut of: DVector<f64>) -> DVector<f64> {
-        // The second pass removes the round-off of the first.
-        for known in self.basis.iter().chain(&self.basis) {
-            let along = known.dot(&of);
-            of.axpy(-along, known, 1.0);
-        }
-        of
-    }
-
-    /// Adds one more equation, with terms of the given size.
-    fn add(&mut self, row: DVector<f64>, size: f64) {
-        if self.basis.len() == self.size {
-            return;
-        }
-        let rest = self.rest(row);
-        let norm = rest.norm();
-        if norm > NOTHING_NEW * size {
-            self.basis.push(rest / norm);
-        }
-    }
-
-    /// A unit motion without resistance.
-    fn free(&self) -> Option<DVector<f64>> {
-        if self.basis.len() == self.size {
-            return None;
-        }
-        let rest = |k: usize| {
-            let mut unit = DVector::zeros(self.size);
-            unit[k] = 1.0;
-            self.rest(unit)
-        };
-        let longer = |a: DVector<f64>, b: DVector<f64>| if b.norm() > a.norm() { b } else { a };
-        (0..self.size).map(rest).reduce(longer)
-    }
 }
