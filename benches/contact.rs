@@ -10,8 +10,7 @@ use fecontact::contact::mortar::{Hats, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, LawsInTime, Presumption};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::{Index, KeptSearch};
-use fecontact::contact::segment_grid::SegmentGrid;
-use fecontact::contact::segment_search::{Exhaustive, SegmentSearch};
+use fecontact::contact::segment_search::SegmentSearch;
 use fecontact::contact::segment_tree::SegmentTree;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
 use fecontact::laws::friction::{
@@ -21,6 +20,10 @@ use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use fecontact::model::boundary::Expression;
 use nalgebra::Vector2;
+use segment_searches::{Exhaustive, SegmentGrid};
+
+#[path = "../tests/contact/segment_searches.rs"]
+mod segment_searches;
 
 /// Positions of the nodes, and what lies between them.
 type Surfaces = (Vec<Vector2<f64>>, ContactPair);

@@ -30,7 +30,6 @@ pub mod projection;
 pub mod response;
 pub mod scatter;
 pub mod search;
-pub mod segment_grid;
 pub mod segment_search;
 pub mod segment_tree;
 pub mod sight;

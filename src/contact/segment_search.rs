@@ -1,4 +1,4 @@
-//! How segments of a surface are found by their place: what a search answers, and the plainest one, through all segments.
+//! How segments of a surface are found by their place: what a search answers.
 
 use super::surface::{Segment, SlavePoint, Surface};
 use crate::mesh::boxes::Box2;
@@ -70,24 +70,4 @@ pub fn squared_distance(slave: &SlavePoint, segment: &Segment, x: &Configuration
     };
     let [a, b] = segment.ends;
     segment.middle.map_or_else(|| from_chord([a, b]), |m| from_chord([a, m]).min(from_chord([m, b])))
-}
-
-/// The search through all segments.
-#[derive(Clone, Debug, Default)]
-pub struct Exhaustive;
-
-impl SegmentSearch for Exhaustive {
-    fn update(&mut self, _: &Surface, _: &Configuration) {}
-
-    fn meeting(&self, surface: &Surface, x: &Configuration, other: &Box2, found: &mut Vec<usize>) {
-        let meets = |segment: &Segment| bounding_box(segment, surface.origin(), x).meets(other);
-        found.extend((0..surface.segments.len()).filter(|&k| meets(&surface.segments[k])));
-    }
-
-    fn by_distance(&self, slave: &SlavePoint, surface: &Surface, x: &Configuration) -> impl Iterator<Item = usize> {
-        let distances = surface.segments.iter().map(|segment| squared_distance(slave, segment, x));
-        let mut all: Vec<(f64, usize)> = distances.zip(0..).collect();
-        all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        all.into_iter().map(|(_, segment)| segment)
-    }
 }

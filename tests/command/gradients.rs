@@ -1,12 +1,11 @@
 //! Derivatives of the history by values of the case (gradients.csv): closed forms, and central differences of complete runs with the
 //! same increments.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::{Blocks, close, store};
+use crate::common::{self, Blocks, Columns, close, store};
 use fecontact::output::results::{Grid, frames};
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -37,17 +36,8 @@ fn refused(case: &Value) -> String {
     String::from_utf8_lossy(&output.stderr).into()
 }
 
-/// Columns of a table by name, those of numbers.
-fn table(folder: &TempDir, file: &str) -> BTreeMap<String, Vec<f64>> {
-    let text = fs::read_to_string(folder.path().join("out").join(file)).expect("a table");
-    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
-    let mut columns: BTreeMap<String, Vec<f64>> = names.iter().map(|name| ((*name).into(), Vec::new())).collect();
-    for line in text.lines().skip(1) {
-        for (name, cell) in names.iter().zip(line.split(',')) {
-            columns.get_mut(*name).expect("a column").push(cell.parse().unwrap_or(f64::NAN));
-        }
-    }
-    columns
+fn table(folder: &TempDir, file: &str) -> Columns {
+    common::table(folder.path().join("out").join(file))
 }
 
 fn summary(folder: &TempDir) -> Value {
@@ -385,7 +375,7 @@ fn have_closed_forms() {
     sliding["gradients"] = json!(["contacts.base.friction.mu", "steps.drag.supports[0].ux.rate"]);
     let folder = run(&sliding, &[]);
     let (history, found) = (table(&folder, "history.csv"), table(&folder, "gradients.csv"));
-    let last = |table: &BTreeMap<String, Vec<f64>>, column: &str| *table[column].last().expect("a row");
+    let last = |table: &Columns, column: &str| *table[column].last().expect("a row");
     let [force, by_mu] = ["base.normal_force", "d(base.tangential_force)/d(contacts.base.friction.mu)"];
     // Q = μ P: dQ/dμ = P + μ dP/dμ.
     let p_by_mu = last(&found, "d(base.normal_force)/d(contacts.base.friction.mu)");

@@ -1,11 +1,11 @@
 //! `fecontact law`: a friction law alone, driven along paths of slip and pressure, through the command.
 
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::common::{Columns, table};
 use fecontact::laws::friction::{FrictionParameters, FrictionState, Sliding};
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -50,25 +50,16 @@ fn stderr(output: &Output) -> String {
 
 /// What a test leaves behind.
 struct Done {
-    columns: BTreeMap<String, Vec<f64>>,
+    columns: Columns,
     summary: Value,
     message: String,
 }
 
 impl Done {
     fn read(folder: &Path, message: String) -> Self {
-        let text = fs::read_to_string(folder.join("law.csv")).expect("law.csv");
-        let mut lines = text.lines();
-        let mut columns: Vec<(String, Vec<f64>)> =
-            lines.next().expect("a header").split(',').map(|name| (name.into(), Vec::new())).collect();
-        for line in lines {
-            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-            assert_eq!(cells.len(), columns.len(), "{line}");
-            columns.iter_mut().zip(cells).for_each(|((_, column), cell)| column.push(cell));
-        }
         let summary = fs::read_to_string(folder.join("summary.json")).expect("summary.json");
         let summary = serde_json::from_str(&summary).expect("JSON");
-        Self { columns: columns.into_iter().collect(), summary, message }
+        Self { columns: table(folder.join("law.csv")), summary, message }
     }
 
     fn of(test: &Value) -> Self {

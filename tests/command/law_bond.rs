@@ -1,14 +1,11 @@
 //! `fecontact law`: a bond beside friction along paths of opening, slip and pressure, against the closed forms of `tests/laws/bond.rs`.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::process::Command;
 
-use crate::common::close;
+use crate::common::{Columns, close, table};
 use serde_json::{Value, json};
 use tempfile::TempDir;
-
-type Columns = BTreeMap<String, Vec<f64>>;
 
 /// The columns of a test, or what it is refused with.
 fn law(test: &Value) -> Result<Columns, String> {
@@ -19,14 +16,7 @@ fn law(test: &Value) -> Result<Columns, String> {
     if output.status.code() != Some(0) {
         return Err(String::from_utf8_lossy(&output.stderr).into());
     }
-    let text = fs::read_to_string(folder.path().join("out/test/law.csv")).expect("law.csv");
-    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
-    let rows: Vec<Vec<f64>> = text
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
-        .collect();
-    Ok(names.iter().enumerate().map(|(k, name)| ((*name).into(), rows.iter().map(|row| row[k]).collect())).collect())
+    Ok(table(folder.path().join("out/test/law.csv")))
 }
 
 fn test(bond: &Value, path: &[Value]) -> Value {

@@ -1,13 +1,13 @@
 //! What a run writes over time: the store of its interfaces, rows at intervals, frames at times, gauges, and how bodies and
 //! contacts act as a whole; by closed forms, or by what another file of the same run says.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, close, store};
+use crate::common::{self, Blocks, close, store, table};
 use fecontact::mesh::InlineMesh;
 use fecontact::model::Model;
 use fecontact::model::builder::{Gauge, LoadStep};
@@ -38,19 +38,6 @@ fn start(folder: &Path, case: &Value) -> Output {
 fn run(folder: &Path, case: &Value) {
     let output = start(folder, case);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-/// Columns of a table by name, those of numbers.
-fn table(path: &Path) -> BTreeMap<String, Vec<f64>> {
-    let text = fs::read_to_string(path).expect("a table");
-    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
-    let mut columns: BTreeMap<String, Vec<f64>> = names.iter().map(|name| ((*name).into(), Vec::new())).collect();
-    for line in text.lines().skip(1) {
-        for (name, cell) in names.iter().zip(line.split(',')) {
-            columns.get_mut(*name).expect("a column").push(cell.parse().unwrap_or(f64::NAN));
-        }
-    }
-    columns
 }
 
 fn frame(path: &Path) -> UnstructuredGridPiece {
@@ -108,7 +95,7 @@ fn single_nodes_are_watched_as_groups_are() {
     let nodes = places.map(|x| json!({"near": [x, 0.51]}));
     case["watch"].as_array_mut().expect("a list").extend(nodes);
     run(folder.path(), &case);
-    let history = table(&folder.path().join("out/history.csv"));
+    let history = table(folder.path().join("out/history.csv"));
     let column = |x: f64, name: &str| &history[&format!("near_{x}_0.51.{name}")];
     assert_eq!(history.keys().filter(|name| name.starts_with("near_")).count(), 4 * places.len());
     for (name, share) in [("ux", 1.0 / 6.0), ("uy", 1.0 / 6.0), ("fx", 1.0), ("fy", 1.0)] {
@@ -131,7 +118,7 @@ fn the_store_holds_what_the_frames_show() {
     // A slash cannot stand in the name of a file.
     let of = |name: &str| format!("base_1.{name}");
     let (_, all) = store::array(&store, "time");
-    assert_eq!(all, table(&out.join("history.csv"))["time"]);
+    assert_eq!(all, table(out.join("history.csv"))["time"]);
     let points = store::array(&store, &of("position")).0[0];
     let series = |name: &str| {
         let (shape, values) = store::array(&store, &of(name));
@@ -250,13 +237,13 @@ fn what_is_closed_without_friction_slips() {
         case["steps"].as_array_mut().expect("steps").push(json!({"name": "rest", "duration": 1, "dt": {"initial": 1}}));
         run(folder.path(), &case);
         let out = folder.path().join("out");
-        let history = table(&out.join("history.csv"));
+        let history = table(out.join("history.csv"));
         let (shares, steps) = (&history["base/1.slip_fraction"], &history["base/1.contact_length"]);
         let (last, closed) = (shares.len() - 1, steps.iter().filter(|length| **length > 0.0).count());
         assert!(shares[last - 1] > 0.5, "it slides: {shares:?}");
         assert_eq!(shares.iter().filter(|share| **share == 1.0).count() == closed, !rubs, "{shares:?}");
         assert!(history["base/1.mean_slip"].last().is_some_and(|slip| *slip > 0.08), "it moves all the same");
-        let sticks = table(&out.join("newton.csv"))["stick"].iter().any(|count| *count > 0.0);
+        let sticks = table(out.join("newton.csv"))["stick"].iter().any(|count| *count > 0.0);
         assert_eq!(sticks, rubs);
         let last = times(&out, "contact.pvd").len() - 1;
         let states = values(&frame(&out.join(format!("contact/{last:05}.vtu"))).data.point, "state");
@@ -296,7 +283,7 @@ fn an_interval_thins_rows_but_no_events() {
         fs::read_to_string(out.join("history.csv")).expect("a table").lines().skip(1).map(String::from).collect()
     };
     let full = lines();
-    let whole = table(&out.join("history.csv"));
+    let whole = table(out.join("history.csv"));
     let regime = |k: usize| (whole["base.contact_length"][k] > 0.0, whole["base.slip_fraction"][k]);
     case["output"]["interval"] = json!(0.25);
     run(folder.path(), &case);
@@ -321,8 +308,8 @@ fn an_interval_thins_rows_but_no_events() {
     // The store has the same rows, and slip rates since the row before.
     let store = out.join("interface.zarr");
     let all = store::array(&store, "time").1;
-    assert_eq!(all, table(&out.join("history.csv"))["time"]);
-    let history = table(&out.join("history.csv"));
+    assert_eq!(all, table(out.join("history.csv"))["time"]);
+    let history = table(out.join("history.csv"));
     let (slip, closed) = (&history["base.mean_slip"], &history["base.contact_length"]);
     let rate = store::array(&store, "base.slip_rate").1;
     let both = |k: &usize| closed[*k] > 0.0 && closed[k - 1] > 0.0;
@@ -381,7 +368,7 @@ fn the_heat_of_each_contact_is_its_friction_times_its_slip() {
         }
         let folder = TempDir::new().expect("a folder");
         run(folder.path(), &case);
-        let history = table(&folder.path().join("out/history.csv"));
+        let history = table(folder.path().join("out/history.csv"));
         let last = |name: &str| *history[name].last().expect("a row");
         for (name, force, area, mu, way) in [("left", 10.0, 2.0, 0.3, 0.5), ("right", 20.0, 0.5, 0.2, 2.0)] {
             let heat = mu * force * (way - mu * force / area / 1e4);
@@ -416,7 +403,7 @@ fn fields_are_written_at_the_times_asked_for() {
         assert_eq!(frames.len(), expected.len(), "{scheme}: {frames:?}");
         frames.iter().zip(expected).for_each(|(time, expected)| close("time of a frame", *time, expected, 1e-15));
         // 20 increments of 0.1, and for each time between two of them two halves instead of one, and a rest.
-        let rows = table(&out.join("history.csv"))["time"].clone();
+        let rows = table(out.join("history.csv"))["time"].clone();
         assert!((20..=27).contains(&rows.len()), "{scheme}: {rows:?}");
         for (times, words) in [
             (json!([0.3, 0.2]), "output.times[1]: is 0.2, but 0.3 comes before it"),
@@ -475,7 +462,7 @@ fn probes_are_exact_in_a_linear_field() {
                 "output": {"fields": false, "checkpoint": 0}
             }),
         );
-        let read = table(&folder.path().join("out/probes.csv"));
+        let read = table(folder.path().join("out/probes.csv"));
         assert_eq!((read["time"].clone(), read.len()), (vec![0.5, 1.0], 1 + 11 * 7), "{kind}");
         let along = |k: usize| [0.5 * k as f64, 0.25 * k as f64];
         let lines = (0..5).map(|k| (format!("line.{}", k + 1), along(k)));
@@ -530,7 +517,7 @@ fn every_output_of_bodies_that_remember_shows_their_own() {
         let file = text.split("file=\"").last().expect("a frame").split('"').next().expect("its name").to_string();
         frame(&out.join(file))
     };
-    let read = table(&out.join("probes.csv"));
+    let read = table(out.join("probes.csv"));
     for (k, name) in ["xx", "yy", "zz"].into_iter().enumerate() {
         read[&format!("gauge.stress_{name}")].iter().for_each(|value| close(name, *value, stress[k], 1e-11));
     }
@@ -671,7 +658,7 @@ fn the_history_counts_turns_and_momentum() {
         "output": {"fields": false, "checkpoint": 0}
     });
     run(folder.path(), &case);
-    let history = table(&folder.path().join("out/history.csv"));
+    let history = table(folder.path().join("out/history.csv"));
     for (k, time) in history["time"].iter().enumerate() {
         let angle = 5.0 * std::f64::consts::PI * time;
         close("rotation", history["block.rotation"][k], angle, 1e-9);
@@ -683,7 +670,7 @@ fn the_history_counts_turns_and_momentum() {
     case["steps"] =
         json!([{"name": "fly", "duration": 1, "scheme": {"explicit": {}}, "dt": {"initial": 0.1}, "supports": []}]);
     run(folder.path(), &case);
-    let history = table(&folder.path().join("out/history.csv"));
+    let history = table(folder.path().join("out/history.csv"));
     let last = |name: &str| *history[&format!("block.{name}")].last().expect("a row");
     for (name, expected) in [
         ("momentum_x", 6.0),
@@ -719,7 +706,7 @@ fn edge_means_go_by_length() {
                 "watch": ["bar_top", "bar"], "output": {"fields": false, "checkpoint": 0}
             }),
         );
-        let history = table(&folder.path().join("out/history.csv"));
+        let history = table(folder.path().join("out/history.csv"));
         close("mean by length", history["bar_top.edge_ux"][0], 0.1, 1e-14);
         assert!(history["bar_top.ux"][0] < 0.095, "nodes lie closer together on the left");
         assert!(!history.contains_key("bar.edge_ux"), "a body has no length");
@@ -748,7 +735,7 @@ fn the_resultant_of_a_contact_balances_the_support() {
         let folder = TempDir::new().expect("a folder");
         run(folder.path(), &case);
         let out = folder.path().join("out");
-        let history = table(&out.join("history.csv"));
+        let history = table(out.join("history.csv"));
         let last = |column: &str| *history[column].last().expect("a row");
         let [fx, fy] = [last("block_top.fx"), last("block_top.fy")];
         let size = fy.abs();
@@ -880,6 +867,6 @@ fn absent_bodies_are_hidden() {
             }
         }
     }
-    let stress = &table(&out.join("probes.csv"))["gauge.stress_yy"];
+    let stress = &table(out.join("probes.csv"))["gauge.stress_yy"];
     assert!(stress[0].is_finite() && stress[1..].iter().all(|stress| stress.is_nan()), "{stress:?}");
 }

@@ -1,9 +1,11 @@
 //! Models from JSON, and their runs.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use fecontact::case::{self, CaseError};
 use fecontact::model::Model;
+use fecontact::run::{Saved, Simulation};
 use serde_json::Value;
 
 use super::{Finished, finished};
@@ -37,4 +39,17 @@ pub fn finish(case: &Value) -> Finished {
 /// Run a case whose mesh is found from a path.
 pub fn finish_at(case: &Value, path: &Path) -> Finished {
     finished(model_at(case, path))
+}
+
+/// A run of a case that is stopped after so many increments, and read from what was written, goes on to the bits of the whole one.
+pub fn goes_on(case: &Value, whole: &Finished, increments: usize) {
+    let model = Arc::new(model(case));
+    let mut run = Simulation::new(model.clone());
+    for _ in 0..increments {
+        run.next_increment().expect("it runs");
+    }
+    let bytes = run.save().bytes().expect("it can be written");
+    let mut run = Simulation::resume(model.clone(), Saved::from_bytes(&bytes, &model).expect("it can be read"));
+    while run.next_increment().expect("it runs").is_some() {}
+    assert!(run.state() == whole.last(), "a resumed run has other bits");
 }

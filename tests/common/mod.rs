@@ -7,6 +7,7 @@ mod cases;
 pub mod store;
 pub mod warnings;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -262,4 +263,20 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
 #[track_caller]
 pub fn close(what: &str, a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance, "{what}: {a:e}, expected {b:e} ± {tolerance:e} (off by {:e})", a - b);
+}
+
+/// Columns of a table by name; NaN is what is no number.
+pub type Columns = BTreeMap<String, Vec<f64>>;
+
+/// Reads the columns of a table.
+pub fn table(path: impl AsRef<Path>) -> Columns {
+    let text = std::fs::read_to_string(path).expect("a table");
+    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+    let mut columns: Columns = names.iter().map(|name| ((*name).into(), Vec::new())).collect();
+    for line in text.lines().skip(1) {
+        for (name, cell) in names.iter().zip(line.split(',')) {
+            columns.get_mut(*name).expect("a column").push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
 }

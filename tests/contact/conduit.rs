@@ -1,11 +1,9 @@
 //! Water that flows along a contact, in static and implicit increments, against closed forms.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, finish, refusal};
+use crate::common::{Blocks, Finished, close, finish, goes_on, refusal};
 use fecontact::model::state::State;
-use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
 
 const LENGTH: f64 = 10.0;
@@ -301,15 +299,7 @@ fn a_crack_by_the_cubic_law_resumes_to_the_bit() {
     case["contacts"]["crack"]["initial"] = json!({"pressure": 0.5, "balanced": true});
     let whole = finish(&case);
     balances(&whole);
-    let model = Arc::new(crate::common::model(&case));
-    let mut run = Simulation::new(model.clone());
-    for _ in 0..4 {
-        run.next_increment().expect("it is solved");
-    }
-    let bytes = run.save().bytes().expect("bytes");
-    let mut run = Simulation::resume(model.clone(), Saved::from_bytes(&bytes, &model).expect("it can be read"));
-    while run.next_increment().expect("it is solved").is_some() {}
-    assert!(run.state() == whole.last(), "a resumed run has other bits");
+    goes_on(&case, &whole, 4);
     case["steps"][0]["dt"] = json!({"initial": 0.025, "max": 0.025});
     let fine = finish(&case);
     let apart = |a: &State, b: &State| {

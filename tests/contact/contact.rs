@@ -223,19 +223,18 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
 }
 
 /// A committed state that has not slipped.
-fn committed(friction: FrictionState, foot: MasterPoint, gap: f64) -> ContactState {
-    let (foot, slip, radiation, radiated) = (Some(foot), 0.0, 0.0, 0.0);
+fn committed(friction: FrictionState, foot: impl Into<Option<MasterPoint>>, gap: f64) -> ContactState {
     ContactState {
         water: None,
         came: Default::default(),
         bond: None,
         friction,
-        foot,
+        foot: foot.into(),
         length: 1.0,
         gap,
-        slip,
-        radiation,
-        radiated,
+        slip: 0.0,
+        radiation: 0.0,
+        radiated: 0.0,
         multiplier: 0.0,
         elastic_slip: 0.0,
         fluid: 0.0,
@@ -627,25 +626,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction.clone() };
                 let friction = if gap > 0.0 { friction } else { pressed };
                 let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
-                let old = vec![
-                    ContactState {
-                        water: None,
-                        came: Default::default(),
-                        bond: None,
-                        friction,
-                        foot,
-                        length: 1.0,
-                        gap,
-                        slip: 0.0,
-                        radiation: 0.0,
-                        radiated: 0.0,
-                        multiplier: 0.0,
-                        elastic_slip: 0.0,
-                        fluid: 0.0,
-                        pores: 0.0,
-                    };
-                    pair.points.len()
-                ];
+                let old = vec![committed(friction, foot, gap); pair.points.len()];
                 let answer = |x: &Positions| {
                     let (before, x) = (displaced(&before), displaced(x));
                     respond(&pair, &old, [&before, &x], INCREMENT)
@@ -793,22 +774,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         aside[12..].chunks_mut(2).for_each(|u| u.copy_from_slice(&[-motion.x, -motion.y]));
         let before = Configuration::new(&x, &aside);
         let friction = pair.laws[0].law.initial_state(0.0, 0.0);
-        let old = ContactState {
-            water: None,
-            came: Default::default(),
-            bond: None,
-            friction,
-            foot: None,
-            length: 1.0,
-            gap: 0.0,
-            slip: 0.0,
-            radiation: 0.0,
-            radiated: 0.0,
-            multiplier: 0.0,
-            elastic_slip: 0.0,
-            fluid: 0.0,
-            pores: 0.0,
-        };
+        let old = committed(friction, None, 0.0);
         let old = vec![old; pair.points.len()];
         let answer = |u: &[f64]| {
             let x = Configuration::new(&x, u);
@@ -1065,22 +1031,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
-    let old = ContactState {
-        water: None,
-        came: Default::default(),
-        bond: None,
-        friction: pressed,
-        foot: Some(MasterPoint { segment: 0, xi: 0.9 }),
-        length: 1.0,
-        gap: -0.05,
-        slip: 0.0,
-        radiation: 0.0,
-        radiated: 0.0,
-        multiplier: 0.0,
-        elastic_slip: 0.0,
-        fluid: 0.0,
-        pores: 0.0,
-    };
+    let old = committed(pressed, Some(MasterPoint { segment: 0, xi: 0.9 }), -0.05);
     check_tangent(&pair, 1, &old, &x, "concave corner");
 }
 

@@ -24,6 +24,7 @@ mod remedies;
 mod rigid_bodies;
 mod rings;
 mod search;
+mod segment_searches;
 mod self_contact;
 mod small_sliding;
 mod stabilization;

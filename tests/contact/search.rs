@@ -3,13 +3,14 @@
 use fecontact::contact::master::Master;
 use fecontact::contact::projection::Projection;
 use fecontact::contact::search::{Index, KeptSearch};
-use fecontact::contact::segment_grid::SegmentGrid;
-use fecontact::contact::segment_search::{Exhaustive, SegmentSearch};
+use fecontact::contact::segment_search::SegmentSearch;
 use fecontact::contact::segment_tree::SegmentTree;
 use fecontact::contact::surface::{MasterPoint, SlavePoint, Surface, gauss_points, lone_point};
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 use proptest::prelude::*;
+
+use crate::segment_searches::{Exhaustive, SegmentGrid};
 
 /// What an index answers about slave points and about the edges that they lie on.
 #[derive(Debug, PartialEq)]

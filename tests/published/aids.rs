@@ -484,21 +484,22 @@ fn ablation() {
     }
 }
 
-/// What each aid saves among twenty neighbours of each case that is on edge, whose numbers differ by up to 2 %: runs that end, and
-/// the solves without it over those with it in pairs that both end, their geometric mean.
+/// The table of neighbours of `docs/aids.md`: twenty of each case that is on edge (`NEIGHBOURS` in the environment: as many), whose numbers
+/// differ by up to 2 %. Runs that end, and the solves without an aid over those with it where both end, their geometric mean.
 #[test]
 #[ignore = "slow: minutes; prints the table of neighbours of docs/aids.md"]
 fn neighbours() {
-    let wanted = std::env::var("AIDS").unwrap_or_default();
+    let of = |name: &str| std::env::var(name).unwrap_or_default();
+    let (aids, cases, count) = (of("AIDS"), of("CASES"), of("NEIGHBOURS").parse().unwrap_or(20));
+    let is_wanted = |list: &str, name: &str| list.is_empty() || list.split(',').any(|of| of == name);
     let share = |k: usize, base: f64| 1.0 + 0.02 * (2.0 * (base * (k + 1) as f64).fract() - 1.0);
     // Multiples of these irrational numbers fill a cube evenly.
     let changes: Vec<[f64; 3]> =
-        (0..20).map(|k| [0.8191725, 0.6710436, 0.5497005].map(|base| share(k, base))).collect();
+        (0..count).map(|k| [0.8191725, 0.6710436, 0.5497005].map(|base| share(k, base))).collect();
     println!("| without | case | ended with it | without it | solves, ratio |\n|---|---|---|---|---|");
-    for (name, model) in ON_EDGE {
+    for (name, model) in ON_EDGE.into_iter().filter(|(name, _)| is_wanted(&cases, name)) {
         let with: Vec<Cost> = changes.iter().map(|change| cost(model(*change))).collect();
-        for (aid, off) in SWITCHES.iter().filter(|(aid, _)| wanted.is_empty() || wanted.split(',').any(|of| of == *aid))
-        {
+        for (aid, off) in SWITCHES.iter().filter(|(aid, _)| is_wanted(&aids, aid)) {
             let without = |(change, with): (&[f64; 3], &Cost)| {
                 let mut model = model(*change);
                 off(&mut model.aids);

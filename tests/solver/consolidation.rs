@@ -3,12 +3,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, finish, half_way, model, quadratic, refusal};
+use crate::common::{Blocks, Finished, close, finish, goes_on, half_way, model, quadratic, refusal};
 use crate::terms::{arbitrary_displacement, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::Model;
 use fecontact::model::state::{LastIncrement, State};
-use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
 
 /// A mesh of blocks of one kind of elements.
@@ -196,15 +195,7 @@ fn a_stopped_run_goes_on_to_the_same_bits() {
     let mut case = column("q4", 6, json!({"initial": 0.01, "max": 0.1, "pore_pressure": 0.02}));
     case["bodies"]["soil"]["material"] = json!({"model": "hencky", "E": 0.9, "nu": 0.2});
     let whole = finish(&case);
-    let shared: Arc<Model> = model(&case).into();
-    let mut run = Simulation::new(shared.clone());
-    for _ in 0..whole.states.len() / 2 {
-        run.next_increment().expect("it runs");
-    }
-    let bytes = run.save().bytes().expect("it can be written");
-    let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
-    while run.next_increment().expect("it runs").is_some() {}
-    assert!(run.state() == whole.last(), "a resumed run has other bits");
+    goes_on(&case, &whole, whole.states.len() / 2);
 }
 
 /// Ground under its weight, with water up to its surface, stays at rest; water above it is a head, and a load.

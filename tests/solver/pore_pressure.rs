@@ -2,11 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, distance, finish, finish_at, model, quadratic, refusal};
-use fecontact::model::Model;
-use fecontact::run::{Saved, Simulation};
+use crate::common::{Blocks, Finished, close, distance, finish, finish_at, goes_on, model, quadratic, refusal};
 use serde_json::{Value, json};
 
 /// A pier on rollers, half as wide at the top, of which b p is 0.16 E in the end.
@@ -119,15 +116,7 @@ fn water_in_motion() {
     }
     implicit["steps"][0]["dt"] = json!({"initial": 0.05});
     let whole = finish(&implicit);
-    let shared: Arc<Model> = model(&implicit).into();
-    let mut run = Simulation::new(shared.clone());
-    for _ in 0..whole.states.len() / 2 {
-        run.next_increment().expect("it runs");
-    }
-    let bytes = run.save().bytes().expect("it can be written");
-    let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
-    while run.next_increment().expect("it runs").is_some() {}
-    assert!(run.state() == whole.last(), "a resumed run has other bits");
+    goes_on(&implicit, &whole, whole.states.len() / 2);
 }
 
 /// A block on ground under its weight in water whose level falls: friction by the pressure of the body below.

@@ -1,12 +1,9 @@
 //! Water that flows along a contact, in quasi-dynamic steps, in explicit increments, and into a rupture and out of it.
 
-use std::sync::Arc;
-
-use crate::common::{Blocks, Finished, close, finish};
+use crate::common::{Blocks, Finished, close, finish, goes_on};
 use crate::slabs::{differences, slabs};
 use fecontact::contact::force::ContactState;
 use fecontact::model::state::State;
-use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
 
 fn quasi_dynamic(tolerance: f64) -> Value {
@@ -60,15 +57,7 @@ fn quasi_dynamic_water_is_that_of_static_increments() {
     assert!(errors[1].iter().all(|error| *error < 2e-3), "{errors:?}");
     let slips = fault(&exact).iter().fold(0.0f64, |most, point| most.max(point[0].abs()));
     assert!(slips > 1e-3, "{slips}");
-    let model = Arc::new(crate::common::model(&case));
-    let mut run = Simulation::new(model.clone());
-    for _ in 0..3 {
-        run.next_increment().expect("it is solved");
-    }
-    let bytes = run.save().bytes().expect("bytes");
-    let mut run = Simulation::resume(model.clone(), Saved::from_bytes(&bytes, &model).expect("it can be read"));
-    while run.next_increment().expect("it is solved").is_some() {}
-    assert!(run.state() == exact.last(), "a resumed run has other bits");
+    goes_on(&case, &exact, 3);
 }
 
 /// Periodic sides of a quasi-dynamic fault are joined: what is shifted by a part of the period has the same water at places that are shifted.

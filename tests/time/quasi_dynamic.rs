@@ -1,12 +1,10 @@
 //! Quasi-dynamic steps: an interface that is integrated by itself, against differential equations and static increments.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, finish, finish_at, model, refusal, turned};
+use crate::common::{Blocks, Finished, close, finish, finish_at, goes_on, model, refusal, turned};
 use crate::slabs::{differences, slabs};
-use fecontact::model::Model;
-use fecontact::run::{Saved, Simulation};
+use fecontact::run::Simulation;
 use serde_json::{Value, json};
 
 const YEAR: f64 = 365.0 * 86400.0;
@@ -252,15 +250,7 @@ fn what_is_turned_slips_alike() {
 fn bits() {
     let case = weak_slabs(&quasi_dynamic(1e-5, 7), 20.0);
     let whole = finish(&case);
-    let shared: Arc<Model> = model(&case).into();
-    let mut run = Simulation::new(shared.clone());
-    for _ in 0..whole.states.len() / 2 {
-        run.next_increment().expect("it runs");
-    }
-    let bytes = run.save().bytes().expect("it can be written");
-    let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
-    while run.next_increment().expect("it runs").is_some() {}
-    assert!(run.state() == whole.last(), "a resumed run has other bits");
+    goes_on(&case, &whole, whole.states.len() / 2);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a pool of threads");
     assert!(pool.install(|| finish(&case)).last() == whole.last(), "three threads have other bits");
     let scaled = |units: [f64; 3]| {

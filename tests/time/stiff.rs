@@ -1,10 +1,6 @@
 //! Quasi-dynamic steps of laws without a slip rate that follows from traction and state: implicit, against differential equations.
 
-use std::sync::Arc;
-
-use crate::common::{Finished, close, finish, model, refusal};
-use fecontact::model::Model;
-use fecontact::run::{Saved, Simulation};
+use crate::common::{Finished, close, finish, goes_on, refusal};
 use serde_json::{Value, json};
 
 const DAMPING: f64 = 10.0;
@@ -124,15 +120,7 @@ fn a_direct_effect_makes_sliding_steady() {
 fn a_run_that_is_resumed_is_the_same() {
     let case = slider(&paper(), &quasi_dynamic(1e-5), 3095.0);
     let whole = finish(&case);
-    let shared: Arc<Model> = model(&case).into();
-    let mut run = Simulation::new(shared.clone());
-    for _ in 0..40 {
-        run.next_increment().expect("it runs");
-    }
-    let bytes = run.save().bytes().expect("it can be written");
-    let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
-    while run.next_increment().expect("it runs").is_some() {}
-    assert!(run.state() == whole.last(), "a resumed run has other bits");
+    goes_on(&case, &whole, 40);
 }
 
 /// What implicit steps do not have is refused with its place.

@@ -1,13 +1,13 @@
-//! Search of segments in a grid of square cells.
+//! Searches of segments other than the tree: in a grid of square cells, and through all segments. The tree answers as they do, and
+//! `cargo bench` measures it against them.
 
 use std::ops::RangeInclusive;
 
+use fecontact::contact::segment_search::{SegmentSearch, bounding_box, squared_distance};
+use fecontact::contact::surface::{Segment, SlavePoint, Surface};
+use fecontact::mesh::boxes::Box2;
+use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
-
-use super::segment_search::{SegmentSearch, bounding_box, squared_distance};
-use super::surface::{SlavePoint, Surface};
-use crate::mesh::boxes::Box2;
-use crate::mesh::configuration::Configuration;
 
 /// A grid of square cells over a surface; each cell lists the segments whose bounding boxes touch it.
 #[derive(Clone, Debug, Default)]
@@ -126,5 +126,25 @@ impl SegmentSearch for SegmentGrid {
                 next += 1;
             }
         })
+    }
+}
+
+/// The search through all segments.
+#[derive(Clone, Debug, Default)]
+pub struct Exhaustive;
+
+impl SegmentSearch for Exhaustive {
+    fn update(&mut self, _: &Surface, _: &Configuration) {}
+
+    fn meeting(&self, surface: &Surface, x: &Configuration, other: &Box2, found: &mut Vec<usize>) {
+        let meets = |segment: &Segment| bounding_box(segment, surface.origin(), x).meets(other);
+        found.extend((0..surface.segments.len()).filter(|&k| meets(&surface.segments[k])));
+    }
+
+    fn by_distance(&self, slave: &SlavePoint, surface: &Surface, x: &Configuration) -> impl Iterator<Item = usize> {
+        let distances = surface.segments.iter().map(|segment| squared_distance(slave, segment, x));
+        let mut all: Vec<(f64, usize)> = distances.zip(0..).collect();
+        all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        all.into_iter().map(|(_, segment)| segment)
     }
 }
