@@ -17,7 +17,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Write a short case that runs, to begin with
+    /// Write a short case that runs, as a starting point
     #[command(after_help = "Example: fecontact init wall && fecontact run wall.json")]
     Init {
         /// Kind of case
@@ -26,7 +26,7 @@ enum Command {
         /// The file to write [default: <kind>.json]
         file: Option<PathBuf>,
     },
-    /// Run a case; results go to a folder
+    /// Run a case and write its results to a folder
     #[command(after_help = "Example: fecontact run block.json --out out/block")]
     Run {
         /// The case file (JSON)
@@ -40,8 +40,8 @@ enum Command {
         /// Print warnings and the last line only
         #[arg(short, long)]
         quiet: bool,
-        /// Resume from the last checkpoint in the folder, to results bitwise identical to those of an uninterrupted run; begin
-        /// anew where this case's own run has left none yet
+        /// Resume from the last checkpoint in the folder, with results bitwise identical to those of an uninterrupted run; start
+        /// anew if this case's own run has left none yet
         #[arg(short, long)]
         resume: bool,
     },
@@ -54,20 +54,20 @@ enum Command {
         #[arg(short, long)]
         resolved: bool,
     },
-    /// Run a case with elements and increments that are halved again and again, and give error bars of its numbers
+    /// Run a case with successively halved elements and increments, and print error bars of its numbers
     #[command(after_help = "Example: fecontact converge block.json --measure base.tangential_force:max")]
     Converge {
         /// The case file (JSON)
         case: PathBuf,
-        /// Column of the history or the probes, or one over another (COLUMN/COLUMN), and what is taken of it: COLUMN:max, COLUMN:min, COLUMN:end or
-        /// COLUMN:mean (over time), in a step alone COLUMN:max@STEP; may be given several times
+        /// COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean (over time) of a column of the history or the probes, or of a ratio COLUMN/COLUMN;
+        /// COLUMN:max@STEP in one step; may be repeated
         #[arg(short, long, required = true)]
         measure: Vec<String>,
         /// Number of runs, 3 or more; the first is the case as it is
         #[arg(short, long, default_value_t = 3)]
         levels: usize,
-        /// Fraction of a number by which it may change from level to level without an order; larger changes that do not become smaller end with
-        /// exit code 1
+        /// Fraction of a number by which it may change from level to level if no order can be measured; larger changes that do not decrease end
+        /// with exit code 1
         #[arg(short, long, default_value_t = cli::WITHIN)]
         within: f64,
         /// Folder of the results, with a folder for each run [default: out/<case name>]
@@ -77,18 +77,18 @@ enum Command {
         #[arg(short, long)]
         threads: Option<usize>,
     },
-    /// Divide strengths at the end of a case by a factor until nothing stands any more
+    /// Find the factor of safety at the end of a case, by dividing the strengths until they fail
     #[command(after_help = "Example: fecontact safety slope.json --body soil")]
     Safety {
         /// The case file (JSON)
         case: PathBuf,
-        /// Body whose strength is divided; may be given several times [default: all bodies and contacts with a strength]
+        /// Body whose strength is divided; may be repeated [default: all bodies and contacts with a strength]
         #[arg(short, long = "body")]
         body: Vec<String>,
-        /// Contact whose strength is divided; may be given several times
+        /// Contact whose strength is divided; may be repeated
         #[arg(short, long = "contact")]
         contact: Vec<String>,
-        /// Largest distance between the factor that stands and the one that fails
+        /// Largest difference between the factor that stands and the one that fails
         #[arg(short, long, default_value_t = 0.01)]
         within: f64,
         /// Largest factor that is tried
@@ -110,7 +110,7 @@ enum Command {
         #[arg(short, long)]
         out: Option<PathBuf>,
     },
-    /// Write one HTML page of results for a browser; several folders are overlaid
+    /// Write results as one HTML page for a browser; several folders are overlaid
     #[command(after_help = "Example: fecontact report out/coarse out/fine --out both.html")]
     Report {
         /// Folders of results, of finished or active runs
@@ -127,7 +127,7 @@ enum Command {
         #[arg(value_enum, default_value_t = Input::Case)]
         of: Input,
     },
-    /// Print the completions of a shell
+    /// Print shell completions
     #[command(
         after_help = "Example: fecontact completions bash > ~/.local/share/bash-completion/completions/fecontact"
     )]

@@ -40,8 +40,8 @@ strain = [100 * np.nanmean(np.nan_to_num(grid["equivalent_plastic_strain"][ids])
 bodies = PolyCollection([places[ids[:4]] for ids in cells], array=np.array(strain), cmap="magma_r", edgecolors="grey", linewidths=0.2)
 bodies.set_clim(0, 1)
 left.add_collection(bodies)
-left.set(xlim=(-6.3, 12), ylim=(-12, 1), aspect="equal", title=f"plastic strain [%], displacements × {ENLARGED}")
-figure.colorbar(bodies, ax=left, shrink=0.8, extend="max")
+left.set(xlim=(-6.3, 12), ylim=(-12, 1), aspect="equal", xlabel="x [m]", ylabel="y [m]", title=f"after 4 m, displacements × {ENLARGED}")
+figure.colorbar(bodies, ax=left, shrink=0.8, extend="max", label="plastic strain [%]")
 
 # The wall is the only body with elements of its thickness at its head.
 wall = np.unique([grid.get_cell(k).point_ids for k in shown if np.abs(grid.get_cell(k).points[:, 0] - 0.2).max() < 0.21 and grid.get_cell(k).points[:, 1].min() > -8.01])
@@ -49,8 +49,8 @@ face = wall[np.isclose(grid.points[wall, 0], 0)]
 face = face[np.argsort(grid.points[face, 1])]
 for stage, time in STAGES.items():
     right.plot(1e3 * frame(time)["displacement"][face, 0], grid.points[face, 1], label=stage)
-right.set(xlabel="deflection [mm]", ylabel="y [m]", title="wall")
-right.legend(title="dug")
+right.set(xlabel="deflection [mm]", ylabel="y [m]", title="deflection of the wall")
+right.legend(title="excavated")
 rows = list(csv.DictReader((folder / "sections.csv").open()))
 names = [name.removesuffix(".y") for name in rows[0] if name.endswith(".y")]
 for stage, time in STAGES.items():
@@ -58,5 +58,5 @@ for stage, time in STAGES.items():
     moments = [float(row[f"{name}.moment"]) for name in names]
     bent.plot(moments, [float(row[f"{name}.y"]) for name in names])
     print(stage, min(moments), max(moments))
-bent.set(xlabel="moment [kNm/m]", title="bending")
+bent.set(xlabel="moment [kNm/m]", title="bending moment")
 figure.savefig(target, dpi=90)

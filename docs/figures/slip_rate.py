@@ -59,6 +59,7 @@ def of_events(count):
     for panel in panels.flat[len(largest) :]:
         panel.set_axis_off()
     power = int(np.floor(np.log10(largest["duration"].median()) / 3)) * 3
+    scaled = {0: "", -3: "m", -6: "µ", -9: "n"}.get(power, f"1e{power} ") + time
     for panel, (_, event) in zip(panels.flat, largest.iterrows()):
         onset, duration, origin = event["onset"], event["duration"], event["position"]
         rows = np.flatnonzero((times >= onset - 0.1 * duration) & (times <= onset + duration))
@@ -66,7 +67,7 @@ def of_events(count):
         for name, speed, dashes in zip(("c_R", "c_s", "c_p"), result.summary["wave_speeds"], ("-", "--", ":")):
             ends = np.clip([origin - speed * duration, origin, origin + speed * duration], place[0], place[-1])
             panel.plot(ends, np.abs(ends - origin) / speed / 10.0**power, "C0", ls=dashes, lw=1, label=name)
-        panel.set(title=f"event {event['event']}: {onset:.6g} {time}", ylabel=f"time after it [1e{power} {time}]")
+        panel.set(title=f"event {event['event']}: {onset:.6g} {time}", ylabel=f"time since onset [{scaled}]")
     panels.flat[0].legend()
     figure.colorbar(colours, ax=panels, label=f"slip rate [{length}/{time}]", shrink=0.7)
     return figure

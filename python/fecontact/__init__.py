@@ -22,6 +22,7 @@ from .law import Drive, Law, friction_law, law
 from .mesh import Mesh
 from .result import Result, report
 from .simulation import Simulation
+from .stability import Safety, safety
 from .studies import study
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "Mesh",
     "Result",
     "RunWarning",
+    "Safety",
     "Simulation",
     "Stopped",
     "__version__",
@@ -46,6 +48,7 @@ __all__ = [
     "model",
     "plot",
     "report",
+    "safety",
     "schema",
     "study",
 ]

@@ -1,4 +1,4 @@
-"""How sure a number of a run is: the case on meshes and with increments that are refined alike."""
+"""Error bars of a number of a run, from runs with refined meshes and increments."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .case import Case
 
 @dataclass(frozen=True)
 class Convergence:
-    """What a number makes of refinement (:func:`fecontact.converge`).
+    """How a number converges with refinement (:func:`fecontact.converge`).
 
     Attributes:
         measure: the number, ``"base.tangential_force:max"``.
         runs: one row per run, the coarsest first: elements, increments, and the value.
         order: observed order of convergence; None if the differences alternate or are round-off.
-        extrapolated: value for elements and increments of no size; None if it does not converge.
+        extrapolated: value extrapolated to elements and increments of zero size; None if it does not converge.
         bar: error bar of the value of the last run; None if it does not converge.
         by_increments: fraction of the last difference that is due to the increments, the rest being due to the mesh; None if nothing
             differs, or explicit increments follow from the mesh.
@@ -63,9 +63,9 @@ def converge(
     threads: int | None = None,
     within: float = 1e-3,
 ) -> Convergence:
-    """Run a case as it is, then with elements and increments that are halved again and again, and judge a number of these runs: its
-    observed order, its extrapolated value, its error bar, or that it does not converge. The finest mesh with the increments of the level
-    before tells what of the last difference is due to the increments.
+    """Run a case as it is, then with successively halved elements and increments, and judge the convergence of a number: its
+    observed order, its extrapolated value and its error bar, or that it does not converge. The finest mesh is run once more with the
+    increments of the previous level, which gives the part of the last difference that is due to the increments.
 
     The same as ``fecontact converge``. Blocks keep their arcs; other meshes are refined within the boundaries that they have.
 

@@ -1,15 +1,20 @@
 //! Cases: read, checked, opened.
 
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use fecontact::case::convergence::{self, Convergence, Measure};
+use fecontact::case::job::Failed;
+use fecontact::case::safety::{Reduced, Trial};
+use fecontact::case::safety_trials::{Trials, Unfound};
 use fecontact::case::{self, CaseError, Halvings, Opened, Written, law_test};
 use fecontact::output::checkpoint::Checkpoint;
 use fecontact::output::named;
+use fecontact::run::error::Error;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::errors::case_error;
+use crate::errors::{case_error, refused, stopped};
 use crate::mesh::Mesh;
 use crate::pool::Pool;
 
@@ -112,6 +117,57 @@ pub fn judge(values: Vec<f64>, within: f64) -> PyResult<Judged> {
 #[pyfunction]
 pub fn fraction_of_increments(values: Vec<f64>, longer: f64) -> Option<f64> {
     convergence::fraction_of_increments(&values, longer)
+}
+
+/// The factors between which strengths fail: the largest that stands, and the least that fails, if any does.
+type Between = (f64, Option<f64>);
+
+/// A trial of a factor of safety: F, whether it stands, the fraction of the step at which the run ended, the largest displacement, and the
+/// same over the elastic one.
+type Tried = (f64, bool, f64, f64, f64);
+
+/// Runs a case and the trials of its factor of safety into folders in `out`. `poll(warnings, trials)` is called now and then, and once at
+/// the end.
+#[pyfunction]
+pub fn safety(
+    py: Python,
+    case: &Bound<Case>,
+    out: PathBuf,
+    reduced: [Vec<String>; 2],
+    range: [f64; 2],
+    threads: Option<i64>,
+    poll: Bound<PyAny>,
+) -> PyResult<Between> {
+    let pool = Pool::new(threads)?;
+    let [bodies, contacts] = reduced;
+    let (written, reduced) = (case.get().written.clone(), Reduced { bodies, contacts });
+    let news = Arc::new(Mutex::new((Vec::<String>::new(), Vec::<Tried>::new())));
+    let tell = |py: Python| {
+        let news = std::mem::take(&mut *news.lock().unwrap_or_else(PoisonError::into_inner));
+        poll.call1(news).map(drop)?;
+        py.check_signals()
+    };
+    let (ends, told) = (pool.raised.ends(), news.clone());
+    let found = pool.long(py, tell, move || {
+        let noted = told.clone();
+        let warn = move |text: &str| noted.lock().unwrap_or_else(PoisonError::into_inner).0.push(text.into());
+        let mut trials = Trials::begin(written, reduced, range, &out, &warn, ends)?;
+        while let Some(Trial { factor, stands, reached, displacement, growth }) = trials.next_trial()? {
+            let tried = (factor, stands, reached, displacement, growth);
+            told.lock().unwrap_or_else(PoisonError::into_inner).1.push(tried);
+        }
+        Ok((trials.search.stands, trials.search.fails))
+    })?;
+    if let Some(raised) = pool.raised.take() {
+        return Err(raised);
+    }
+    tell(py)?;
+    found.map_err(|unfound| match unfound {
+        Unfound::Refused(why) => refused(py, &why),
+        Unfound::Failed(Failed::Stopped(Error::Interrupted)) => stopped(py, "interrupted"),
+        Unfound::Failed(Failed::Stopped(error)) => stopped(py, &error.to_string()),
+        Unfound::Failed(Failed::Defect(what)) => crate::errors::defect(py, &what),
+    })
 }
 
 /// The JSON Schema of a `"case"`, or of the test of a `"law"`; the quantities of `"results"` by their files.

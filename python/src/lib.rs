@@ -29,6 +29,7 @@ fn _native(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(case::measured, module)?)?;
     module.add_function(wrap_pyfunction!(case::judge, module)?)?;
     module.add_function(wrap_pyfunction!(case::fraction_of_increments, module)?)?;
+    module.add_function(wrap_pyfunction!(case::safety, module)?)?;
     module.add_function(wrap_pyfunction!(run::run, module)?)?;
     module.add_function(wrap_pyfunction!(run::report, module)?)?;
     module.add_function(wrap_pyfunction!(law::drive, module)?)?;

@@ -16,6 +16,7 @@ mod refined;
 mod report;
 mod resolved;
 pub mod safety;
+pub mod safety_trials;
 mod schema;
 pub mod units;
 mod words;

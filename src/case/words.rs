@@ -1,7 +1,7 @@
 //! Words that other programs use for keys of a case, and the keys that they are here.
 
 /// Words without spaces, dashes and underscores in lower case; the keys, of which the first that an object knows is meant; where that key stands.
-const WORDS: [(&[&str], &[&str], &str); 26] = [
+const WORDS: [(&[&str], &[&str], &str); 27] = [
     (
         &["youngsmodulus", "young", "youngmodulus", "modulusofelasticity", "elasticmodulus", "eref"],
         &["E"],
@@ -35,6 +35,11 @@ const WORDS: [(&[&str], &[&str], &str); 26] = [
     (&["dynamicfriction", "kineticfriction", "mudynamic", "mukinetic"], &["mu_k", "mu_d"], "of a contact's `friction`"),
     (&["secondary", "secondarysurface", "slavesurface", "source"], &["slave"], "of a contact"),
     (&["primary", "primarysurface", "main", "mainsurface", "mastersurface", "target"], &["master"], "of a contact"),
+    (
+        &["interference", "interferencefit", "overclosure", "initialgap", "gap", "pressfit"],
+        &["clearance"],
+        "of a contact: positive for a gap, negative for an interference",
+    ),
     (&["penalty", "penaltystiffness", "normalstiffness", "kn"], &["alpha_n"], "of a contact's `normal`"),
     (&["shearstiffness", "tangentialstiffness", "ks", "kt"], &["alpha_t"], "of a contact's `friction`"),
     (&["interactions", "interaction", "interfaces", "contactpairs"], &["contacts"], "of a case"),

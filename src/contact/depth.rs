@@ -57,9 +57,8 @@ struct Nearest {
 impl ContactPair {
     /// Deepest place of either side in the other, with its depth; none in contacts whose gaps are not those of the surfaces.
     pub fn deepest(&self, x: &Configuration) -> Option<Depth> {
-        let offset = |slave: &SlavePoint| self.comes_stressed || slave.touch != 0.0 || slave.overlap != 0.0;
         let BothSurfaces { own, .. } = self.both.as_ref().filter(|_| self.small.is_none() && !self.tied)?;
-        if self.points.iter().any(offset) {
+        if self.is_offset() {
             return None;
         }
         let index = Index::new(&self.master, x);

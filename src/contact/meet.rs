@@ -81,6 +81,20 @@ impl ContactPair {
         self.points.iter().zip(self.meetings(x, false)).map(of).collect()
     }
 
+    /// Lets every point that faces the master in the configuration `x` begin with this gap, whatever its surfaces have there [L].
+    pub fn start_apart(&mut self, gap: f64, x: &Configuration) {
+        let met = self.meetings(x, false);
+        for (slave, met) in self.points.iter_mut().zip(met) {
+            slave.touch = met.map_or(0.0, |(met, _)| met.gap - gap);
+        }
+    }
+
+    /// Whether gaps are counted from elsewhere than where the surfaces touch.
+    pub fn is_offset(&self) -> bool {
+        let offset = |slave: &SlavePoint| slave.touch != 0.0 || slave.overlap != 0.0;
+        self.comes_stressed || self.points.iter().any(offset)
+    }
+
     /// Starts a shrink fit: the overlap of the surfaces in the configuration `x` is applied gradually.
     ///
     /// ```text

@@ -15,7 +15,7 @@ use nalgebra::Vector2;
 
 use super::master::{Master, Shape};
 use super::pair::ContactPair;
-use super::point::{ContactState, SlavePoint};
+use super::point::ContactState;
 use super::scatter::Course;
 use super::surface::{CORNER, Surface};
 use crate::mesh::configuration::Configuration;
@@ -83,10 +83,7 @@ impl ContactPair {
         x: &Configuration,
         is_held: impl Fn(usize, Vector2<f64>) -> bool,
     ) -> Option<Stretch> {
-        let offset = |slave: &SlavePoint| slave.touch != 0.0 || slave.overlap != 0.0;
-        let excluded =
-            self.tied || self.comes_stressed || self.is_own() || self.initial.is_some() || self.modulus <= 0.0;
-        if excluded || self.points.iter().any(offset) {
+        if self.tied || self.is_own() || self.initial.is_some() || self.modulus <= 0.0 || self.is_offset() {
             return None;
         }
         let [first, last] = most_loaded(states)?;

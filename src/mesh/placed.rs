@@ -1,5 +1,5 @@
-//! Groups by place: sides or nodes of bodies that lie on a line, in a box or on a circle, or that face a direction. For meshes
-//! without groups of their own.
+//! Groups by place: sides or nodes of bodies that lie on a line, in a box or on a circle, or that face a direction, also as a part of
+//! another group. For meshes without groups of their own, and for sides without their ends.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,6 +29,10 @@ pub struct PlacedGroup {
     /// Directions between which the outward normal of a side lies, counter-clockwise from the first to the second [degrees from x]:
     /// [45, 135] are sides that face upwards
     pub angle: Option<[f64; 2]>,
+    /// A group of the mesh whose nodes are meant, instead of any
+    pub of: Option<String>,
+    /// Groups of the mesh whose nodes are left out: {"of": "left", "without": ["bottom"], "nodes": true} is a side without its lower end
+    pub without: Option<Vec<String>>,
     /// Bodies whose sides or nodes are meant; those of all bodies unless given
     pub bodies: Option<Vec<String>>,
     /// Whether it is a group of nodes, also of those inside bodies, instead of free sides
@@ -53,8 +57,8 @@ impl PlacedGroup {
     /// Checks the numbers of a group.
     fn check(&self) -> Result<(), String> {
         let places = [self.x.is_some(), self.y.is_some(), self.within.is_some(), self.circle.is_some()];
-        if !places.contains(&true) && self.angle.is_none() {
-            return Err("says no place: give x, y, box, circle or angle".into());
+        if !places.contains(&true) && self.angle.is_none() && self.of.is_none() {
+            return Err("says no place: give x, y, box, circle, angle or of".into());
         }
         if self.nodes && self.angle.is_some() {
             return Err("has an angle, which nodes have not: leave out angle, or nodes".into());
@@ -113,10 +117,12 @@ impl Mesh {
         }
         let sides = self.sides();
         let near = NEAR * self.size_of(0..self.nodes.len());
-        for (name, group) in groups {
-            let made = self.placed(name, group, &sides, near).map_err(|defect| (name.clone(), defect))?;
-            self.groups.insert(name.clone(), made);
-        }
+        let made = groups.iter().map(|(name, group)| {
+            let made = self.placed(name, group, &sides, near);
+            made.map(|made| (name.clone(), made)).map_err(|defect| (name.clone(), defect))
+        });
+        let made = made.collect::<Result<Vec<_>, _>>()?;
+        self.groups.extend(made);
         Ok(self)
     }
 
@@ -140,7 +146,14 @@ impl Mesh {
         }
         let elements = self.elements_of(group.bodies.as_deref())?;
         let near = group.tolerance.unwrap_or(near);
-        let is_there = |node: &usize| group.has(self.nodes[*node], near);
+        let of = group.of.as_ref().map(|name| self.nodes_named(name)).transpose()?;
+        let without =
+            group.without.iter().flatten().map(|name| self.nodes_named(name)).collect::<Result<Vec<_>, _>>()?;
+        let is_there = |node: &usize| {
+            group.has(self.nodes[*node], near)
+                && of.as_ref().is_none_or(|nodes| nodes.contains(node))
+                && !without.iter().any(|nodes| nodes.contains(node))
+        };
         if group.nodes {
             let nodes = elements.iter().flat_map(|&element| &self.elements[element].nodes).copied();
             let nodes: BTreeSet<usize> = nodes.filter(is_there).collect();
@@ -157,6 +170,15 @@ impl Mesh {
             true => Err(format!("has no free side of an element: {}", self.extents())),
             false => Ok(Group::Edges(edges)),
         }
+    }
+
+    /// Nodes of a group of the mesh.
+    fn nodes_named(&self, name: &str) -> Result<BTreeSet<usize>, String> {
+        let group = self.groups.get(name).ok_or_else(|| {
+            let known: Vec<&str> = self.groups.keys().map(String::as_str).collect();
+            format!("names another group: {}", super::names::not_known(name, &known))
+        })?;
+        Ok(self.nodes_of(group).into_iter().collect())
     }
 
     /// Elements of some bodies, or of all.

@@ -31,10 +31,13 @@ impl Model {
         let of_contact = |pair: &ContactPair| {
             // A contact that starts closed has no gaps that it keeps under pressure, and self-contact usually starts open.
             let warnings = match pair.initial.is_some() || pair.is_own() {
-                true => closed_across(self, pair).into_iter().collect(),
+                true => Vec::new(),
                 false => Gaps::of(self, pair).warnings(),
             };
-            let further = faces_away(self, pair).into_iter().chain(friction_of_total_pressure(self, pair));
+            let further = closed_across(self, pair)
+                .into_iter()
+                .chain(faces_away(self, pair))
+                .chain(friction_of_total_pressure(self, pair));
             let further = further
                 .chain(isolated_pressure(self, pair))
                 .chain(facets_of_a_fit(self, pair))
@@ -267,8 +270,8 @@ const OF_OVERLAP: f64 = 0.02;
 /// Straight edges that stand for curves, of other lengths on the two sides of a shrink fit: they change its overlap, and all that follows
 /// from it. (By mortar, which averages; equal edges cancel.)
 fn facets_of_a_fit(model: &Model, pair: &ContactPair) -> Option<String> {
-    let Some(BothSurfaces { slave: Master::Mesh(slave), .. }) = pair.both.as_ref().filter(|_| pair.mortar.is_some())
-    else {
+    let counts = pair.mortar.is_some() && pair.points.iter().all(|point| point.touch == 0.0);
+    let Some(BothSurfaces { slave: Master::Mesh(slave), .. }) = pair.both.as_ref().filter(|_| counts) else {
         return None;
     };
     let Master::Mesh(master) = &pair.master else { return None };
@@ -401,15 +404,24 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
 /// touch, but for the facets of both.
 const CLOSED_ACROSS: f64 = 0.1;
 
-/// A contact that starts closed across a gap or an overlap that no pressure acts across.
+/// A contact that starts closed across a gap or an overlap that no pressure acts across, or with a clearance that is far from that of the mesh.
 fn closed_across(model: &Model, pair: &ContactPair) -> Option<String> {
-    let initial = pair.initial.as_ref().filter(|_| !pair.tied)?;
     let x = model.mesh.undeformed();
-    let closed = pair.points.iter().zip(initial).filter_map(|(point, initial)| {
-        let give = if pair.penetration.is_some() { 0.0 } else { initial.pressure / pair.alpha_n };
+    let moved = pair.points.iter().enumerate().filter(|_| !pair.tied).filter_map(|(k, point)| {
+        let pressure = pair.initial.as_ref().map_or(0.0, |initial| initial[k].pressure);
+        let give = if pair.penetration.is_some() { 0.0 } else { pressure / pair.alpha_n };
         Some((point, point.touch - give, (point.touch - give).abs() / point.edge_length(&x)?))
     });
-    let (point, gap, share) = closed.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|closed| closed.2 > CLOSED_ACROSS)?;
+    let (point, gap, share) = moved.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|moved| moved.2 > CLOSED_ACROSS)?;
+    if pair.initial.is_none() {
+        return Some(format!(
+            "`clearance` changes the gap of the mesh by {} at {}, {} of the edge there: name as slave only what lies so close, or draw the surfaces \
+             closer to it",
+            number(gap.abs()),
+            vector(point.at(&x)),
+            number(share)
+        ));
+    }
     let what = if gap > 0.0 { "a gap" } else { "an overlap" };
     Some(format!(
         "`initial` closes {what} of {} at {}, {} of the edge there: name as slave only what touches, move the surfaces together, or give no pressure \

@@ -389,7 +389,7 @@ fn chords(model: &Model, pair: &ContactPair) -> f64 {
     let counts = pair.mortar.is_some() && !pair.tied && !pair.is_own() && pair.initial.is_none();
     match (&pair.master, &pair.both) {
         (Master::Mesh(master), Some(BothSurfaces { slave: Master::Mesh(slave), .. }))
-            if counts && pair.points.iter().all(|point| point.overlap == 0.0) =>
+            if counts && !pair.is_offset() =>
         {
             let [slave, master] = [slave, master].map(|surface| surface.by_chords(&model.mesh.undeformed()));
             if slave * master < 0.0 { slave + master } else { 0.0 }

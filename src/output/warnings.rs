@@ -158,7 +158,8 @@ impl Observer for Warnings {
                     self.list.push(format!("{}: {message}", place(pair, at, state.time)));
                 }
             }
-            if !(fading || explicit || pair.comes_stressed || pair.initial.is_some()) {
+            let elsewhere = pair.comes_stressed || pair.initial.is_some() || pair.points.iter().any(|p| p.touch != 0.0);
+            if !(fading || explicit || elsewhere) {
                 self.deep_master_node(number, pair, state, &x);
                 self.deep_slave_node(number, pair, state, &x);
             }

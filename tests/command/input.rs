@@ -563,6 +563,25 @@ fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
         &["contacts.base.shrink_fit: ", "leave one out"],
     );
     refused_edits(
+        &[("/contacts/base/clearance", json!(-1e-3)), ("/contacts/base/initial", json!({"pressure": 1}))],
+        &["contacts.base.clearance: ", "leave one out"],
+    );
+    let itself = ("/contacts/base/master", json!("block_bottom"));
+    refused_edits(
+        &[("/contacts/base/clearance", json!(0.1)), itself],
+        &["contacts.base.clearance: ", "one touches itself"],
+    );
+    refused_edits(&[("/contacts/base/clearance", json!(1e300))], &["contacts.base.clearance: "]);
+    refused_edits(&[("/contacts/base/interference", json!(1e-3))], &["here that is `clearance`"]);
+    refused_edits(
+        &[
+            ("/mesh/points", json!({"corner": [6]})),
+            ("/contacts/base/slave", json!("corner")),
+            ("/contacts/base/area", json!(1)),
+        ],
+        &["contacts.base.normal.alpha_n: ", "sides of elements like those there take"],
+    );
+    refused_edits(
         &[("/contacts/base/normal", json!({"penetration": 0}))],
         &["contacts.base.normal.penetration: ", "positive"],
     );
@@ -787,7 +806,11 @@ fn points_are_checked() {
         ("/contacts/base/area", json!(null), ["contacts.base.area: ", "is missing: `block` is a group of points"]),
         ("/contacts/base/area", json!(0), ["contacts.base.area: ", "is 0: must be positive"]),
         ("/contacts/base/area", json!(1e300), ["contacts.base: ", "area is 1.000000e300"]),
-        ("/contacts/base/normal", json!({}), ["contacts.base.normal.alpha_n: ", "no elements behind the points"]),
+        (
+            "/contacts/base/normal",
+            json!({}),
+            ["contacts.base.normal.alpha_n: ", "get a spring of alpha_n × area each; take 100 times"],
+        ),
         ("/contacts/base/friction/alpha_t", json!(null), ["contacts.base.friction.alpha_t: ", "is missing"]),
         ("/contacts/base/initial/pressure", json!(-1), ["contacts.base.initial.pressure: ", "is -1: must be zero or"]),
         ("/contacts/base/initial/traction", json!(-30), ["contacts.base.initial.traction: ", "mu p = 29.43"]),

@@ -129,6 +129,39 @@ fn what_a_schedule_has_let_in_spreads_evenly() {
     balances(&run);
 }
 
+/// A flat gasket (L = 4, H = 1, E = 1000, ν = 0, columns that neither widen nor slide) is clamped with p₀ = 10, and the water at its end goes up to
+/// 20 in ten times. Closed, it is tight within the time of the test, by the aperture of its roughness. The water opens it from its end on
+/// once it exceeds p₀, and in the end has lifted it by w = (20 − p₀) H/E throughout: w L + S 20 L have come in. Half open, whatever
+/// goes wrong with the water that follows shows in what has come in by then.
+#[test]
+fn water_follows_a_seal_that_opens() {
+    let (length, storage, clamped, given) = (4.0, 1e-4, 10.0, 20.0);
+    let flow = json!({"storage": storage, "aperture": 2e-5, "viscosity": 1e-9,
+                      "wells": [{"at": [0, 0], "pressure": {"table": [[0, 0], [1, 0], [11, given]]}}]});
+    let run = finish(&json!({
+        "mesh": Blocks::default().rectangle("gasket", [8, 1], [0.0, 0.0], [length, 1.0]).json(),
+        "bodies": {"gasket": {"material": {"model": "linear", "E": 1000, "nu": 0}}},
+        "contacts": {"seal": {
+            "slave": "gasket_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "method": "node_to_segment",
+            "sliding": "small", "friction": {"law": "frictionless"}, "fluid_pressure": {"flow": flow},
+        }},
+        "steps": [
+            {"name": "clamp", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "gasket", "ux": 0}, {"on": "gasket_top", "uy": -0.01}]},
+            {"name": "pump", "duration": 10, "dt": {"initial": 0.25, "max": 1}},
+        ],
+    }));
+    let water = |state: &State| state.contacts[0].iter().map(|point| point.length * point.fluid).sum::<f64>();
+    let tight = run.states.iter().rfind(|state| state.time < 6.0).expect("a state under less than the pressure of the seal");
+    assert!(tight.time > 4.0 && tight.contacts[0].iter().all(|point| point.is_closed()), "t = {}", tight.time);
+    assert!(water(tight) < 0.1 * clamped * length, "{}", water(tight));
+    let last = run.last();
+    assert!(last.contacts[0].iter().all(|point| !point.is_closed()));
+    close("water's force", water(last), given * length, 1e-3 * given * length);
+    let come_in = ((given - clamped) / 1000.0 + storage * given) * length;
+    close("injected", last.conduits[0].amounts.injected, come_in, 1e-3 * come_in);
+    balances(&run);
+}
+
 /// A rate into the axis of rings (Theis): p = q η/(4π T) E₁(r²/(4 D t)), E₁(¼) = 1.044283, E₁(1) = 0.219384.
 #[test]
 fn rings_take_a_rate_from_their_axis() {

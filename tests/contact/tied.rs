@@ -164,6 +164,7 @@ fn what_has_no_meaning_is_refused() {
         ("friction", json!({"law": "coulomb", "mu": 0.3}), "friction"),
         ("normal", json!({"penetration": 1e-6}), "normal.penetration"),
         ("shrink_fit", json!(true), "shrink_fit"),
+        ("clearance", json!(0.1), "clearance"),
         ("stick", json!(1e-6), "stick"),
         ("initial", json!({"pressure": 1}), "initial"),
         ("master", json!({"plane": {"point": [0, 1], "normal": [0, 1]}}), "master"),

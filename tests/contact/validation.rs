@@ -4,7 +4,9 @@
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, half_way_round, quadratic, turned};
+use crate::common::{
+    self, Blocks, Finished, close, distance, finish, half_way, half_way_round, model, quadratic, turned,
+};
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
 use fecontact::contact::pair::{ContactIncrement, Presumption};
@@ -463,6 +465,77 @@ fn a_shrink_fit_has_the_pressure_of_lame() {
     let (energy, expected) = (&run.last().energy, 0.5 * pressure * delta * radii[1] * FRAC_PI_2);
     close("work", energy.external_work, expected, 0.02 * expected);
     close("audit", energy.error(), 0.0, 1e-3 * expected);
+}
+
+/// The same tubes with δ as a number: on meshes that touch, that leave a gap of 0.004, and whose chords do not match, so that their own
+/// overlap would be 31 % off (`edges_that_change_a_fit_are_told`). Measured: within 0.3, 0.3 and 0.4 %.
+#[test]
+fn an_interference_given_as_a_number_does_not_depend_on_the_mesh() {
+    let delta = 1e-3;
+    let modulus = 1000.0 / (1.0 - 0.3 * 0.3);
+    let pressure = modulus * delta / (2.0 * ((9.0 + 4.0) / (9.0 - 4.0) + (4.0 + 1.0) / (4.0 - 1.0)));
+    let ring = |body: &str, n: usize, [a, b]: [f64; 2]| {
+        let sides = ["bottom", "outside", "top", "inside"].map(|side| format!("{body}_{side}"));
+        json!({"body": body, "corners": [[a, 0], [b, 0], [0, b], [0, a]], "arcs": [null, [0, 0], null, [0, 0]], "elements": [8, n], "sides": sides})
+    };
+    for (elements, rim, method) in [
+        ([16, 16], 2.0, "mortar"),
+        ([16, 16], 1.996, "mortar"),
+        ([24, 20], 2.0, "mortar"),
+        ([24, 20], 2.0, "gauss_to_segment"),
+    ] {
+        let body = json!({"material": {"model": "linear", "E": 1000, "nu": 0.3}});
+        let case = json!({
+            "mesh": {"blocks": [ring("inner", elements[0], [1.0, rim]), ring("outer", elements[1], [2.0, 3.0])]},
+            "bodies": {"inner": body, "outer": body},
+            "contacts": {"fit": {"slave": "outer_inside", "master": "inner_outside", "method": method, "clearance": -delta, "shrink_fit": true,
+                                 "friction": {"law": "frictionless"}}},
+            "steps": [{"name": "fit", "duration": 1, "dt": {"initial": 0.25}, "supports": [
+                {"on": "inner_bottom", "uy": 0}, {"on": "inner_top", "ux": 0}, {"on": "outer_bottom", "uy": 0}, {"on": "outer_top", "ux": 0}]}]
+        });
+        assert_eq!(model(&case).warnings(), Vec::<String>::new());
+        let run = finish(&case);
+        for (time, share) in [(0.5, 0.5), (1.0, 1.0)] {
+            let [found, _] = tractions(run.at(time));
+            let mean = found.iter().sum::<f64>() / found.len() as f64;
+            println!(
+                "{elements:?}, rim {rim}, {method}, t = {time}: {:+.3} %",
+                100.0 * (mean / (share * pressure) - 1.0)
+            );
+            close("mean pressure", mean, share * pressure, 0.01 * share * pressure);
+        }
+        close("audit", run.last().energy.error(), 0.0, 2e-3 * run.last().energy.external_work);
+    }
+}
+
+/// Bars of length 1 and E = 1000 whose ends touch in the mesh, or overlap by 0.01 there, with a clearance of 0.002: pushed together by
+/// 0.006, each is shortened by 0.002, and by the rest of a contact of 1e6.
+#[test]
+fn a_clearance_is_closed_before_anything_is_pressed() {
+    for drawn in [0.0, -0.01] {
+        for sliding in ["finite", "small"] {
+            let mut case = json!({
+                "mesh": Blocks::default().rectangle("lower", [3, 2], [0.0, -1.0], [1.0, 0.0]).rectangle("upper", [2, 2], [0.0, drawn], [1.0, 1.0 + drawn]).json(),
+                "bodies": {"lower": {"material": {"model": "linear", "E": 1000, "nu": 0}}, "upper": {"material": {"model": "linear", "E": 1000, "nu": 0}}},
+                "contacts": {"ends": {"slave": "upper_bottom", "master": "lower_top", "clearance": 0.002, "sliding": sliding, "normal": {"alpha_n": 1e6},
+                                      "friction": {"law": "frictionless"}}},
+                "steps": [{"name": "close", "duration": 1, "dt": {"initial": 0.25},
+                           "supports": [{"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": 0, "uy": -0.006}]}]
+            });
+            let run = finish(&case);
+            let pressure = 0.004 / (2.0 / 1000.0 + 1e-6);
+            let [found, _] = tractions(run.last());
+            found.iter().for_each(|found| close("pressure", *found, pressure, 1e-6 * pressure));
+            let [early, _] = tractions(run.at(0.25));
+            assert!(early.iter().all(|pressure| *pressure == 0.0), "{early:?}");
+            case["contacts"]["ends"]["clearance"] = json!(-0.2);
+            let told = model(&case).warnings();
+            assert!(
+                told.iter().any(|told| told.contains("`clearance` changes the gap of the mesh by 0.2")),
+                "{told:?}"
+            );
+        }
+    }
 }
 
 /// A block of 1 × 0.6 on ground of 4 × 0.8, with nodes that do not match.

@@ -64,6 +64,8 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         ],
         "water that flows in static steps alone: tests/solver/consolidation.rs",
     ),
+    (&["clearance"], "a gap that is not that of the mesh: tests/contact/validation.rs"),
+    (&["without"], "groups that are a part of another: tests/solver/groups.rs"),
     (&["sections"], "forces of sections, which nothing depends on: tests/solver/cuts.rs"),
     (
         &["aperture", "per_slip", "closing", "wells", "rate", "from", "leak", "coefficient"],

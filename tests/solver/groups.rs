@@ -64,6 +64,37 @@ fn sides_and_nodes_are_found_by_their_place() {
     assert_eq!(places, BTreeSet::from([-6, -5, -4, -3, -2, 2, 3, 4]));
 }
 
+/// A side without its ends, and the reaction of a wall without that of the floor at the node that both share: a bar between a wall and a
+/// floor that it does not leave, ε = 1 % along x at ν = 0, so that every node of the wall bears E ε h, half of it at the ends.
+#[test]
+fn a_side_is_a_group_without_its_ends() {
+    let mut case = case(json!({
+        "inner": {"of": "wall", "without": ["floor", "ceiling"], "nodes": true},
+        "lower": {"of": "wall", "without": ["ceiling"]},
+        "short": {"of": "wall", "box": [[0, -2], [0, -1]], "nodes": true},
+    }));
+    case["mesh"]["blocks"][1]["elements"] = json!([2, 4]);
+    case["mesh"]["blocks"][1]["kind"] = json!("Q4");
+    case["mesh"]["blocks"][1]["sides"] = json!(["floor", "pushed", "ceiling", "wall"]);
+    case["bodies"]["square"]["material"]["nu"] = json!(0.0);
+    case["watch"] = json!(["wall", "inner", "floor"]);
+    case["steps"][0]["supports"] = json!([
+        {"on": "ring", "ux": 0, "uy": 0}, {"on": "wall", "ux": 0}, {"on": "floor", "uy": 0}, {"on": "pushed", "ux": -0.02}]);
+    let run = finish(&case);
+    let mesh = &run.model.mesh;
+    let heights = |name: &str| {
+        let nodes = mesh.nodes_of(mesh.group(name).expect("a group"));
+        nodes.iter().map(|&node| (2.0 * mesh.nodes[node].y).round() as i64).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(heights("inner"), BTreeSet::from([-5, -4, -3]));
+    assert_eq!(heights("short"), BTreeSet::from([-4, -3, -2]));
+    // An edge with an end that is left out is none.
+    assert_eq!(edges(mesh, "lower").len(), 3);
+    for (name, share) in [("wall", 1.0), ("inner", 0.75)] {
+        close(name, run.reaction(name, run.last())[0], share * 100.0 * 0.01 * 2.0, 1e-9);
+    }
+}
+
 #[test]
 fn contacts_and_supports_take_them() {
     let mut case = case(json!({"top": {"y": -1}, "base": {"y": -3}}));
@@ -87,6 +118,8 @@ fn places_where_nothing_is_are_refused() {
         (json!({"circle": {"center": [0, 0], "radius": 0}}), &["radius is not positive"]),
         (json!({"y": -1, "bodies": ["sqare"]}), &["`sqare`", "it has `ring`, `square`"]),
         (json!({"y": -1, "tolerance": -1}), &["negative tolerance"]),
+        (json!({"of": "squaer", "nodes": true}), &["`squaer` is not known here; did you mean `square`?"]),
+        (json!({"y": -1, "without": ["squar"]}), &["`squar` is not known here"]),
         (json!({"z": -1}), &["`z`"]),
     ] {
         let message = refusal(&case(json!({"top": group})));

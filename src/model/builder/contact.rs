@@ -62,8 +62,12 @@ pub struct Contact {
     /// adhesion, slip_weakening): the traction is adjusted until no elastic slip is larger, as `penetration` does it along the normal;
     /// default: penalty only
     pub stick: Option<f64>,
-    /// Whether the initial overlap of the surfaces is applied gradually over the first step (shrink fit) instead of at
-    /// once
+    /// Gap of the surfaces at the start, the same at every point that faces the master, instead of the gaps of the mesh: positive for a
+    /// clearance, negative for an interference. All later gaps are measured relative to it, so that neither facets nor the accuracy of
+    /// the mesh change it [L]
+    pub clearance: Option<f64>,
+    /// Whether the initial overlap of the surfaces, or a negative `clearance`, is applied gradually over the first step (shrink fit)
+    /// instead of at once
     #[serde(default)]
     pub shrink_fit: bool,
     /// Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their elements, so that impact
@@ -259,6 +263,7 @@ impl Contact {
             sliding: SlidingRange::Finite,
             normal: Normal::default(),
             stick: None,
+            clearance: None,
             shrink_fit: false,
             massless: false,
             tied: false,
@@ -318,6 +323,9 @@ setters! { contact: Contact;
 
     /// Smooths the edges of the master to a curve.
     smooth() { contact.smooth = true; }
+
+    /// Sets the gap at the start, instead of that of the mesh; negative for an interference [L].
+    clearance(gap: f64) { contact.clearance = Some(gap); }
 
     /// Makes it a shrink fit: an initial overlap is applied gradually over the first step.
     shrink_fit() { contact.shrink_fit = true; }
@@ -461,6 +469,7 @@ pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
         ("smooth", contact.smooth),
         ("normal.penetration", contact.normal.penetration.is_some()),
         ("stick", contact.stick.is_some()),
+        ("clearance", contact.clearance.is_some()),
         ("shrink_fit", contact.shrink_fit),
         ("massless", contact.massless),
         ("bond", contact.bond.is_some()),

@@ -240,7 +240,11 @@ impl Friction {
         let law = (self.law)(values, default_alpha_t.unwrap_or(f64::NAN));
         let lacks = law.is_err() && default_alpha_t.is_none() && (self.law)(values, 1.0).is_ok();
         let own = format!("{contact}.{}", self.name);
-        refuse_if(lacks, format!("{own}.alpha_t"), "is missing: a slave group of points has no default for it")?;
+        refuse_if(
+            lacks,
+            format!("{own}.alpha_t"),
+            "is missing: a slave group of points has no default for it; half of alpha_n is a good choice",
+        )?;
         let place = place.unwrap_or(own);
         let named = |law: Box<dyn FrictionLaw>| {
             observables::check_names(&law.description()).map_err(|error| ModelError::new("", error)).map(|()| law)

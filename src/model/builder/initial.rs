@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::body::PointMassInput;
 use super::contact::{Contact, InitialTractions};
-use super::error::{Checked, ModelError, check_finite, refuse_if};
+use super::error::{Checked, ModelError, check_finite, check_place, refuse_if};
 use super::friction::{check_profile, defined, position};
 use super::groups;
 use super::load_step::LoadStep;
@@ -113,8 +113,31 @@ fn tied<V: PartialEq>(place: &str, velocity: &[V], model: &Model) -> Checked<()>
     Err(ModelError::new(place, message))
 }
 
+/// Sets the initial state of the surfaces: as in the mesh, closed, with a given gap, or with an overlap to be fitted.
+pub fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) -> Checked<()> {
+    if let Some(initial) = contact.initial.as_ref().filter(|_| pair.comes_stressed) {
+        check_of_bodies(initial, contact, &format!("{place}.initial"))?;
+    } else if let Some(initial) = &contact.initial {
+        close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
+    }
+    for (key, given) in [("shrink_fit", contact.shrink_fit), ("clearance", contact.clearance.is_some())] {
+        let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
+        refuse_if(given && contact.initial.is_some(), format!("{place}.{key}"), message)?;
+    }
+    if let Some(gap) = contact.clearance {
+        let message = "is for two surfaces, and here one touches itself: leave it out";
+        refuse_if(contact.is_own(), format!("{place}.clearance"), message)?;
+        check_place(&format!("{place}.clearance"), [gap])?;
+        pair.start_apart(gap, &model.mesh.undeformed());
+    }
+    if contact.shrink_fit {
+        pair.start_fitting(&model.mesh.undeformed());
+    }
+    Ok(())
+}
+
 /// Starts a contact closed, if its tractions and its law permit it.
-pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, model: &Model, place: &str) -> Checked<()> {
+fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, model: &Model, place: &str) -> Checked<()> {
     let initial = match given.of_bodies {
         true => of_bodies(pair, given, slave, model, place)?,
         false => as_given(pair, given, model, place)?,
@@ -236,7 +259,7 @@ fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: 
 }
 
 /// Checks the initial tractions of a contact that comes later, under the stress in force by then.
-pub fn check_of_bodies(given: &InitialTractions, contact: &Contact, place: &str) -> Checked<()> {
+fn check_of_bodies(given: &InitialTractions, contact: &Contact, place: &str) -> Checked<()> {
     check_alone(given, place)?;
     let message = "needs a slave of edges, behind which there is a stress: leave it out";
     refuse_if(contact.area.is_some(), format!("{place}.of_bodies"), message)

@@ -71,6 +71,7 @@ use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
 use crate::model::method::{Asked, Chosen, Method, Tool, choose, nodes_meet};
 use crate::model::scheme::Regime;
+use crate::model::text::number;
 
 /// The pairs of contacts, in a run of this regime that begins without these bodies.
 pub fn pairs(
@@ -220,23 +221,8 @@ fn begin(pair: &mut ContactPair, contact: &Contact, model: &Model, absent: &BTre
     let place = format!("contacts.{}", contact.name);
     pair.comes_stressed = pair.bodies.iter().flatten().any(|body| absent.contains(body))
         && contact.initial.as_ref().is_some_and(|initial| initial.of_bodies);
-    start(pair, contact, model, &place)?;
+    initial::start(pair, contact, model, &place)?;
     fluid::check_fluid(pair, &place, model, 0.0)
-}
-
-/// Sets the initial state of the surfaces: as in the mesh, closed, or with an overlap to be fitted.
-fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) -> Checked<()> {
-    if let Some(initial) = contact.initial.as_ref().filter(|_| pair.comes_stressed) {
-        initial::check_of_bodies(initial, contact, &format!("{place}.initial"))?;
-    } else if let Some(initial) = &contact.initial {
-        initial::close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
-    }
-    if contact.shrink_fit {
-        let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
-        refuse_if(contact.initial.is_some(), format!("{place}.shrink_fit"), message)?;
-        pair.start_fitting(&model.mesh.undeformed());
-    }
-    Ok(())
 }
 
 /// Round-off of gaps relative to the size of the surfaces; gaps are differences of positions and displacements.
@@ -533,9 +519,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) ->
         (Some(alpha_n), _) => alpha_n,
         (None, Some(elastic)) => elastic * default_over(contact, method, regime),
         (None, None) => {
-            let message =
-                format!("is missing: there are no elements behind the points of `{}` to choose it by", contact.slave);
-            return Err(ModelError::new(at, message));
+            return Err(ModelError::new(at, needs_stiffness(contact, model)));
         }
     };
     check_positive(&at, alpha_n, " (leave it out for the default)")?;
@@ -570,6 +554,20 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
     let softest = master.into_iter().map(modulus).fold(f64::INFINITY, f64::min);
     let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
     Ok(Some(slave.iter().map(|edge| stiffness(edge)).sum::<f64>() / slave.len() as f64))
+}
+
+/// What to give as α_n of a slave group of points: the default of sides with elements of that size, if there are any at the points.
+fn needs_stiffness(contact: &Contact, model: &Model) -> String {
+    let nodes = model.mesh.group(&contact.slave).map(|group| model.mesh.nodes_of(group)).unwrap_or_default();
+    let is_beside = |k: &usize| model.mesh.elements[*k].nodes.iter().any(|node| nodes.binary_search(node).is_ok());
+    let stiffness = |k: usize| model.body_of(k).material.description().p_wave_modulus / model.solids[k].area().sqrt();
+    let softest = (0..model.solids.len()).filter(is_beside).map(stiffness).fold(f64::INFINITY, f64::min);
+    let [stiff, soft] = [STATIC, SOFTER].map(|over| number(over * softest));
+    let advice = match softest.is_finite() {
+        true => format!("sides of elements like those there take {stiff} in static steps, {soft} in dynamics"),
+        false => "take 100 times the stiffness of what holds the points, over their area".into(),
+    };
+    format!("is missing: points have no sides to choose it by, and get a spring of alpha_n × area each; {advice}")
 }
 
 /// Depth of the element at an edge [L].

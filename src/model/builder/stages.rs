@@ -201,7 +201,8 @@ impl<'m> Stages<'m> {
             let message = "has a side on an edge that a body shares which is there with it: what shares nodes cannot slide. Let the \
                            contact come with the step that removes the other body";
             refuse_if(self.joins(pair) && self.is_shared(pair), place, format!("the contact `{name}` {message}"))?;
-            let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || overlaps(pair);
+            let offset = !pair.comes_stressed && pair.is_offset();
+            let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || offset;
             let why = format!(
                 "changes the bodies of the contact `{name}`, along which water flows: let them be there from the start to the end"
             );
@@ -281,8 +282,4 @@ pub fn give_sides_owners(mesh: &mut Mesh, given: &[LoadStep]) -> Checked<()> {
     }
     mesh.between = between;
     Ok(())
-}
-
-fn overlaps(pair: &ContactPair) -> bool {
-    pair.points.iter().any(|point| point.overlap > 0.0)
 }

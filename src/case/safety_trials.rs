@@ -1,0 +1,191 @@
+//! Runs by which a factor of safety is found: the case itself, then one trial after another ([`Search`]).
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::job::{Callbacks, Ends, Failed, Job, Outcome, Refused};
+use super::safety::{Reduced, Search, Trial, table};
+use super::{Opened, Written, warnings};
+use crate::model::Model;
+use crate::output::report::{self, ReportError};
+use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
+
+/// Growth of the displacement over the elastic one above which a trial has failed, whether a new equilibrium follows or not.
+pub const GROWTH: f64 = 10.0;
+
+/// Displacements that count as none, as a fraction of the mesh.
+const NO_MOTION: f64 = 1e-9;
+
+/// Reason why no factor was found.
+#[derive(Debug)]
+pub enum Unfound {
+    /// The case is invalid, or a folder cannot be used.
+    Refused(Refused),
+    /// A run stopped for another reason than that the strengths fail, or results could not be written.
+    Failed(Failed),
+}
+
+impl From<Refused> for Unfound {
+    fn from(refused: Refused) -> Self {
+        Self::Refused(refused)
+    }
+}
+
+impl From<Failed> for Unfound {
+    fn from(failed: Failed) -> Self {
+        Self::Failed(failed)
+    }
+}
+
+impl From<Error> for Unfound {
+    fn from(error: Error) -> Self {
+        Self::Failed(Failed::Stopped(error))
+    }
+}
+
+/// The trials of a case, each in a folder of its own.
+pub struct Trials {
+    written: Written,
+    reduced: Reduced,
+    place: PathBuf,
+    within: f64,
+    ends: Ends,
+    found: Vec<Trial>,
+    /// Factors between which failure lies so far
+    pub search: Search,
+}
+
+impl Trials {
+    /// Runs the case into the folder `end` of `place`, from whose end the strengths are divided.
+    ///
+    /// # Errors
+    /// Returns [`Unfound`] if the case is invalid, has no strengths to divide, or its own run stopped.
+    pub fn begin(
+        written: Written,
+        reduced: Reduced,
+        [within, most]: [f64; 2],
+        place: &Path,
+        warn: &dyn Fn(&str),
+        ends: Ends,
+    ) -> Result<Self, Unfound> {
+        reduced.check(&written).map_err(Refused::from)?;
+        let mut job = Job::open(Opened::begin(written.clone()).map_err(Refused::from)?, &place.join("end"))?;
+        warnings(&job.opened.case, &job.model).iter().for_each(|warning| warn(warning));
+        let callbacks = Callbacks { warn: Arc::new(|_| ()), ends: ends.clone(), progress: None };
+        let Outcome { ended, written: summary, .. } = job.run(callbacks)?;
+        ended?;
+        summary?;
+        Ok(Self {
+            written,
+            reduced,
+            place: place.to_owned(),
+            within,
+            ends,
+            found: Vec::new(),
+            search: Search::new(most),
+        })
+    }
+
+    /// Runs the next trial, and writes the table of all; `None` once the factor is found, or the largest one stands.
+    ///
+    /// # Errors
+    /// Returns [`Unfound`] if the trial ends for another reason than that its strengths fail.
+    pub fn next_trial(&mut self) -> Result<Option<Trial>, Unfound> {
+        let Some(factor) = self.search.next(self.within) else { return Ok(None) };
+        let end = self.place.join("end");
+        let trial = self.run(self.reduced.job(&self.written, &end, factor, &self.folder(factor))?, factor)?;
+        self.search.note(&trial);
+        self.found.push(trial);
+        let path = self.place.join("safety.csv");
+        std::fs::write(&path, table(&self.found)).map_err(|cause| Error::Output { path, cause: cause.to_string() })?;
+        Ok(Some(trial))
+    }
+
+    /// Folder of the trial of a factor.
+    pub fn folder(&self, factor: f64) -> PathBuf {
+        self.place.join(format!("F_{factor}"))
+    }
+
+    /// Runs a trial; a step without an equilibrium is an answer.
+    fn run(&self, mut job: Job, factor: f64) -> Result<Trial, Unfound> {
+        let saved = job.saved.as_ref();
+        let begun = saved.map(|saved| saved.simulation().state().displacement.to_vec()).unwrap_or_default();
+        let mesh = &job.model.mesh;
+        let least = NO_MOTION * mesh.size_of(0..mesh.nodes.len());
+        let course = Arc::new(Mutex::new(Course { begun, least, ..Course::default() }));
+        let Outcome { ended, written, .. } = job.run(self.callbacks(&course))?;
+        written?;
+        if job.opened.case.output.report {
+            let folders = std::slice::from_ref(&job.folder.path);
+            report::write(folders, &job.folder.path.join(report::FILE)).map_err(|error| match error {
+                ReportError::Output(error) => error,
+                ReportError::Unreadable { .. } => Error::Ended(error.to_string()),
+            })?;
+        }
+        let course = locked(&course);
+        let stands = match ended {
+            _ if course.growth() > GROWTH => false,
+            Ok(()) => true,
+            Err(Failed::Stopped(Error::IncrementTooSmall { .. } | Error::Unsolvable { .. })) => false,
+            Err(failed) => return Err(failed.into()),
+        };
+        let [reached, displacement] = course.last;
+        Ok(Trial { factor, stands, reached, displacement, growth: course.growth() })
+    }
+
+    /// The caller ends a run, and so does a displacement that has grown beyond question.
+    fn callbacks(&self, course: &Arc<Mutex<Course>>) -> Callbacks<'static> {
+        let (asked, watched) = (self.ends.clone(), course.clone());
+        let ends = move || {
+            let fails = (locked(&watched).growth() > GROWTH).then(|| {
+                Error::Ended(format!(
+                    "displacements have grown to more than {GROWTH} times the elastic ones: the strengths fail"
+                ))
+            });
+            asked().or(fails)
+        };
+        Callbacks { warn: Arc::new(|_| ()), ends: Arc::new(ends), progress: Some(Box::new(Watch(course.clone()))) }
+    }
+}
+
+fn locked(course: &Mutex<Course>) -> MutexGuard<'_, Course> {
+    course.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Largest displacement of a trial, and the fraction of the step there, after the first increment and the last.
+#[derive(Debug, Default)]
+struct Course {
+    begun: Vec<f64>,
+    /// Displacement that counts as none [L]
+    least: f64,
+    first: Option<[f64; 2]>,
+    last: [f64; 2],
+}
+
+impl Course {
+    /// The displacement over that of the first increment, carried on to the same fraction of the step.
+    fn growth(&self) -> f64 {
+        let [reached, displacement] = self.last;
+        match self.first {
+            Some([share, first]) if displacement > self.least => {
+                displacement / (first.max(self.least) * reached / share)
+            }
+            _ => 1.0,
+        }
+    }
+}
+
+struct Watch(Arc<Mutex<Course>>);
+
+impl Observer for Watch {
+    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let mut course = locked(&self.0);
+        let Some(state) = attempt.accepted.filter(|_| !course.begun.is_empty()) else { return Ok(()) };
+        let moved = state.displacement.iter().zip(&course.begun).map(|(now, begun)| (now - begun).abs());
+        let now = [attempt.step.span.share(state.time), moved.fold(0.0, f64::max)];
+        course.first.get_or_insert(now);
+        course.last = now;
+        Ok(())
+    }
+}
