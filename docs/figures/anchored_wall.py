@@ -33,7 +33,7 @@ def places(grid):
     return grid.points[:, :2] + ENLARGED * grid["displacement"][:, :2]
 
 
-figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11, 4), width_ratios=[2.8, 1, 1], layout="constrained")
+figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12, 4), width_ratios=[2.6, 1, 1], layout="constrained")
 grid = frame("solid", STAGES["4 m"])
 at = places(grid)
 cells = [np.array(grid.get_cell(k).point_ids) for k in range(grid.n_cells) if grid.cell_data["vtkGhostType"][k] != HIDDEN]
@@ -46,7 +46,7 @@ lines = LineCollection(places(bars)[bars.cell_connectivity.reshape(-1, 2)], arra
 left.add_collection(lines)
 left.set(xlim=(-6.3, 12), ylim=(-12, 1), aspect="equal", xlabel="x [m]", ylabel="y [m]", title=f"after 4 m, displacements × {ENLARGED}")
 figure.colorbar(bodies, ax=left, shrink=0.8, extend="max", label="plastic strain [%]")
-figure.colorbar(lines, ax=left, shrink=0.8, label="axial force of the anchor [kN/m]")
+figure.colorbar(lines, ax=left, shrink=0.8, label="force in the anchor [kN/m]")
 
 wall = np.unique([grid.get_cell(k).point_ids for k in range(grid.n_cells) if grid.cell_data["body"][k] == grid.cell_data["body"].max()])
 face = wall[np.isclose(grid.points[wall, 0], 0)]
@@ -54,13 +54,13 @@ face = face[np.argsort(grid.points[face, 1])]
 for stage, time in STAGES.items():
     middle.plot(1e3 * frame("solid", time)["displacement"][face, 0], grid.points[face, 1], label=stage)
 middle.set(xlabel="deflection [mm]", ylabel="y [m]", title="deflection of the wall")
-middle.legend()
+middle.legend(loc="lower right")
 
 grout = bars.cell_data["bar"] == 0
 ends = bars.points[bars.cell_connectivity.reshape(-1, 2)[grout]][:, :, :2]
 along = np.linalg.norm(ends.mean(axis=1) - ends[0, 0], axis=1)
 for stage, time in list(STAGES.items())[1:]:
     right.plot(along, frame("bars", time).cell_data["axial_force"][grout], marker=".", label=stage)
-right.set(xlabel="distance along the grout [m]", ylabel="axial force [kN/m]", title="force in the grout", ylim=(0, None))
+right.set(xlabel="along the grout [m]", ylabel="axial force [kN/m]", title="force in the grout", ylim=(0, None))
 right.legend()
 figure.savefig(target, dpi=90)

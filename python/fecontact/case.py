@@ -299,6 +299,8 @@ def _put(document: dict[str, Any], place: str, value: Any, file: str) -> None:
     for k, key in enumerate(keys):
         known = isinstance(at, list) and isinstance(key, int) and key < len(at)
         known = known or (isinstance(at, dict) and isinstance(key, str) and (key in at or k == len(keys) - 1))
+        if key in ("frictions", "materials"):
+            raise refused(file, place, f"laws by name ({key}) stand where they are used: name one use, as contacts.NAME.friction.mu or bodies.NAME.material.E")
         if not known:
             there = f"0 to {len(at) - 1}" if isinstance(at, list) else ", ".join(at) if isinstance(at, dict) else "nothing"
             near = difflib.get_close_matches(str(key), at, 1) if isinstance(at, dict) else []

@@ -224,6 +224,11 @@ def test_mesh_of_blocks(document: dict[str, Any], program: Path, tmp_path: Path)
         fc.Mesh.from_blocks([BLOCKS["blocks"][0], {**BLOCKS["blocks"][1], "elements": [2.5, 3]}], BLOCKS["parameters"])
 
 
+def test_a_law_by_name_is_varied_where_it_is_used(document: dict[str, Any]) -> None:
+    with pytest.raises(fc.CaseError, match="stand where they are used: name one use, as contacts.NAME.friction.mu"):
+        fc.Case(document).replace({"frictions.dry.kappa": 1})
+
+
 def test_replace(document: dict[str, Any]) -> None:
     case = fc.Case(document)
     other = case.replace({"contacts.base.friction.mu_s": np.float64(0.5), "steps[1].duration": 2})

@@ -35,7 +35,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     model.ties.gather(2, &mut state.force);
     // The reaction of a released support has become a load.
     step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
-    if !step.changed.is_empty() {
+    if !step.changed.is_empty() || step.relaxes {
         change_bodies(model, step, &mut state, work)?;
     } else if !step.bars.changed.is_empty() {
         change_bars(model, step, &mut state);

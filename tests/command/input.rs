@@ -578,6 +578,7 @@ fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
             ("/mesh/points", json!({"corner": [6]})),
             ("/contacts/base/slave", json!("corner")),
             ("/contacts/base/area", json!(1)),
+            ("/contacts/base/normal", json!({})),
         ],
         &["contacts.base.normal.alpha_n: ", "sides of elements like those there take"],
     );

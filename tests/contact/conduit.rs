@@ -151,7 +151,8 @@ fn water_follows_a_seal_that_opens() {
         ],
     }));
     let water = |state: &State| state.contacts[0].iter().map(|point| point.length * point.fluid).sum::<f64>();
-    let tight = run.states.iter().rfind(|state| state.time < 6.0).expect("a state under less than the pressure of the seal");
+    let tight =
+        run.states.iter().rfind(|state| state.time < 6.0).expect("a state under less than the pressure of the seal");
     assert!(tight.time > 4.0 && tight.contacts[0].iter().all(|point| point.is_closed()), "t = {}", tight.time);
     assert!(water(tight) < 0.1 * clamped * length, "{}", water(tight));
     let last = run.last();
