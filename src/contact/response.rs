@@ -7,12 +7,13 @@ use rayon::prelude::*;
 
 use super::force::{PointEvaluation, PointPlace, closes, place};
 use super::kinematics::{Kinematics, Meeting};
-use super::master::Master;
-use super::mortar::{Committed, Overlaps, Room};
+use super::master::{Master, Rigid};
+use super::mortar::{Committed, Facing, Mortar, Overlaps, Room};
 use super::nodal_forces::{Closed, ClosedPoints};
 use super::pair::ContactPair;
 use super::point::{ContactIncrement, ContactState, PointIncrement, Presumption};
 use super::search::{Index, KeptSearch};
+use super::small_sliding::SmallPoint;
 use super::surface::SlavePoint;
 use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
 use crate::linear::system::Request;
@@ -111,8 +112,41 @@ struct Question<'a, P> {
     /// Increment of a point, and its presumptions
     during: ContactIncrement,
     presumed: P,
+    locating: Locating<'a>,
+    before: &'a Configuration<'a>,
     x: &'a Configuration<'a>,
     varied: bool,
+}
+
+/// How the points of a pair are located on its master.
+enum Locating<'a> {
+    /// Where they were in the reference configuration
+    Small(&'a [Option<SmallPoint>]),
+    /// By averages over the edges that face a mesh surface
+    Averaged(Facing<'a>, &'a Committed),
+    /// By averages over the edges that face a rigid body
+    AveragedOnRigid(&'a Mortar, &'a Rigid),
+    /// By their projections
+    Projected(Index<'a>),
+}
+
+impl<'a> Locating<'a> {
+    fn of(pair: &'a ContactPair, [before, x]: [&'a Configuration<'a>; 2], kept: &'a mut Kept) -> Self {
+        if let Some(small) = &pair.small {
+            return Self::Small(&small.points);
+        }
+        let Kept { search, committed, overlaps } = kept;
+        match (&pair.mortar, &pair.master) {
+            (Some(mortar), Master::Rigid(body)) => Self::AveragedOnRigid(mortar, body),
+            (Some(mortar), Master::Mesh(surface)) => {
+                let index = Index::kept(&pair.master, [before, x], search);
+                mortar.commit(&pair.master, surface, before, committed);
+                mortar.cut(surface, &index, [before, x], overlaps);
+                Self::Averaged(mortar.facing(surface, overlaps), committed)
+            }
+            (None, _) => Self::Projected(Index::kept(&pair.master, [before, x], search)),
+        }
+    }
 }
 
 impl ContactPair {
@@ -121,7 +155,7 @@ impl ContactPair {
     /// threads: only the memory of `response` is reused.
     ///
     /// # Errors
-    /// Returns the number of the first point whose friction law fails, and the failure.
+    /// Returns the number of the first point whose friction law fails, whatever thread met it, and the failure.
     pub fn respond(
         &self,
         old: &[ContactState],
@@ -132,74 +166,17 @@ impl ContactPair {
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
         let laws = self.laws_during(during.span())?;
-        let question = Question { pair: self, laws, during, presumed, x, varied: request == Request::Tangent };
-        if let Some(small) = &self.small {
-            return question.each(old, response, |k, slave, old, increment, kinematics, _| {
-                let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
-                averaged(self, slave, meeting, old, increment, x)
-            });
-        }
-        let mut kept = std::mem::take(&mut response.kept);
-        let answer = self.respond_by(&question, old, [before, x], &mut kept, response);
-        response.kept = kept;
-        answer
-    }
-
-    /// Evaluates all points, with a search on the master.
-    fn respond_by<P: Fn(usize) -> Presumption + Sync>(
-        &self,
-        question: &Question<P>,
-        old: &[ContactState],
-        [before, x]: [&Configuration; 2],
-        Kept { search, committed, overlaps }: &mut Kept,
-        response: &mut PairResponse,
-    ) -> Result<(), (usize, LawFailure)> {
-        let index = Index::kept(&self.master, [before, x], search);
-        if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
-            mortar.commit(&self.master, surface, before, committed);
-            mortar.cut(surface, &index, [before, x], overlaps);
-            let (committed, facing) = (&*committed, mortar.facing(surface, overlaps));
-            return question.each(old, response, |k, slave, old, increment, kinematics, room| {
-                let weights = committed.weights(k);
-                let meeting = facing.meet(k, weights, x, kinematics, room);
-                if meeting.is_some() && weights.is_none() {
-                    kinematics.count_from(None, before, x);
-                }
-                averaged(self, slave, meeting, old, increment, x)
-            });
-        }
-        if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
-            return question.each(old, response, |k, slave, old, increment, kinematics, room| {
-                let meeting = mortar.meet_rigid(k, body, [before, x], kinematics, room);
-                averaged(self, slave, meeting, old, increment, x)
-            });
-        }
-        question.each(old, response, |_, slave, old, increment, kinematics, _| {
-            let valley = increment.presumption.astride.and_then(|segments| index.in_valley(slave, segments, x));
-            let projection = valley.or_else(|| index.project(slave, old.foot, x));
-            place(self, slave, projection, old, increment, [before, x], kinematics)
-        })
-    }
-}
-
-impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
-    /// Evaluates every point; `place` locates it and computes its kinematics if it is closed. The failure of lowest number is
-    /// returned, whatever thread met it.
-    fn each(
-        &self,
-        old: &[ContactState],
-        response: &mut PairResponse,
-        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics, &mut Room) -> PointPlace + Sync,
-    ) -> Result<(), (usize, LawFailure)> {
-        let points = &self.pair.points;
-        let PairResponse { states, answered: LastAnswers(answered), parts, .. } = response;
+        let PairResponse { states, answered: LastAnswers(answered), parts, kept } = response;
+        let locating = Locating::of(self, [before, x], kept);
+        let varied = request == Request::Tangent;
+        let question = Question { pair: self, laws, during, presumed, locating, before, x, varied };
         states.clear();
         states.extend_from_slice(old);
-        answered.resize_with(points.len().div_ceil(TOGETHER), Together::default);
-        parts.resize_with(points.len().div_ceil(PART), Chunk::default);
+        answered.resize_with(self.points.len().div_ceil(TOGETHER), Together::default);
+        parts.resize_with(self.points.len().div_ceil(PART), Chunk::default);
         let one = |(number, ((part, answered), states)): (usize, Part)| {
             let numbers = PART * number..PART * number + states.len();
-            part.evaluate(self, numbers, old, (states, answered), &place);
+            part.evaluate(&question, numbers, old, (states, answered));
         };
         const ANSWERED: usize = PART / TOGETHER;
         match parts.len() {
@@ -216,6 +193,39 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
     }
 }
 
+impl<P> Question<'_, P> {
+    /// Locates a point, and computes its kinematics if it is closed.
+    fn place(
+        &self,
+        k: usize,
+        old: &ContactState,
+        increment: PointIncrement,
+        kinematics: &mut Kinematics,
+        room: &mut Room,
+    ) -> PointPlace {
+        let Self { pair, before, x, .. } = *self;
+        let slave = &pair.points[k];
+        let meeting = match &self.locating {
+            Locating::Small(points) => points[k].as_ref().map(|point| point.meet(before, x, kinematics)),
+            Locating::Averaged(facing, committed) => {
+                let weights = committed.weights(k);
+                let meeting = facing.meet(k, weights, x, kinematics, room);
+                if meeting.is_some() && weights.is_none() {
+                    kinematics.count_from(None, before, x);
+                }
+                meeting
+            }
+            Locating::AveragedOnRigid(mortar, body) => mortar.meet_rigid(k, body, [before, x], kinematics, room),
+            Locating::Projected(index) => {
+                let valley = increment.presumption.astride.and_then(|segments| index.in_valley(slave, segments, x));
+                let projection = valley.or_else(|| index.project(slave, old.foot, x));
+                return place(pair, slave, projection, old, increment, [before, x], kinematics);
+            }
+        };
+        averaged(pair, slave, meeting, old, increment, x)
+    }
+}
+
 impl Chunk {
     /// Evaluates several points: location, responses of their laws, resulting states.
     fn evaluate<P: Fn(usize) -> Presumption>(
@@ -224,7 +234,6 @@ impl Chunk {
         numbers: std::ops::Range<usize>,
         old: &[ContactState],
         (states, answered): (&mut [ContactState], &mut [Together]),
-        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics, &mut Room) -> PointPlace,
     ) {
         let Question { pair, ref laws, during, .. } = *question;
         let Self { closed, kinematics, room, failure } = self;
@@ -241,7 +250,7 @@ impl Chunk {
                 kinematics.varied = question.varied;
                 kinematics.behind.clear();
                 kinematics.dpores.clear();
-                let mut place = place(first + i, slave, old, increment, kinematics, room);
+                let mut place = question.place(first + i, old, increment, kinematics, room);
                 if let Some(pores) = pair.pores.as_ref().filter(|_| place.closes) {
                     place.pore_pressure = Some(pores[first + i].vary(question.x, kinematics));
                 }

@@ -26,12 +26,12 @@ use crate::equations::trial::Trial;
 use crate::equations::{bars, contacts, damping, links, loads, pore_flow, supports};
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
-use crate::model::Model;
-use crate::model::state::Births;
+use crate::model::state::{Births, State};
+use crate::model::{Model, Step};
 
 /// Assembles a model; owns the pattern and reused buffers.
 pub struct Assembler {
-    model: Arc<Model>,
+    pub(super) model: Arc<Model>,
     layout: Layout,
     /// Whether each body is absent; empty if all are there
     absent: Vec<bool>,
@@ -48,12 +48,12 @@ pub struct Assembler {
     /// w of prescribed dofs [F/L]
     weight: f64,
     /// Sum of the forces' magnitudes at each dof [F]
-    magnitudes: Vec<f64>,
-    equilibrium: ConvergenceCriterion,
+    pub(super) magnitudes: Vec<f64>,
+    pub(super) equilibrium: ConvergenceCriterion,
     /// Responses of contacts without presumptions, kept to reuse their memory
     responses: Vec<PairResponse>,
     /// Last answers of the laws of each contact
-    answered: Vec<LastAnswers>,
+    pub(super) answered: Vec<LastAnswers>,
     /// Results at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
@@ -116,7 +116,7 @@ impl Assembler {
     }
 
     /// Turns to the bodies that are there in a step, as they came.
-    fn attend(&mut self, Trial { step, old, .. }: Trial) {
+    fn attend(&mut self, step: &Step, old: &State) {
         let births = &old.step_start.births;
         if self.absent == step.absent
             && self.bars_absent == step.bars.absent
@@ -165,17 +165,19 @@ impl Assembler {
         }
     }
 
-    /// Computes the residual at the displacement `u`, without presumptions.
+    /// Computes the residual at the displacement `u`, without presumptions, and measures it.
     ///
     /// # Errors
     /// Returns [`TrialFailure`] if an element inverts, a friction law fails, or a load has no finite value.
     pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             assembler.assemble(trial, u, responses, Request::Residual, system)
-        })
+        })?;
+        self.measure(trial, u, system);
+        Ok(())
     }
 
-    /// Computes the residual beside a solution about which the bodies may be linearized, without its imbalance ([`Assembler::share`]).
+    /// Computes the residual beside a solution about which the bodies may be linearized; it is measured by [`Assembler::share`].
     ///
     /// # Errors
     /// The same as for [`Assembler::residual`].
@@ -188,7 +190,9 @@ impl Assembler {
     ) -> Result<(), TrialFailure> {
         self.linearization = solids.map_or(Linearization::None, Linearization::Given);
         let evaluated = self.with_responses(trial, u, Request::Residual, |assembler, responses| {
-            assembler.sum(trial, u, responses, None, system)
+            assembler.set_out(trial.step, trial.old, responses, None);
+            assembler.add(&Term::OF_PLACE_AND_MOTION, trial, Motion { u, v: None }, responses, false, None)?;
+            assembler.conclude(trial, u, responses, false, system)
         });
         self.linearization = Linearization::None;
         evaluated
@@ -219,7 +223,7 @@ impl Assembler {
     }
 
     /// Computes the residual, and the tangent on request, at the displacement `u` with the given responses of the contact
-    /// points.
+    /// points; [`Assembler::measure`] finds how far they are out of balance.
     ///
     /// # Errors
     /// Returns [`TrialFailure`] if an element inverts or a load has no finite value.
@@ -231,94 +235,75 @@ impl Assembler {
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        self.sum_and_measure(trial, u, responses, request, system)?;
+        let (clock, tangent) = (Instant::now(), request == Request::Tangent);
+        self.magnitudes.fill(0.0);
+        let matrix = self.set_out(trial.step, trial.old, responses, tangent.then_some(&mut system.tangent));
+        self.add(&Term::OF_PLACE_AND_MOTION, trial, Motion { u, v: None }, responses, true, matrix)?;
+        self.model.ties.gather(2, &mut self.magnitudes);
+        self.model.linkage.gather_magnitudes(&mut self.magnitudes);
+        self.conclude(trial, u, responses, tangent, system)?;
+        self.equilibrium.note_contacts(&self.model, trial.stiffening, responses);
+        self.equilibrium.retard(&self.model, trial.step);
+        (system.forces, system.imbalance) = (norm(&self.magnitudes), f64::INFINITY);
+        self.seconds.assembly += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Turns to an increment; returns the matrix for its tangent, if that is wanted, with room for all contact points.
+    fn set_out<'s>(
+        &mut self,
+        step: &Step,
+        old: &State,
+        responses: &[PairResponse],
+        matrix: Option<&'s mut SparseMatrix>,
+    ) -> Option<&'s mut SparseMatrix> {
+        self.attend(step, old);
+        self.evaluation.damping.clear();
+        let matrix = matrix?;
+        self.cover(step, old, responses);
+        if !Arc::ptr_eq(&matrix.pattern, &self.layout.pattern) {
+            *matrix = self.layout.matrix();
+        }
+        Some(matrix)
+    }
+
+    /// Makes of the sums of all terms the residual, and the tangent on request.
+    fn conclude(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+        tangent: bool,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        let model = &*self.model.clone();
+        model.ties.gather(2, &mut self.evaluation.damping);
+        model.linkage.gather(&mut self.evaluation.damping);
+        self.keep_states(responses);
+        self.balance(trial, u, tangent, system);
+        supports::prescribe(model, self.weight, trial, u, tangent, system)
+    }
+
+    /// Finds how far the residual just computed at `u` is out of balance, by the forces of the same evaluation.
+    pub fn measure(&mut self, trial: Trial, u: &[f64], system: &mut System) {
         let clock = Instant::now();
         system.imbalance = self.imbalance(trial, u, &system.residual);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
-        Ok(())
-    }
-
-    /// Computes the residual without contact, and the tangent on request, but not whether they are in balance.
-    ///
-    /// # Errors
-    /// The same as for [`Assembler::assemble`].
-    pub fn without_contacts(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        request: Request,
-        system: &mut System,
-    ) -> Result<(), TrialFailure> {
-        system.imbalance = f64::INFINITY;
-        self.sum_and_measure(trial, u, &[], request, system)
-    }
-
-    /// Computes the residual, the tangent on request, and what their balance is measured by.
-    fn sum_and_measure(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        responses: &[PairResponse],
-        request: Request,
-        system: &mut System,
-    ) -> Result<(), TrialFailure> {
-        self.magnitudes.fill(0.0);
-        self.sum(trial, u, responses, Some(request), system)?;
-        self.equilibrium.note_contacts(&self.model, trial, responses);
-        self.equilibrium.retard(&self.model, trial.step);
-        system.forces = norm(&self.magnitudes);
-        Ok(())
-    }
-
-    /// Computes the residual, and the tangent and the magnitudes of all forces if these are asked for.
-    fn sum(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        responses: &[PairResponse],
-        scaled: Option<Request>,
-        system: &mut System,
-    ) -> Result<(), TrialFailure> {
-        let clock = Instant::now();
-        self.attend(trial);
-        let model = &*self.model.clone();
-        let tangent = scaled == Some(Request::Tangent);
-        if tangent {
-            self.cover(trial, responses);
-            if !Arc::ptr_eq(&system.tangent.pattern, &self.layout.pattern) {
-                system.tangent = self.layout.matrix();
-            }
-        }
-        self.evaluation.damping.clear();
-        let motion = Motion { u, v: None };
-        let matrix = tangent.then_some(&mut system.tangent);
-        self.add(&Term::OF_PLACE_AND_MOTION, trial, motion, responses, scaled.is_some(), matrix)?;
-        model.ties.gather(2, &mut self.evaluation.damping);
-        model.linkage.gather(&mut self.evaluation.damping);
-        if scaled.is_some() {
-            model.ties.gather(2, &mut self.magnitudes);
-            model.linkage.gather_magnitudes(&mut self.magnitudes);
-        }
-        self.keep_states(responses);
-        self.balance(trial, u, tangent, system);
-        supports::prescribe(model, self.weight, trial, u, tangent, system)?;
-        self.seconds.assembly += clock.elapsed().as_secs_f64();
-        Ok(())
     }
 
     /// Returns the largest ‖r‖/‖f‖ of a part of the model, by the forces last evaluated, at the same displacement.
     pub fn imbalance(&self, trial: Trial, u: &[f64], residual: &[f64]) -> f64 {
-        self.equilibrium.imbalance(&self.model, self.inert(trial), trial, u, &self.magnitudes, residual)
+        self.equilibrium.imbalance(&self.model, self.inert(trial.step), trial, u, &self.magnitudes, residual)
     }
 
     /// Returns the forces by which the residual of every part is measured with a tolerance, as last evaluated at the same displacement [F].
     pub fn measures(&self, trial: Trial, u: &[f64], tolerance: f64) -> Vec<f64> {
-        self.equilibrium.measures(&self.model, self.inert(trial), trial, u, &self.magnitudes, tolerance)
+        self.equilibrium.measures(&self.model, self.inert(trial.step), trial, u, &self.magnitudes, tolerance)
     }
 
     /// Returns the largest residual of a part relative to its measure.
-    pub fn share(&self, trial: Trial, residual: &[f64], measures: &[f64]) -> f64 {
-        self.equilibrium.largest(&self.model, trial, residual, |number, _| measures[number])
+    pub fn share(&self, step: &Step, residual: &[f64], measures: &[f64]) -> f64 {
+        self.equilibrium.largest(&self.model, step, residual, |number, _| measures[number])
     }
 
     /// Returns the distance from the prescribed motions, relative to the largest of them.
@@ -327,8 +312,8 @@ impl Assembler {
     }
 
     /// The mass, if the scheme counts inertia.
-    fn inert(&self, trial: Trial) -> Option<&SparseMatrix> {
-        self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some())
+    pub(super) fn inert(&self, step: &Step) -> Option<&SparseMatrix> {
+        self.mass.as_ref().filter(|_| step.scheme.coefficients().is_some())
     }
 
     /// Computes the forces that depend on the displacement `u` only, and everything else that an accepted state takes from the
@@ -340,7 +325,7 @@ impl Assembler {
     pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             let clock = Instant::now();
-            assembler.attend(trial);
+            assembler.attend(trial.step, trial.old);
             assembler.solids.retard(trial.step);
             assembler.add(&Term::OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
             if let Some(v) = v {
@@ -470,9 +455,9 @@ impl Assembler {
     }
 
     /// Extends the pattern to all contact points.
-    fn cover(&mut self, trial: Trial, responses: &[PairResponse]) {
-        let marked = self.layout.mark(&term::skew_of(&self.model, trial.step));
-        if self.layout.cover(responses, trial.old) || marked {
+    fn cover(&mut self, step: &Step, old: &State, responses: &[PairResponse]) {
+        let marked = self.layout.mark(&term::skew_of(&self.model, step));
+        if self.layout.cover(responses, old) || marked {
             (self.mass, self.damping_mass) = (None, None);
         }
     }
@@ -497,53 +482,10 @@ impl Assembler {
         done
     }
 
-    /// Evaluates the responses of all contact points at the displacement `u`, with presumptions about each point of a pair for
-    /// a tangent only: a residual that may be accepted has none. The result is in `responses`, whose memory is reused.
-    ///
-    /// # Errors
-    /// Returns [`TrialFailure`] if a friction law fails.
-    pub fn interfaces(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        presumed: impl Fn(usize, usize) -> Presumption + Sync,
-        request: Request,
-        responses: &mut Vec<PairResponse>,
-    ) -> Result<(), TrialFailure> {
-        if self.model.contacts.is_empty() {
-            return Ok(());
-        }
-        let clock = Instant::now();
-        let answered = &mut self.answered;
-        let answer = contacts::respond(&self.model, trial, u, presumed, request, responses, answered);
-        self.seconds.contact += clock.elapsed().as_secs_f64();
-        answer
-    }
-
     /// Stores the magnitudes of the contact forces.
     pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
-        self.equilibrium.note_contacts(&self.model, trial, responses);
+        self.equilibrium.note_contacts(&self.model, trial.stiffening, responses);
         self.keep_states(responses);
-    }
-
-    /// Norm of the nodal forces of each contact at the last evaluation [F].
-    pub fn contact_forces(&self) -> &[f64] {
-        self.equilibrium.contact_forces()
-    }
-
-    /// |u|² of some nodes, as far as relevant for round-off [L²].
-    pub fn ways(&self, trial: Trial, u: &[f64], nodes: &[usize]) -> Vec<f64> {
-        self.equilibrium.ways(trial.old, u, nodes)
-    }
-
-    /// Square of the possible round-off of the contacts last noted at nodes with these |u|² [F²].
-    pub fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
-        self.equilibrium.contact_round_off(nodes, ways)
-    }
-
-    /// Square of the possible round-off at every node, at the last evaluated displacement [F²].
-    pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
-        self.equilibrium.round_off(&self.model, self.inert(trial), trial, u, &self.magnitudes)
     }
 
     /// Stores the trial states of the contact points for the accepted state.
@@ -583,8 +525,8 @@ impl Assembler {
         u: &[f64],
         responses: &[PairResponse],
     ) -> Result<SparseMatrix, TrialFailure> {
-        self.attend(trial);
-        self.cover(trial, responses);
+        self.attend(trial.step, trial.old);
+        self.cover(trial.step, trial.old, responses);
         let mut tangent = self.layout.matrix();
         if term == Term::Inertia {
             let mass = self.mass().clone();

@@ -47,19 +47,20 @@ use crate::linear::system::{Request, System};
 use crate::linear::{Condensed, Eliminated, Pattern, SparseMatrix, Steady, norm};
 use crate::model::{Model, Step};
 
-/// Whether all terms except contact have the same tangent in all increments of one length in a step.
-pub fn is_linear(model: &Model, step: &Step) -> bool {
-    if bound_at_contacts(model, step) || !model.linkage.rigid.is_empty() {
-        return false;
-    }
+/// What the tangent of all terms except contact depends on in a step.
+fn dependence(model: &Model, step: &Step) -> Dependence {
     let others = Term::ALL.into_iter().filter(|term| *term != Term::Interfaces);
-    others.map(|term| term.dependence(model, step)).all(|dependence| dependence <= Dependence::StepSize)
+    others.map(|term| term.dependence(model, step)).max().unwrap_or(Dependence::Nothing)
 }
 
-/// Whether that tangent depends on the length of the increment.
+/// Whether it is the same in all increments of one length.
+pub fn is_linear(model: &Model, step: &Step) -> bool {
+    !bound_at_contacts(model, step) && model.linkage.rigid.is_empty() && dependence(model, step) <= Dependence::StepSize
+}
+
+/// Whether it depends on the length of the increment, if it is.
 pub fn depends_on_length(model: &Model, step: &Step) -> bool {
-    let mut others = Term::ALL.into_iter().filter(|term| *term != Term::Interfaces);
-    others.any(|term| term.dependence(model, step) == Dependence::StepSize)
+    dependence(model, step) == Dependence::StepSize
 }
 
 /// Whether a node at a contact has an inclined support, or is follower or leader of other nodes: its equations are then no sums
@@ -110,10 +111,12 @@ impl<'a> CondensedEquations<'a> {
         let fixed = fixed(assembler.model(), trial.step);
         let free = nodes.nodes.iter().flat_map(|&node| [!fixed[2 * node], !fixed[2 * node + 1]]).collect();
         let share = contact_share(trial.step);
-        let round_off = assembler.round_off(trial, u);
+        let (model, criterion) = (assembler.model(), &assembler.equilibrium);
+        let mass = assembler.inert(trial.step);
+        let round_off = criterion.round_off(model, mass, trial, u, &assembler.magnitudes);
         let hidden = |side: &Vec<usize>| side.iter().map(|&node| round_off[node]).sum::<f64>();
         let hidden = nodes.sides.iter().map(hidden).collect();
-        let ways = nodes.sides.iter().map(|side| assembler.ways(trial, u, side)).collect();
+        let ways = nodes.sides.iter().map(|side| criterion.ways(trial.old, u, side)).collect();
         let (start, forces) = (nodes.gather(u), system.forces);
         let (last, of_bodies) = (start.clone(), constant.clone());
         Self { nodes, bodies, start, constant, last, of_bodies, share, free, hidden, ways, forces }
@@ -195,14 +198,14 @@ impl<'a> CondensedEquations<'a> {
 
     /// Largest residual of a contact relative to its own forces; the bodies are updated.
     fn measure(&self, assembler: &Assembler, system: &mut System) {
-        let tolerance = assembler.model().newton.tolerance;
+        let (tolerance, criterion) = (assembler.model().newton.tolerance, &assembler.equilibrium);
         system.imbalance = 0.0;
-        system.forces = self.forces + norm(assembler.contact_forces());
+        system.forces = self.forces + norm(criterion.contact_forces());
         let share = |dof: usize| self.nodes.jumps.share(self.nodes.nodes[dof / 2]);
         let square = |dof: usize| if self.free[dof] { share(dof) * system.residual[dof].powi(2) } else { 0.0 };
-        let own = self.nodes.sides.iter().zip(&self.ways).map(|(side, ways)| assembler.contact_round_off(side, ways));
+        let own = self.nodes.sides.iter().zip(&self.ways).map(|(side, ways)| criterion.contact_round_off(side, ways));
         let hidden = self.hidden.iter().zip(own).map(|(of_bodies, of_contact)| (of_bodies + of_contact).sqrt());
-        for (part, (forces, hidden)) in self.nodes.parts.iter().zip(assembler.contact_forces().iter().zip(hidden)) {
+        for (part, (forces, hidden)) in self.nodes.parts.iter().zip(criterion.contact_forces().iter().zip(hidden)) {
             let residual = part.iter().map(|&k| square(2 * k) + square(2 * k + 1)).sum::<f64>().sqrt();
             let share = if residual == 0.0 { 0.0 } else { residual / forces.max(hidden / tolerance) };
             // NaN is not an equilibrium.

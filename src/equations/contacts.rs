@@ -1,5 +1,8 @@
 //! Contact and friction term: forces of all contact points, and their stored, dissipated and supplied energies.
 
+use std::time::Instant;
+
+use super::Assembler;
 use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
 use crate::contact::force::ContactState;
@@ -16,41 +19,52 @@ pub(super) fn dependence(model: &Model) -> Dependence {
     if model.contacts.is_empty() { Dependence::Nothing } else { Dependence::Displacement }
 }
 
-/// Responses of all contact points at the displacement `u`, one a pair, with what is presumed about a point of a pair; tangents
-/// on request. What laws `answered` goes from one evaluation to the next, whatever its responses are for.
-pub(super) fn respond(
-    model: &Model,
-    trial: Trial,
-    u: &[f64],
-    presumed: impl Fn(usize, usize) -> Presumption + Sync,
-    request: Request,
-    responses: &mut Vec<PairResponse>,
-    answered: &mut Vec<LastAnswers>,
-) -> Result<(), TrialFailure> {
-    let [before, x] = [&trial.old.displacement, u].map(|u| model.configuration(u));
-    let fading = 1.0 - model.steps[0].span.share(trial.time);
-    let Trial { time, dt, stiffening, settles, .. } = trial;
-    let radiates = !trial.step.scheme.is_dynamic();
-    let during = ContactIncrement { time, dt, radiates, fading, stiffening, settles };
-    responses.resize_with(model.contacts.len(), PairResponse::default);
-    answered.resize_with(model.contacts.len(), LastAnswers::default);
-    let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses.iter_mut().zip(answered)).enumerate();
-    for (number, ((pair, old), (response, answered))) in pairs {
-        if !trial.step.joins(pair) {
-            response.rest(old);
-            continue;
+impl Assembler {
+    /// Evaluates the responses of all contact points at the displacement `u`, one a pair, with presumptions about each point of a pair for
+    /// a tangent only: a residual that may be accepted has none. The result is in `responses`, whose memory is reused. What laws answered
+    /// goes from one evaluation to the next, whatever its responses are for.
+    ///
+    /// # Errors
+    /// Returns [`TrialFailure`] if a friction law fails.
+    pub fn interfaces(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        presumed: impl Fn(usize, usize) -> Presumption + Sync,
+        request: Request,
+        responses: &mut Vec<PairResponse>,
+    ) -> Result<(), TrialFailure> {
+        let Self { model, answered, seconds, .. } = self;
+        if model.contacts.is_empty() {
+            return Ok(());
         }
-        if let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&x, time) {
-            let contact = pair.name.clone();
-            return Err(TrialFailure::FluidPressure { contact, at: [at.x, at.y], pressure, time });
+        let clock = Instant::now();
+        let [before, x] = [&trial.old.displacement, u].map(|u| model.configuration(u));
+        let fading = 1.0 - model.steps[0].span.share(trial.time);
+        let Trial { time, dt, stiffening, settles, .. } = trial;
+        let radiates = !trial.step.scheme.is_dynamic();
+        let during = ContactIncrement { time, dt, radiates, fading, stiffening, settles };
+        responses.resize_with(model.contacts.len(), PairResponse::default);
+        answered.resize_with(model.contacts.len(), LastAnswers::default);
+        let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses.iter_mut().zip(answered)).enumerate();
+        for (number, ((pair, old), (response, answered))) in pairs {
+            if !trial.step.joins(pair) {
+                response.rest(old);
+                continue;
+            }
+            if let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&x, time) {
+                let contact = pair.name.clone();
+                return Err(TrialFailure::FluidPressure { contact, at: [at.x, at.y], pressure, time });
+            }
+            let presumed = |point| presumed(number, point);
+            std::mem::swap(&mut response.answered, answered);
+            let answer = pair.respond(old, [&before, &x], during, presumed, request, response);
+            std::mem::swap(&mut response.answered, answered);
+            answer.map_err(|(point, cause)| TrialFailure::Friction { contact: pair.name.clone(), point, cause })?;
         }
-        let presumed = |point| presumed(number, point);
-        std::mem::swap(&mut response.answered, answered);
-        let answer = pair.respond(old, [&before, &x], during, presumed, request, response);
-        std::mem::swap(&mut response.answered, answered);
-        answer.map_err(|(point, cause)| TrialFailure::Friction { contact: pair.name.clone(), point, cause })?;
+        seconds.contact += clock.elapsed().as_secs_f64();
+        Ok(())
     }
-    Ok(())
 }
 
 /// Adds the forces of the closed points and, on request, their tangents, for which the pattern has room.

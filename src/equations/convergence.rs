@@ -163,10 +163,10 @@ impl ConvergenceCriterion {
     }
 
     /// Stores the magnitude of the forces of every contact, and its stiffness.
-    pub(super) fn note_contacts(&mut self, model: &Model, trial: Trial, responses: &[PairResponse]) {
+    pub(super) fn note_contacts(&mut self, model: &Model, stiffening: f64, responses: &[PairResponse]) {
         self.contact_stiffness.fill([0.0; 2]);
         for (k, (pair, responses)) in model.contacts.iter().zip(responses).enumerate() {
-            let alpha_n = pair.normal_stiffness(trial.stiffening);
+            let alpha_n = pair.normal_stiffness(stiffening);
             for (point, (state, closed)) in responses.numbered() {
                 let edge = self.edges[k].at(point, state);
                 let stiffness = if closed.is_open && !closed.is_bonded { 0.0 } else { alpha_n };
@@ -217,7 +217,7 @@ impl ConvergenceCriterion {
             let round_off = round_off.get_or_insert_with(|| self.round_off(model, mass, trial, u, magnitudes));
             forces.max(self.parts[number].hidden(round_off) / tolerance)
         };
-        self.largest(model, trial, residual, measure).max(missed(model, trial, u))
+        self.largest(model, trial.step, residual, measure).max(missed(model, trial, u))
     }
 
     /// max(‖f‖, ‖ρ‖/tolerance) of every part, for residuals that differ little from the one last evaluated [F].
@@ -239,11 +239,11 @@ impl ConvergenceCriterion {
     pub(super) fn largest(
         &self,
         model: &Model,
-        trial: Trial,
+        step: &Step,
         residual: &[f64],
         mut measure: impl FnMut(usize, f64) -> f64,
     ) -> f64 {
-        let free = supports::free(model, trial.step, residual);
+        let free = supports::free(model, step, residual);
         let share = |(number, part): (usize, &BalancedSet)| {
             let residual = part.norm(&free);
             if residual == 0.0 { 0.0 } else { residual / measure(number, residual) }

@@ -33,9 +33,9 @@ pub struct Aids {
     pub old_tangents: bool,
     /// Line searches limit corrections where the residual stalls: [`crate::solve::newton`]
     pub downhill: bool,
-    /// The augmented Lagrangian method raises the penalty where it converges slowly: [`crate::solve::equilibrium`]
+    /// The augmented Lagrangian method raises the penalty where it converges slowly: [`crate::solve::passes`]
     pub stiffening: bool,
-    /// A static increment without equilibrium is restarted with softer penalties: [`crate::solve::equilibrium`]
+    /// A static increment without equilibrium is restarted with softer penalties: [`crate::solve::passes`]
     pub softening: bool,
 }
 

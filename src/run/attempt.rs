@@ -36,7 +36,7 @@ impl Simulation {
         let output = model.requests.next_time(old.time);
         let stop = model.next_corner(old.time).map_or(output, |corner| Some(output.unwrap_or(corner).min(corner)));
         let dt = bounded(step, old.time, dt, stop);
-        let Advanced { iterations, state: solved, foreseen, passes } = advance(model, step, old, dt, work);
+        let Advanced { iterations, state: solved, foreseen, passes, coupling } = advance(model, step, old, dt, work);
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
         let half = step.shorter(dt, 1);
@@ -86,7 +86,7 @@ impl Simulation {
         };
         let increments = usize::from(accepted.is_some());
         let candidate = self.without_iterations(number, dt, accepted, increments, outcome);
-        Candidate { iterations, local_error, doubt, passes, ..candidate }
+        Candidate { iterations, local_error, doubt, passes, coupling, ..candidate }
     }
 
     /// Outcome of an increment that could not be solved.

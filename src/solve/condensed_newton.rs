@@ -14,12 +14,18 @@
 
 use std::sync::Arc;
 
+use super::Workspace;
+use super::contact_iteration::{Acted, ContactIteration};
+use super::floating::null_motion;
+use super::newton::{self, Equations, NewtonFailure};
+use super::watch::{Watch, in_trial, is_unaided, settings, tolerance};
 use crate::equations::condensed::{CondensedEquations, ContactNodes, depends_on_length, is_linear};
 use crate::equations::sums::TrialFailure;
+use crate::equations::supports;
 use crate::equations::{Assembler, Trial};
 use crate::linear::memory::available_memory;
 use crate::linear::system::{Request, System};
-use crate::linear::{Condensation, Condensed, Eliminated, Forwarded, HalvedLu, Pattern};
+use crate::linear::{Condensation, Condensed, Eliminated, HalvedLu, LinearFailure, Pattern};
 use crate::model::boundary::{Absorber, Dashpot, Spring};
 use crate::model::scheme::Scheme;
 use crate::model::support::Direction;
@@ -33,8 +39,7 @@ const DENSE: f64 = 3.0;
 
 /// Bodies of a model condensed on the nodes at its contacts.
 pub struct CondensedNewton {
-    /// contact nodes
-    pub nodes: ContactNodes,
+    nodes: ContactNodes,
     /// Whether LU of all their equations pays, not only of the half that varies while nothing opens
     whole: bool,
     /// The equations without contact
@@ -47,20 +52,19 @@ pub struct CondensedNewton {
     constants: Option<Constants>,
     /// Condensed matrices by the bits of Δt, most recently used last; `None` where a pivot vanished
     rungs: Vec<(u64, Option<Arc<Rung>>)>,
-    /// solver of the condensed equations
-    pub solver: HalvedLu,
-    /// condensed equations
-    pub condensed: System,
+    /// The condensed equations and their solver
+    condensed: System,
+    solver: HalvedLu,
 }
 
 /// The bodies condensed for one length of increments.
-pub struct Rung {
-    /// condensed on the contact nodes
-    pub bodies: Condensed,
-    /// condensed further on the equations that vary
-    pub eliminated: Option<Eliminated>,
+struct Rung {
+    /// Condensed on the contact nodes
+    bodies: Condensed,
+    /// Condensed further on the equations that vary
+    eliminated: Option<Eliminated>,
     /// First unknowns of the parts of S that are not coupled, if LU of all equations pays
-    pub parts: Option<Vec<usize>>,
+    parts: Option<Vec<usize>>,
 }
 
 /// All data of a step that affect the constant part of its equations.
@@ -122,7 +126,7 @@ impl CondensedNewton {
     ///
     /// # Errors
     /// Returns [`TrialFailure`] if a load has no finite value.
-    pub fn bodies(&mut self, model: &Model, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
+    fn bodies(&mut self, model: &Model, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
         if !is_linear(model, trial.step) {
             return Ok(None);
         }
@@ -151,7 +155,7 @@ impl CondensedNewton {
         let most = (held + free).min(MOST_MEMORY) / one.max(1);
         self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
         let Self { nodes, whole, bodies, system, pattern, condensation, .. } = self;
-        bodies.without_contacts(trial, &trial.old.displacement, Request::Tangent, system)?;
+        bodies.assemble(trial, &trial.old.displacement, &[], Request::Tangent, system)?;
         let matrix = nodes.counted(bodies.model(), trial.step, &system.tangent, pattern);
         let rung = |condensed: Condensed| {
             let eliminated = nodes.eliminated(bodies.model(), trial.step, &condensed);
@@ -169,39 +173,112 @@ fn without_jitter(dt: f64) -> f64 {
     f64::from_bits((dt.to_bits() + UNIT / 2) & !(UNIT - 1))
 }
 
-/// Condensed equations of an increment, starting from the displacement `u`, and the data to recover all displacements.
-pub struct Round<'a> {
-    /// ρ
-    pub equations: CondensedEquations<'a>,
-    bodies: &'a Condensed,
-    forwarded: Forwarded,
+/// Maximum number of rounds on the contact nodes before an increment is solved on all equations.
+const MOST_ROUNDS: usize = 3;
+
+/// Solves by Newton's method on the contact nodes; `None` if that does not pay, the bodies do not allow it, or it does not lead to an
+/// equilibrium of all equations.
+pub(super) fn solve(
+    model: &Model,
+    trial: Trial,
+    start: &[f64],
+    watch: &mut Watch,
+    work: &mut Workspace,
+) -> Option<Result<Vec<f64>, NewtonFailure<TrialFailure>>> {
+    let rung = work.interface.as_mut()?.bodies(model, trial).ok()??;
+    let Rung { bodies, eliminated, parts } = &*rung;
+    let mut u = start.to_vec();
+    if watch.begins {
+        if is_unaided(trial) {
+            assemble_all(trial, &u, work)?;
+            watch.floating = null_motion(model, trial.step, &u, &work.system.tangent);
+        }
+        work.iteration.start_increment();
+    }
+    for _ in 0..MOST_ROUNDS {
+        let Workspace { assembler, iteration, system, interface, .. } = &mut *work;
+        let CondensedNewton { nodes, solver, condensed, .. } = interface.as_mut()?;
+        assembler.assemble(trial, &u, &[], Request::Residual, system).ok()?;
+        let forwarded = bodies.forward(&nodes.balanced(model, trial.step, &system.residual));
+        let equations = CondensedEquations::new(nodes, bodies, trial, &u, forwarded.right.clone(), assembler, system);
+        let (from, all) = (nodes.gather(&u), u.clone());
+        let mut iterations = Vec::new();
+        let mut on_contacts = OnContacts { equations, nodes, all, assembler, iteration, trial, watch: &mut *watch };
+        let result = newton::solve(
+            &mut on_contacts,
+            from.clone(),
+            settings(model, trial),
+            &mut solver.with(eliminated.as_ref(), parts.as_deref()),
+            condensed,
+            &mut iterations,
+        );
+        let all = on_contacts.all;
+        watch.record(iterations);
+        let x = match result {
+            Ok(x) => x,
+            Err(NewtonFailure::Linear(LinearFailure::Varies)) => return None,
+            Err(failure) => {
+                // Unconstrained rigid-body modes are detected from the full tangent.
+                assemble_all(trial, &all, work)?;
+                return Some(Err(failure));
+            }
+        };
+        // The bodies follow: A (u − u₀) = −r at all other nodes.
+        let way: Vec<f64> = from.iter().zip(&x).map(|(from, x)| from - x).collect();
+        let ways = nodes.resolved(bodies.backward(&forwarded, &way));
+        u.iter_mut().zip(ways).for_each(|(u, way)| *u -= way);
+        nodes.scatter(&x, &mut u);
+        assembler.residual(trial, &u, system).ok()?;
+        if let Some(last) = watch.records.last_mut() {
+            last.newton.residual = system.imbalance;
+        }
+        if system.imbalance <= tolerance(model, trial.stiffening) {
+            return Some(Ok(u));
+        }
+    }
+    None
 }
 
-impl<'a> Round<'a> {
-    /// Starts a round at `u`.
-    ///
-    /// # Errors
-    /// Returns [`TrialFailure`] if a load has no finite value.
-    pub fn begin(
-        nodes: &'a ContactNodes,
-        bodies: &'a Condensed,
-        trial: Trial,
-        u: &[f64],
-        assembler: &mut Assembler,
-        system: &mut System,
-    ) -> Result<Self, TrialFailure> {
-        assembler.without_contacts(trial, u, Request::Residual, system)?;
-        let forwarded = bodies.forward(&nodes.balanced(assembler.model(), trial.step, &system.residual));
-        let constant = forwarded.right.clone();
-        let equations = CondensedEquations::new(nodes, bodies, trial, u, constant, assembler, system);
-        Ok(Self { equations, bodies, forwarded })
+/// The equations of an increment on the contact nodes.
+struct OnContacts<'a> {
+    equations: CondensedEquations<'a>,
+    nodes: &'a ContactNodes,
+    /// u of all nodes, at the contact nodes that of the iterate [L]
+    all: Vec<f64>,
+    assembler: &'a mut Assembler,
+    iteration: &'a mut ContactIteration,
+    trial: Trial<'a>,
+    watch: &'a mut Watch,
+}
+
+impl Equations for OnContacts<'_> {
+    type Failure = TrialFailure;
+
+    fn evaluate(&mut self, x: &[f64], request: Request, system: &mut System) -> Result<(), TrialFailure> {
+        let Self { equations, nodes, all, assembler, iteration, trial, watch } = self;
+        nodes.scatter(x, all);
+        let responses = iteration.respond(assembler, *trial, all, request)?;
+        equations.assemble(assembler, *trial, x, responses, request, system);
+        if request == Request::Tangent {
+            iteration.note(assembler.model(), all, trial.old);
+        }
+        let acted = Acted { condense: 1, ..in_trial(trial.stiffening, iteration.acted) };
+        watch.note(request, assembler, system.forces, acted);
+        Ok(())
     }
 
-    /// Displacements of all nodes for given ones of the contact nodes: A (u − u₀) = −r at all other nodes.
-    pub fn follow(&self, nodes: &ContactNodes, u: &mut [f64], x: &[f64]) {
-        let way: Vec<f64> = nodes.gather(u).iter().zip(x).map(|(start, x)| start - x).collect();
-        let all = nodes.resolved(self.bodies.backward(&self.forwarded, &way));
-        u.iter_mut().zip(all).for_each(|(u, way)| *u -= way);
-        nodes.scatter(x, u);
+    fn work(&self, _: &[f64], residual: &[f64], way: &[f64]) -> f64 {
+        supports::dot(residual, way)
     }
+}
+
+/// Assembles the tangent of all equations as at the first linear solve of an increment.
+fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
+    let Workspace { assembler, iteration, system, .. } = work;
+    iteration.start_increment();
+    assembler.residual(trial, u, system).ok()?;
+    let responses = iteration.respond(assembler, trial, u, Request::Tangent).ok()?;
+    assembler.assemble(trial, u, responses, Request::Tangent, system).ok()?;
+    iteration.note(assembler.model(), u, trial.old);
+    Some(())
 }

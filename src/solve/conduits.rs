@@ -16,15 +16,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::equilibrium::augment;
 use super::failure::IncrementFailure;
-use super::{IterationRecord, Solved, Workspace};
 use crate::contact::conduit::{Conduit, ConduitState, Course, Reached, TooFast, Wall};
 use crate::contact::pair::ContactPair;
 use crate::contact::point::ContactState;
 use crate::equations::Trial;
-use crate::model::Model;
 use crate::model::state::State;
+use crate::model::{Model, Step};
 
 /// |p̂ − p| that is left, over the largest pressure [-]
 const TOLERANCE: f64 = 1e-8;
@@ -44,63 +42,15 @@ const LONGER: f64 = 1.5;
 /// Water of all contacts at the end of an increment; one entry a contact, none where no water flows.
 pub type Arrived = Vec<Option<ConduitState>>;
 
-/// Finds equilibrium and pressures of the water at the end of an increment.
-pub fn settle(model: &Model, trial: Trial, work: &mut Workspace) -> (Solved, Arrived) {
-    let flowing: Vec<Flowing> = flowing(model, trial);
-    if flowing.is_empty() {
-        return (augment(model, trial, None, work), Vec::new());
-    }
-    let mut passes = Passes { old: trial.old.clone(), flowing, history: History::default() };
-    let guessed = passes.flowing.iter_mut().try_for_each(|flowing| flowing.foresee(trial));
-    let mut all = Solved { iterations: Vec::new(), displacement: Ok(Vec::new()), foreseen: None, passes: Vec::new() };
-    if let Err(failure) = guessed {
-        all.displacement = Err(failure);
-        return (all, Vec::new());
-    }
-    let mut start = None;
-    for _ in 0..MOST_PASSES {
-        passes.press();
-        let solved = augment(model, Trial { old: &passes.old, ..trial }, start.take(), work);
-        let before = all.iterations.last().map_or(0, |last| last.pass);
-        let numbered = |iteration: IterationRecord| IterationRecord { pass: before + iteration.pass, ..iteration };
-        all.iterations.extend(solved.iterations.into_iter().map(numbered));
-        (all.displacement, all.passes) = (solved.displacement, solved.passes);
-        all.foreseen = all.foreseen.or(solved.foreseen);
-        let Ok(u) = &all.displacement else { return (all, Vec::new()) };
-        match passes.flow(trial, &work.assembler.evaluation.contacts) {
-            Err(failure) => {
-                all.displacement = Err(failure);
-                return (all, Vec::new());
-            }
-            Ok(true) => {
-                let arrived = passes.arrive(model, trial);
-                match arrived {
-                    Ok(arrived) => return (all, arrived),
-                    Err(failure) => all.displacement = Err(failure),
-                }
-                return (all, Vec::new());
-            }
-            Ok(false) => start = Some(u.clone()),
-        }
-    }
-    let worst = passes.flowing.iter().map(|flowing| flowing.pair.name.clone()).next().unwrap_or_default();
-    let why = format!(
-        "{MOST_PASSES} passes of equilibrium and flow do not agree on its pressure: give shorter increments (dt.min), the ground water that \
-         is there (`initial`), or a larger `storage`"
-    );
-    all.displacement = Err(IncrementFailure::Water { contact: worst, why });
-    (all, Vec::new())
-}
-
 /// Contacts in which water flows in a step.
-fn flowing<'a>(model: &'a Model, trial: Trial<'a>) -> Vec<Flowing<'a>> {
-    let pairs = model.contacts.iter().enumerate().filter(|(_, pair)| trial.step.joins(pair));
+fn flowing<'a>(model: &'a Model, step: &Step, old: &'a State) -> Vec<Flowing<'a>> {
+    let pairs = model.contacts.iter().enumerate().filter(|(_, pair)| step.joins(pair));
     let with_water = pairs.filter_map(|(number, pair)| Some((number, pair, pair.conduit.as_ref()?)));
     let new = |(number, pair, conduit): (usize, &'a ContactPair, &'a Conduit)| Flowing {
         number,
         pair,
         conduit,
-        old: &trial.old.conduits[number],
+        old: &old.conduits[number],
         open: 0.0,
         compliance: Vec::new(),
         pressure: Vec::new(),
@@ -227,26 +177,44 @@ impl Flowing<'_> {
     }
 }
 
-/// Passes of an increment.
-struct Passes<'a> {
-    /// The state at its start, with the pressures of the pass
-    old: State,
+/// Water of all contacts in an increment.
+#[derive(Default)]
+pub struct Water<'a> {
+    /// The state at its start, with the pressures of the pass; none where no water flows
+    pub old: Option<State>,
     flowing: Vec<Flowing<'a>>,
     history: History,
+    passes: usize,
 }
 
-impl Passes<'_> {
+impl<'a> Water<'a> {
+    /// Finds the water that flows in an increment, with the pressures of the first pass.
+    ///
+    /// # Errors
+    /// Returns [`IncrementFailure`] if there are none.
+    pub fn of(model: &'a Model, trial: Trial<'a>) -> Result<Self, IncrementFailure> {
+        let mut flowing = flowing(model, trial.step, trial.old);
+        flowing.iter_mut().try_for_each(|flowing| flowing.foresee(trial))?;
+        let old = if flowing.is_empty() { None } else { Some(trial.old.clone()) };
+        let mut water = Self { old, flowing, history: History::default(), passes: 0 };
+        water.press();
+        Ok(water)
+    }
+
     /// Gives the contacts the pressures of the pass.
     fn press(&mut self) {
         for flowing in &self.flowing {
             let points = flowing.conduit.points(&flowing.pressure, &flowing.walls);
-            let states = self.old.contacts[flowing.number].iter_mut();
+            let states = self.old.iter_mut().flat_map(|old| &mut old.contacts[flowing.number]);
             states.zip(points).for_each(|(state, water)| state.water = Some(water));
         }
     }
 
-    /// Evaluates p̂ after an equilibrium; says whether it agrees, and sets the pressures of the next pass if not.
-    fn flow(&mut self, trial: Trial, contacts: &[Vec<ContactState>]) -> Result<bool, IncrementFailure> {
+    /// Evaluates p̂ after an equilibrium; says whether it differs, and then sets the pressures of another pass.
+    ///
+    /// # Errors
+    /// Returns [`IncrementFailure`] if it cannot be evaluated, or differs after many passes.
+    pub fn flow(&mut self, trial: Trial, contacts: &[Vec<ContactState>]) -> Result<bool, IncrementFailure> {
         let (mut apart, mut largest, mut renewed) = (0.0f64, 0.0f64, false);
         for flowing in &mut self.flowing {
             flowing.walls = flowing.conduit.walls(&contacts[flowing.number]);
@@ -263,7 +231,14 @@ impl Passes<'_> {
             }
         }
         if apart <= TOLERANCE * largest {
-            return Ok(true);
+            return Ok(false);
+        }
+        self.passes += 1;
+        if let (MOST_PASSES, Some(flowing)) = (self.passes, self.flowing.first()) {
+            return Err(flowing.failure(format!(
+                "{MOST_PASSES} passes of equilibrium and flow do not agree on its pressure: give shorter increments (dt.min), the ground \
+                 water that is there (`initial`), or a larger `storage`"
+            )));
         }
         if renewed {
             self.history = History::default();
@@ -275,11 +250,15 @@ impl Passes<'_> {
             let count = flowing.pressure.len();
             flowing.pressure = next.by_ref().take(count).collect();
         }
-        Ok(false)
+        self.press();
+        Ok(true)
     }
 
     /// The water at the end of the increment.
-    fn arrive(&self, model: &Model, trial: Trial) -> Result<Arrived, IncrementFailure> {
+    ///
+    /// # Errors
+    /// Returns [`IncrementFailure`] if its pressures are impossible.
+    pub fn arrive(&self, model: &Model, trial: Trial) -> Result<Arrived, IncrementFailure> {
         let mut arrived: Arrived = vec![None; model.contacts.len()];
         for flowing in &self.flowing {
             arrived[flowing.number] = Some(flowing.arrive(trial)?);

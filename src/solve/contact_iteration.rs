@@ -14,7 +14,7 @@
 //! | `stick` | a point that slips in alternating directions sticks, and one that stuck sticks on |
 //! | `valley` | a projection that alternates between two segments is the node between them |
 //!
-//! Aids unrelated to contact are in [`super::equilibrium`] and [`super::newton`]. Each has a switch in
+//! Aids unrelated to contact are in [`super::equilibrium`], [`super::passes`] and [`super::newton`]. Each has a switch in
 //! [`crate::model::aids::Aids`] and a column `aid_…` in `newton.csv`; `docs/aids.md` tabulates what each saves.
 //!
 //! # Promise, limit
@@ -110,7 +110,7 @@ use crate::contact::response::PairResponse;
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
 use crate::laws::friction::{Description, Regime};
-use crate::linear::system::{Request, System};
+use crate::linear::system::Request;
 use crate::model::Model;
 use crate::model::aids::Aids;
 use crate::model::state::State;
@@ -182,6 +182,8 @@ pub struct ContactIteration {
     linearized: Vec<PairResponse>,
     /// Contact points as linearized in the next solve
     next: Vec<PairResponse>,
+    /// Contact points as they are, kept to reuse their memory
+    plain: Vec<PairResponse>,
     /// u of the last linear solve [L]
     linearized_at: Vec<f64>,
     /// Number of points on which each convergence aid acted in the last linear solve
@@ -194,80 +196,51 @@ impl ContactIteration {
         self.points.clear();
     }
 
-    /// Evaluates the residual of all equations at the displacement `u`, on request with their tangent; see
-    /// [`ContactIteration::evaluate`].
+    /// Evaluates the contact points at the displacement `u`: for a residual without presumptions; for a tangent with all of them, about
+    /// which [`ContactIteration::note`] is told once it is assembled.
     ///
     /// # Errors
-    /// The same as there.
-    pub fn evaluate_all(
+    /// Returns [`TrialFailure`] if a friction law fails.
+    pub fn respond(
         &mut self,
         assembler: &mut Assembler,
         trial: Trial,
         u: &[f64],
         request: Request,
-        system: &mut System,
-    ) -> Result<(), TrialFailure> {
-        self.evaluate(assembler, trial, u, request, |assembler, responses| {
-            assembler.assemble(trial, u, responses, request, system)
-        })
-    }
-
-    /// Assembles the equations at the displacement `u` from the responses of the contact points: a residual without
-    /// presumptions; a tangent with all of them, and the residual consistent with it.
-    ///
-    /// # Errors
-    /// Returns [`TrialFailure`] if an element inverts, a friction law fails, or a load has no finite value.
-    pub fn evaluate(
-        &mut self,
-        assembler: &mut Assembler,
-        trial: Trial,
-        u: &[f64],
-        request: Request,
-        assemble: impl FnOnce(&mut Assembler, &[PairResponse]) -> Result<(), TrialFailure>,
-    ) -> Result<(), TrialFailure> {
+    ) -> Result<&[PairResponse], TrialFailure> {
         if request != Request::Tangent {
-            return assembler.with_responses(trial, u, request, assemble);
+            assembler.interfaces(trial, u, |_, _| Presumption::default(), request, &mut self.plain)?;
+            return Ok(&self.plain);
         }
         let aids = assembler.model().aids;
-        self.presume(assembler.model(), &assembler.evaluation.contacts, trial, u);
-        self.respond(assembler, trial, u, request)?;
-        if aids.stick && self.presume_sticking(assembler.model()) {
-            self.respond(assembler, trial, u, request)?;
+        self.presume(assembler.model(), &assembler.evaluation.contacts, trial.old, trial.stiffening, u);
+        let mut sticking = aids.stick;
+        loop {
+            let points = &self.points;
+            // Before the first residual nothing is known about any point.
+            let presumed = |pair: usize, point: usize| {
+                points[pair].get(point).map_or_else(Presumption::default, |point| point.presumption(aids))
+            };
+            assembler.interfaces(trial, u, presumed, request, &mut self.next)?;
+            if !std::mem::take(&mut sticking) || !self.presume_sticking(assembler.model()) {
+                return Ok(&self.next);
+            }
         }
-        assemble(assembler, &self.next)?;
-        self.take_over(assembler.model(), u, trial.old, aids);
-        Ok(())
-    }
-
-    /// Evaluates the points as linearized in the next solve.
-    fn respond(
-        &mut self,
-        assembler: &mut Assembler,
-        trial: Trial,
-        u: &[f64],
-        request: Request,
-    ) -> Result<(), TrialFailure> {
-        let (aids, points) = (assembler.model().aids, &self.points);
-        // Before the first residual nothing is known about any point.
-        let presumed = |pair: usize, point: usize| {
-            points[pair].get(point).map_or_else(Presumption::default, |point| point.presumption(aids))
-        };
-        assembler.interfaces(trial, u, presumed, request, &mut self.next)
     }
 
     /// Sets the presumptions of the next linear solve about each point, from its last two iterates, except for sticking.
     /// `states` are those of the residual at `u`.
-    fn presume(&mut self, model: &Model, states: &[Vec<ContactState>], trial: Trial, u: &[f64]) {
+    fn presume(&mut self, model: &Model, states: &[Vec<ContactState>], old: &State, stiffening: f64, u: &[f64]) {
         let (first, aids) = (self.points.is_empty(), model.aids);
         self.points.resize_with(model.contacts.len(), Vec::new);
         let at = &self.linearized_at;
-        let pairs = model.contacts.iter().zip(states).zip(&trial.old.contacts);
+        let pairs = model.contacts.iter().zip(states).zip(&old.contacts);
         for (number, (points, ((pair, states), old))) in self.points.iter_mut().zip(pairs).enumerate() {
             points.resize_with(states.len(), Point::default);
             for (k, ((point, state), old)) in points.iter_mut().zip(states).zip(old).enumerate() {
                 let last = if first { None } else { self.linearized[number].closed(k) };
                 let was_closed = if first { old.friction.pressure > 0.0 } else { last.is_some() };
-                point.carried = carried(pair, was_closed, state, trial.stiffening);
+                point.carried = carried(pair, was_closed, state, stiffening);
                 point.promised = match last {
                     Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
                     None if first && state.friction.pressure > 0.0 => promised_at_start(state, old, aids.limit),
@@ -305,8 +278,9 @@ impl ContactIteration {
         any
     }
 
-    /// Stores the points as linearized in the next solve, and counts those on which an aid acts.
-    fn take_over(&mut self, model: &Model, u: &[f64], old: &State, aids: Aids) {
+    /// Stores the points as linearized in the tangent that was assembled at `u`, and counts those on which an aid acts.
+    pub fn note(&mut self, model: &Model, u: &[f64], old: &State) {
+        let aids = model.aids;
         std::mem::swap(&mut self.linearized, &mut self.next);
         self.linearized_at.clear();
         self.linearized_at.extend_from_slice(u);

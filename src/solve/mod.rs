@@ -10,6 +10,8 @@ pub mod floating;
 pub mod limit;
 pub mod neighbour;
 pub mod newton;
+pub mod passes;
+mod watch;
 
 use std::sync::Arc;
 
@@ -20,7 +22,6 @@ use crate::linear::system::System;
 use crate::model::Model;
 use condensed_newton::CondensedNewton;
 use contact_iteration::{Acted, ContactIteration};
-use failure::IncrementFailure;
 use newton::Iteration;
 
 /// Buffers reused from one increment to the next to save work. What an increment has found is in what is returned of it; nothing
@@ -37,19 +38,6 @@ pub struct Workspace {
     interface: Option<CondensedNewton>,
     /// Seconds spent in linear solves
     pub linear_seconds: f64,
-}
-
-/// What the solution of an increment came to.
-#[derive(Debug)]
-pub struct Solved {
-    /// Linear solves, of a failed attempt as well
-    pub iterations: Vec<IterationRecord>,
-    /// u at the time at which the scheme requires equilibrium [L]
-    pub displacement: Result<Vec<f64>, IncrementFailure>,
-    /// Contact states if the motion before the increment had gone on; `None` if none could be evaluated
-    pub foreseen: Option<Vec<Vec<ContactState>>>,
-    /// Its passes
-    pub passes: Vec<Pass>,
 }
 
 /// Solution of one pass of an increment: the augmented Lagrangian method makes several of them, the penalty method one.

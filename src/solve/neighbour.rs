@@ -32,9 +32,10 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::equilibrium::{equilibrium, multiply};
+use super::equilibrium::equilibrium;
 use super::failure::IncrementFailure;
 use super::newton::NewtonFailure;
+use super::passes::multiply;
 use super::{Pass, Workspace};
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, LinearizedSolids, SolidForces, Trial, regimes};
@@ -261,7 +262,7 @@ impl<'a> Group<'a> {
         let before = parts.iter().filter(|part| part.was_corrected).map(|part| part.left).fold(0.0, f64::max);
         for part in parts {
             let mut residual = part.residual(neighbours, run.residual);
-            let share = run.assembler.share(neighbours[0].trial, &residual, run.measures);
+            let share = run.assembler.share(neighbours[0].trial.step, &residual, run.measures);
             (part.before, part.left) = (part.left, share.max(missed));
             let tolerance = if part.drops_out && are_alike { CURVATURE } else { TOLERANCE };
             fall &= part.falls(tolerance, before);
@@ -324,5 +325,7 @@ fn by_itself(Seeker { model, trial, work, mut u, .. }: Seeker) -> Result<Vec<f64
         u.clone_from(&trial.old.displacement);
     }
     work.iteration.start_increment();
-    equilibrium(model, trial, Some(u), work).displacement
+    let found = equilibrium(model, trial, Some(u), work).found?;
+    work.assembler.evaluation = found.evaluation;
+    Ok(found.displacement)
 }

@@ -142,8 +142,20 @@ impl<E> NewtonFailure<E> {
     }
 }
 
-/// Iterations made, and the solution or the reason why there is none.
-pub type Iterated<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
+/// Equations r(u) = 0.
+pub trait Equations {
+    /// Why they could not be evaluated
+    type Failure;
+
+    /// Fills the system at a displacement.
+    ///
+    /// # Errors
+    /// Returns [`Self::Failure`] if they have no value there.
+    fn evaluate(&mut self, u: &[f64], request: Request, system: &mut System) -> Result<(), Self::Failure>;
+
+    /// Work of a residual at `u` along a correction.
+    fn work(&self, u: &[f64], residual: &[f64], way: &[f64]) -> f64;
+}
 
 /// Ratio of the residual to the largest of the first ones that counts as divergence.
 const DIVERGENCE: f64 = 1e4;
@@ -176,50 +188,49 @@ const SAME: f64 = 1e-5;
 /// Smallest of the largest ‖r‖/‖f‖ in a circle, in multiples of the tolerance.
 const FAR_FROM_SOLVED: f64 = 100.0;
 
-/// Solves r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement, `work` returns the work of a
-/// residual at `u` along a correction.
-pub fn solve<E>(
+/// Solves the equations from the start value `u`. The iterations made are added to a list, whether or not they end.
+///
+/// # Errors
+/// Returns the reason why there is no solution.
+pub fn solve<E: Equations>(
+    equations: &mut E,
     mut u: Vec<f64>,
     settings: Settings,
     solver: &mut dyn LinearSolver,
     system: &mut System,
-    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
-    work: impl Fn(&[f64], &[f64], &[f64]) -> f64,
-) -> Iterated<E> {
-    let mut iterations: Vec<Iteration> = Vec::new();
-    let result = (|| {
-        evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-        let mut course = Convergence::new(settings);
-        while let Some(plan) = course.judge(&mut iterations, system)? {
-            let here = if plan.searched { system.residual.clone() } else { Vec::new() };
-            if plan.factorized {
-                evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
-            }
-            let mut solution = correction(plan.factorized, solver, system)?;
-            if plan.searched {
-                let along = |residual: &[f64]| work(&u, residual, &solution.x);
-                let share = downhill(along(&here), |share| {
-                    let there: Vec<f64> = u.iter().zip(&solution.x).map(|(u, x)| u + share * x).collect();
-                    evaluate(&there, Request::Between, system).map_or(f64::NAN, |()| along(&system.residual))
-                });
-                solution.x.iter_mut().for_each(|x| *x *= share);
-            }
-            u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u += x);
-            iterations.push(plan.iteration(&solution, settings.saddle));
-            match evaluate(&u, Request::Residual, system) {
-                Ok(()) => {}
-                Err(failure) if plan.factorized => return Err(NewtonFailure::Evaluation(failure)),
-                Err(_) => {
-                    // The old tangent failed: the next correction starts from the same iterate.
-                    course.old_tangent_serves = false;
-                    u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= x);
-                    evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-                }
+    iterations: &mut Vec<Iteration>,
+) -> Result<Vec<f64>, NewtonFailure<E::Failure>> {
+    equations.evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+    let mut course = Convergence::new(settings);
+    while let Some(plan) = course.judge(iterations, system)? {
+        let here = if plan.searched { system.residual.clone() } else { Vec::new() };
+        if plan.factorized {
+            equations.evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
+        }
+        let mut solution = correction(plan.factorized, solver, system)?;
+        if plan.searched {
+            let start = equations.work(&u, &here, &solution.x);
+            let share = downhill(start, |share| {
+                let there: Vec<f64> = u.iter().zip(&solution.x).map(|(u, x)| u + share * x).collect();
+                let evaluated = equations.evaluate(&there, Request::Between, system);
+                evaluated.map_or(f64::NAN, |()| equations.work(&u, &system.residual, &solution.x))
+            });
+            solution.x.iter_mut().for_each(|x| *x *= share);
+        }
+        u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u += x);
+        iterations.push(plan.iteration(&solution, settings.saddle));
+        match equations.evaluate(&u, Request::Residual, system) {
+            Ok(()) => {}
+            Err(failure) if plan.factorized => return Err(NewtonFailure::Evaluation(failure)),
+            Err(_) => {
+                // The old tangent failed: the next correction starts from the same iterate.
+                course.old_tangent_serves = false;
+                u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= x);
+                equations.evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
             }
         }
-        Ok(())
-    })();
-    (iterations, result.map(|()| u))
+    }
+    Ok(u)
 }
 
 /// Least number of negative eigenvalues beyond those that a tangent has by nature; where it has some, only that of a symmetric tangent is known.

@@ -19,9 +19,10 @@ use crate::equations::Trial;
 use crate::linear::Multifrontal;
 use crate::model::state::State;
 use crate::model::{Model, Step};
-use crate::solve::equilibrium::multiply;
+use crate::solve::equilibrium::Found;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::neighbour::{Seeker, Tangent, beside};
+use crate::solve::passes::multiply;
 use crate::solve::{Pass, Workspace};
 
 /// An accepted increment of the run.
@@ -140,7 +141,9 @@ impl Neighbour {
     fn accept(&mut self, lead: &Lead, way: OnItsWay) -> Result<(), IncrementFailure> {
         let Self { model, state, step, work, .. } = self;
         let Some(step) = step else { return Ok(()) };
-        let new = arrive(model, lead.whole(state, step), way.u, work)?;
+        let evaluation = std::mem::take(&mut work.assembler.evaluation);
+        let found = Found { displacement: way.u, evaluation, water: Vec::new() };
+        let new = arrive(model, lead.whole(state, step), found, work)?;
         self.old = std::mem::replace(&mut self.state, new);
         Ok(())
     }

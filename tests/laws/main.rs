@@ -23,6 +23,7 @@ mod bulk;
 mod cam_clay;
 mod comparison_laws;
 mod controlled;
+mod depth;
 mod direct_effect;
 mod friction;
 mod imposed;

@@ -9,23 +9,44 @@ use fecontact::model::builder::{Contact, IncrementSettings, Load, LoadStep, Supp
 use fecontact::model::method::Method;
 use fecontact::model::{Model, NewtonSettings};
 use fecontact::run::Simulation;
-use fecontact::solve::newton::{Iterated, NewtonFailure, Settings, solve};
+use fecontact::solve::newton::{Equations, Iteration, NewtonFailure, Settings, solve};
 use serde_json::{Value, json};
 
+/// Iterations made, and the root or the reason why there is none.
+type Iterated = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<()>>);
+
 /// Solve r(u) = 0 from a start value; `equation` gives r and r′, or fails.
-fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated<()> {
+fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated {
     root_or_shorter(start, false, equation)
 }
 
 /// The same, in an increment that is given up where iterations stall if `gives_up`.
-fn root_or_shorter(start: f64, gives_up: bool, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated<()> {
+fn root_or_shorter(start: f64, gives_up: bool, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated {
     let pattern = std::sync::Arc::new(Pattern::new(1, std::iter::once(&[0usize][..])));
     let tangent = SparseMatrix::zero(pattern);
     let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };
     let settings =
         Settings { tolerance: 1e-12, max_iterations: 30, old_tangents: true, saddle: 0, downhill: true, gives_up };
-    let evaluate = |u: &[f64], request, system: &mut System| {
-        let [r, slope] = equation(u[0])?;
+    let mut iterations = Vec::new();
+    let found = solve(
+        &mut Unknown(equation),
+        vec![start, 0.0],
+        settings,
+        &mut Multifrontal::default(),
+        &mut system,
+        &mut iterations,
+    );
+    (iterations, found)
+}
+
+/// An equation in one unknown, given as r and r′.
+struct Unknown<F>(F);
+
+impl<F: Fn(f64) -> Result<[f64; 2], ()>> Equations for Unknown<F> {
+    type Failure = ();
+
+    fn evaluate(&mut self, u: &[f64], request: Request, system: &mut System) -> Result<(), ()> {
+        let [r, slope] = (self.0)(u[0])?;
         system.residual = vec![r, 0.0];
         system.imbalance = r.abs();
         if request == Request::Tangent {
@@ -34,9 +55,11 @@ fn root_or_shorter(start: f64, gives_up: bool, equation: impl Fn(f64) -> Result<
             system.tangent.add_diagonal(1, 1.0);
         }
         Ok(())
-    };
-    let work = |_: &[f64], residual: &[f64], way: &[f64]| residual[0] * way[0];
-    solve(vec![start, 0.0], settings, &mut Multifrontal::default(), &mut system, evaluate, work)
+    }
+
+    fn work(&self, _: &[f64], residual: &[f64], way: &[f64]) -> f64 {
+        residual[0] * way[0]
+    }
 }
 
 /// The correction of atan(u) = 0 from u = 1.6 leads to −2.5, which is out of bounds here, and that is told; from u = 1 it
