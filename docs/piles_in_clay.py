@@ -1,7 +1,9 @@
-"""Tables of the slow tier: a pile in clay, its base on finer meshes, and its shaft, with the opening of its bond halved and doubled.
+"""Tables of the slow tier: a pile in clay, its base on finer meshes, and its shaft, with the opening of its bond halved and doubled; and the same
+of a wall that holds a dig.
 
     python3 docs/piles_in_clay.py target/release/fecontact pile_bases
     python3 docs/piles_in_clay.py target/release/fecontact pile_openings
+    python3 docs/piles_in_clay.py target/release/fecontact wall_openings
 
 Every function runs cases and returns rows, the head first. Needs numpy.
 """
@@ -11,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from results import Run, text_of
+from results import Run, table, text_of
 
 LONG, RADIUS, STRENGTH, ADHESION, WEIGHT = 8, 0.5, 40, 0.8, 18
 GROUND = {"geostatic": {"surface": 0, "weight": WEIGHT, "K0": 1}}
@@ -85,7 +87,61 @@ def pile_openings(program):
     return rows
 
 
-SLOW_PILES = {"pile_bases": pile_bases, "pile_openings": pile_openings}
+DEEP, THICK, HALF_PIT, FAR, FLOOR, STAGES = 8, 0.4, 6, 20, 14, 4
+
+
+def wall(opening):
+    """A wall in clay, wished in place, that holds a dig of a metre a stage."""
+    ground = {"geostatic": {"surface": 0, "weight": WEIGHT, "K0": 0.9}}
+    clay = {"model": "mohr_coulomb", "E": 12000, "nu": 0.495, "c": 30, "phi": 0, "psi": 0, "density": WEIGHT / 10}
+    cuts = [f"cut_{k + 1}" for k in range(STAGES)]
+
+    def block(body, left, low, right, high, elements, grading, sides):
+        corners = [[left, low], [right, low], [right, high], [left, high]]
+        return {"body": body, "corners": corners, "elements": elements, "grading": grading, "sides": sides, "kind": "Q8"}
+
+    def contact(slave, master):
+        return {"slave": slave, "master": master, "interface": {"reduction": 0.5}, "bond": {"opening": opening}, "initial": {"of_bodies": True}}
+
+    blocks = [
+        block("wall", 0, -DEEP, THICK, 0, [1, 16], [1, 1], ["tip", "wall_out", None, "wall_in"]),
+        block("soil", -HALF_PIT, -FLOOR, 0, -DEEP, [12, 5], [0.15, 0.5], ["floor", None, None, "axis"]),
+        block("soil", 0, -FLOOR, THICK, -DEEP, [1, 5], [1, 0.5], ["floor", None, "below", None]),
+        block("soil", THICK, -FLOOR, FAR, -DEEP, [18, 5], [10, 0.5], ["floor", "far", None, None]),
+        block("soil", THICK, -DEEP, FAR, 0, [18, 16], [10, 1], [None, "far", None, "soil_out"]),
+        block("soil", -HALF_PIT, -DEEP, 0, -STAGES, [12, 8], [0.15, 1], [None, "soil_in", None, "axis"]),
+        *(block(cut, -HALF_PIT, -k - 1, 0, -k, [12, 2], [0.15, 1], [None, f"face_{k + 1}", None, "axis"]) for k, cut in enumerate(cuts)),
+    ]
+    blocks[0]["points"] = {"head": [THICK / 2, 0]}
+    soils = {name: {"material": clay, "element": "reduced", "initial_stress": ground} for name in ("soil", *cuts)}
+    stiff = {"model": "linear", "E": 2e7, "nu": 0.2, "density": WEIGHT / 10}
+    sides = [("soil_out", "wall_out"), ("below", "tip"), ("soil_in", "wall_in"), *((f"face_{k + 1}", "wall_in") for k in range(STAGES))]
+    supports = [{"on": "floor", "ux": 0, "uy": 0}, {"on": "axis", "ux": 0}, {"on": "far", "ux": 0}]
+    gravity = [{"on": body, "gravity": {"y": "-10"}} for body in ("wall", *soils)]
+    dig = [{"name": f"{k + 1} m", "duration": 1, "dt": {"initial": 0.05, "max": 0.1}, "remove": [cut]} for k, cut in enumerate(cuts)]
+    return {
+        "mesh": {"joined": [["soil", *cuts]], "blocks": blocks},
+        "bodies": {"wall": {"material": stiff, "element": "reduced", "initial_stress": ground}, **soils},
+        "contacts": {slave: contact(slave, master) for slave, master in sides},
+        "steps": [{"name": "rest", "duration": 1, "dt": {"initial": 1}, "supports": supports, "loads": gravity}, *dig],
+        "sections": {"wall": {"body": "wall", "from": [THICK / 2, 0], "to": [THICK / 2, -DEEP]}},
+        "watch": ["head"], "output": {"fields": False, "report": False},
+    }
+
+
+def wall_openings(program):
+    rows = [["δ [mm]", "δ E/(c h)", "head [mm]", "largest M [kN m/m]", "shear behind the wall [kN/m]"]]
+    for opening in (0.00125, 0.0025, 0.005, 0.01):
+        run = Run(program, wall(opening))
+        sections = table(run.folder / "sections.csv")
+        moment = max(abs(values[-1]) for name, values in sections.items() if name.endswith("moment"))
+        behind = abs(run.last("soil_out.tangential_force"))
+        over = opening * 12000 / (15 * DEEP / 16)
+        rows.append([f"{1e3 * opening:g}", f"{over:.2g}", f"{-1e3 * run.last('head.ux'):.2f}", f"{moment:.2f}", f"{behind:.1f}"])
+    return rows
+
+
+SLOW_PILES = {"pile_bases": pile_bases, "pile_openings": pile_openings, "wall_openings": wall_openings}
 
 if __name__ == "__main__":
     print(text_of(SLOW_PILES[sys.argv[2]](sys.argv[1])))

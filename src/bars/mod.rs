@@ -21,6 +21,7 @@ pub mod segment;
 pub mod turn;
 pub mod vectors;
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use grip::{Grip, GripState};
@@ -41,6 +42,10 @@ pub struct Bar {
     pub limit: f64,
     /// mass per length [M/L]
     pub mass: f64,
+    /// η: damping force per momentum [1/T]
+    pub drag: f64,
+    /// τ: time by which EA and EI are multiplied to resist the rates of stretch and curvature [T]
+    pub retardation: f64,
     /// vertices along it
     pub vertices: Vec<Vertex>,
     /// segments, between one vertex and the next
@@ -112,6 +117,15 @@ impl Bar {
         })
     }
 
+    /// Nodes with their share of the mass, and the place in the mesh of the vertex that has it: the weight per acceleration [M].
+    pub fn weights(&self) -> impl Iterator<Item = (usize, f64, Vector2<f64>)> + '_ {
+        let of = |(vertex, mass): (&'_ Vertex, f64)| {
+            let shares: Vec<_> = vertex.terms().map(|(node, weight)| (node, mass * weight, vertex.at)).collect();
+            shares
+        };
+        self.vertices.iter().zip(self.masses()).flat_map(of)
+    }
+
     /// Masses of the vertices: half of those of the segments on both sides [M].
     fn masses(&self) -> Vec<f64> {
         let mut masses = vec![0.0; self.vertices.len()];
@@ -171,6 +185,19 @@ impl Bar {
     /// State of a bar that is not there.
     pub fn absent(&self, u: &[f64]) -> BarState {
         BarState { is_there: false, ..self.born(u) }
+    }
+
+    /// Viscous forces of its retardation at displacements and velocities: `add` takes those of each part, with the derivatives by the
+    /// displacements, and with those by the velocities.
+    pub fn resist(&self, state: &BarState, [u, v]: [&[f64]; 2], mut add: impl FnMut(&vectors::Vectors, [Answer; 2])) {
+        for (segment, state) in self.segments.iter().zip(&state.segments) {
+            let c = self.retardation * self.ea / (segment.length + state.natural);
+            add(&segment.vectors, Answer::viscous(c, segment.stretch(u), segment.vectors.ways(v)));
+        }
+        for turn in &self.turns {
+            let c = self.retardation * self.ei / turn.length;
+            add(&turn.vectors, Answer::viscous(c, turn.bend(u), turn.vectors.ways(v)));
+        }
     }
 
     /// Evaluates the bar at displacements: `add` takes the nodes, forces and tangent of each part. A jack sets its

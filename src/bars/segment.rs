@@ -6,11 +6,11 @@
 //! ```
 //! A jack sets N, and ε_l is what is left at that force; it does the work −∫ N l dε_l.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::Bar;
-use super::vectors::{Answer, Vectors};
+use super::vectors::{Answer, Measure, Vectors};
 
 /// A segment.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +56,14 @@ impl Segment {
     /// State of one that comes without force at displacements.
     pub fn born(&self, u: &[f64]) -> SegmentState {
         SegmentState { natural: self.elongation(u), ..SegmentState::default() }
+    }
+
+    /// |e| at displacements.
+    pub fn stretch(&self, u: &[f64]) -> Measure {
+        let e = self.vectors.at[0] + self.vectors.ways(u)[0];
+        let t = e.normalize();
+        let across = (Matrix2::identity() - t * t.transpose()) / e.norm();
+        ([t, Vector2::zeros()], [across, Matrix2::zeros()])
     }
 
     /// Evaluates it at displacements.

@@ -9,7 +9,7 @@
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
-use super::vectors::{Answer, Vectors, bending_of_angle, turned};
+use super::vectors::{Answer, Measure, Vectors, bending_of_angle, turned};
 
 /// An angle.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,18 +50,24 @@ impl Turn {
         TurnState { natural: self.angle(u), moment: 0.0 }
     }
 
+    /// θ at displacements.
+    pub fn bend(&self, u: &[f64]) -> Measure {
+        let ways = self.vectors.ways(u);
+        let e = [0, 1].map(|i| self.vectors.at[i] + ways[i]);
+        let sign = [-1.0, 1.0];
+        let slopes = [0, 1].map(|i| turned(e[i]) / e[i].norm_squared() * sign[i]);
+        (slopes, [0, 1].map(|i| bending_of_angle(e[i]) * sign[i]))
+    }
+
     /// Evaluates it at displacements, with the energy stored.
     pub fn respond(&self, ei: f64, old: &TurnState, u: &[f64]) -> (Answer, TurnState, f64) {
         let stiffness = ei / self.length;
         let angle = self.angle(u) - old.natural;
         let moment = stiffness * angle;
-        let ways = self.vectors.ways(u);
-        let e = [0, 1].map(|i| self.vectors.at[i] + ways[i]);
-        let slope = |i: usize| turned(e[i]) / e[i].norm_squared() * [-1.0, 1.0][i];
-        let slopes = [slope(0), slope(1)];
+        let (slopes, curvatures) = self.bend(u);
         let rate = |i: usize, j: usize| -> Matrix2<f64> {
             let both = slopes[i] * slopes[j].transpose() * stiffness;
-            if i == j { both + bending_of_angle(e[i]) * ([-1.0, 1.0][i] * moment) } else { both }
+            if i == j { both + curvatures[i] * moment } else { both }
         };
         let rates = [[rate(0, 0), rate(0, 1)], [rate(1, 0), rate(1, 1)]];
         let answer = Answer { forces: slopes.map(|slope| slope * moment), rates };

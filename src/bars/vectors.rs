@@ -73,6 +73,9 @@ pub struct Vectors {
     pub at: [Vector2<f64>; 2],
 }
 
+/// First derivatives of a measure by two vectors, and the second ones by each.
+pub type Measure = ([Vector2<f64>; 2], [Matrix2<f64>; 2]);
+
 /// Derivatives of an energy by two vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
@@ -144,6 +147,25 @@ impl Vectors {
 }
 
 impl Answer {
+    /// Forces of a dashpot of a coefficient c along a measure of both vectors, at their rates ė: with the derivatives by the vectors, and with
+    /// those by ė. Of the measure come the first derivatives, and the second ones by each vector.
+    ///
+    /// ```text
+    /// f_i = c s_i ṡ,   ṡ = Σ_k s_k·ė_k          ∂f_i/∂e_j = c (δ_ij S_i ṡ + s_i ⊗ S_j ė_j),   ∂f_i/∂ė_j = c s_i ⊗ s_j
+    /// ```
+    pub fn viscous(c: f64, (slopes, curvatures): Measure, rates: [Vector2<f64>; 2]) -> [Self; 2] {
+        let rate = slopes[0].dot(&rates[0]) + slopes[1].dot(&rates[1]);
+        let forces = slopes.map(|slope| slope * (c * rate));
+        let turns = [0, 1].map(|j| curvatures[j] * rates[j]);
+        let all = |of: &dyn Fn(usize, usize) -> Matrix2<f64>| [[of(0, 0), of(0, 1)], [of(1, 0), of(1, 1)]];
+        let by_place = |i: usize, j: usize| {
+            let across = slopes[i] * turns[j].transpose() * c;
+            if i == j { across + curvatures[i] * (c * rate) } else { across }
+        };
+        let by_rate = |i: usize, j: usize| slopes[i] * slopes[j].transpose() * c;
+        [Self { forces, rates: all(&by_place) }, Self { forces, rates: all(&by_rate) }]
+    }
+
     /// An energy of the first vector alone.
     pub fn of_first(force: Vector2<f64>, rates: Matrix2<f64>) -> Self {
         let none = Matrix2::zeros();

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::file::Case;
 use crate::bars::Bar;
 use crate::contact::pair::ContactPair;
-use crate::laws::friction::FrictionParameters;
+use crate::laws::friction::{Cohesion, FrictionParameters};
 use crate::model::Model;
 use crate::model::builder::{BarInput, Contact, DefaultAlphaT, Friction, default_alpha_t, with_friction};
 use crate::model::method::{Chosen, Method};
@@ -27,6 +27,7 @@ pub fn resolved(case: &Case, model: &Model) -> String {
                 let alpha_t = default_alpha_t(contact, model, &case.steps);
                 fill(contact, pair.alpha_n, chosen.as_ref(), alpha_t);
                 keep_opening(contact, pair, model);
+                keep_stiffness(contact, pair);
             }
         }
     }
@@ -83,6 +84,18 @@ pub(super) fn keep_opening(contact: &mut Contact, pair: &ContactPair, model: &Mo
     }
     if let Some(cohesion) = pair.laws.iter().find_map(|law| law.cohesion.as_ref()) {
         contact.bond.get_or_insert_default().opening = Some(cohesion.bond().opening());
+    }
+}
+
+/// Writes the stiffness of a bond that no friction law gives into a contact.
+fn keep_stiffness(contact: &mut Contact, pair: &ContactPair) {
+    let of_friction = pair.laws.iter().all(|law| law.law.description().stiffness_is_penalty);
+    let besides = pair.laws.iter().find_map(|law| match &law.cohesion {
+        Some(Cohesion::Beside(bond)) => Some(bond.stiffness()),
+        _ => None,
+    });
+    if let (false, Some(stiffness), Some(bond)) = (of_friction, besides, &mut contact.bond) {
+        bond.alpha_t = Some(stiffness);
     }
 }
 

@@ -52,6 +52,39 @@ pub(super) fn add(model: &Model, trial: Trial, u: &[f64], states: &mut Vec<BarSt
     energies
 }
 
+/// Adds the viscous forces of bars that damp by their stiffness, at displacements and velocities with ∂v/∂u, and subtracts them from the
+/// `damping` on the nodes.
+pub(super) fn resist(
+    model: &Model,
+    trial: Trial,
+    [u, velocity, dvelocity]: [&[f64]; 3],
+    damping: &mut [f64],
+    sums: &mut Sums,
+) {
+    let (mut force, mut tangent, mut by_rate) = (Vec::new(), Vec::new(), Vec::new());
+    for (k, bar) in model.bars_in(trial.step).filter(|(_, bar)| bar.retardation > 0.0) {
+        bar.resist(&trial.old.bars[k], [u, velocity], |vectors, [place, rate]| {
+            let nodes = vectors.nodes();
+            vectors.forces(&place, &mut force);
+            sums.push(nodes, &force);
+            for (node, force) in nodes.iter().zip(force.chunks_exact(2)) {
+                (0..2).for_each(|i| damping[2 * node + i] -= force[i]);
+            }
+            if sums.tangent.is_none() {
+                return;
+            }
+            vectors.tangent(&place, &mut tangent);
+            vectors.tangent(&rate, &mut by_rate);
+            let columns = tangent.chunks_exact_mut(2 * nodes.len()).zip(by_rate.chunks_exact(2 * nodes.len()));
+            for (column, (own, by_rate)) in columns.enumerate() {
+                let factor = dvelocity[2 * nodes[column / 2] + column % 2];
+                own.iter_mut().zip(by_rate).for_each(|(own, by_rate)| *own += by_rate * factor);
+            }
+            sums.couple(nodes, &tangent);
+        });
+    }
+}
+
 /// Pressure of the bodies across a bar at its bonded points, at the start of an increment: mean over the element; empty where it does not
 /// count [F/L²].
 fn pressures(model: &Model, Trial { old, .. }: Trial, bar: &Bar) -> Vec<f64> {

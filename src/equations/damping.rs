@@ -1,4 +1,4 @@
-//! Viscous forces: damping of bodies, dashpots, absorbing sides, and stabilizing dashpots of static steps.
+//! Viscous forces: damping of bodies and bars, dashpots, absorbing sides, and stabilizing dashpots of static steps.
 //!
 //! # Bodies
 //!
@@ -27,11 +27,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::bars;
 use super::coupling::Layout;
-use super::inertia::{elements, motion, velocity};
+use super::inertia::{add_bars, elements, motion, velocity};
 use super::solids::{Solids, damps_by_stiffness};
 use super::sums::{Dependence, Sums, TrialFailure};
 use super::trial::Trial;
+use crate::bars::Bar;
 use crate::linear::SparseMatrix;
 use crate::mesh::configuration::vector;
 use crate::model::boundary::Absorber;
@@ -43,7 +45,11 @@ pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
         return Dependence::Nothing;
     }
     let dampings = model.dampings(step);
-    if dampings.iter().all(|damping| damping.mass <= 0.0 && damping.retardation <= 0.0) {
+    if has_viscous_bars(model, step) {
+        return Dependence::Displacement;
+    }
+    let has_drag = model.bars_in(step).any(|(_, bar)| bar.drag > 0.0);
+    if !has_drag && dampings.iter().all(|damping| damping.mass <= 0.0 && damping.retardation <= 0.0) {
         return Dependence::Nothing;
     }
     let mut viscous = model.bodies.iter().zip(dampings).filter(|(_, damping)| damping.retardation > 0.0);
@@ -53,35 +59,47 @@ pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
     }
 }
 
-/// Nodes of the bodies whose viscous stress is not that of a constant stiffness: its tangent is not symmetric.
+/// Nodes of the bodies whose viscous stress is not that of a constant stiffness, and of viscous bars: their tangent is not symmetric.
 pub(super) fn skew(model: &Model, step: &Step) -> Vec<usize> {
     let viscous = model.bodies.iter().zip(model.dampings(step)).filter(|(_, damping)| damping.retardation > 0.0);
     let skew = viscous.filter(|(body, _)| !damps_by_stiffness(&*body.material));
-    skew.flat_map(|(body, _)| body.nodes.iter().copied()).collect()
+    let bars = model.bars_in(step).filter(|(_, bar)| bar.retardation > 0.0).flat_map(|(_, bar)| bar.nodes());
+    skew.flat_map(|(body, _)| body.nodes.iter().copied()).chain(bars).collect()
 }
 
-/// η of the bodies, and η M.
+/// Whether a bar that is there damps by its stiffness.
+fn has_viscous_bars(model: &Model, step: &Step) -> bool {
+    model.bars_in(step).any(|(_, bar)| bar.retardation > 0.0)
+}
+
+/// η of the bodies and bars, and η M.
 pub(super) type ByMass = (Vec<f64>, SparseMatrix);
 
-/// η M in a step, if bodies have mass-proportional damping; stored or recomputed.
+/// η M in a step, if bodies or bars have mass-proportional damping; stored or recomputed.
 pub(super) fn momentum<'a>(
     model: &Model,
     step: &Step,
     layout: &Layout,
     known: &'a mut Option<ByMass>,
 ) -> Option<&'a SparseMatrix> {
-    let shares: Vec<f64> = model.dampings(step).iter().map(|damping| damping.mass).collect();
+    let of_bars = |(k, bar): (usize, &Bar)| if step.bars.has(k) { bar.drag } else { 0.0 };
+    let bodies = model.dampings(step).into_iter().map(|damping| damping.mass);
+    let shares: Vec<f64> = bodies.chain(model.bars.iter().enumerate().map(of_bars)).collect();
     if shares.iter().all(|share| *share == 0.0) {
         return None;
     }
     if known.as_ref().is_some_and(|(known, _)| *known != shares) {
         *known = None;
     }
-    let found = || (shares.clone(), elements(model, layout, |body| shares[body]));
+    let found = || {
+        let mut all = elements(model, layout, |body| shares[body]);
+        add_bars(&mut all, model, layout, |bar| shares[model.bodies.len() + bar]);
+        (shares.clone(), all)
+    };
     Some(&known.get_or_insert_with(found).1)
 }
 
-/// Adds the damping of bodies, with `momentum` = η M if there is any, and subtracts it from the `damping` on the nodes. Static
+/// Adds the damping of bodies and bars, with `momentum` = η M if there is any, and subtracts it from the `damping` on the nodes. Static
 /// steps have none.
 pub(super) fn add_damping(
     model: &Model,
@@ -93,7 +111,7 @@ pub(super) fn add_damping(
     sums: &mut Sums,
 ) {
     let is_viscous = model.is_viscous(trial.step);
-    let damped = momentum.is_some() || is_viscous;
+    let damped = momentum.is_some() || is_viscous || has_viscous_bars(model, trial.step);
     let Some((velocity, dvelocity)) = motion(model, trial, u).filter(|_| damped) else { return };
     if let Some(momentum) = momentum {
         let [pulls] = momentum.multiply_symmetric([&velocity]);
@@ -115,6 +133,7 @@ pub(super) fn add_damping(
             solids.viscous_tangents([u, &velocity], &dvelocity, sums.layout, tangent);
         }
     }
+    bars::resist(model, trial, [u, &velocity, &dvelocity], damping, sums);
 }
 
 /// Dependence of the dashpot tangent C ∂v/∂u.
@@ -185,6 +204,11 @@ pub fn by_node(model: &Model, step: &Step) -> Vec<Absorber> {
                 let node = model.ties.original(node);
                 *total.entry(node).or_default() += Matrix2::from_diagonal_element(damping.mass * mass);
             }
+        }
+    }
+    for (_, bar) in model.bars_in(step).filter(|(_, bar)| bar.drag > 0.0) {
+        for (node, mass) in bar.nodal_masses(&model.massless) {
+            *total.entry(model.ties.original(node)).or_default() += Matrix2::from_diagonal_element(bar.drag * mass);
         }
     }
     for dashpot in &step.loads.dashpots {

@@ -30,17 +30,21 @@ pub(super) fn mass(model: &Model, layout: &Layout, [absent, bars_absent]: [&[boo
         let dofs = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
         dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
     }
-    let there = |k: usize| bars_absent.get(k) != Some(&true);
-    for (_, bar) in model.bars.iter().enumerate().filter(|(k, bar)| there(*k) && bar.mass > 0.0) {
-        for (node, own) in bar.nodal_masses(&model.massless) {
-            let node = layout.original(node);
-            [2 * node, 2 * node + 1].into_iter().for_each(|dof| mass.add_diagonal(dof, own));
-        }
-    }
+    add_bars(&mut mass, model, layout, |k| if bars_absent.get(k) == Some(&true) { 0.0 } else { 1.0 });
     for body in &model.mesh.rigid_bodies {
         mass.add_diagonal(2 * body.turning, body.turning_mass());
     }
     mass
+}
+
+/// Adds the masses of bars, each multiplied by a factor.
+pub(super) fn add_bars(total: &mut SparseMatrix, model: &Model, layout: &Layout, share: impl Fn(usize) -> f64) {
+    for (bar, share) in model.bars.iter().enumerate().map(|(k, bar)| (bar, share(k))) {
+        for (node, own) in bar.nodal_masses(&model.massless).filter(|_| share * bar.mass > 0.0) {
+            let node = layout.original(node);
+            [2 * node, 2 * node + 1].into_iter().for_each(|dof| total.add_diagonal(dof, share * own));
+        }
+    }
 }
 
 /// Masses of the elements, each multiplied by a factor of its body.

@@ -2,7 +2,7 @@
 
 use super::state::State;
 use super::{Model, Step};
-use crate::bars::BarState;
+use crate::bars::{Bar, BarState};
 
 /// What a step does with bars.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,8 +36,13 @@ impl Model {
     pub fn first_bars(&self) -> Vec<BarState> {
         let zero = vec![0.0; self.dofs()];
         let is_there = |bar: usize| self.steps.first().is_none_or(|step| step.bars.has(bar));
-        let of = |(k, bar): (usize, &crate::bars::Bar)| if is_there(k) { bar.born(&zero) } else { bar.absent(&zero) };
+        let of = |(k, bar): (usize, &Bar)| if is_there(k) { bar.born(&zero) } else { bar.absent(&zero) };
         self.bars.iter().enumerate().map(of).collect()
+    }
+
+    /// Bars that are there in a step, by number.
+    pub fn bars_in<'m>(&'m self, step: &'m Step) -> impl Iterator<Item = (usize, &'m Bar)> {
+        self.bars.iter().enumerate().filter(|(k, _)| step.bars.has(*k))
     }
 
     /// Lets bars come, without forces where they are, and go.

@@ -227,11 +227,12 @@ impl Model {
         self.contacts.iter().any(|pair| pair.initial.is_some()) || self.bodies.iter().any(Body::is_stressed)
     }
 
-    /// Whether dashpots, absorbing sides or viscous bodies act in a step.
+    /// Whether dashpots, absorbing sides, viscous bodies or bars act in a step.
     pub fn is_damped(&self, step: &Step) -> bool {
         let Loads { dashpots, absorbers, .. } = &step.loads;
         !(dashpots.is_empty() && absorbers.is_empty() && step.stabilization.is_empty())
             || (0..self.bodies.len()).any(|body| self.damping(step, body) != Damping::default())
+            || self.bars_in(step).any(|(_, bar)| bar.drag > 0.0 || bar.retardation > 0.0)
     }
 
     /// Consistent mass matrix of an element, the same for both directions [M].

@@ -85,6 +85,51 @@ fn a_resolved_case_is_the_same_case() {
     assert!(compared >= 20 && run >= 5, "{compared} cases were compared, {run} of them run");
 }
 
+/// A bond beside every law, also where another one holds on a part of the contact, and with its own stiffness.
+#[test]
+fn a_bond_beside_each_law_is_the_same_in_the_resolved_case() {
+    let mesh = Blocks::default().rectangle("ground", [4, 1], [0.0, -1.0], [2.0, 0.0]).rectangle(
+        "block",
+        [2, 1],
+        [0.5, 0.0],
+        [1.5, 1.0],
+    );
+    let body = json!({"material": {"model": "linear", "E": 100, "nu": 0.3}});
+    let case = |friction: &Value, along: Value, bond: Value| {
+        json!({
+            "mesh": mesh.json(),
+            "bodies": {"block": body, "ground": body},
+            "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": friction, "bond": bond, "along": along}},
+            "steps": [{"name": "drag", "duration": 1, "dt": {"initial": 0.25, "max": 0.25}, "supports": [
+                {"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0.01, "uy": -0.01}
+            ]}]
+        })
+    };
+    let path = Path::new("case.json");
+    let laws = [
+        json!({"law": "frictionless"}),
+        json!({"law": "coulomb", "mu": 0.3}),
+        json!({"law": "coulomb", "mu": 0.3, "alpha_t": 777}),
+        json!({"law": "slip_weakening", "mu_s": 0.4, "mu_d": 0.2, "D_c": 0.01}),
+        json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 500, "a": 10, "m": 0.5, "theta": 1}),
+        json!({"law": "rate_and_state", "mu": 0.3, "a": 0.01, "b": 0.02, "D_c": 0.01, "v": 1, "theta": 1}),
+    ];
+    let elsewhere = |k: usize| json!({"law": [{"where": "1 - X", "friction": laws[k]}]});
+    let [plain, soft] =
+        [json!({"strength": 0.5, "opening": 0.01}), json!({"strength": 0.5, "opening": 0.01, "alpha_t": 555})];
+    for (k, friction) in laws.iter().enumerate() {
+        for (along, bond) in [(json!({}), &plain), (json!({}), &soft), (elsewhere((k + 1) % laws.len()), &plain)] {
+            let case = case(friction, along, bond.clone());
+            let (model, resolved) = built(&case.to_string(), path);
+            let (again, resolved_again) = built(&resolved, path);
+            assert_eq!(resolved, resolved_again, "{case}: resolving twice changes it");
+            let [as_given, as_resolved] = [bits(model), bits(again)];
+            assert!(as_given.iter().any(|bits| *bits << 1 != 0), "{case} does not run");
+            assert!(as_given == as_resolved, "{case}: other bits");
+        }
+    }
+}
+
 fn fecontact(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_fecontact_tested")).args(arguments).current_dir(folder).output().unwrap()
 }

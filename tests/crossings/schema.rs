@@ -66,7 +66,10 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     ),
     (&["clearance"], "a gap that is not that of the mesh: tests/contact/validation.rs"),
     (&["without"], "groups that are a part of another: tests/solver/groups.rs"),
-    (&["sections"], "forces of sections, which nothing depends on: tests/solver/cuts.rs"),
+    (
+        &["sections"],
+        "forces of sections, which nothing depends on; moved, turned, mirrored and in other units: tests/solver/cuts.rs",
+    ),
     (
         &["aperture", "per_slip", "closing", "wells", "rate", "from", "leak", "coefficient"],
         "water along a contact that goes by the surfaces, wells and leaks: tests/contact/conduit.rs, tests/time/conduit.rs",

@@ -377,3 +377,112 @@ fn a_jack_stresses_all_segments() {
         close("at rest", run.last().bars[bar].segments[0].force, states[0].force, 1e-9);
     }
 }
+
+/// A simple beam of length L, at rest under its weight: it sags by 5 q L⁴/(384 E I), and its supports bear q L. Let go of, it swings in its first
+/// mode, nearly, with ω = π² √(E I/m)/L²; damping by mass and stiffness takes the share exp(−2 π ζ/√(1 − ζ²)) of it a cycle, 2 ζ = η/ω + τ ω.
+#[test]
+fn a_beam_sags_and_swings() {
+    let [long, ei, mass, g] = [2.0_f64, 3.0, 0.5, 0.02];
+    let omega = PI * PI * (ei / mass).sqrt() / (long * long);
+    let period = 2.0 * PI / omega;
+    let run = |damping: Value| {
+        let bar = json!({"points": [[0, 0], [long, 0]], "ea": 1e5, "ei": ei, "mass": mass, "segments": 20, "damping": damping,
+            "start": {"on": "left"}, "end": {"on": "right"}});
+        let mesh = json!({"nodes": [[0, 0], [long, 0]], "points": {"left": [0], "right": [1]}});
+        finish(&json!({"mesh": mesh, "bars": {"beam": bar}, "steps": [
+            {"name": "sag", "duration": 1, "dt": {"initial": 0.5}, "supports": [hold("left", json!(0)), {"on": "right", "uy": 0}],
+                "loads": [{"on": "beam", "gravity": {"y": -g}}]},
+            {"name": "swing", "duration": 3.2 * period, "scheme": {"newmark": {}}, "dt": {"initial": period / 100.0},
+                "loads": [{"on": "beam", "gravity": {"y": {"table": [[0, 0.0], [100, 0.0]]}}}]},
+        ]}))
+    };
+    let middle = |run: &Finished| -> usize {
+        let far = |node: &usize| (run.model.mesh.nodes[*node].x - 0.5 * long).abs();
+        let nodes = run.nodes("beam");
+        2 * *nodes.iter().min_by(|a, b| far(a).total_cmp(&far(b))).expect("a node") + 1
+    };
+    let (eta, tau) = (0.1 * omega, 0.06 / omega);
+    for (damping, zeta) in [
+        (json!({}), 0.0),
+        (json!({"mass": eta}), 0.05),
+        (json!({"stiffness": tau}), 0.03),
+        (json!({"mass": eta, "stiffness": tau}), 0.08),
+    ] {
+        let run = run(damping);
+        let dof = middle(&run);
+        let sag = run.at(1.0).displacement[dof];
+        let expected = -5.0 * mass * g * long.powi(4) / (384.0 * ei);
+        close("sag", sag, expected, 4e-3 * expected.abs());
+        let borne = ["left", "right"].map(|end| run.reaction(end, run.at(1.0))[1]);
+        close("supports", borne[0] + borne[1], mass * g * long, 1e-9);
+        let path: Vec<(f64, f64)> = run
+            .states
+            .iter()
+            .filter(|state| state.time >= 1.0)
+            .map(|state| (state.time - 1.0, state.displacement[dof]))
+            .collect();
+        let rises = |two: &&[(f64, f64)]| two[0].1 > 0.0 && two[1].1 <= 0.0;
+        let crossings: Vec<f64> = path
+            .windows(2)
+            .filter(rises)
+            .map(|two| two[0].0 + (two[1].0 - two[0].0) * two[0].1 / (two[0].1 - two[1].1))
+            .collect();
+        let damped = period / (1.0 - zeta * zeta as f64).sqrt();
+        close("period", (crossings[2] - crossings[0]) / 2.0, damped, 6e-3 * period);
+        // Turning points of odd halves of a period, at which the third mode is small.
+        let turns: Vec<f64> =
+            path.windows(3).filter(|of| of[1].1 > of[0].1 && of[1].1 >= of[2].1).map(|of| of[1].1).collect();
+        let decrement = 0.5 * (turns[0] / turns[2]).ln();
+        println!("ζ = {zeta}: decrement {decrement}");
+        close("decrement", decrement, 2.0 * PI * zeta / (1.0 - zeta * zeta).sqrt(), 0.02 * 2.0 * PI * zeta + 2e-3);
+        let energy = &run.last().energy;
+        close("energy", energy.error(), 0.0, 2e-3 * energy.supplied());
+    }
+}
+
+/// A truss that flies is slowed by its damping by mass alone, v = v₀ exp(−η t), in explicit increments as in implicit ones; damping by stiffness,
+/// which resists no rigid motion, leaves a turning one alone. Explicit increments refuse it.
+#[test]
+fn damping_by_mass_slows_a_bar_that_flies() {
+    let case = |scheme: Value, damping: Value, velocities: [[f64; 2]; 2]| {
+        let bar = json!({"points": [[0, 0], [1, 0]], "ea": 50, "mass": 0.5, "damping": damping, "start": {"on": "left"}, "end": {"on": "right"}});
+        json!({"mesh": {"nodes": [[0, 0], [1, 0]], "points": {"left": [0], "right": [1]}}, "bars": {"rod": bar},
+            "point_masses": {"left": {"mass": 1e-9, "velocity": velocities[0]}, "right": {"mass": 1e-9, "velocity": velocities[1]}},
+            "steps": [{"name": "fly", "duration": 1, "scheme": scheme, "dt": {"initial": 0.002}}]})
+    };
+    for scheme in [json!({"explicit": {}}), json!({"newmark": {}})] {
+        let run = finish(&case(scheme, json!({"mass": 0.7}), [[2.0, 1.0]; 2]));
+        close("v", run.last().velocity[0], 2.0 * (-0.7_f64).exp(), 1e-5);
+        let [energy, left] = [&run.last().energy, 0.5 * 0.5 * 5.0 * (-1.4_f64).exp()];
+        close("kinetic", energy.kinetic, left, 1e-5);
+        close("taken", energy.damping_dissipation, 0.5 * 0.5 * 5.0 - left, 1e-4);
+    }
+    let turning = finish(&case(json!({"newmark": {}}), json!({"stiffness": 0.5}), [[0.0, -0.5], [0.0, 0.5]]));
+    close("turns", turning.last().energy.kinetic, 0.5 * 0.5 * 0.25, 0.02 * 0.0625);
+    let said = refusal(&case(json!({"explicit": {}}), json!({"stiffness": 0.5}), [[0.0; 2]; 2]));
+    assert!(said.contains("bars.rod.damping.stiffness: is not for explicit increments"), "{said}");
+    let mut without = case(json!({"newmark": {}}), json!({"mass": 0.5}), [[0.0; 2]; 2]);
+    without["bars"]["rod"]["mass"] = json!(0);
+    assert!(refusal(&without).contains("bars.rod.damping.mass: has no effect on a bar without mass"));
+}
+
+/// The weight of a bar that lies in a body is borne with it, comes when the bar does, and goes over the step that removes it.
+#[test]
+fn the_weight_of_a_bar_comes_and_goes_with_it() {
+    let mesh = Blocks::default().rectangle("soil", [4, 2], [0.0, 0.0], [4.0, 2.0]);
+    let case = json!({"mesh": mesh.json(), "bodies": {"soil": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3, "density": 1}}},
+        "bars": {"bar": {"points": [[0.5, 1.2], [3.5, 1.2]], "ea": 30, "ei": 2, "mass": 0.2, "embedded": {"in": ["soil"]}}},
+        "steps": [
+            {"name": "rest", "duration": 1, "dt": {"initial": 0.5}, "supports": [hold("soil_bottom", json!(0))],
+                "loads": [{"on": "soil", "gravity": {"y": -1}}, {"on": "bar", "gravity": {"y": -1}}]},
+            {"name": "add", "duration": 1, "add": ["bar"]},
+            {"name": "remove", "duration": 1, "remove": ["bar"]}]});
+    let run = finish(&case);
+    for (time, own) in [(1.0, 0.0), (1.5, 0.5), (2.0, 1.0), (2.5, 0.5), (3.0, 0.0)] {
+        close("borne", run.reaction("soil_bottom", run.at(time))[1], 8.0 + own * 0.2 * 3.0, 1e-9);
+    }
+    let mut light = case.clone();
+    light["bars"]["bar"]["mass"] = json!(0);
+    let said = refusal(&light);
+    assert!(said.contains("gravity needs a mass: give bars.bar.mass"), "{said}");
+}

@@ -102,6 +102,57 @@ fn large_rotations_turn_the_axis() {
     assert!(last.axial_force > 0.8 * force, "{last:?}");
 }
 
+/// N, Q and M are those of the beam, wherever it lies: moved far, turned, and in other units; seen in a mirror the other side of the axis is pulled.
+#[test]
+fn sections_are_objective() {
+    let found = |angle: f64, origin: f64, mirrored: bool, [length, stress]: [f64; 2]| {
+        let side = if mirrored { -1.0 } else { 1.0 };
+        let direction = |[x, y]: [f64; 2]| {
+            let y = side * y;
+            [angle.cos() * x - angle.sin() * y, angle.sin() * x + angle.cos() * y]
+        };
+        let at = |point: [f64; 2]| direction(point).map(|x| length * (x + origin));
+        let half = 0.5 * HIGH;
+        let mut corners = [[0.0, -half], [LONG, -half], [LONG, half], [0.0, half]].map(at).to_vec();
+        let mut sides = ["bottom", "right", "top", "left"].to_vec();
+        if mirrored {
+            corners.swap(0, 3);
+            corners.swap(1, 2);
+            sides.swap(0, 2);
+        }
+        let [pull, push] = direction([5.0 / HIGH, -2.0 / HIGH]).map(|traction| stress * traction);
+        let run = finish(&json!({
+            "mesh": {"blocks": [{"body": "beam", "corners": corners, "elements": [16, 2], "kind": "Q8", "sides": sides}]},
+            "bodies": {"beam": {"material": {"model": "neo_hookean", "E": 1e6 * stress, "nu": 0.2}}},
+            "sections": {"cut": {"body": "beam", "from": at([0.0, 0.0]), "to": at([LONG, 0.0])}},
+            "newton": {"tolerance": 1e-11},
+            "steps": [{"name": "load", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "left", "ux": 0, "uy": 0}],
+                "loads": [{"on": "top", "dead_pressure": 3.0 * stress}, {"on": "right", "traction": {"x": pull, "y": push}}]}]
+        }));
+        let forces = cut(&run, run.last());
+        let canonical = |of: &SectionForces| {
+            let force = length * stress;
+            [of.axial_force / force, side * of.shear_force / force, side * of.moment / (force * length)]
+        };
+        forces.iter().map(canonical).collect::<Vec<_>>()
+    };
+    let plain = found(0.0, 0.0, false, [1.0, 1.0]);
+    assert!(plain.len() == 17 && plain[0][2].abs() > 30.0);
+    for (name, other) in [
+        ("moved", found(0.0, 1e3, false, [1.0, 1.0])),
+        ("turned", found(2.2, 0.0, false, [1.0, 1.0])),
+        ("mirrored", found(0.0, 0.0, true, [1.0, 1.0])),
+        ("in mm and MPa", found(0.4, 0.0, true, [1e3, 1e-6])),
+    ] {
+        for (k, (plain, other)) in plain.iter().zip(&other).enumerate() {
+            for (what, (plain, other)) in ["N", "Q", "M"].iter().zip(plain.iter().zip(other)) {
+                close(&format!("{name}: {what} {k}"), *other, *plain, 1e-6 * 30.0);
+            }
+        }
+        assert_eq!(plain.len(), other.len());
+    }
+}
+
 /// Sections of a body that is not there are blank; what cannot be meant is refused with its place.
 #[test]
 fn bad_sections_are_refused() {

@@ -79,6 +79,44 @@ fn a_wall_is_wished_in_place_of_ground_under_stress() {
     }
 }
 
+/// The same in ground with water, of which 10 kN/m³ are the water's: in its pores, or given. What bodies carry is total, K₀ γ′ z + u = 252 on each side,
+/// what the contact has is that, or the part that the water leaves, K₀ γ′ z = 72, also where friction knows the water by an expression.
+#[test]
+fn a_wall_is_wished_in_place_of_ground_with_water() {
+    let water = "-10*y";
+    let [kept, given] = [
+        ("pore_fluid", json!({"bulk_modulus": 2.2e6, "porosity": 0.4, "pressure": water})),
+        ("pore_pressure", json!({"pressure": water})),
+    ];
+    for (pores, fluid, side) in [
+        (&kept, Value::Null, 252.0),
+        (&kept, json!(water), 72.0),
+        (&given, Value::Null, 252.0),
+        (&given, json!("of_bodies"), 72.0),
+    ] {
+        let mut case = installed("T6", 1.8, true);
+        for body in ["soil", "plug"] {
+            case["bodies"][body]["initial_stress"]["geostatic"]["weight"] = json!(WEIGHT - 10.0);
+            case["bodies"][body][pores.0] = pores.1.clone();
+        }
+        case["bodies"]["wall"]["initial_stress"]["geostatic"]["K0"] = json!((REST * (WEIGHT - 10.0) + 10.0) / WEIGHT);
+        for contact in ["left", "right", "tip"] {
+            case["contacts"][contact]["fluid_pressure"] = fluid.clone();
+        }
+        let run = finish(&case);
+        assert!(most(run.last()) < 1e-9, "{}: {}", pores.0, most(run.last()));
+        for contact in [0, 1] {
+            close("side", force(contact, run.last())[0], side, 1e-6 * 252.0);
+        }
+    }
+    let mut case = installed("T6", 1.8, true);
+    case["bodies"]["soil"][kept.0] = kept.1.clone();
+    case["bodies"]["plug"][kept.0] = kept.1.clone();
+    case["contacts"]["left"]["fluid_pressure"] = json!("of_bodies");
+    let said = refusal(&case);
+    assert!(said.contains("contacts.left.fluid_pressure") && said.contains("an expression"), "{said}");
+}
+
 /// A heavier wall goes down by its excess alone, under which its toe and its sides bear more: 6 (25 − 18) in all.
 #[test]
 fn a_heavier_wall_adds_its_excess() {

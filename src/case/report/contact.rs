@@ -128,7 +128,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         };
         let what =
             if penalty { "a penalty that holds what sticks" } else { "of the law, whose slip is elastic at first" };
-        let alpha_t = range(pair.laws.iter().map(|law| law.description.stiffness));
+        let alpha_t = range(pair.laws.iter().map(|law| law.stiffness));
         lines.push(format!("alpha_t {alpha_t} ({chosen}): {what}"));
     }
     if pair.tied {
@@ -205,12 +205,14 @@ fn strength(pair: &ContactPair) -> Option<String> {
     } else {
         "given".into()
     };
+    let besides = pair.laws.iter().any(|law| matches!(law.cohesion, Some(Cohesion::Beside(_))));
     let softens = || bonds().all(|bond| bond.slip().is_finite());
     let further = [
         (bonds().any(|bond| bond.residual() < bond.strength()), format!(", residual {}", of(Bond::residual))),
         (softens(), format!(", softens within the slip {}", of(Bond::slip))),
         (bonds().any(|bond| bond.tension() > 0.0), format!(", tension {}", of(Bond::tension))),
         (bonds().all(|bond| bond.limit().is_finite()), format!(", shear of at most {}", of(Bond::limit))),
+        (besides, format!(", alpha_t {} of the bond", of(Bond::stiffness))),
     ];
     let further: String = further.into_iter().filter(|(is, _)| *is).map(|(_, what)| what).collect();
     let (strength, opening) = (of(Bond::strength), of(Bond::opening));

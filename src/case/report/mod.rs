@@ -17,7 +17,7 @@ use crate::mesh::shape::ElementKind;
 use crate::model::builder::{BodyInput, BulkLaw, Formulation, LoadingPlateInput, Plate, RigidBodyInput};
 use crate::model::imposed::{InitialStress, PoreFluid, PorePressure, Thermal};
 use crate::model::text::{count, number, vector};
-use crate::model::{Damping, Model, PointMass};
+use crate::model::{Model, PointMass};
 use crate::output::fields::Selection;
 use crate::output::fronts::ArrivalInput;
 
@@ -132,6 +132,13 @@ fn extent(places: &[Vector2<f64>]) -> String {
     format!("{}, {}", along("x", 0), along("y", 1))
 }
 
+fn damping([mass, retardation]: [f64; 2]) -> String {
+    match mass > 0.0 || retardation > 0.0 {
+        true => format!(", damping: mass {}, stiffness {}", number(mass), number(retardation)),
+        false => String::new(),
+    }
+}
+
 fn bodies(case: &Case) -> Vec<String> {
     let row = |(name, input): (&String, &BodyInput)| {
         let element = match input.element {
@@ -139,11 +146,7 @@ fn bodies(case: &Case) -> Vec<String> {
             Formulation::FBar => ", f_bar elements",
             Formulation::Reduced => ", reduced integration",
         };
-        let Damping { mass, retardation } = input.damping;
-        let damping = match mass > 0.0 || retardation > 0.0 {
-            true => format!(", damping: mass {}, stiffness {}", number(mass), number(retardation)),
-            false => String::new(),
-        };
+        let damping = damping([input.damping.mass, input.damping.retardation]);
         let imposed = imposed(input);
         let slopes = slopes(&input.material);
         [name.clone(), format!("{}{slopes}{element}{damping}{imposed}", parameters(&input.material, "model", &[]))]
@@ -251,7 +254,10 @@ fn bars(model: &Model) -> Vec<String> {
             format!("; bond stiffness {}{strength}, normal {}", number(grip.bond.stiffness()), number(grip.normal))
         });
         let (length, parts) = (number(bar.length()), count(bar.segments.len(), "segment"));
-        [bar.name.clone(), format!("{kind}, EA {}{limit}; length {length}, {parts}{bonds}", number(bar.ea))]
+        let mass = if bar.mass > 0.0 { format!(", mass {} per length", number(bar.mass)) } else { String::new() };
+        let damping = damping([bar.drag, bar.retardation]);
+        let ea = number(bar.ea);
+        [bar.name.clone(), format!("{kind}, EA {ea}{limit}{mass}{damping}; length {length}, {parts}{bonds}")]
     };
     aligned(&model.bars.iter().map(row).collect::<Vec<_>>())
 }

@@ -34,6 +34,9 @@ pub struct BondParameters {
     /// have; otherwise they have c_r alone once they meet
     #[serde(default)]
     pub bonded: bool,
+    /// α_c: stiffness of the bond against slip. Default: α_t of the friction where it is a penalty everywhere on the contact, otherwise the
+    /// α_t that a penalty has by default [F/L³]
+    pub alpha_t: Option<f64>,
 }
 
 impl BondParameters {
@@ -47,6 +50,7 @@ impl BondParameters {
             opening: None,
             limit: None,
             bonded: false,
+            alpha_t: None,
         }
     }
 
@@ -74,6 +78,11 @@ impl BondParameters {
     pub const fn limit(self, limit: f64) -> Self {
         Self { limit: Some(limit), ..self }
     }
+
+    /// Sets α_c [F/L³].
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
+    }
 }
 
 /// What a bond takes from its contact.
@@ -82,7 +91,7 @@ impl BondParameters {
 pub struct BondSurfaces {
     /// α_n of the contact [F/L³]
     pub alpha_n: f64,
-    /// α_c: stiffness of the bond against slip [F/L³]
+    /// α_c: stiffness of the bond against slip if none is given [F/L³]
     pub alpha_c: f64,
     /// μ that friction starts with [-]
     pub mu: f64,
@@ -189,6 +198,7 @@ impl Bond {
     pub fn new(parameters: &BondParameters, surfaces: BondSurfaces) -> Result<Self, InvalidParameter> {
         let BondParameters { tension, bonded, .. } = *parameters;
         let BondSurfaces { alpha_n, alpha_c, mu, .. } = surfaces;
+        let (alpha_c, key) = parameters.alpha_t.map_or((alpha_c, "alpha_t"), |given| (given, "bond.alpha_t"));
         let strength = parameters.strength.unwrap_or(f64::NAN);
         require_positive("bond.strength", strength)?;
         let residual = parameters.residual.unwrap_or(if parameters.slip.is_some() { 0.0 } else { strength });
@@ -204,7 +214,7 @@ impl Bond {
             strength / mu
         );
         require("bond.tension", tension, mu * tension <= strength, allowed)?;
-        require_positive("alpha_t", alpha_c)?;
+        require_positive(key, alpha_c)?;
         let least = (strength - residual) / slip;
         let allowed = format!(
             "the strength falls by {least:e} per slip, faster than alpha_t = {alpha_c:e} unloads: make it longer than {:e}, or raise alpha_t",

@@ -270,12 +270,12 @@ impl ContactLaw {
     /// Returns [`InvalidParameter`] named by its key, such as `bond.tension`, if one is out of range.
     pub fn bonded(mut self, parameters: &BondParameters, surfaces: BondSurfaces) -> Result<Self, InvalidParameter> {
         let own = self.law.cohesion();
-        let is_penalty = self.description.stiffness_is_penalty;
-        let alpha_c = if is_penalty || surfaces.alpha_c.is_nan() { self.stiffness } else { surfaces.alpha_c };
+        let is_own = parameters.strength.is_none();
+        let alpha_c = if is_own || surfaces.alpha_c.is_nan() { self.stiffness } else { surfaces.alpha_c };
         // Points without edges, whose law has no stiffness.
         let alpha_c = if alpha_c > 0.0 { alpha_c } else { 0.5 * surfaces.alpha_n };
         let surfaces = BondSurfaces { alpha_c, ..surfaces };
-        if parameters.strength.is_none() {
+        if is_own {
             self.cohesion = Some(Cohesion::Own(Bond::of_law(own, parameters, surfaces)?));
             return Ok(self);
         }

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::model::Damping;
+
 /// A bar along straight lines: a truss, or a beam where `ei` is given. In plane strain all values are per unit of thickness, otherwise
 /// they are those of the whole bar. A bar has a group of its nodes under its name, for supports, loads and `watch`, and its ends are
 /// the groups `NAME_start` and `NAME_end`
@@ -27,9 +29,12 @@ pub struct BarInput {
     pub ei: f64,
     /// N_p: force at which it yields in tension and compression, at constant force; default: none [F]
     pub limit: Option<f64>,
-    /// Mass per length; needed in dynamic steps [M/L]
+    /// Mass per length; needed in dynamic steps, and for the weight of the bar by a load `gravity` on its name [M/L]
     #[serde(default)]
     pub mass: f64,
+    /// Damping in dynamic steps, as that of bodies: of EA and EI by `stiffness`, in implicit steps, and not of its bond
+    #[serde(default)]
+    pub damping: Damping,
     /// How it begins; default: free
     pub start: Option<BarEnd>,
     /// How it ends; default: free
@@ -101,6 +106,9 @@ setters! { bar: BarInput;
 
     /// Sets the mass per length [M/L].
     mass(mass: f64) { bar.mass = mass; }
+
+    /// Sets the damping in dynamic steps.
+    damping(damping: Damping) { bar.damping = damping; }
 
     /// Joins its start to a body or bar.
     start_on(on: impl Into<String>) { bar.start.get_or_insert_default().on = Some(on.into()); }

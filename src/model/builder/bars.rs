@@ -170,6 +170,10 @@ fn check(name: &str, bar: &BarInput, mesh: &Mesh) -> Checked<()> {
     check_size(&place, "ea", bar.ea)?;
     check_not_negative(&at("ei"), bar.ei)?;
     check_not_negative(&at("mass"), bar.mass)?;
+    check_not_negative(&at("damping.mass"), bar.damping.mass)?;
+    check_not_negative(&at("damping.stiffness"), bar.damping.retardation)?;
+    let message = "has no effect on a bar without mass: give `mass`, or damp by stiffness";
+    refuse_if(bar.damping.mass > 0.0 && bar.mass == 0.0, at("damping.mass"), message)?;
     check_positive(&at("limit"), bar.limit.unwrap_or(1.0), " (leave it out for none)")?;
     let message = format!("must be 1 to {MOST}");
     refuse_if(!(1..=MOST).contains(&bar.segments.unwrap_or(1)), at("segments"), message)?;
@@ -465,6 +469,8 @@ fn bar(name: &str, input: &BarInput, laid: Laid, model: &Model) -> Checked<Bar> 
         ei: input.ei,
         limit: input.limit.unwrap_or(f64::INFINITY),
         mass: input.mass,
+        drag: input.damping.mass,
+        retardation: input.damping.retardation,
         vertices: laid.vertices,
         segments,
         turns,

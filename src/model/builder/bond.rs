@@ -9,6 +9,7 @@
 use super::contact::Contact;
 use super::error::{Checked, refuse_if};
 use super::facing::facing;
+use super::friction::DefaultAlphaT;
 use crate::contact::pair::Fades;
 use crate::laws::friction::{BondParameters, BondSurfaces, ContactLaw};
 use crate::mesh::Edge;
@@ -27,7 +28,8 @@ pub fn bond(
     place: &str,
     contact: &Contact,
     laws: &[std::sync::Arc<ContactLaw>],
-    [alpha_n, alpha_c]: [f64; 2],
+    alpha_n: f64,
+    alpha_t: Option<DefaultAlphaT>,
     model: &Model,
 ) -> Checked<Option<(BondParameters, BondSurfaces)>> {
     let own = laws.iter().map(|law| law.law.cohesion()).fold(0.0, f64::max);
@@ -37,11 +39,16 @@ pub fn bond(
     }
     let given = contact.bond.unwrap_or_default();
     let at = |key: &str| format!("{place}.bond.{key}");
-    let BondParameters { strength, residual, slip, tension, opening, limit, bonded } = given;
+    let BondParameters { strength, residual, slip, tension, opening, limit, bonded, alpha_t: stiffness } = given;
     let has_own = own > 0.0 || grows;
     let message = "is that of the friction law already (adhesion, or cohesion of slip_weakening): leave one of them out; a bond that softens \
                    or pulls goes with frictionless, coulomb or slip_weakening without cohesion";
-    let besides = [("residual", residual.is_some()), ("slip", slip.is_some()), ("bonded", bonded)];
+    let besides = [
+        ("residual", residual.is_some()),
+        ("slip", slip.is_some()),
+        ("bonded", bonded),
+        ("alpha_t", stiffness.is_some()),
+    ];
     for (key, is_given) in [("strength", strength.is_some()), ("tension", tension != 0.0)].into_iter().chain(besides) {
         refuse_if(has_own && is_given, at(key), message)?;
     }
@@ -54,6 +61,8 @@ pub fn bond(
     let message = format!("is {}: it must be positive and finite", strength.unwrap_or(own));
     let fits = |strength: f64| strength > 0.0 && strength.is_finite();
     refuse_if(strength.is_some_and(|strength| !fits(strength)), at("strength"), message)?;
+    let holds = laws.iter().all(|law| law.description.stiffness_is_penalty);
+    let alpha_c = alpha_t.filter(|_| !holds).map_or(f64::NAN, |default| default.penalty);
     let surfaces = BondSurfaces { alpha_n, alpha_c, mu: 0.0, opening: f64::NAN };
     if opening.is_some() {
         return Ok(Some((given, surfaces)));

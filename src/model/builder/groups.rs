@@ -286,8 +286,13 @@ fn along_edges(mesh: &Mesh, edges: &[Edge], f: impl Fn(Vector2<f64>) -> f64) -> 
     weights
 }
 
-/// Nodal weights of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
+/// Nodal weights of a force per mass on a bar, on a body, ∫ ρ N_a dV, and on point masses.
 pub fn mass_weights(model: &Model, name: &str, place: &str) -> Checked<Vec<NodalWeight>> {
+    if let Some(bar) = model.bars.iter().find(|bar| bar.name == name) {
+        refuse_if(bar.mass == 0.0, place, format!("gravity needs a mass: give bars.{name}.mass, which is per length"))?;
+        let share = |(node, weight, position)| NodalWeight { node, weight, position };
+        return Ok(bar.weights().map(share).collect());
+    }
     let (body, masses) = bodies_and_masses(model, name, ", on which gravity acts", place)?;
     let message = format!("gravity needs a mass: give bodies.{name}.material.density");
     refuse_if(masses.is_none() && body.is_some_and(|body| body.material.description().density == 0.0), place, message)?;

@@ -15,6 +15,7 @@ use super::load::{Change, Components, DashpotLoad, Kind, Load, SpringLoad, Value
 use super::load_step::LoadStep;
 use super::rigid::{of_moment, plate_of_moment};
 use super::supports::nothing_to_end;
+use crate::bars::Bar;
 use crate::model::Model;
 use crate::model::boundary::{
     Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, NodalWeight, PlateMoment, Span, Spring,
@@ -56,6 +57,8 @@ pub struct LoadsInForce {
     all: BTreeMap<(String, Kind), InForce>,
     /// Whether each body is absent in the present step; empty if all are there
     absent: Vec<bool>,
+    /// Whether each bar is
+    bars_absent: Vec<bool>,
 }
 
 /// A load in force, or one that was ended.
@@ -65,6 +68,8 @@ struct InForce {
     entry: Entry,
     /// Bodies of each edge or node that it acts on
     on: Vec<Vec<usize>>,
+    /// The bar whose weight it is
+    bar: Option<usize>,
 }
 
 impl InForce {
@@ -83,7 +88,7 @@ impl LoadsInForce {
     pub fn of_step(number: usize, given: &[LoadStep], model: &Model) -> Checked<Self> {
         let mut in_force = Self::default();
         for (k, (given, step)) in given.iter().zip(&model.steps).enumerate().take(number + 1) {
-            in_force.step(&given.loads, &format!("steps[{k}]"), step.span, &step.absent, model)?;
+            in_force.step(&given.loads, &format!("steps[{k}]"), step.span, [&step.absent, &step.bars.absent], model)?;
         }
         Ok(in_force)
     }
@@ -94,11 +99,11 @@ impl LoadsInForce {
         given: &[Load],
         place: &str,
         span: Span,
-        absent: &[bool],
+        [absent, bars_absent]: [&[bool]; 2],
         model: &Model,
     ) -> Checked<()> {
         self.all.values_mut().for_each(|load| load.entry.kept = true);
-        self.absent = absent.to_vec();
+        (self.absent, self.bars_absent) = (absent.to_vec(), bars_absent.to_vec());
         let mut given = given.iter().enumerate();
         given.try_for_each(|(k, load)| self.change(load, &format!("{place}.loads[{k}]"), span, model))?;
         self.check_bodies(place, model)
@@ -134,10 +139,14 @@ impl LoadsInForce {
         self.change(load, place, span, model)
     }
 
-    /// Returns all loads on bodies that are there.
+    /// Returns all loads on bodies and bars that are there.
     pub fn all(&self) -> Loads {
         let mut all = Loads::default();
-        for InForce { loads, .. } in self.all.values().filter(|load| load.missing(&self.absent).is_none()) {
+        let is_there = |load: &&InForce| {
+            let has_bar = load.bar.is_none_or(|bar| self.bars_absent.get(bar) != Some(&true));
+            has_bar && load.missing(&self.absent).is_none()
+        };
+        for InForce { loads, .. } in self.all.values().filter(is_there) {
             all.dead.extend(loads.dead.iter().cloned());
             all.pressures.extend(loads.pressures.iter().cloned());
             all.springs.extend(loads.springs.iter().cloned());
@@ -168,8 +177,10 @@ impl LoadsInForce {
         let name = if kind == Kind::Absorbing { "absorbing side".into() } else { kind.key().replace('_', " ") };
         let value = value.map(|value| value.to_string());
         let entry = Entry { is_load: true, on: key.0.clone(), kind: name, value, kept: false, fades: kind.fades() };
-        let on = bodies_at(&load.on, place, model)?;
-        self.all.insert(key, InForce { loads, entry, on });
+        let is_bar = |bar: &Bar| kind == Kind::Gravity && load.on == Place::Group(bar.name.clone());
+        let bar = model.bars.iter().position(is_bar);
+        let on = if bar.is_some() { Vec::new() } else { bodies_at(&load.on, place, model)? };
+        self.all.insert(key, InForce { loads, entry, on, bar });
         Ok(())
     }
 }

@@ -108,8 +108,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     contact::check_has_friction(contact, &place)?;
     let friction = friction::friction(&contact.friction, &contact.along, structure, &place)?;
     let mut found = friction.laws(&place, &mut points, &model.mesh, alpha_t, besides)?;
-    let alpha_c = alpha_t.map_or(f64::NAN, |default| default.penalty);
-    let bond = bond(&place, contact, &found.at_start, [alpha_n, alpha_c], model)?;
+    let bond = bond(&place, contact, &found.at_start, alpha_n, alpha_t, model)?;
     if bond.is_some() {
         found = friction.laws(&place, &mut points, &model.mesh, alpha_t, Besides { bond, ..besides })?;
     }

@@ -102,7 +102,8 @@ impl Schedule<'_> {
         let supports = self.stages.held(self.supports_in_force.all(place, self.model)?, span);
         let before = std::mem::replace(&mut self.supports, supports);
         let released = if fades { freed(&before, &self.supports) } else { Vec::new() };
-        self.loads.step(&given.loads, place, span, &self.stages.absent(), self.model)?;
+        let bars = self.stages.bars(given, scheme, place)?;
+        self.loads.step(&given.loads, place, span, [&self.stages.absent(), &bars.absent], self.model)?;
         let outlets = self.model.flow.as_ref().map_or(&[][..], |flow| &flow.outlets);
         let drains = self.drains.step(&given.drainage, place, outlets, self.model)?;
         self.damp(&given.damping, place)?;
@@ -126,7 +127,7 @@ impl Schedule<'_> {
             absent: self.stages.absent(),
             changed,
             relaxes: false,
-            bars: self.stages.bars(given, scheme, place)?,
+            bars,
             until: None,
             temperatures: prescribed_temperatures(&self.temperatures),
             stabilization,

@@ -113,6 +113,11 @@ impl<'m> Stages<'m> {
             );
             refuse_if(has_idle || bar.bodies.iter().any(|name| is_away(&name)), place, message)?;
         }
+        let viscous = model.bars.iter().find(|bar| bar.retardation > 0.0).filter(|_| scheme.is_explicit());
+        if let Some(bar) = viscous {
+            let message = "is not for explicit increments, which know the damping of bars by mass alone: leave it out, or take another scheme";
+            return Err(ModelError::new(format!("bars.{}.damping.stiffness", bar.name), message));
+        }
         let mut jacks = Vec::new();
         for (name, &force) in &given.prestress {
             let place = format!("{place}.prestress.{name}");
@@ -201,14 +206,18 @@ impl<'m> Stages<'m> {
             let message = "has a side on an edge that a body shares which is there with it: what shares nodes cannot slide. Let the \
                            contact come with the step that removes the other body";
             refuse_if(self.joins(pair) && self.is_shared(pair), place, format!("the contact `{name}` {message}"))?;
+            let message = "is not for a contact that comes in a step, beside pores whose pressure follows the motion: give it as a number or an \
+                           expression, or a `pore_pressure` of the body";
+            let fluid = format!("contacts.{name}.fluid_pressure");
+            refuse_if(is_new(pair) && pair.pores.is_some(), fluid, message)?;
             let offset = !pair.comes_stressed && pair.is_offset();
-            let at_places = pair.tied || pair.initial.is_some() || pair.pores.is_some() || offset;
+            let at_places = pair.tied || pair.initial.is_some() || offset;
             let why = format!(
                 "changes the bodies of the contact `{name}`, along which water flows: let them be there from the start to the end"
             );
             let changes = pair.bodies.iter().flatten().any(|body| changed.contains(body));
             refuse_if(changes && pair.conduit.is_some(), place, why)?;
-            let message = "comes in this step, and is tied, starts closed, overlaps or has pores at mesh positions, which are not those of \
+            let message = "comes in this step, and is tied, starts closed or overlaps at mesh positions, which are not those of \
                            then: let the bodies share nodes, or begin under the stress in force by then, \"initial\": {\"of_bodies\": true}, \
                            with a body that is absent before";
             refuse_if(is_new(pair) && at_places, place, format!("the contact `{name}` {message}"))?;

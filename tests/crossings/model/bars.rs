@@ -16,8 +16,15 @@ impl Writer<'_> {
         let per_area = |x: f64| json!(self.write(Kind::Force, x * self.frame_moment()) / self.frame.length.powi(2));
         let bending = |x: f64| json!(self.write(Kind::Force, x * self.frame_moment()) * self.frame.length.powi(2));
         let mut bar = json!({"points": [at(0.12, 0.51), at(0.88, 0.33)], "ea": force(90.0)});
-        if moves(self.draft) || is_dynamic(self.scheme) {
+        if moves(self.draft) || is_dynamic(self.scheme) || self.has("gravity") {
             bar["mass"] = json!(1e-3 * self.mass_unit() / self.frame.length);
+        }
+        if self.is("damping", "of_body") {
+            bar["damping"] = self.damping(1.0);
+            // Explicit increments know that by mass alone.
+            if is_explicit(self.draft) {
+                bar["damping"]["stiffness"] = json!(0);
+            }
         }
         let own = self.blocks();
         match self.draft.of("bar") {

@@ -98,7 +98,10 @@ impl Writer<'_> {
                     bond["residual"] = json!(self.write(Kind::Stress, 0.25));
                 }
                 "pulls" => bond["tension"] = json!(self.write(Kind::Stress, 0.5)),
-                "limited" => bond["limit"] = json!(self.write(Kind::Stress, 2.0)),
+                "limited" => {
+                    bond["limit"] = json!(self.write(Kind::Stress, 2.0));
+                    bond["alpha_t"] = json!(1e4 * frame.stress / frame.length);
+                }
                 _ => {}
             }
             if self.scheme == "quasi_dynamic" {

@@ -67,6 +67,9 @@ impl Writer<'_> {
             if self.ways.block_in_two {
                 first.push(Target { on: "half".into(), ..target(What::Gravity, "block", [0.0, -300.0]) });
             }
+            if self.has("bar") {
+                first.push(Target { on: bars::BAR.into(), ..target(What::Gravity, "block", [0.0, -300.0]) });
+            }
             if comes_or_goes(self.draft) {
                 let weight = Target { on: FLANGE.into(), ..target(What::Gravity, "block", [0.0, -300.0]) };
                 if self.is("flange", "added") { second.push(weight) } else { first.push(weight) }
