@@ -37,7 +37,7 @@ size, ratios = ((8, 6), [1.4, 1]) if what == "wall" else ((8, 4.4), [0.55, 1])
 figure, (above, below) = plt.subplots(2, 1, figsize=size, height_ratios=ratios, layout="constrained")
 unit = json.loads((folder / "summary.json").read_text())["units"]["length"]
 above.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-bodies = PolyCollection([places[ids[:4]] for ids in cells], array=np.array(strain), cmap="magma_r", edgecolors="face", linewidths=0.2)
+bodies = PolyCollection([places[ids[: 3 if len(ids) in (3, 6) else 4]] for ids in cells], array=np.array(strain), cmap="magma_r", edgecolors="face", linewidths=0.2)
 bodies.set_clim(0, 0.3 if what == "wall" else 1)
 above.add_collection(bodies)
 above.autoscale()

@@ -265,6 +265,8 @@ fn bonds_that_cannot_be_are_refused() {
     for (friction, bond, further, place, word) in [
         (adhesion(), json!({"strength": 10}), Value::Null, "bond.strength", "leave one of them out"),
         (adhesion(), json!({"tension": 1}), Value::Null, "bond.tension", "leave one of them out"),
+        (adhesion(), json!({"alpha_t": 1e4}), Value::Null, "bond.alpha_t", "leave one of them out"),
+        (coulomb.clone(), json!({"strength": 1, "alpha_t": 0}), Value::Null, "bond.alpha_t", "positive"),
         (coulomb.clone(), json!({"opening": 1}), Value::Null, "bond.strength", "is missing"),
         (coulomb.clone(), json!({"strength": 1, "tension": 3}), Value::Null, "bond.tension", "c/mu = 2"),
         (coulomb.clone(), json!({"strength": 1, "slip": 1e-9}), Value::Null, "bond.slip", "faster than alpha_t"),

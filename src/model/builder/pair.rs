@@ -37,7 +37,7 @@
 //! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, of the bodies that face each other
 //! (`facing.rs`); h is the depth of the element behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges on these. Where α_n is given, α_t = α_n/2. Surfaces that are tied
 //! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find
-//! out.
+//! out. The α_c of a bond is the α_t of its friction where that is a penalty on the whole contact, otherwise that of (1) or (2) of a penalty.
 //!
 //! # Data of the bodies
 //!
