@@ -37,16 +37,6 @@ const SHOWN: &[(&str, &str, &str)] = &[
         "coarse meshes are compared with finer ones (docs/validation/ironing.md)",
     ),
     (
-        "pile_in_clay.json",
-        "tractions alternate from point to point by",
-        "elements of half a metre beside the edge of the base, below which the clay yields",
-    ),
-    (
-        "retaining_wall.json",
-        "tractions alternate from point to point by",
-        "bands of sheared sand, as wide as an element, end at the face",
-    ),
-    (
         "validation/hertz_q8_small_strain.json",
         "whose squares a linear body neglects",
         "what small strains leave out is compared with large ones (docs/validation/cylinder_on_block.md)",
