@@ -111,10 +111,10 @@ fn a_bond_beside_each_law_is_the_same_in_the_resolved_case() {
         json!({"law": "coulomb", "mu": 0.3}),
         json!({"law": "coulomb", "mu": 0.3, "alpha_t": 777}),
         json!({"law": "slip_weakening", "mu_s": 0.4, "mu_d": 0.2, "D_c": 0.01}),
-        json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 500, "a": 10, "m": 0.5, "theta": 1}),
-        json!({"law": "rate_and_state", "mu": 0.3, "a": 0.01, "b": 0.02, "D_c": 0.01, "v": 1, "theta": 1}),
+        json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 500, "kappa": 20, "xi": 0.1}),
+        json!({"law": "rate_and_state", "f_0": 0.4, "V_0": 1e-3, "a": 0.01, "b": 0.015, "D_c": 0.01, "theta": 10}),
     ];
-    let elsewhere = |k: usize| json!({"law": [{"where": "1 - X", "friction": laws[k]}]});
+    let elsewhere = |k: usize| json!({"law": [{"where": "1 - x", "friction": laws[k]}]});
     let [plain, soft] =
         [json!({"strength": 0.5, "opening": 0.01}), json!({"strength": 0.5, "opening": 0.01, "alpha_t": 555})];
     for (k, friction) in laws.iter().enumerate() {

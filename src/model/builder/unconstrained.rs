@@ -80,8 +80,8 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
     model.mesh.rigid_bodies.iter().for_each(|body| carried[body.turning] = body.inertia > 0.0);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
     let constrained = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
-    let heavy = model.bars.iter().filter(|bar| bar.mass > 0.0).flat_map(|bar| &bar.own);
-    heavy.for_each(|&node| carried[node] = true);
+    let heavy = model.bars_in(step).filter(|(_, bar)| bar.mass > 0.0).flat_map(|(_, bar)| &bar.vertices);
+    heavy.flat_map(|vertex| &vertex.nodes).for_each(|&node| carried[node] = true);
     let massless = |node: &usize| !(carried[*node] || constrained(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
