@@ -427,7 +427,7 @@ fn a_beam_sags_and_swings() {
             .filter(rises)
             .map(|two| two[0].0 + (two[1].0 - two[0].0) * two[0].1 / (two[0].1 - two[1].1))
             .collect();
-        let damped = period / (1.0 - zeta * zeta as f64).sqrt();
+        let damped = period / f64::sqrt(1.0 - zeta * zeta);
         close("period", (crossings[2] - crossings[0]) / 2.0, damped, 6e-3 * period);
         let highest = |from: f64| -> f64 {
             let there = path.iter().filter(|(time, _)| (from..from + period).contains(time));
