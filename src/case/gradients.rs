@@ -13,6 +13,7 @@ use super::CaseError;
 use super::file::Case;
 use super::read;
 use super::resolved::{keep_openings, resolved};
+use crate::contact::conduit::Conduit;
 use crate::contact::pair::ContactPair;
 use crate::mesh::Mesh;
 use crate::mesh::names::nearest;
@@ -69,17 +70,7 @@ impl Differentiated<'_> {
         let places = &self.case.gradients;
         let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
         refuse_if(self.begins_with, "gradients", message)?;
-        let message = "are not for a case with water that flows (pore_fluid.permeability): leave them out, and compare runs with two values";
-        refuse_if(self.model.flow.is_some(), "gradients", message)?;
         self.model.steps.iter().try_for_each(check_step)?;
-        if let Some(pair) = self.model.contacts.iter().find(|pair| pair.conduit.is_some()) {
-            let message = format!(
-                "water flows along the contact `{}`, and derivatives do not follow its pressure: leave `gradients` out, and compare runs with two \
-                 values",
-                pair.name
-            );
-            return Err(ModelError::new("gradients", message));
-        }
         let defaults: Value = serde_json::from_str(&resolved(self.case, self.model)).unwrap_or_default();
         let one = |(k, place): (usize, &String)| {
             let at = format!("gradients[{k}]");
@@ -99,6 +90,7 @@ impl Differentiated<'_> {
             None => find(defaults, &words).ok_or_else(|| unknown(defaults, &words))?,
         };
         check_place(&keys)?;
+        check_well(self.document, &keys)?;
         let given = Some(at(self.document, &keys)).filter(|value| !value.is_null());
         let value = given.unwrap_or_else(|| at(defaults, &keys));
         let theta = value.as_f64().ok_or_else(|| format!("is {}: it must be a number", kind(value)))?;
@@ -153,10 +145,15 @@ fn is_alike(one: &Model, other: &Model) -> bool {
     let points =
         |model: &Model| -> Vec<usize> { model.contacts.iter().map(|pair: &ContactPair| pair.points.len()).collect() };
     let spans = |model: &Model| -> Vec<_> { model.steps.iter().map(|step| (step.span.start, step.span.end)).collect() };
+    let corners = |model: &Model| -> Vec<f64> {
+        let conduits = model.contacts.iter().filter_map(|pair| pair.conduit.as_ref());
+        conduits.flat_map(Conduit::corners).collect()
+    };
     MeshPrint::of(&one.mesh) == MeshPrint::of(&other.mesh)
         && points(one) == points(other)
         && one.memories.total() == other.memories.total()
         && spans(one) == spans(other)
+        && corners(one) == corners(other)
 }
 
 /// Checks that the increments of a step have tangents.
@@ -260,11 +257,25 @@ fn check_place(keys: &[Key]) -> Result<(), String> {
             PARTS.join(", ")
         ));
     }
-    if name(0) == "steps" && OF_INCREMENTS.contains(&name(2)) {
+    let of_steps = name(0) == "steps" && OF_INCREMENTS.contains(&name(2));
+    if of_steps || (name(3), name(4)) == ("flow", "error") {
         return Err(format!(
             "`{}` decides on the increments, and derivatives are those of a run with its increments as they were",
-            name(2)
+            if of_steps { name(2) } else { name(4) }
         ));
+    }
+    Ok(())
+}
+
+/// Checks that a value is not the place of a pressure that is held along a contact.
+fn check_well(document: &Value, keys: &[Key]) -> Result<(), String> {
+    let is_place =
+        matches!(keys, [.., Key::Name(wells), Key::Number(_), Key::Name(at), _] if wells == "wells" && at == "at");
+    if is_place && !at(document, &keys[..keys.len() - 2])["pressure"].is_null() {
+        return Err(
+            "is the place of a pressure, which is held at the nearest node: nothing changes until that is another one"
+                .into(),
+        );
     }
     Ok(())
 }

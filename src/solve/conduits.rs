@@ -17,15 +17,18 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::failure::IncrementFailure;
-use crate::contact::conduit::{Conduit, ConduitState, Course, Reached, TooFast, Wall};
+use crate::contact::conduit::{Conduit, ConduitState, Course, Reached, TooFast, Wall, WaterStep};
 use crate::contact::pair::ContactPair;
 use crate::contact::point::ContactState;
 use crate::equations::Trial;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 
-/// |p̂ − p| that is left, over the largest pressure [-]
-const TOLERANCE: f64 = 1e-8;
+/// |p̂ − p| that is left, over the largest pressure: that of equilibrium within these bounds [-]
+const TOLERANCES: [f64; 2] = [1e-12, 1e-8];
+
+/// Passes after which round-off is taken to leave ten times as much.
+const ROUNDED: usize = 10;
 
 /// Difference of two pressures that is round-off, over the largest [-]
 const ROUND_OFF: f64 = 1e-7;
@@ -42,6 +45,51 @@ const LONGER: f64 = 1.5;
 /// Water of all contacts at the end of an increment; one entry a contact, none where no water flows.
 pub type Arrived = Vec<Option<ConduitState>>;
 
+/// How the water of a contact has gone through an increment.
+#[derive(Clone, Debug, Default)]
+pub struct WaterCourse {
+    /// p_k of the last pass, under which equilibrium was found, of every node [F/L²]
+    pub pressure: Vec<f64>,
+    /// Open length [L]
+    open: f64,
+    /// Its steps
+    steps: Vec<WaterStep>,
+}
+
+fn disagree(flowing: &[Flowing]) -> IncrementFailure {
+    let contact = flowing.first().map(|flowing| flowing.pair.name.clone()).unwrap_or_default();
+    let why = format!(
+        "{MOST_PASSES} passes of equilibrium and flow do not agree on its pressure: give shorter increments (dt.min), the ground water that \
+         is there (`initial`), or a larger `storage`"
+    );
+    IncrementFailure::Water { contact, why }
+}
+
+/// Largest difference of pressures that agree after so many passes [F/L²].
+fn allowed(model: &Model, largest: f64, passes: usize) -> f64 {
+    let [least, most] = TOLERANCES;
+    let least = least * 10f64.powi((passes / ROUNDED) as i32);
+    model.newton.tolerance.max(least).min(most) * largest
+}
+
+/// Gives the points of a contact the pressures of its nodes.
+fn press(conduit: &Conduit, pressure: &[f64], walls: &[Wall], states: &mut [ContactState]) {
+    let points = conduit.points(pressure, walls);
+    states.iter_mut().zip(points).for_each(|(state, water)| state.water = Some(water));
+}
+
+/// The state at the start of an increment under pressures of the water of every contact.
+fn pressed<'a>(model: &Model, old: &State, pressures: impl Iterator<Item = Option<&'a Vec<f64>>>) -> State {
+    let mut state = old.clone();
+    let contacts = model.contacts.iter().zip(&mut state.contacts).zip(&old.conduits);
+    for (((pair, states), water), pressure) in contacts.zip(pressures) {
+        if let (Some(conduit), Some(pressure)) = (&pair.conduit, pressure) {
+            press(conduit, pressure, &water.walls, states);
+        }
+    }
+    state
+}
+
 /// Contacts in which water flows in a step.
 fn flowing<'a>(model: &'a Model, step: &Step, old: &'a State) -> Vec<Flowing<'a>> {
     let pairs = model.contacts.iter().enumerate().filter(|(_, pair)| step.joins(pair));
@@ -56,6 +104,7 @@ fn flowing<'a>(model: &'a Model, step: &Step, old: &'a State) -> Vec<Flowing<'a>
         pressure: Vec::new(),
         walls: Vec::new(),
         found: Reached::default(),
+        steps: None,
     };
     with_water.map(new).collect()
 }
@@ -77,6 +126,8 @@ struct Flowing<'a> {
     walls: Vec<Wall>,
     /// p̂(p_k)
     found: Reached,
+    /// Steps of the run beside which it flows
+    steps: Option<&'a [WaterStep]>,
 }
 
 impl Flowing<'_> {
@@ -115,6 +166,7 @@ impl Flowing<'_> {
             walls: [&self.old.walls, &self.walls],
             rates,
             gives_way: [&self.compliance, presumed],
+            steps: self.steps,
         };
         self.conduit.march(&self.old.pressure, &course).map_err(|TooFast { time, step }| {
             let why = format!("its pressure has no value from t = {time:e} on, whatever the step (last {step:e})");
@@ -184,6 +236,7 @@ pub struct Water<'a> {
     pub old: Option<State>,
     flowing: Vec<Flowing<'a>>,
     history: History,
+    /// Number of passes that did not agree
     passes: usize,
 }
 
@@ -204,9 +257,9 @@ impl<'a> Water<'a> {
     /// Gives the contacts the pressures of the pass.
     fn press(&mut self) {
         for flowing in &self.flowing {
-            let points = flowing.conduit.points(&flowing.pressure, &flowing.walls);
-            let states = self.old.iter_mut().flat_map(|old| &mut old.contacts[flowing.number]);
-            states.zip(points).for_each(|(state, water)| state.water = Some(water));
+            if let Some(old) = &mut self.old {
+                press(flowing.conduit, &flowing.pressure, &flowing.walls, &mut old.contacts[flowing.number]);
+            }
         }
     }
 
@@ -214,7 +267,12 @@ impl<'a> Water<'a> {
     ///
     /// # Errors
     /// Returns [`IncrementFailure`] if it cannot be evaluated, or differs after many passes.
-    pub fn flow(&mut self, trial: Trial, contacts: &[Vec<ContactState>]) -> Result<bool, IncrementFailure> {
+    pub fn flow(
+        &mut self,
+        model: &Model,
+        trial: Trial,
+        contacts: &[Vec<ContactState>],
+    ) -> Result<bool, IncrementFailure> {
         let (mut apart, mut largest, mut renewed) = (0.0f64, 0.0f64, false);
         for flowing in &mut self.flowing {
             flowing.walls = flowing.conduit.walls(&contacts[flowing.number]);
@@ -230,15 +288,12 @@ impl<'a> Water<'a> {
                 largest = largest.max(found.abs()).max(p.abs());
             }
         }
-        if apart <= TOLERANCE * largest {
+        if apart <= allowed(model, largest, self.passes) {
             return Ok(false);
         }
         self.passes += 1;
-        if let (MOST_PASSES, Some(flowing)) = (self.passes, self.flowing.first()) {
-            return Err(flowing.failure(format!(
-                "{MOST_PASSES} passes of equilibrium and flow do not agree on its pressure: give shorter increments (dt.min), the ground \
-                 water that is there (`initial`), or a larger `storage`"
-            )));
+        if self.passes == MOST_PASSES {
+            return Err(disagree(&self.flowing));
         }
         if renewed {
             self.history = History::default();
@@ -259,11 +314,115 @@ impl<'a> Water<'a> {
     /// # Errors
     /// Returns [`IncrementFailure`] if its pressures are impossible.
     pub fn arrive(&self, model: &Model, trial: Trial) -> Result<Arrived, IncrementFailure> {
-        let mut arrived: Arrived = vec![None; model.contacts.len()];
-        for flowing in &self.flowing {
-            arrived[flowing.number] = Some(flowing.arrive(trial)?);
+        arrive(&self.flowing, model, trial)
+    }
+
+    /// How the water has gone through the increment.
+    pub fn courses(&self, model: &Model) -> Vec<Option<WaterCourse>> {
+        let mut courses = vec![None; model.contacts.len()];
+        for Flowing { number, pressure, open, found, .. } in &self.flowing {
+            let (pressure, steps) = (pressure.clone(), found.steps.clone());
+            courses[*number] = Some(WaterCourse { pressure, open: *open, steps });
         }
-        Ok(arrived)
+        courses
+    }
+}
+
+/// The water at the end of the increment.
+fn arrive(flowing: &[Flowing], model: &Model, trial: Trial) -> Result<Arrived, IncrementFailure> {
+    let mut arrived: Arrived = vec![None; model.contacts.len()];
+    for flowing in flowing {
+        arrived[flowing.number] = Some(flowing.arrive(trial)?);
+    }
+    Ok(arrived)
+}
+
+/// Water of a run in an increment, beside which that of its neighbours flows.
+#[derive(Clone, Copy)]
+pub struct Beside<'a> {
+    /// How it has gone through the increment
+    pub courses: &'a [Option<WaterCourse>],
+    /// The states at its start and at its end
+    pub states: [&'a State; 2],
+}
+
+impl Beside<'_> {
+    /// The state at the start under the pressures of the last pass.
+    pub fn pressed(&self, model: &Model) -> State {
+        pressed(model, self.states[0], self.courses.iter().map(|course| course.as_ref().map(|course| &course.pressure)))
+    }
+}
+
+/// Water of a neighbour of a run in an increment: it flows in the steps of the run's, and what that has left of (1) is left here.
+#[derive(Default)]
+pub struct WaterBeside {
+    /// p_k of every contact
+    pressure: Vec<Option<Vec<f64>>>,
+    history: History,
+    passes: usize,
+}
+
+impl WaterBeside {
+    /// Begins as far from the pressures of the run as at the start of the increment.
+    pub fn new(run: &Beside, old: &State) -> Self {
+        let ahead = |((course, run), own): ((&Option<WaterCourse>, &ConduitState), &ConduitState)| {
+            let before = own.pressure.iter().zip(&run.pressure);
+            let ahead = |course: &WaterCourse| {
+                course.pressure.iter().zip(before).map(|(p, (own, run))| p + (own - run)).collect()
+            };
+            course.as_ref().map(ahead)
+        };
+        let each = run.courses.iter().zip(&run.states[0].conduits).zip(&old.conduits);
+        Self { pressure: each.map(ahead).collect(), ..Self::default() }
+    }
+
+    /// The state at the start of the increment under the pressures of the pass.
+    pub fn pressed(&self, model: &Model, old: &State) -> State {
+        pressed(model, old, self.pressure.iter().map(Option::as_ref))
+    }
+
+    /// The water at the end of the increment if it agrees with the equilibrium that was found; otherwise the next pressures are set.
+    ///
+    /// # Errors
+    /// Returns [`IncrementFailure`] if it does not come to agree.
+    pub fn flow(
+        &mut self,
+        model: &Model,
+        trial: Trial,
+        run: &Beside,
+        contacts: &[Vec<ContactState>],
+    ) -> Result<Option<Arrived>, IncrementFailure> {
+        let mut all = flowing(model, trial.step, trial.old);
+        let (mut now, mut next) = (Vec::new(), Vec::new());
+        let (mut apart, mut largest) = (0.0f64, 0.0f64);
+        for flowing in &mut all {
+            let (Some(course), Some(pressure)) = (&run.courses[flowing.number], &self.pressure[flowing.number]) else {
+                continue;
+            };
+            flowing.pressure.clone_from(pressure);
+            (flowing.open, flowing.steps) = (course.open, Some(&course.steps[..]));
+            flowing.walls = flowing.conduit.walls(&contacts[flowing.number]);
+            flowing.give_way();
+            flowing.found = flowing.march(trial, None)?;
+            let left = run.states[1].conduits[flowing.number].pressure.iter().zip(&course.pressure);
+            for ((p, found), (reached, before)) in pressure.iter().zip(&flowing.found.pressure).zip(left) {
+                let wanted = found - (reached - before);
+                apart = apart.max((wanted - p).abs());
+                largest = largest.max(p.abs());
+                now.push(*p);
+                next.push(wanted);
+            }
+        }
+        if apart <= allowed(model, largest, self.passes) {
+            return arrive(&all, model, trial).map(Some);
+        }
+        self.passes += 1;
+        if self.passes > MOST_PASSES {
+            return Err(disagree(&all));
+        }
+        let next = self.history.next(&now, &next);
+        self.pressure.iter_mut().flatten().flatten().zip(next).for_each(|(p, next)| *p = next);
+        Ok(None)
     }
 }
 
@@ -307,8 +466,7 @@ impl History {
 pub fn receive(model: &Model, arrived: Arrived, state: &mut State) {
     for (number, new) in arrived.into_iter().enumerate() {
         let (Some(new), Some(conduit)) = (new, &model.contacts[number].conduit) else { continue };
-        let points = conduit.points(&new.pressure, &new.walls);
-        state.contacts[number].iter_mut().zip(points).for_each(|(state, water)| state.water = Some(water));
+        press(conduit, &new.pressure, &new.walls, &mut state.contacts[number]);
         state.conduits[number] = new;
     }
 }

@@ -21,6 +21,7 @@ use crate::linear::LinearSolver;
 use crate::linear::system::System;
 use crate::model::Model;
 use condensed_newton::CondensedNewton;
+use conduits::WaterCourse;
 use contact_iteration::{Acted, ContactIteration};
 use newton::Iteration;
 
@@ -49,6 +50,8 @@ pub struct Pass {
     pub stiffening: f64,
     /// Coupling of the nodes at it, on which the order of elimination depends
     pub coupling: Arc<Coupling>,
+    /// Water of each contact under which it was found; empty where none flows
+    pub water: Vec<Option<WaterCourse>>,
 }
 
 impl Workspace {

@@ -98,6 +98,11 @@ impl Tangent {
         Ok(())
     }
 
+    /// The model of the run.
+    pub fn model(&self) -> &Model {
+        self.assembler.model()
+    }
+
     /// Couples the nodes of a neighbour as those of the run.
     pub fn couple(&self, work: &mut Workspace) {
         work.assembler.couple_as(&self.assembler);

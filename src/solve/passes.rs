@@ -110,7 +110,7 @@ impl<'a> Passes<'a> {
         let Self { model, trial, multipliers, water, .. } = self;
         self.found += 1;
         let (displacement, coupling) = (found.displacement.clone(), work.assembler.coupling());
-        self.solutions.push(Pass { displacement, stiffening: multipliers.stiffening, coupling });
+        self.solutions.push(Pass { displacement, stiffening: multipliers.stiffening, coupling, water: Vec::new() });
         let old = water.old.as_ref().unwrap_or(trial.old);
         if multipliers.change(model, old, &found.evaluation.contacts)? {
             self.start = Some(found.displacement);
@@ -121,12 +121,14 @@ impl<'a> Passes<'a> {
         if let Some(last) = self.iterations.last_mut() {
             last.newton.least_negative = counted;
         }
-        if self.water.flow(self.trial, &found.evaluation.contacts)? {
+        if self.water.flow(self.model, self.trial, &found.evaluation.contacts)? {
             self.multipliers = Multipliers::default();
             self.solutions.clear();
             self.start = Some(found.displacement);
             return Ok(None);
         }
+        let courses = self.water.courses(self.model);
+        self.solutions.iter_mut().for_each(|pass| pass.water.clone_from(&courses));
         found.water = self.water.arrive(self.model, self.trial)?;
         Ok(Some(found))
     }

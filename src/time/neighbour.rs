@@ -8,6 +8,9 @@
 //! same penalties: the derivative is that of the discrete run. Everything else is its own, by the ordinary equations and
 //! laws: the states of bodies and contact points, starts of steps, accelerations, energies. It is solved with the tangent of the run
 //! ([`crate::solve::neighbour`]), from the solution of the run and its distance from that so far, continued at its pace.
+//!
+//! Water that flows along contacts does so in the steps of the run's, by the numbers of the neighbour; equilibrium and flow take turns until they
+//! agree as they do in the run ([`crate::solve::conduits`]).
 
 use std::sync::Arc;
 
@@ -19,6 +22,7 @@ use crate::equations::Trial;
 use crate::linear::Multifrontal;
 use crate::model::state::State;
 use crate::model::{Model, Step};
+use crate::solve::conduits::{Arrived, Beside, WaterBeside};
 use crate::solve::equilibrium::Found;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::neighbour::{Seeker, Tangent, beside};
@@ -51,13 +55,19 @@ impl Lead<'_> {
     fn whole<'a>(&self, old: &'a State, step: &'a Step) -> Trial<'a> {
         Trial::new(old, step, self.new.time, self.new.time - old.time)
     }
+
+    /// Its water along contacts.
+    fn water(&self) -> Beside<'_> {
+        let courses = self.passes.last().map_or(&[][..], |pass| &pass.water);
+        Beside { courses, states: [self.old, self.new] }
+    }
 }
 
 /// A model that follows a run.
 pub struct Neighbour {
     /// its model
     pub model: Arc<Model>,
-    /// Whether its parameter acts on no body
+    /// Whether its parameter acts on no body, and no water in their pores
     spares_bodies: bool,
     /// k of its parameter θ + k ε
     apart: f64,
@@ -74,11 +84,19 @@ pub struct Neighbour {
 
 /// A neighbour within an increment.
 struct OnItsWay {
-    /// The state at the start of the increment with the multipliers of the pass, from the second pass on
+    /// The state at the start of the increment with the water and multipliers of the pass
     old: Option<State>,
     /// u at the last pass, or as expected, and that of the run [L]
     u: Vec<f64>,
     beside: Vec<f64>,
+    water: WaterBeside,
+    /// Water along contacts at the end of the increment, once it agrees with the equilibrium
+    arrived: Option<Arrived>,
+}
+
+/// Whether neighbours have not arrived yet.
+fn are_under_way(ways: &Result<Vec<OnItsWay>, IncrementFailure>) -> bool {
+    ways.as_ref().is_ok_and(|ways| ways.iter().any(|way| way.arrived.is_none()))
 }
 
 impl Neighbour {
@@ -86,6 +104,7 @@ impl Neighbour {
     pub fn new(model: Arc<Model>, apart: f64, spares_bodies: bool) -> Self {
         let state = model.initial_state();
         let work = Workspace::new(&model, Box::<Multifrontal>::default());
+        let spares_bodies = spares_bodies && model.flow.is_none();
         Self { old: state.clone(), state, begun: None, step: None, work, model, spares_bodies, apart }
     }
 
@@ -110,7 +129,9 @@ impl Neighbour {
         if let (true, Some(step)) = (new, step) {
             *state = begin(model, step, state, work)?;
         }
-        let mut way = OnItsWay { u: state.displacement.clone(), beside: lead.old.displacement.clone(), old: None };
+        let (u, beside) = (state.displacement.clone(), lead.old.displacement.clone());
+        let water = WaterBeside::new(&lead.water(), state);
+        let mut way = OnItsWay { u, beside, old: None, water, arrived: None };
         if let (Some(own), Some(run)) = (&state.last_increment, &lead.old.last_increment) {
             let share = (lead.new.time - lead.old.time) / own.dt;
             let ahead = |u: &mut [f64], way: &[f64]| u.iter_mut().zip(way).for_each(|(u, way)| *u += share * way);
@@ -123,13 +144,13 @@ impl Neighbour {
     /// Prepares a pass, beside the run whose tangent is given.
     fn seeker<'a>(&'a mut self, lead: &Lead, pass: &Pass, tangent: &Tangent, way: &'a OnItsWay) -> Option<Seeker<'a>> {
         let has_same_bodies = self.has_same_bodies(lead);
-        let Self { model, state, apart, step, work, .. } = self;
+        let Self { model, apart, step, work, .. } = self;
         tangent.couple(work);
         let u = pass.displacement.iter().zip(&way.u).zip(&way.beside).map(|((run, own), beside)| run + (own - beside));
         let u = u.collect();
         Some(Seeker {
             model,
-            trial: lead.trial(way.old.as_ref().unwrap_or(state), step.as_ref()?, pass),
+            trial: lead.trial(way.old.as_ref()?, step.as_ref()?, pass),
             work,
             u,
             has_same_bodies,
@@ -137,12 +158,20 @@ impl Neighbour {
         })
     }
 
+    /// Lets water flow along contacts under the equilibrium of the last pass.
+    fn flow(&self, lead: &Lead, way: &mut OnItsWay) -> Result<(), IncrementFailure> {
+        let step = self.step.as_ref().unwrap_or(lead.step);
+        let trial = lead.whole(&self.state, step).ahead();
+        way.arrived = way.water.flow(&self.model, trial, &lead.water(), self.work.contacts())?;
+        Ok(())
+    }
+
     /// Accepts the solution of the last pass.
     fn accept(&mut self, lead: &Lead, way: OnItsWay) -> Result<(), IncrementFailure> {
         let Self { model, state, step, work, .. } = self;
         let Some(step) = step else { return Ok(()) };
         let evaluation = std::mem::take(&mut work.assembler.evaluation);
-        let found = Found { displacement: way.u, evaluation, water: Vec::new() };
+        let found = Found { displacement: way.u, evaluation, water: way.arrived.unwrap_or_default() };
         let new = arrive(model, lead.whole(state, step), found, work)?;
         self.old = std::mem::replace(&mut self.state, new);
         Ok(())
@@ -156,21 +185,19 @@ pub type Group<'a> = Vec<&'a mut Neighbour>;
 pub fn follow(lead: &Lead, tangent: &mut Tangent, mut groups: Vec<Group>) -> Vec<Result<(), IncrementFailure>> {
     let set_out = |group: &mut Group| group.iter_mut().map(|neighbour| neighbour.set_out(lead)).collect();
     let mut all: Vec<Result<Vec<OnItsWay>, _>> = groups.par_iter_mut().with_max_len(1).map(set_out).collect();
-    let mut old = lead.old.clone();
-    let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies(lead));
-    for (k, pass) in lead.passes.iter().enumerate() {
-        if k > 0 {
-            tangent.multiply(&mut old);
-            let each =
-                groups.iter().zip(&mut all).flat_map(|(group, ways)| group.iter().zip(ways.iter_mut().flatten()));
-            each.for_each(|(of, way)| {
-                multiply(&of.model, of.work.contacts(), way.old.get_or_insert_with(|| of.state.clone()));
-            });
-        }
-        if let Err(failure) = tangent.of(lead.trial(&old, lead.step, pass), pass, linearize) {
+    let mut is_known = false;
+    while all.iter().any(are_under_way) {
+        if let Err(failure) = find(lead, tangent, is_known, &mut groups, &mut all) {
             return groups.iter().map(|_| Err(failure.clone())).collect();
         }
-        solve(lead, pass, tangent, &mut groups, &mut all);
+        is_known = lead.passes.len() == 1;
+        let under_way = groups.par_iter_mut().zip(&mut all).with_max_len(1).filter(|(_, ways)| are_under_way(ways));
+        under_way.for_each(|(group, all)| {
+            let Ok(ways) = all else { return };
+            if let Err(failure) = group.iter().zip(ways).try_for_each(|(neighbour, way)| neighbour.flow(lead, way)) {
+                *all = Err(failure);
+            }
+        });
     }
     let arrive = |(group, ways): (&mut Group, Result<Vec<OnItsWay>, _>)| {
         group.iter_mut().zip(ways?).try_for_each(|(neighbour, way)| neighbour.accept(lead, way))
@@ -178,7 +205,37 @@ pub fn follow(lead: &Lead, tangent: &mut Tangent, mut groups: Vec<Group>) -> Vec
     groups.par_iter_mut().zip(all).with_max_len(1).map(arrive).collect()
 }
 
-/// Solves a pass of all groups that have come so far.
+/// Finds equilibrium of the groups under way, in the passes of the run; its tangent may be known.
+fn find(
+    lead: &Lead,
+    tangent: &mut Tangent,
+    is_known: bool,
+    groups: &mut [Group],
+    all: &mut [Result<Vec<OnItsWay>, IncrementFailure>],
+) -> Result<(), IncrementFailure> {
+    let mut old = lead.water().pressed(tangent.model());
+    let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies(lead));
+    for (k, pass) in lead.passes.iter().enumerate() {
+        if k > 0 {
+            tangent.multiply(&mut old);
+        }
+        for (group, ways) in groups.iter().zip(&mut *all).filter(|(_, ways)| are_under_way(ways)) {
+            for (of, way) in group.iter().zip(ways.iter_mut().flatten()) {
+                match &mut way.old {
+                    Some(old) if k > 0 => multiply(&of.model, of.work.contacts(), old),
+                    old => *old = Some(way.water.pressed(&of.model, &of.state)),
+                }
+            }
+        }
+        if !is_known {
+            tangent.of(lead.trial(&old, lead.step, pass), pass, linearize)?;
+        }
+        solve(lead, pass, tangent, groups, all);
+    }
+    Ok(())
+}
+
+/// Solves a pass of all groups under way.
 fn solve(
     lead: &Lead,
     pass: &Pass,
@@ -187,14 +244,14 @@ fn solve(
     all: &mut [Result<Vec<OnItsWay>, IncrementFailure>],
 ) {
     let mut seekers = Vec::new();
-    for (group, ways) in groups.iter_mut().zip(&*all) {
+    for (group, ways) in groups.iter_mut().zip(&*all).filter(|(_, ways)| are_under_way(ways)) {
         if let Ok(ways) = ways {
             let each = group.iter_mut().zip(ways);
             seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, tangent, way)).collect());
         }
     }
     let found = beside(seekers, tangent);
-    for (ways, found) in all.iter_mut().filter(|ways| ways.is_ok()).zip(found) {
+    for (ways, found) in all.iter_mut().filter(|ways| are_under_way(ways)).zip(found) {
         match (ways.as_mut(), found) {
             (Ok(ways), Ok(found)) => {
                 for (way, u) in ways.iter_mut().zip(found) {

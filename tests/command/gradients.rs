@@ -10,7 +10,7 @@ use fecontact::output::results::{Grid, frames};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-fn start(folder: &Path, case: &Value, more: &[&str]) -> Output {
+pub fn start(folder: &Path, case: &Value, more: &[&str]) -> Output {
     fs::write(folder.join("case.json"), case.to_string()).expect("a file");
     let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact_tested"));
     command.current_dir(folder).args(["run", "case.json", "--quiet", "--out", "out"]).args(more);
@@ -19,7 +19,7 @@ fn start(folder: &Path, case: &Value, more: &[&str]) -> Output {
 
 /// A folder with the results of a case.
 #[track_caller]
-fn run(case: &Value, more: &[&str]) -> TempDir {
+pub fn run(case: &Value, more: &[&str]) -> TempDir {
     let folder = TempDir::new().expect("a folder");
     let output = start(folder.path(), case, more);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
@@ -28,7 +28,7 @@ fn run(case: &Value, more: &[&str]) -> TempDir {
 
 /// What a case is refused with.
 #[track_caller]
-fn refused(case: &Value) -> String {
+pub fn refused(case: &Value) -> String {
     let folder = TempDir::new().expect("a folder");
     let output = start(folder.path(), case, &[]);
     assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
@@ -36,11 +36,12 @@ fn refused(case: &Value) -> String {
     String::from_utf8_lossy(&output.stderr).into()
 }
 
-fn table(folder: &TempDir, file: &str) -> Columns {
+/// Columns of a table by name, those of numbers.
+pub fn table(folder: &TempDir, file: &str) -> Columns {
     common::table(folder.path().join("out").join(file))
 }
 
-fn summary(folder: &TempDir) -> Value {
+pub fn summary(folder: &TempDir) -> Value {
     serde_json::from_str(&fs::read_to_string(folder.path().join("out/summary.json")).expect("a file")).expect("JSON")
 }
 
@@ -64,7 +65,7 @@ fn kind(column: &str) -> &str {
 /// Largest differences, first those of forces and displacements, then all others, between the derivatives of a run and central differences of complete runs with the same increments, all
 /// with a tolerance of 1e-12 unless the case has another, in each column relative to its largest derivative; with the column.
 #[track_caller]
-fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
+pub fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
     const STEP: f64 = 1e-4;
     let exact = json!({"tolerance": 1e-12, "max_iterations": 40});
     let mut case = case.clone();
@@ -92,9 +93,12 @@ fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
         });
         assert_eq!(low["time"], history["time"], "the same increments");
         assert_eq!(high["time"], history["time"], "the same increments");
-        // Scatter has kinks where the residuals of neighbours change their order.
-        let is_smooth =
-            |name: &str| !["time", "dt", "step", "iterations"].contains(&name) && !name.ends_with(".scatter");
+        // Scatter has kinks where the residuals of neighbours change their order; what water has lost is round-off.
+        let is_smooth = |name: &str| {
+            !["time", "dt", "step", "iterations"].contains(&name)
+                && !name.ends_with(".scatter")
+                && !name.ends_with(".mass_error")
+        };
         for (name, low) in low.iter().filter(|(name, _)| is_smooth(name)) {
             let differences: Vec<f64> =
                 low.iter().zip(&high[name]).map(|(low, high)| (high - low) / (ends[1] - ends[0])).collect();

@@ -10,6 +10,7 @@ mod committed;
 mod converge;
 mod convergence;
 mod gradients;
+mod gradients_of_water;
 mod init;
 mod input;
 mod law;

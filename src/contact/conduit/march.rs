@@ -26,6 +26,17 @@ pub struct Course<'a> {
     pub rates: Option<&'a [Wall]>,
     /// c_w and p̂₁ of every node; none give way if empty [L³/F], [F/L²]
     pub gives_way: [&'a [f64]; 2],
+    /// Steps that are made, as another run has made them; if not given, as many as the error asks for
+    pub steps: Option<&'a [WaterStep]>,
+}
+
+/// A step of the water within an increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaterStep {
+    /// Its end [T]
+    pub end: f64,
+    /// Whether p_½½ stands in place of (5)
+    pub undershoots: bool,
 }
 
 impl Course<'_> {
@@ -59,8 +70,17 @@ pub struct Reached {
     pub pressure: Vec<f64>,
     /// Volumes in the increment
     pub amounts: Amounts,
-    /// Number of steps
-    pub steps: usize,
+    /// Steps
+    pub steps: Vec<WaterStep>,
+}
+
+impl Reached {
+    /// Takes a step.
+    fn take(&mut self, end: f64, Found { pressure, amounts, undershoots, .. }: Found) {
+        self.pressure = pressure;
+        self.amounts = self.amounts.combined(1.0, amounts, 1.0);
+        self.steps.push(WaterStep { end, undershoots });
+    }
 }
 
 /// A pressure that no step was short enough for.
@@ -102,22 +122,33 @@ impl Conduit {
         let mut reached = Reached { pressure: start.to_vec(), ..Reached::default() };
         let mut room = Steps::default();
         let (mut time, mut next) = (from, to - from);
+        if let Some(steps) = course.steps {
+            for &WaterStep { end, undershoots } in steps {
+                let found = self.two_ways(&reached.pressure, start, [time, end], course, Some(undershoots), &mut room);
+                let step = end - time;
+                if !found.error.is_finite() {
+                    return Err(TooFast { time, step });
+                }
+                reached.take(end, found);
+                time = end;
+            }
+            return Ok(reached);
+        }
         for stop in stops {
             while time < stop {
                 let end = if time + next > stop - SHORTEST * (to - from) { stop } else { time + next };
-                let found = self.two_ways(&reached.pressure, start, [time, end], course, &mut room);
-                let share = (SAFETY / found.error.sqrt()).clamp(SHARES[0], SHARES[1]);
+                let found = self.two_ways(&reached.pressure, start, [time, end], course, None, &mut room);
+                let error = found.error;
+                let share = (SAFETY / error.sqrt()).clamp(SHARES[0], SHARES[1]);
                 let is_short = end - time <= SHORTEST * (to - from);
-                if found.error <= 1.0 || is_short && found.error.is_finite() {
-                    reached.pressure = found.pressure;
-                    reached.amounts = reached.amounts.combined(1.0, found.amounts, 1.0);
-                    reached.steps += 1;
+                if error <= 1.0 || is_short && error.is_finite() {
+                    reached.take(end, found);
                     next = (share * (end - time)).max(if end == stop { next } else { 0.0 });
                     time = end;
                 } else {
                     next = if share.is_finite() { share } else { SHARES[0] } * (end - time);
                 }
-                if reached.steps > MOST_STEPS || !found.error.is_finite() && is_short {
+                if reached.steps.len() > MOST_STEPS || !error.is_finite() && is_short {
                     return Err(TooFast { time, step: next });
                 }
             }
@@ -125,8 +156,16 @@ impl Conduit {
         Ok(reached)
     }
 
-    /// (5), with e over what is allowed.
-    fn two_ways(&self, from: &[f64], start: &[f64], span: [f64; 2], course: &Course, room: &mut Steps) -> Found {
+    /// (5), with e over what is allowed; whether it undershoots may be given.
+    fn two_ways(
+        &self,
+        from: &[f64],
+        start: &[f64],
+        span: [f64; 2],
+        course: &Course,
+        undershoots: Option<bool>,
+        room: &mut Steps,
+    ) -> Found {
         let middle = 0.5 * (span[0] + span[1]);
         let (one, whole) = self.step(from, start, span, course, room);
         let (half, first) = self.step(from, start, [span[0], middle], course, room);
@@ -142,11 +181,13 @@ impl Conduit {
         }
         let allowed = TOLERANCE * scale + ROUND_OFF * largest;
         let error = if error == 0.0 { 0.0 } else { error / allowed };
-        if under < least - 0.01 * allowed {
-            return Found { pressure: two, amounts: halves, error };
+        let undershoots = undershoots.unwrap_or(under < least - 0.01 * allowed);
+        if undershoots {
+            return Found { pressure: two, amounts: halves, error, undershoots };
         }
         let pressure = two.iter().zip(&one).map(|(two, one)| 2.0 * two - one).collect();
-        Found { pressure, amounts: halves.combined(2.0, whole, -1.0).with_throughput(halves.throughput), error }
+        let amounts = halves.combined(2.0, whole, -1.0).with_throughput(halves.throughput);
+        Found { pressure, amounts, error, undershoots }
     }
 
     /// (4) for the change of the pressure, and the volumes in a step. What joins two nodes counts by the difference of their pressures, and a
@@ -255,6 +296,7 @@ struct Found {
     pressure: Vec<f64>,
     amounts: Amounts,
     error: f64,
+    undershoots: bool,
 }
 
 /// Memory of the steps.

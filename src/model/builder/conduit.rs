@@ -117,6 +117,9 @@ fn line(place: &str, contact: &Contact, model: &Model) -> Checked<Line> {
 /// Farthest that a well may be from the slave, over the length of an edge [-]
 const BESIDE: f64 = 1e-3;
 
+/// Share of a rate that is round-off of its place [-]
+const ROUND_OFF: f64 = 1e-12;
+
 /// A well at its nodes.
 fn well(place: &str, given: &FlowWell, line: &Line, model: &Model) -> Checked<Well> {
     let at = Vector2::from(given.at);
@@ -155,11 +158,8 @@ fn well(place: &str, given: &FlowWell, line: &Line, model: &Model) -> Checked<We
         (None, Some(rate)) => {
             rate.check(&format!("{place}.rate"))?;
             let (a, b, share) = here;
-            let shared = [(a, 1.0 - share), (b, share)].into_iter().filter(|(_, share)| *share > BESIDE);
-            let shared: Vec<(usize, f64)> = shared.collect();
-            let sum: f64 = shared.iter().map(|(_, share)| share).sum();
-            let shared = shared.into_iter().map(|(node, share)| (node, share / sum)).collect();
-            (shared, Gives::Rate(rate.in_time()), rate)
+            let shared = [(a, 1.0 - share), (b, share)].into_iter().filter(|(_, share)| *share > ROUND_OFF);
+            (shared.collect(), Gives::Rate(rate.in_time()), rate)
         }
         _ => return Err(ModelError::new(place, "needs either a `pressure` or a `rate`")),
     };

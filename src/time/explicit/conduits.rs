@@ -72,8 +72,13 @@ impl Explicit {
         let one = |(k, pair): (usize, &crate::contact::pair::ContactPair)| {
             let Some(conduit) = pair.conduit.as_ref().filter(|_| self.step.joins(pair)) else { return Ok(None) };
             let (old, walls) = (&state.conduits[k], walls(k, conduit));
-            let course =
-                Course { span: [state.time, time], walls: [&old.walls, &walls], rates: None, gives_way: [&[], &[]] };
+            let course = Course {
+                span: [state.time, time],
+                walls: [&old.walls, &walls],
+                rates: None,
+                gives_way: [&[], &[]],
+                steps: None,
+            };
             let failed = |why: String| IncrementFailure::Water { contact: pair.name.clone(), why };
             let reached = conduit.march(&old.pressure, &course);
             let reached =

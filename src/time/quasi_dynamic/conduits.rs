@@ -90,7 +90,7 @@ impl<'a> Conduits<'a> {
                 };
                 let [from, to] = share.map(between);
                 let span = share.map(|share| time + share * h);
-                let course = Course { span, walls: [&from, &to], rates: None, gives_way: [&[], &[]] };
+                let course = Course { span, walls: [&from, &to], rates: None, gives_way: [&[], &[]], steps: None };
                 let (pressure, amounts) = &flowing.stages[stage - 1];
                 flowing.stages[stage] = match flowing.conduit.march(pressure, &course) {
                     Ok(reached) => (reached.pressure, amounts.combined(1.0, reached.amounts, 1.0)),

@@ -1,0 +1,177 @@
+//! Derivatives of the history by numbers of water that flows along a contact: closed forms, and central differences of complete runs.
+
+use std::f64::consts::PI;
+
+use crate::common::{Blocks, close};
+use crate::gradients::{compared, refused, run, start, summary, table};
+use serde_json::{Value, json};
+
+const FLOW: &str = "contacts.base.fluid_pressure.flow";
+
+/// A block that is pressed on a plane, along which water flows from x = 0 to x = 10.
+fn block(n: usize, flow: Value, duration: f64, dt: [f64; 2]) -> Value {
+    json!({
+        "mesh": Blocks::default().rectangle("block", [n, 2], [0.0, 0.0], [10.0, 2.5]).json(),
+        "bodies": {"block": {"material": {"model": "linear", "E": 1e4, "nu": 0.2, "density": 1e-3}}},
+        "contacts": {"base": {
+            "slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
+            "friction": {"law": "coulomb", "mu": 0.6}, "initial": {"pressure": 100, "balanced": true},
+            "fluid_pressure": {"flow": flow},
+        }},
+        "steps": [{"name": "flow", "duration": duration, "dt": {"initial": dt[0], "max": dt[1]},
+                   "supports": [{"on": "block_top", "ux": 0, "uy": 0}]}],
+        "output": {"fields": false, "report": false},
+    })
+}
+
+fn places(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| format!("{FLOW}.{name}")).collect()
+}
+
+/// A constant rate q into the end of a long contact: p = q √(4 η t/(π S T)) there, whose relative derivatives by S, T, η and q are −½, −½, ½
+/// and 1. With 40 elements p itself errs by 1e-3; that −½ − ½ = −1, that T and η act by their ratio, and that p is proportional to q holds in
+/// the steps of the water as well.
+#[test]
+fn of_a_rate_have_a_closed_form() {
+    let (storage, transmissivity, viscosity, rate) = (2e-3, 1e-2, 5.0, 0.02);
+    let flow = json!({"storage": storage, "transmissivity": transmissivity, "viscosity": viscosity,
+                      "wells": [{"at": [0, 0], "rate": rate}]});
+    let mut case = block(40, flow, 2.0, [0.5, 0.5]);
+    let places = places(&["storage", "transmissivity", "viscosity", "wells[0].rate"]);
+    case["gradients"] = json!(places);
+    let run = run(&case, &[]);
+    let (history, found) = (table(&run, "history.csv"), table(&run, "gradients.csv"));
+    let column = "base.largest_fluid_pressure";
+    let last = |table: &std::collections::BTreeMap<String, Vec<f64>>, name: &str| *table[name].last().expect("rows");
+    let p = last(&history, column);
+    close("p", p / (rate * (4.0 * viscosity * 2.0 / (PI * storage * transmissivity)).sqrt()), 1.0, 2e-3);
+    let values = [storage, transmissivity, viscosity, rate];
+    let share = |k: usize| last(&found, &format!("d({column})/d({})", places[k])) * values[k] / p;
+    let [by_s, by_t, by_eta, by_q] = [0, 1, 2, 3].map(share);
+    println!("{by_s} {by_t} {by_eta} {by_q}");
+    for (name, found, expected) in [("S", by_s, -0.5), ("T", by_t, -0.5), ("η", by_eta, 0.5)] {
+        close(name, found, expected, 2e-3);
+    }
+    close("S and T", by_s + by_t, -1.0, 1e-7);
+    close("T and η", by_t + by_eta, 0.0, 1e-7);
+    close("q", by_q, 1.0, 1e-9);
+    assert_eq!(summary(&run)["gradients"][&places[0]]["one_sided"], json!(0));
+}
+
+/// A block that is dragged while water comes from a well, another one is held, the walls leak and slip, pressure and dilatancy act on the flow.
+fn dragged() -> Value {
+    let flow = json!({
+        "storage": 2e-3, "transmissivity": 2e-4, "viscosity": 5, "per_slip": 2e-3, "closing": 80, "initial": 5, "source": 1e-5,
+        "leak": {"coefficient": 1e-4, "pressure": 4},
+        "wells": [{"at": [2.6, 0], "rate": 4e-3}, {"at": [7.5, 0], "pressure": {"table": [[0, 5], [10, 8]]}}],
+    });
+    // So short that each increment is one step of the water.
+    let mut case = block(8, flow, 2.0, [0.004, 0.05]);
+    let base = &mut case["contacts"]["base"];
+    base["friction"] = json!({"law": "coulomb", "mu": 0.3, "alpha_t": 1e5});
+    base["normal"] = json!({"alpha_n": 1e6});
+    base["dilatancy"] = json!({"rate": 0.01});
+    case["steps"][0]["supports"][0]["ux"] = json!({"rate": 0.05});
+    case
+}
+
+/// By every number of the flow in static increments, and by those of the interface and the body.
+#[test]
+fn by_every_number_of_the_flow_are_those_of_complete_runs() {
+    let flow = places(&[
+        "storage",
+        "transmissivity",
+        "viscosity",
+        "per_slip",
+        "closing",
+        "initial",
+        "source",
+        "leak.coefficient",
+        "leak.pressure",
+        "wells[0].rate",
+        "wells[0].at[0]",
+        "wells[1].pressure.table[1][1]",
+    ]);
+    let besides = ["contacts.base.dilatancy.rate", "contacts.base.friction.mu", "bodies.block.material.E"];
+    let places: Vec<&str> = flow.iter().map(String::as_str).chain(besides).collect();
+    let [main, others] = compared(&dragged(), &places);
+    println!("{main:?} {others:?}");
+    assert!(main.0 < 1e-7 && others.0 < 5e-6, "{main:?} {others:?}");
+}
+
+/// The same with inertia.
+#[test]
+fn in_motion_are_those_of_complete_runs() {
+    let mut case = dragged();
+    case["steps"][0]["scheme"] = json!({"newmark": {"beta": 0.3025, "gamma": 0.6}});
+    case["steps"][0]["dt"] = json!({"initial": 0.05, "min": 0.05, "max": 0.05});
+    let flow = places(&["storage", "transmissivity", "viscosity", "closing", "leak.coefficient", "wells[0].rate"]);
+    let places: Vec<&str> = flow
+        .iter()
+        .map(String::as_str)
+        .chain(["contacts.base.dilatancy.rate", "bodies.block.material.density"])
+        .collect();
+    let [main, others] = compared(&case, &places);
+    println!("{main:?} {others:?}");
+    assert!(main.0 < 1e-7 && others.0 < 5e-6, "{main:?} {others:?}");
+}
+
+/// Water parts the surfaces and flows by the cubic law: pressures and openings act on each other.
+#[test]
+fn of_what_opens_are_those_of_complete_runs() {
+    let flow = json!({"storage": 1e-3, "aperture": 2e-3, "viscosity": 1e-7, "initial": 0.5, "wells": [{"at": [4, 0], "rate": 1e-2}]});
+    let mut case = block(8, flow, 1.0, [0.01, 0.01]);
+    case["bodies"]["block"]["material"]["E"] = json!(1e3);
+    let base = &mut case["contacts"]["base"];
+    base["friction"] = json!({"law": "frictionless"});
+    base["normal"] = json!({"alpha_n": 1e5});
+    base["initial"] = json!({"pressure": 0.6, "balanced": true});
+    let flow = places(&["storage", "aperture", "viscosity", "wells[0].rate"]);
+    let places: Vec<&str> = flow.iter().map(String::as_str).chain(["bodies.block.material.E"]).collect();
+    let [main, others] = compared(&case, &places);
+    println!("{main:?} {others:?}");
+    // The steps of the water are those of the increments, but for a few.
+    assert!(main.0 < 1e-5 && others.0 < 5e-5, "{main:?} {others:?}");
+}
+
+/// A run that is taken up has the same derivatives, bit by bit; and the run itself is that without derivatives.
+#[test]
+fn are_the_same_bits_after_a_resume() {
+    let mut case = dragged();
+    case["steps"][0]["duration"] = json!(0.5);
+    let more = json!({"name": "more", "duration": 0.5});
+    case["steps"].as_array_mut().expect("steps").push(more);
+    let bytes =
+        |folder: &tempfile::TempDir, file: &str| std::fs::read(folder.path().join("out").join(file)).expect("a file");
+    let plain = run(&case, &[]);
+    case["gradients"] = json!(places(&["storage", "wells[0].rate"]));
+    let whole = run(&case, &[]);
+    assert_eq!(bytes(&plain, "history.csv"), bytes(&whole, "history.csv"));
+    let mut first = case.clone();
+    first["steps"].as_array_mut().expect("steps").pop();
+    let folder = run(&first, &[]);
+    let output = start(folder.path(), &case, &["--resume"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(bytes(&whole, "gradients.csv"), bytes(&folder, "gradients.csv"));
+}
+
+/// Numbers that decide on increments, or on a node, have none.
+#[test]
+fn by_times_and_held_places_are_refused() {
+    let wells = json!([{"at": [2.6, 0], "rate": {"table": [[0, 0], [0.5, 4e-3]]}, "until": 1}, {"at": [7.5, 0], "pressure": 5, "from": 0.2}]);
+    let mut case = dragged();
+    case["contacts"]["base"]["fluid_pressure"]["flow"]["wells"] = wells;
+    case["contacts"]["base"]["fluid_pressure"]["flow"]["error"] = json!(0.02);
+    for (name, why) in [
+        ("wells[0].until", "or times of steps"),
+        ("wells[0].rate.table[1][0]", "or times of steps"),
+        ("wells[1].from", "or times of steps"),
+        ("wells[1].at[0]", "held at the nearest node"),
+        ("error", "decides on the increments"),
+    ] {
+        let mut asked = case.clone();
+        asked["gradients"] = json!(places(&[name]));
+        let told = refused(&asked);
+        assert!(told.contains("gradients[0]") && told.contains(name) && told.contains(why), "{name}: {told}");
+    }
+}
