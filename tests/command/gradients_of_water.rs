@@ -1,4 +1,5 @@
-//! Derivatives of the history by numbers of water that flows along a contact: closed forms, and central differences of complete runs.
+//! Derivatives of the history by numbers of water that flows along a contact or through a body: closed forms, and central differences of
+//! complete runs.
 
 use std::f64::consts::PI;
 
@@ -173,5 +174,59 @@ fn by_times_and_held_places_are_refused() {
         asked["gradients"] = json!(places(&[name]));
         let told = refused(&asked);
         assert!(told.contains("gradients[0]") && told.contains(name) && told.contains(why), "{name}: {told}");
+    }
+}
+
+/// A column of soil whose water flows out at the top, under a load.
+fn column(material: Value, drain: Value) -> Value {
+    json!({
+        "mesh": Blocks::default().rectangle("soil", [1, 8], [0.0, 0.0], [0.125, 1.0]).json(), "watch": ["soil_top", "soil_bottom"],
+        "bodies": {"soil": {"material": material, "pore_fluid": {
+            "bulk_modulus": 50, "porosity": 0.4, "permeability": 1, "unit_weight": 1, "biot": 0.9}}},
+        "steps": [{"name": "load", "duration": 0.5, "dt": {"initial": 0.01, "max": 0.05}, "supports": [
+            {"on": "soil_bottom", "ux": 0, "uy": 0}, {"on": "soil_left", "ux": 0}, {"on": "soil_right", "ux": 0}],
+            "loads": [{"on": "soil_top", "dead_pressure": 1}], "drainage": [drain]}],
+    })
+}
+
+/// Consolidation of small and of large strains, by the numbers of the skeleton, of the water and of where it leaves.
+#[test]
+fn of_consolidation_are_those_of_complete_runs() {
+    let fluid = ["permeability", "porosity", "bulk_modulus", "unit_weight", "biot"];
+    let of_fluid: Vec<String> = fluid.iter().map(|name| format!("bodies.soil.pore_fluid.{name}")).collect();
+    let of_soil = ["bodies.soil.material.E", "bodies.soil.material.nu", "steps[0].loads[0].dead_pressure"];
+    for (model, drain, of_drain) in [
+        ("linear", json!({"on": "soil_top", "pressure": 0.3, "filter": 2}), vec!["pressure", "filter"]),
+        ("neo_hookean", json!({"on": "soil_top", "flux": 0.1}), vec!["flux"]),
+    ] {
+        let case = column(json!({"model": model, "E": 0.9, "nu": 0.2}), drain);
+        let of_drain: Vec<String> = of_drain.iter().map(|name| format!("steps[0].drainage[0].{name}")).collect();
+        let places: Vec<&str> = of_fluid.iter().chain(&of_drain).map(String::as_str).chain(of_soil).collect();
+        let [main, others] = compared(&case, &places);
+        println!("{model}: {main:?} {others:?}");
+        assert!(main.0 < 1e-6 && others.0 < 5e-6, "{model}: {main:?} {others:?}");
+    }
+}
+
+/// Terzaghi's column settles by U(c t/H²)/M, c = M k/γ: of a loaded column with stiff water, k ∂u/∂k = t ∂u/∂t, the difference of the column itself
+/// in time; and u is in inverse proportion to E at the same E k.
+#[test]
+fn of_settlement_by_permeability_are_those_in_time() {
+    let mut case = column(json!({"model": "linear", "E": 0.9, "nu": 0.2}), json!({"on": "soil_top", "pressure": 0}));
+    case["bodies"]["soil"]["pore_fluid"] =
+        json!({"bulk_modulus": 1e6, "porosity": 0.5, "permeability": 1, "unit_weight": 1});
+    case["steps"][0]["loads"][0]["dead_pressure"] = json!("1");
+    case["steps"][0]["dt"] = json!({"initial": 0.002, "max": 0.002});
+    case["gradients"] = json!(["bodies.soil.pore_fluid.permeability", "bodies.soil.material.E"]);
+    let run = run(&case, &[]);
+    let (history, found) = (table(&run, "history.csv"), table(&run, "gradients.csv"));
+    let (times, u) = (&history["time"], &history["soil_top.uy"]);
+    let by = |place: &str| &found[&format!("d(soil_top.uy)/d({place})")];
+    let [by_k, by_e] = ["bodies.soil.pore_fluid.permeability", "bodies.soil.material.E"].map(by);
+    for k in (50..times.len() - 1).step_by(25) {
+        let in_time = times[k] * (u[k + 1] - u[k - 1]) / (times[k + 1] - times[k - 1]);
+        println!("{} {} {in_time} {}", times[k], by_k[k], by_e[k]);
+        close("by k", by_k[k] / in_time, 1.0, 5e-3);
+        close("by E", (0.9 * by_e[k] - by_k[k]) / -u[k], 1.0, 1e-4);
     }
 }

@@ -125,7 +125,8 @@ pub(super) fn derivatives(base: &Base) -> Outcome {
     };
     let Some(differences) = beside(STEP) else { return Outcome::Idle };
     let worst = worst(&history, &found, &differences, value, &name);
-    if worst.share <= if draft.is("fluid", "flows") { SAME_BY_FLOW } else { SAME } {
+    let same = if draft.is("fluid", "flows") { SAME_BY_FLOW } else { SAME };
+    if worst.share <= same {
         return Outcome::Holds;
     }
     // Of several equilibria the neighbours have reached another.
