@@ -26,8 +26,8 @@ use crate::equations::trial::Trial;
 use crate::equations::{bars, contacts, damping, links, loads, pore_flow, supports};
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
-use crate::model::state::{Births, State};
-use crate::model::{Model, Step};
+use crate::model::state::State;
+use crate::model::{Born, Model, Step};
 
 /// Assembles a model; owns the pattern and reused buffers.
 pub struct Assembler {
@@ -38,7 +38,7 @@ pub struct Assembler {
     /// Whether each bar is absent; empty if all are there
     bars_absent: Vec<bool>,
     /// Elements that came into a deformed model
-    births: Arc<Births>,
+    born: Arc<Born>,
     solids: Solids,
     linearization: Linearization,
     evolving: Evolving,
@@ -87,15 +87,15 @@ impl Assembler {
 
     /// Creates the assembler of a model.
     pub fn new(model: &Arc<Model>) -> Self {
-        let (births, born) = (Arc::default(), Arc::default());
+        let born = Arc::<Born>::default();
         let solids = Solids::new(model, |_| true, &born);
         Self {
             model: model.clone(),
             layout: Layout::new(model, term::skew(model)),
             absent: Vec::new(),
             bars_absent: Vec::new(),
-            births,
             evolving: Evolving::new(model, solids.constant(), |_| true, &born),
+            born,
             solids,
             linearization: Linearization::None,
             mass: None,
@@ -118,10 +118,7 @@ impl Assembler {
     /// Turns to the bodies that are there in a step, as they came.
     fn attend(&mut self, step: &Step, old: &State) {
         let births = &old.step_start.births;
-        if self.absent == step.absent
-            && self.bars_absent == step.bars.absent
-            && (Arc::ptr_eq(&self.births, births) || self.births == *births)
-        {
+        if self.absent == step.absent && self.bars_absent == step.bars.absent && self.born.are_of(births) {
             return;
         }
         let model = &self.model;
@@ -132,7 +129,7 @@ impl Assembler {
         self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body), Some(step));
         (self.mass, self.damping_mass) = (None, None);
         self.evaluation.memory.clear();
-        (self.absent, self.births) = (step.absent.clone(), births.clone());
+        (self.absent, self.born) = (step.absent.clone(), born);
         self.bars_absent.clone_from(&step.bars.absent);
     }
 
@@ -360,7 +357,8 @@ impl Assembler {
         scaled: bool,
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
-        let Self { model, layout, solids, linearization, evolving, damping_mass, magnitudes, evaluation, .. } = self;
+        let Self { model, layout, born, solids, linearization, evolving, damping_mass, magnitudes, evaluation, .. } =
+            self;
         let Evaluation {
             force,
             loads,
@@ -398,7 +396,7 @@ impl Assembler {
                     *strain_energy = elastic + evolved.stored;
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
-                Term::PoreFlow => pore_flow::add(model, trial, u, water, &mut sums)?,
+                Term::PoreFlow => pore_flow::add(model, born, trial, u, water, &mut sums)?,
                 Term::Interfaces => contacts::add(responses, &mut sums),
                 Term::Bars => {
                     let found = bars::add(model, trial, u, bar_states, &mut sums);

@@ -102,7 +102,8 @@ impl ConvergenceCriterion {
                 stiffness[node][2] += viscous * viscous;
             }
         }
-        for wet in model.flow.iter().flat_map(|flow| &flow.elements) {
+        let wet = model.flow.iter().flat_map(|flow| &flow.elements);
+        for wet in wet.filter(|wet| is_there(model.body_of_element[wet.element])) {
             let [solid, depth] = [model.solids[wet.element].volume(), model.solids[wet.element].mean_weight()];
             let modulus = model.body_of(wet.element).material.description().p_wave_modulus * depth;
             for &node in &wet.nodes[model.mesh.elements[wet.element].nodes.len()..] {

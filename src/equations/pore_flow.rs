@@ -20,9 +20,9 @@ use super::sums::{Dependence, Sums, TrialFailure};
 use super::trial::Trial;
 use crate::laws::bulk::{MaterialFailure, cofactor};
 use crate::mesh::configuration::vector;
-use crate::model::Model;
 use crate::model::pore_flow::{PoreFlow, WetElement, WetPoint};
 use crate::model::state::{Outflow, State, Water};
+use crate::model::{Born, Model};
 
 /// The flow goes by the state at the start of the increment, and the volume by the displacement.
 pub(super) fn dependence(model: &Model) -> Dependence {
@@ -47,6 +47,7 @@ impl Times {
 /// Adds the equations of the pressures, and what the bodies' forces change by with them to the tangent; stores the water at the end of the trial.
 pub(super) fn add(
     model: &Model,
+    born: &Born,
     trial: Trial,
     u: &[f64],
     water: &mut Water,
@@ -55,17 +56,22 @@ pub(super) fn add(
     let Some(flow) = &model.flow else { return Ok(()) };
     let (times, old) = (Times::of(trial), &trial.old.water);
     let wanted = sums.tangent.is_some();
-    let of = |wet: &WetElement| {
+    let of = |wet: &&WetElement| {
+        let wet = born.wet(wet);
         Increment { flow, wet, trial, u, times }
             .evaluate(wanted)
             .map_err(|cause| TrialFailure::material(model, wet.element, cause))
     };
-    let answers: Vec<Result<Answer, TrialFailure>> = flow.elements.par_iter().map(of).collect();
+    let wet = flow.elements.iter().filter(|wet| trial.step.has(model.body_of_element[wet.element]));
+    let elements: Vec<&WetElement> = wet.collect();
+    let answers: Vec<Result<Answer, TrialFailure>> = elements.par_iter().map(of).collect();
+    let mut is_wet = vec![false; flow.count()];
     let mut change = vec![0.0; flow.count()];
     let mut all = vec![[0.0; 2]; flow.count()];
-    for (answer, wet) in answers.into_iter().zip(&flow.elements) {
+    for (answer, wet) in answers.into_iter().zip(elements) {
         let answer = answer?;
         for (a, &k) in wet.pressures.iter().enumerate() {
+            is_wet[k] = true;
             change[k] += answer.change[a];
             all[k][0] += answer.change[a] + times.span * answer.flow[a];
             all[k][1] += answer.size[a];
@@ -102,7 +108,8 @@ pub(super) fn add(
     water.outlets.iter_mut().for_each(|outlet| outlet.volume += outlet.change);
     for (k, [sum, size]) in all.into_iter().enumerate() {
         let (dof, scale) = (flow.dof(k), flow.scales[k]);
-        if flow.corners[k].is_none() {
+        // It stands for none, or for one that only absent bodies have.
+        if !is_wet[k] {
             sums.force[dof] -= flow.spare() * u[dof];
             sums.stiffen(dof, dof, -flow.spare());
             continue;
@@ -113,7 +120,10 @@ pub(super) fn add(
         }
     }
     water.change = change;
-    water.peaks.clone_from(&old.peaks);
+    [&mut water.peaks, &mut water.excess, &mut water.brought]
+        .into_iter()
+        .zip([&old.peaks, &old.excess, &old.brought])
+        .for_each(|(own, old)| own.clone_from(old));
     Ok(())
 }
 
@@ -141,22 +151,10 @@ struct Opened {
     by: Vec<Vector2<f64>>,
 }
 
-/// F in the plane, and the stretch out of it.
-fn deformed(point: &WetPoint, nodes: &[usize], u: &[f64]) -> (Matrix2<f64>, f64) {
-    let mut f = Matrix2::identity();
-    let mut hoop = 1.0;
-    for (a, &node) in nodes.iter().enumerate().take(point.gradients.len()) {
-        let moved = vector(u, node);
-        f += moved * point.gradients[a].transpose();
-        hoop += point.hoop.get(a).map_or(0.0, |share| share * moved.x);
-    }
-    (f, hoop)
-}
-
-fn opened(point: &WetPoint, nodes: &[usize], u: &[f64], is_linear: bool) -> Result<Opened, MaterialFailure> {
-    let (f, hoop) = deformed(point, nodes, u);
+fn opened(wet: &WetElement, point: &WetPoint, u: &[f64]) -> Result<Opened, MaterialFailure> {
+    let (f, hoop) = wet.deformed(point, u);
     let around = |a: usize| point.hoop.get(a).copied().unwrap_or(0.0);
-    if is_linear {
+    if wet.is_linear {
         let by = point.gradients.iter().enumerate().map(|(a, g)| g + Vector2::new(around(a), 0.0));
         return Ok(Opened { jacobian: f.trace() - 1.0 + (hoop - 1.0), by: by.collect() });
     }
@@ -174,7 +172,7 @@ fn conducts(wet: &WetElement, point: &WetPoint, old: &State) -> [Matrix2<f64>; 2
     if wet.is_linear {
         return [mobility; 2];
     }
-    let (f, hoop) = deformed(point, &wet.nodes, &old.displacement);
+    let (f, hoop) = wet.deformed(point, &old.displacement);
     // J F⁻¹ = cofᵀ
     let area = cofactor(&f).transpose() * hoop;
     let inverse = cofactor(&f) / f.determinant();
@@ -203,8 +201,8 @@ impl Increment<'_> {
             }
         }
         for point in &wet.points {
-            let is = opened(point, &wet.nodes, u, wet.is_linear)?;
-            let was = opened(point, &wet.nodes, old, wet.is_linear)?;
+            let is = opened(wet, point, u)?;
+            let was = opened(wet, point, old)?;
             let share = wet.biot * point.volume;
             let gross: f64 =
                 (is.by.iter().zip(&wet.nodes)).map(|(by, &n)| by.dot(&(vector(u, n) - vector(old, n))).abs()).sum();

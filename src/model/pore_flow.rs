@@ -7,14 +7,16 @@
 //! p = p₀ + s û        s = M/h: stiffness of the skeleton over the size of an element, so that û is a length and its equation a force
 //! ```
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::boundary::Profile;
 use super::element::SolidElement;
 use super::state::{Outflow, State, Water};
+use super::step::Step;
 use super::{Body, Model};
 use crate::laws::bulk::GIVEN_PRESSURE;
 use crate::mesh::Mesh;
+use crate::mesh::configuration::vector;
 
 /// The water of all bodies in which it flows.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +56,8 @@ pub struct WetElement {
     pub pressures: Vec<usize>,
     /// place of the pressure of each corner among the dofs of the nodes
     pub places: Vec<usize>,
+    /// displacement of its nodes when it came into a deformed model, from which its strain counts; else empty [L]
+    pub birth: Vec<Vector2<f64>>,
     /// quadrature points
     pub points: Vec<WetPoint>,
     /// ∫ N_a N_b dV/Q: what the pores take up by the pressure [L⁵/F]
@@ -264,10 +268,8 @@ fn paired(elements: impl Iterator<Item = usize>, mesh: &Mesh) -> Vec<[Option<usi
 
 impl WetElement {
     fn new(e: usize, body: &Body, solid: &SolidElement, mesh: &Mesh, flow: &PoreFlow) -> Option<Self> {
-        let (element, fluid) = (&mesh.elements[e], body.flowing()?);
-        let kind = element.kind;
-        let (corners, law) = (kind.corners(), body.material.description());
-        let linear = if corners == 3 { crate::mesh::ElementKind::T3 } else { crate::mesh::ElementKind::Q4 };
+        let element = &mesh.elements[e];
+        let corners = element.kind.corners();
         let pressures: Vec<usize> = element.nodes[..corners].iter().filter_map(|&node| flow.of_node[node]).collect();
         let mut nodes = element.nodes.clone();
         let mut places = Vec::new();
@@ -279,10 +281,31 @@ impl WetElement {
             });
             places.push(2 * place + flow.dof(k) % 2);
         }
-        let positions = mesh.places(e);
+        Self::shaped([nodes, pressures, places], e, Vec::new(), body, solid, mesh)
+    }
+
+    /// The element as it comes at displacements of its nodes.
+    pub fn born(&self, birth: Vec<Vector2<f64>>, body: &Body, solid: &SolidElement, mesh: &Mesh) -> Option<Self> {
+        let numbers = [&self.nodes, &self.pressures, &self.places].map(Clone::clone);
+        Self::shaped(numbers, self.element, birth, body, solid, mesh)
+    }
+
+    fn shaped(
+        [nodes, pressures, places]: [Vec<usize>; 3],
+        e: usize,
+        birth: Vec<Vector2<f64>>,
+        body: &Body,
+        solid: &SolidElement,
+        mesh: &Mesh,
+    ) -> Option<Self> {
+        let (kind, fluid) = (mesh.elements[e].kind, body.flowing()?);
+        let (corners, law) = (kind.corners(), body.material.description());
+        let linear = if corners == 3 { crate::mesh::ElementKind::T3 } else { crate::mesh::ElementKind::Q4 };
+        let mut positions = mesh.places(e);
+        positions.iter_mut().zip(&birth).for_each(|(x, u)| *x += u);
         let slopes = |at: [f64; 2]| {
             // ∂N/∂X = (∂X/∂ξ)⁻ᵀ ∂N/∂ξ with the geometry of all nodes
-            let map: nalgebra::Matrix2<f64> = positions
+            let map: Matrix2<f64> = positions
                 .iter()
                 .zip(kind.derivatives(at))
                 .map(|(x, d)| (x - positions[0]) * Vector2::from(d).transpose())
@@ -321,6 +344,7 @@ impl WetElement {
             nodes,
             pressures,
             places,
+            birth,
             points: points.collect(),
             storage: mass * storage,
             projection: if is_equal { spread / (2.0 * law.shear_modulus) } else { DMatrix::zeros(corners, corners) },
@@ -342,6 +366,19 @@ const LEAST: f64 = 1e-4;
 
 #[doc(hidden)]
 impl WetElement {
+    /// F in the plane, and the stretch out of it, at a point.
+    pub fn deformed(&self, point: &WetPoint, u: &[f64]) -> (Matrix2<f64>, f64) {
+        let mut f = Matrix2::identity();
+        let mut hoop = 1.0;
+        for (a, (&node, gradient)) in self.nodes.iter().zip(&point.gradients).enumerate() {
+            let birth = self.birth.get(a).copied().unwrap_or_default();
+            let moved = vector(u, node) - birth;
+            f += moved * gradient.transpose();
+            hoop += point.hoop.get(a).map_or(0.0, |share| share * moved.x);
+        }
+        (f, hoop)
+    }
+
     /// Permeability over that at the start, at a volume and a pressure.
     pub fn permeability(&self, jacobian: f64, pressure: f64) -> f64 {
         let of_pores = self.void_ratio.map_or(1.0, |start| {
@@ -361,6 +398,8 @@ impl Model {
             change: vec![0.0; flow.count()],
             outlets: vec![Outflow::default(); flow.outlets.len()],
             peaks: vec![0.0; flow.bodies.len()],
+            excess: vec![0.0; flow.bodies.len()],
+            brought: vec![0.0; flow.bodies.len()],
         })
     }
 
@@ -376,56 +415,81 @@ impl Model {
     /// Mean seepage through an element, −k/γ_w (∇p − γ_w g) in the place where it is now [L/T].
     pub fn seepage(&self, wet: &WetElement, state: &State) -> Vector2<f64> {
         let Some(flow) = &self.flow else { return Vector2::zeros() };
+        let wet = &*self.wet(state, wet);
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(&state.displacement))).collect();
         let (mut sum, mut volume) = (Vector2::zeros(), 0.0);
         for point in &wet.points {
             let mut slope: Vector2<f64> = point.slopes.iter().zip(&pressures).map(|(slope, p)| slope * *p).sum();
+            let (f, hoop) = wet.deformed(point, &state.displacement);
+            let mut jacobian = f.trace() - 1.0 + (hoop - 1.0);
             if !wet.is_linear {
-                let f =
-                    point.gradients.iter().zip(&wet.nodes).fold(nalgebra::Matrix2::identity(), |sum, (g, &node)| {
-                        sum + crate::mesh::configuration::vector(&state.displacement, node) * g.transpose()
-                    });
                 slope = f.transpose().try_inverse().unwrap_or_default() * slope;
+                jacobian = f.determinant() * hoop;
             }
             let driven = slope + Vector2::new(0.0, wet.weight);
             let pressure: f64 = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
-            let share = point.volume * wet.permeability(self.opening(wet, point, state), pressure);
+            let share = point.volume * wet.permeability(jacobian, pressure);
             sum -= share * Vector2::new(wet.mobility[0] * driven.x, wet.mobility[1] * driven.y);
             volume += point.volume;
         }
         sum / volume
     }
 
-    /// J at a point.
-    fn opening(&self, wet: &WetElement, point: &WetPoint, state: &State) -> f64 {
-        let mut f = nalgebra::Matrix2::<f64>::identity();
-        let mut hoop = 1.0;
-        for (a, &node) in wet.nodes.iter().enumerate().take(point.gradients.len()) {
-            let moved = crate::mesh::configuration::vector(&state.displacement, node);
-            f += moved * point.gradients[a].transpose();
-            hoop += point.hoop.get(a).map_or(0.0, |share| share * moved.x);
-        }
-        if wet.is_linear { f.trace() - 1.0 + (hoop - 1.0) } else { f.determinant() * hoop }
-    }
-
-    /// Notes the largest mean pressure of each body.
+    /// Notes the mean pressure of each body that is there in excess of that at the start, and the largest so far.
     pub fn note_water(&self, state: &mut State) {
         for (k, &body) in self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate()) {
-            if let Some([_, excess]) = self.water_of(body, state) {
-                let peak = &mut state.water.peaks[k];
-                *peak = if excess.abs() > peak.abs() { excess } else { *peak };
+            if let Some([_, excess]) = self.held_water(body, state).filter(|_| state.has(body)) {
+                let Water { peaks, excess: now, .. } = &mut state.water;
+                peaks[k] = if excess.abs() > peaks[k].abs() { excess } else { peaks[k] };
+                now[k] = excess;
             }
         }
     }
 
-    /// What a body in which water flows has taken up of it since the start, ∫ (b (J − 1) + (p − p₀)/Q) dV, and its mean pressure in excess of that
-    /// at the start; `None` of any other [L³], [F/L²].
+    /// Lets the water of bodies that a step removes leave with them, while they are still what they were: pressures that no body has afterwards that
+    /// was there before are those of the start.
+    pub fn let_water_go(&self, step: &Step, state: &mut State) {
+        let Some(flow) = &self.flow else { return };
+        for (k, body) in flow.bodies.iter().enumerate().filter(|(_, body)| step.changed.contains(body)) {
+            let held = self.held_water(*body, state).filter(|_| !step.has(*body));
+            state.water.brought[k] -= held.map_or(0.0, |[taken, _]| taken);
+        }
+        let mut stays = vec![false; flow.count()];
+        for wet in &flow.elements {
+            let body = self.body_of_element[wet.element];
+            let there = step.has(body) && !step.changed.contains(&body);
+            wet.pressures.iter().filter(|_| there).for_each(|&k| stays[k] = true);
+        }
+        let lone = (0..flow.count()).filter(|&k| !stays[k]);
+        lone.for_each(|k| state.displacement[flow.dof(k)] = 0.0);
+    }
+
+    /// Lets bodies that a step adds come with their water.
+    pub fn let_water_come(&self, step: &Step, state: &mut State) {
+        let bodies = self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate());
+        for (k, &body) in bodies.filter(|(_, body)| step.changed.contains(body) && step.has(**body)) {
+            let [taken, excess] = self.held_water(body, state).unwrap_or_default();
+            state.water.brought[k] += taken;
+            (state.water.excess[k], state.water.peaks[k]) = (excess, 0.0);
+        }
+    }
+
+    /// What a body in which water flows has taken up of it while it was there, ∫ (b (J − 1) + (p − p₀)/Q) dV since it came, and its mean pressure in
+    /// excess of that at the start; `None` of any other [L³], [F/L²].
     pub fn water_of(&self, body: usize, state: &State) -> Option<[f64; 2]> {
+        let number = self.flow.as_ref()?.bodies.iter().position(|other| *other == body)?;
+        let [held, excess] = if state.has(body) { self.held_water(body, state)? } else { [0.0, f64::NAN] };
+        Some([held - state.water.brought[number], excess])
+    }
+
+    /// The same, but for what it brought.
+    fn held_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref().filter(|flow| flow.bodies.contains(&body))?;
         let law = self.bodies[body].material.description();
         let slot = law.slot(&GIVEN_PRESSURE)?;
         let [mut taken, mut excess, mut volume] = [0.0; 3];
         for wet in self.bodies[body].elements.iter().filter_map(|&e| flow.wet(e)) {
+            let wet = self.wet(state, wet);
             let memory = self.memories.of(wet.element, &state.memory);
             for (point, own) in wet.points.iter().zip(memory.chunks_exact(law.variables.len())) {
                 taken += point.volume * slot.of(own)[1];

@@ -23,7 +23,8 @@ fn moves(model: &Model, flow: &PoreFlow) -> Option<String> {
     let mut free = vec![true; flow.count()];
     let drains = model.steps.first().map_or(&[][..], |step| &step.drains);
     drains.iter().flat_map(|drain| &drain.corners).for_each(|(k, ..)| free[*k] = false);
-    for wet in &flow.elements {
+    let first = |wet: &&WetElement| model.steps.first().is_none_or(|step| step.has(model.body_of_element[wet.element]));
+    for wet in flow.elements.iter().filter(first) {
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, None)).collect();
         for point in &wet.points {
             let [kx, ky] = wet.mobility;
@@ -72,7 +73,9 @@ fn overshoots(model: &Model, flow: &PoreFlow) -> Option<String> {
         let mut drained = vec![false; flow.count()];
         let corners = step.drains.iter().filter(holds).flat_map(|drain| &drain.corners);
         corners.for_each(|(k, ..)| drained[*k] = true);
-        let beside = |wet: &&WetElement| wet.pressures.iter().any(|&k| drained[k]);
+        let beside = |wet: &&WetElement| {
+            step.has(model.body_of_element[wet.element]) && wet.pressures.iter().any(|&k| drained[k])
+        };
         let of = |wet: &WetElement| {
             least(model.mesh.elements[wet.element].kind) * wet.size * wet.size / (6.0 * wet.diffusivity)
         };

@@ -19,6 +19,7 @@ use nalgebra::Vector2;
 use super::Model;
 use super::element::{ElementError, SolidElement};
 use super::in_force;
+use super::pore_flow::WetElement;
 use super::state::{Births, State};
 use super::step::Step;
 use crate::contact::conduit::Conduit;
@@ -29,8 +30,31 @@ use crate::contact::point::ContactState;
 const LEAST_SHARE: f64 = 0.5;
 
 /// Elements that came into a deformed model, by number.
+#[derive(Clone, Debug, Default)]
 #[doc(hidden)]
-pub type Born = BTreeMap<usize, SolidElement>;
+pub struct Born {
+    births: Arc<Births>,
+    solids: BTreeMap<usize, SolidElement>,
+    wet: BTreeMap<usize, WetElement>,
+}
+
+#[doc(hidden)]
+impl Born {
+    /// Whether these are the ones that came at some displacements.
+    pub fn are_of(&self, births: &Arc<Births>) -> bool {
+        Arc::ptr_eq(&self.births, births) || self.births == *births
+    }
+
+    /// Whether an element is among them.
+    pub fn contains(&self, element: usize) -> bool {
+        self.solids.contains_key(&element)
+    }
+
+    /// An element that water flows through, as it came.
+    pub fn wet<'b>(&'b self, given: &'b WetElement) -> &'b WetElement {
+        self.wet.get(&given.element).unwrap_or(given)
+    }
+}
 
 #[doc(hidden)]
 impl Model {
@@ -83,12 +107,33 @@ impl Model {
 
     /// An element, as it came.
     pub fn as_born<'m>(&'m self, born: &'m Born, element: usize) -> &'m SolidElement {
-        born.get(&element).unwrap_or(&self.solids[element])
+        born.solids.get(&element).unwrap_or(&self.solids[element])
     }
 
     /// The elements that came into a deformed model, by number.
-    pub fn born_of(&self, births: &Births) -> Arc<Born> {
-        Arc::new(births.iter().filter_map(|(&e, birth)| Some((e, self.born(e, birth).ok()?))).collect())
+    pub fn born_of(&self, births: &Arc<Births>) -> Arc<Born> {
+        let mut all = Born { births: births.clone(), ..Born::default() };
+        for (&e, birth) in births.iter() {
+            let Ok(born) = self.born(e, birth) else { continue };
+            all.wet.extend(self.born_wet(e, birth, &born).map(|wet| (e, wet)));
+            all.solids.insert(e, born);
+        }
+        Arc::new(all)
+    }
+
+    fn born_wet(&self, element: usize, birth: &[[f64; 2]], born: &SolidElement) -> Option<WetElement> {
+        let birth = birth.iter().map(|u| Vector2::from(*u)).collect();
+        self.flow.as_ref()?.wet(element)?.born(birth, self.body_of(element), born, &self.mesh)
+    }
+
+    /// An element that water flows through as it is in a state: by its shape where it came.
+    pub fn wet<'m>(&self, state: &State, given: &'m WetElement) -> Cow<'m, WetElement> {
+        let born = state
+            .step_start
+            .births
+            .get(&given.element)
+            .and_then(|birth| self.born_wet(given.element, birth, &self.born(given.element, birth).ok()?));
+        born.map_or(Cow::Borrowed(given), Cow::Owned)
     }
 
     /// Lets the elements of the bodies that a step adds come where their nodes are.

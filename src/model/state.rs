@@ -153,6 +153,19 @@ pub struct Water {
     pub outlets: Vec<Outflow>,
     /// Largest mean pressure so far that each body has in excess of the one at the start [F/L²]
     pub peaks: Vec<f64>,
+    /// The mean pressure itself in excess of that at the start [F/L²]
+    pub excess: Vec<f64>,
+    /// What each body has brought with it of the water that it is found to have taken up, less what it took along when it left [L³]
+    pub brought: Vec<f64>,
+}
+
+#[doc(hidden)]
+impl Water {
+    /// Degree of consolidation of a body in which water flows, 1 less its mean excess pressure over the largest one [-].
+    pub fn consolidation(&self, number: usize) -> f64 {
+        let peak = self.peaks[number];
+        if peak == 0.0 { 0.0 } else { 1.0 - self.excess[number] / peak }
+    }
 }
 
 /// Flow out of the bodies through an outlet.

@@ -2,7 +2,7 @@
 //!
 //! # Ends of steps
 //!
-//! A step can end early when a reaction reaches a value.
+//! A step can end early when a reaction reaches a value, or a degree of consolidation.
 //!
 //! ```text
 //! |F − F̄| ≤ tolerance max(|F̄|, |F₀|)                    F₀: at the start of the step
@@ -20,7 +20,7 @@ use super::boundary::{Amplitude, Loads, Span};
 use super::imposed::Temperature;
 use super::pore_flow::Drain;
 use super::scheme::Scheme;
-use super::state::State;
+use super::state::{State, Water};
 use super::support::{Direction, Motion, Prescribed};
 use crate::contact::pair::ContactPair;
 
@@ -254,19 +254,26 @@ const PATIENCE: usize = 6;
 /// Fraction of the step below which an increment in which the reaction passes its value is not shortened again.
 const SHORTEST: f64 = 1e-9;
 
-/// A reaction that ends a step.
+/// What ends a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Until {
-    /// name of the group, for messages
+    /// name of the group or body, for messages
     pub on: String,
-    /// nodes whose reactions along x and y belong to it
-    pub held: [Vec<usize>; 2],
-    /// component of the sum of their reactions
-    pub part: ForceComponent,
-    /// F̄ [F]
+    /// what it is
+    pub goal: Goal,
+    /// value at which it does [F], [-]
     pub value: f64,
-    /// Tolerance relative to F̄ [-]
+    /// Tolerance relative to it [-]
     pub tolerance: f64,
+}
+
+/// A quantity that ends a step where it has some value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Goal {
+    /// a component of the sum of the reactions of some nodes, those that belong to it along x and y
+    Reaction([Vec<usize>; 2], ForceComponent),
+    /// the degree of consolidation of a body, by its number among those in which water flows; the step ends where it has grown to its value
+    Consolidation(usize),
 }
 
 /// A component of a force, or its magnitude.
@@ -291,10 +298,10 @@ impl ForceComponent {
     }
 }
 
-/// Status of an increment with respect to the reaction that ends its step.
+/// Status of an increment with respect to what ends its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UntilStatus {
-    /// The reaction has reached its value: the step ends
+    /// It has reached its value: the step ends
     Met,
     /// It has passed the value; length of the increment that would end at it [T]
     Passed(f64),
@@ -303,28 +310,45 @@ pub enum UntilStatus {
 }
 
 impl Until {
-    /// F of the reactions of a state [F].
-    pub fn force(&self, reaction: &[f64]) -> f64 {
-        let force = self.vector(reaction);
-        match self.part {
-            ForceComponent::X => force.x,
-            ForceComponent::Y => force.y,
-            ForceComponent::Magnitude => force.norm(),
+    /// Name of the quantity in a case.
+    pub fn name(&self) -> &'static str {
+        match self.goal {
+            Goal::Reaction(_, part) => part.name(),
+            Goal::Consolidation(_) => "consolidation",
         }
     }
 
-    fn vector(&self, reaction: &[f64]) -> Vector2<f64> {
-        let sum = |i: usize| self.held[i].iter().map(|node| reaction[2 * node + i]).sum();
-        Vector2::new(sum(0), sum(1))
+    /// Its value, of reactions of a state or of the start of its step, or of its water [F], [-].
+    fn of(&self, reaction: &[f64], water: &Water) -> f64 {
+        match &self.goal {
+            Goal::Reaction(held, part) => {
+                let force = vector(held, reaction);
+                match part {
+                    ForceComponent::X => force.x,
+                    ForceComponent::Y => force.y,
+                    ForceComponent::Magnitude => force.norm(),
+                }
+            }
+            Goal::Consolidation(body) => water.consolidation(*body),
+        }
     }
 
-    /// Fraction of an increment at which a linearly varying force first has the value; the magnitude has it again where the
+    /// Its value in a state [F], [-].
+    pub fn value_in(&self, state: &State) -> f64 {
+        self.of(&state.reaction, &state.water)
+    }
+
+    /// Fraction of an increment at which it first has the value if it varies linearly; the magnitude has it again where the
     /// force reverses.
     fn share(&self, [old, new]: [&State; 2]) -> Option<f64> {
-        let [before, after] = [old, new].map(|state| self.vector(&state.reaction));
-        let way = after - before;
         let straight = |before: f64, way: f64| [(self.value - before) / way; 2];
-        let shares = match self.part {
+        let Goal::Reaction(held, part) = &self.goal else {
+            let [before, after] = [old, new].map(|state| self.value_in(state));
+            return (after > before).then(|| straight(before, after - before)[0]).filter(|share| *share > 0.0);
+        };
+        let [before, after] = [old, new].map(|state| vector(held, &state.reaction));
+        let way = after - before;
+        let shares = match part {
             ForceComponent::X => straight(before.x, way.x),
             ForceComponent::Y => straight(before.y, way.y),
             ForceComponent::Magnitude => {
@@ -344,7 +368,7 @@ impl Until {
         let clock = SHORTEST * (span.end - span.start) + 64.0 * f64::EPSILON * new.time.abs();
         let share = self.share([old, new]);
         let passed = share.is_some_and(|share| share < 1.0);
-        if self.is_met(new) || passed && new.dt <= clock {
+        if self.is_close(new) || !passed && self.is_met(new) || passed && new.dt <= clock {
             return UntilStatus::Met;
         }
         match share {
@@ -353,14 +377,25 @@ impl Until {
         }
     }
 
-    /// Whether a state has the force within the tolerance.
+    /// Whether a state has it within the tolerance, or a larger degree of consolidation.
     pub fn is_met(&self, state: &State) -> bool {
-        let scale = self.value.abs().max(self.force(&state.step_start.reaction).abs());
-        (self.force(&state.reaction) - self.value).abs() <= self.tolerance * scale
+        self.is_close(state) || matches!(self.goal, Goal::Consolidation(_)) && self.value_in(state) > self.value
+    }
+
+    fn is_close(&self, state: &State) -> bool {
+        let at_start = self.of(&state.step_start.reaction, &state.water);
+        let scale = self.value.abs().max(if let Goal::Reaction(..) = self.goal { at_start.abs() } else { 0.0 });
+        (self.value_in(state) - self.value).abs() <= self.tolerance * scale
     }
 
     /// Length of the next attempt at an increment in which the value was passed [T].
     pub fn shorter(passed: f64, dt: f64, attempt: usize) -> f64 {
         if attempt < PATIENCE { passed } else { passed.min(0.5 * dt) }
     }
+}
+
+/// Sum of the reactions of the nodes that belong to it along x and y [F].
+fn vector(held: &[Vec<usize>; 2], reaction: &[f64]) -> Vector2<f64> {
+    let sum = |i: usize| held[i].iter().map(|node| reaction[2 * node + i]).sum();
+    Vector2::new(sum(0), sum(1))
 }

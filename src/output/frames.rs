@@ -84,7 +84,8 @@ const PORE_PRESSURE: &str = "pore_pressure";
 fn fluxes(model: &Model, state: &State) -> Vec<f64> {
     let mut sums = vec![0.0; model.dofs()];
     let mut volumes = vec![0.0; model.mesh.nodes.len()];
-    for wet in model.flow.iter().flat_map(|flow| &flow.elements) {
+    let wet = model.flow.iter().flat_map(|flow| &flow.elements);
+    for wet in wet.filter(|wet| state.has(model.body_of_element[wet.element])) {
         let flux = model.seepage(wet, state);
         let volume: f64 = wet.volumes.iter().sum();
         for &node in &model.mesh.elements[wet.element].nodes {

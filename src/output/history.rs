@@ -205,9 +205,10 @@ impl History {
 fn water_row(model: &Model, state: &State) -> Vec<f64> {
     let Some(flow) = &model.flow else { return Vec::new() };
     let (mut row, mut balance) = (Vec::new(), 0.0);
-    for (&body, &peak) in flow.bodies.iter().zip(&state.water.peaks) {
+    for (k, &body) in flow.bodies.iter().enumerate() {
         let [taken, excess] = model.water_of(body, state).unwrap_or_default();
-        row.extend([excess, if peak == 0.0 { 0.0 } else { 1.0 - excess / peak }, taken]);
+        let degree = if state.has(body) { state.water.consolidation(k) } else { f64::NAN };
+        row.extend([excess, degree, taken]);
         balance += taken;
     }
     for k in 0..flow.outlets.len() {

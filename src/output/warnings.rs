@@ -375,13 +375,13 @@ impl Warnings {
     fn passed(&mut self, attempt: &Attempt, state: &State) {
         let Step { name, until: Some(until), .. } = attempt.step else { return };
         if state.time < attempt.step.span.end && attempt.ends_step(state) && !until.is_met(state) {
-            let [before, after] = apart([attempt.old, state].map(|state| until.force(&state.reaction)));
-            let Until { part, on, value, .. } = until;
+            let [before, after] = apart([attempt.old, state].map(|state| until.value_in(state)));
+            let Until { on, value, .. } = until;
             self.list.push(format!(
                 "step `{name}`, t = {}: {} of `{on}` jumps from {before} to {after}, past {value}, where the step ends: \
                  where a load or support jumps let it grow, where bodies snap through take a value beyond, or a step with inertia",
                 time_text(state.time),
-                part.name()
+                until.name()
             ));
         }
     }

@@ -254,10 +254,10 @@ impl Simulation {
         Error::NotReached {
             step: step.name.clone(),
             time: state.time,
-            part: until.part.name(),
+            part: until.name(),
             on: until.on.clone(),
             value: until.value,
-            reached: until.force(&state.reaction),
+            reached: until.value_in(state),
         }
     }
 

@@ -69,13 +69,17 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// Lets bodies come or go, or laws change, without a jump: what the forces change by fades over the step. Nodes that only absent bodies have come to
 /// rest. The energy that bodies bring or take counts as external work, as does that of temperatures that jump with them.
 fn change_bodies(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
+    model.let_water_go(step, state);
     model.bear(step, state).map_err(|(e, share)| IncrementFailure::Start(TrialFailure::narrow(model, e, share)))?;
     model.forget(step, state);
+    model.let_water_come(step, state);
     model.change_bars(step, state);
     let mut now = state.clone();
     evaluate_forces(step, &mut now, work)?;
     let mut fading: Vec<f64> = now.force.iter().zip(&state.force).map(|(new, old)| new - old).collect();
-    let idle_nodes = [model.idle_nodes(&step.absent), model.idle_bar_nodes(&step.bars.absent)];
+    // Water comes and goes at once.
+    let of_water = model.flow.as_ref().map_or(Vec::new(), |flow| (flow.first..flow.first + flow.count() / 2).collect());
+    let idle_nodes = [model.idle_nodes(&step.absent), model.idle_bar_nodes(&step.bars.absent), of_water];
     for node in idle_nodes.into_iter().flatten() {
         let dofs = 2 * node..2 * node + 2;
         [&mut fading, &mut state.force, &mut state.reaction, &mut state.velocity, &mut state.acceleration]

@@ -35,6 +35,7 @@ mod sections;
 mod simulation;
 mod spinning;
 mod stability;
+mod staged_water;
 mod stages;
 mod stressed;
 mod symmetry;

@@ -55,9 +55,9 @@ fn step_lines(step: &Step, critical: Option<f64>) -> Vec<String> {
         lines.push("stabilized: fading dashpots constrain bodies until contact does".into());
     }
     lines.extend(step.until.as_ref().map(|until| {
-        let Until { on, part, value, tolerance, .. } = until;
+        let Until { on, value, tolerance, .. } = until;
         let [value, tolerance] = [value, tolerance].map(|number_of| number(*number_of));
-        format!("ends when {} of {on} reaches {value}, relative tolerance {tolerance}", part.name())
+        format!("ends when {} of {on} reaches {value}, relative tolerance {tolerance}", until.name())
     }));
     lines.extend(increments.error.map(|error| {
         let located = number(EVENT_LOCATION * error);

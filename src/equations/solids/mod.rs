@@ -107,7 +107,7 @@ pub(super) struct Solids {
 impl Solids {
     /// The elements that are there; `born` came into a deformed model.
     pub fn new(model: &Arc<Model>, are_there: impl Fn(usize) -> bool + Clone, born: &Arc<Born>) -> Self {
-        let constant = Constant::new(model, |e| are_there(e) && !born.contains_key(&e));
+        let constant = Constant::new(model, |e| are_there(e) && !born.contains(e));
         let others = Runs::new(model, |e| !constant.is[e] && are_there(e), born);
         let retardation = model.bodies.iter().map(|body| body.damping.retardation).collect();
         Self { model: model.clone(), constant, others, retardation }

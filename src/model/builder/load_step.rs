@@ -187,15 +187,15 @@ setters! { settings: RuptureSettings;
     safety(safety: f64) { settings.safety = safety; }
 }
 
-/// A reaction that ends a step: displacement control up to a force. The increment in which the force passes its value
+/// What ends a step: a reaction, for displacement control up to a force, or a degree of consolidation. The increment in which it passes its value
 /// is shortened until it has the value. Supports that move to a value stay where the step has ended; tables and
-/// expressions continue with the time of the run. Exactly one of `fx`, `fy` and `force` is given
+/// expressions continue with the time of the run. Exactly one of `fx`, `fy`, `force` and `consolidation` is given
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Until")]
 #[non_exhaustive]
 pub struct UntilSettings {
-    /// Place of the reaction: the forces of the supports on these nodes
+    /// Place of the reaction: the forces of the supports on these nodes; of consolidation a body
     pub on: Place,
     /// Its x component [F]
     pub fx: Option<f64>,
@@ -203,6 +203,8 @@ pub struct UntilSettings {
     pub fy: Option<f64>,
     /// Its magnitude [F]
     pub force: Option<f64>,
+    /// Degree of consolidation of a body whose water flows, 1 less its mean excess pressure over the largest one so far, above 0 and below 1 [-]
+    pub consolidation: Option<f64>,
     /// Tolerance relative to the value, or to the reaction at the start of the step if that is larger, at most 0.1;
     /// default 1e-6 [-]
     #[serde(default = "met")]
@@ -214,11 +216,15 @@ fn met() -> f64 {
 }
 
 impl UntilSettings {
-    /// Returns component and value of the reaction, if exactly one is given.
+    /// Returns component of the reaction, none of consolidation, and value, if exactly one is given.
     #[doc(hidden)]
-    pub fn part(&self) -> Option<(ForceComponent, f64)> {
-        let parts =
-            [(ForceComponent::X, self.fx), (ForceComponent::Y, self.fy), (ForceComponent::Magnitude, self.force)];
+    pub fn part(&self) -> Option<(Option<ForceComponent>, f64)> {
+        let parts = [
+            (Some(ForceComponent::X), self.fx),
+            (Some(ForceComponent::Y), self.fy),
+            (Some(ForceComponent::Magnitude), self.force),
+            (None, self.consolidation),
+        ];
         let mut given = parts.into_iter().filter_map(|(part, value)| Some((part, value?)));
         given.next().filter(|_| given.next().is_none())
     }
@@ -348,7 +354,13 @@ setters! { step: LoadStep;
     until(on: impl Into<Place>, part: ForceComponent, value: f64) {
         let [fx, fy, force] =
             [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));
-        step.until = Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: UNTIL_TOLERANCE });
+        step.until = Some(UntilSettings { on: on.into(), fx, fy, force, consolidation: None, tolerance: UNTIL_TOLERANCE });
+    }
+
+    /// Ends the step early when a body is consolidated to a degree, within a relative tolerance of 1e-6 [-].
+    until_consolidated(body: impl Into<Place>, degree: f64) {
+        let (on, consolidation) = (body.into(), Some(degree));
+        step.until = Some(UntilSettings { on, fx: None, fy: None, force: None, consolidation, tolerance: UNTIL_TOLERANCE });
     }
 
     /// Assigns a velocity to a body, or to point masses, at the start of the step: a launch after settling [L/T].

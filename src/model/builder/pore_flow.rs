@@ -1,6 +1,6 @@
 //! Water that flows through the pores of bodies: its parameters, and where it leaves them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -17,7 +17,7 @@ use crate::mesh::{Edge, Group, Mesh};
 use crate::model::boundary::Profile;
 use crate::model::element::{Formulation, SolidElement};
 use crate::model::imposed::PoreFluid;
-use crate::model::pore_flow::{Drain, DrainKind, PoreFlow};
+use crate::model::pore_flow::{Drain, DrainKind, PoreFlow, WetElement};
 use crate::model::scheme::Scheme;
 use crate::model::text::{number, vector};
 use crate::model::warnings::NO_FRICTION;
@@ -177,14 +177,6 @@ pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
         refuse_if(step.scheme != Scheme::Static, format!("{place}.scheme"), message)?;
         let message = format!("is not for a model with water that flows, as in `{first}`: leave it out");
         refuse_if(step.rupture.is_some(), format!("{place}.rupture"), &message)?;
-        let message = format!(
-            "bodies come or go, beside water that flows in `{first}`, which is not followed: keep them, or leave out pore_fluid.permeability"
-        );
-        refuse_if(
-            !(step.absent.is_empty() && step.changed.is_empty()) && step.absent.iter().any(|absent| *absent),
-            place,
-            message,
-        )?;
     }
     let tied = |node: usize| flow.of_node.get(node).copied().flatten().is_some();
     let is_periodic = |pair: &&(usize, usize)| tied(pair.0) && tied(pair.1);
@@ -241,6 +233,7 @@ impl DrainsInForce {
         given: &[DrainageInput],
         place: &str,
         names: &[String],
+        absent: &[bool],
         model: &Model,
     ) -> Checked<Vec<Drain>> {
         for (k, entry) in given.iter().enumerate() {
@@ -257,11 +250,18 @@ impl DrainsInForce {
                 self.all.insert(on, (entry.clone(), place));
             }
         }
-        let of = |(name, (entry, place)): (&String, &(DrainageInput, String))| {
+        let away = |wet: &WetElement| absent.get(model.body_of_element[wet.element]).copied().unwrap_or(false);
+        let mut drains = Vec::new();
+        for (name, (entry, origin)) in &self.all {
             let outlet = names.iter().position(|other| other == name).unwrap_or_default();
-            drain(entry, outlet, place, model)
-        };
-        self.all.iter().map(of).collect()
+            let drain = drain(entry, outlet, origin, away, model)?;
+            let message = "is on bodies that are not there in this step: leave it out, or give it when they are";
+            let is_new = origin.starts_with(&format!("{place}.drainage"));
+            refuse_if(drain.corners.is_empty() && is_new, format!("{origin}.on"), format!("`{name}` {message}"))?;
+            drains.push(drain);
+        }
+        drains.retain(|drain| !drain.corners.is_empty());
+        Ok(drains)
     }
 }
 
@@ -294,8 +294,14 @@ fn check_entry(entry: &DrainageInput, place: &str) -> Checked<()> {
     check_positive(&format!("{place}.filter"), filter.unwrap_or(1.0), "")
 }
 
-/// An outlet, with the pressures of its corners.
-fn drain(entry: &DrainageInput, outlet: usize, place: &str, model: &Model) -> Checked<Drain> {
+/// An outlet, with the pressures of its corners on bodies that are there.
+fn drain(
+    entry: &DrainageInput,
+    outlet: usize,
+    place: &str,
+    away: impl Fn(&WetElement) -> bool,
+    model: &Model,
+) -> Checked<Drain> {
     let on = format!("{place}.on");
     let Some(flow) = &model.flow else {
         let message = "is for bodies whose water flows, and there are none: give pore_fluid.permeability of a body";
@@ -311,6 +317,9 @@ fn drain(entry: &DrainageInput, outlet: usize, place: &str, model: &Model) -> Ch
     if let Some(Group::Edges(edges)) = group {
         for edge in edges {
             let wet = flow.wet(edge.element).ok_or_else(|| ModelError::new(&on, &dry))?;
+            if away(wet) {
+                continue;
+            }
             conductance = conductance.max(wet.mobility[0].max(wet.mobility[1]) / wet.size);
             for (k, area) in shares(edge, flow, &model.mesh) {
                 *areas.entry(k).or_default() += area;
@@ -323,8 +332,12 @@ fn drain(entry: &DrainageInput, outlet: usize, place: &str, model: &Model) -> Ch
         refuse_if(entry.filter.is_some(), format!("{place}.filter"), message)?;
         let nodes = nodes_at(&model.mesh, &entry.on, &on)?;
         // A node in the middle of an edge has no pressure of its own.
-        areas.extend(nodes.iter().filter_map(|&node| flow.of_node.get(node).copied().flatten()).map(|k| (k, 1.0)));
-        let own = |wet: &&crate::model::pore_flow::WetElement| wet.pressures.iter().any(|k| areas.contains_key(k));
+        let pressures: BTreeSet<usize> =
+            nodes.iter().filter_map(|&node| flow.of_node.get(node).copied().flatten()).collect();
+        refuse_if(pressures.is_empty(), &on, &dry)?;
+        let there = flow.elements.iter().filter(|wet| !away(wet)).flat_map(|wet| &wet.pressures);
+        areas.extend(there.filter(|k| pressures.contains(k)).map(|&k| (k, 1.0)));
+        let own = |wet: &&WetElement| wet.pressures.iter().any(|k| areas.contains_key(k));
         let flows = flow
             .elements
             .iter()
@@ -332,14 +345,13 @@ fn drain(entry: &DrainageInput, outlet: usize, place: &str, model: &Model) -> Ch
             .map(|wet| wet.mobility[0].max(wet.mobility[1]) * wet.volumes.iter().sum::<f64>() / wet.size.powi(2));
         conductance = flows.fold(0.0, f64::max);
     }
-    refuse_if(areas.is_empty(), &on, dry)?;
     let weight = |k: usize| {
         let mut beside = flow.elements.iter().filter(|wet| wet.pressures.contains(&k));
         beside.find(|wet| wet.weight > 0.0).map(|wet| wet.weight)
     };
     let first = areas.keys().next().copied().unwrap_or_default();
     let message = "is for water that weighs: give \"weighs\": true in pore_fluid, or the `pressure`";
-    refuse_if(entry.head.is_some() && weight(first).is_none(), format!("{place}.head"), message)?;
+    refuse_if(entry.head.is_some() && !areas.is_empty() && weight(first).is_none(), format!("{place}.head"), message)?;
     let kind = match entry {
         DrainageInput { flux: Some(_), .. } => DrainKind::Flux,
         DrainageInput { seepage: Some(_), .. } => DrainKind::Seeps(HELD * conductance),

@@ -2,14 +2,14 @@
 //!
 //! Increments of a step, its stabilization, and its switch to explicit integration.
 //!
-//! Reactions that end a step, and restrictions of such a step.
+//! What ends a step early, and restrictions of such a step.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::body::{check_damping, prescribed_temperatures, temperatures};
 use super::error::{Checked, ModelError, check_positive, refuse_if};
 use super::groups;
-use super::groups::nodes_at;
+use super::groups::{Place, nodes_at};
 use super::initial::launch;
 use super::load::Change;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UNTIL_TOLERANCE, UntilSettings};
@@ -22,7 +22,7 @@ use crate::mesh::rigid::RigidBody;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::coupled::CoupledParts;
 use crate::model::scheme::{Regime, Scheme};
-use crate::model::step::{Entry, ForceComponent, SHORTEST_INCREMENT, Until};
+use crate::model::step::{Entry, ForceComponent, Goal, SHORTEST_INCREMENT, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
@@ -105,7 +105,7 @@ impl Schedule<'_> {
         let bars = self.stages.bars(given, scheme, place)?;
         self.loads.step(&given.loads, place, span, [&self.stages.absent(), &bars.absent], self.model)?;
         let outlets = self.model.flow.as_ref().map_or(&[][..], |flow| &flow.outlets);
-        let drains = self.drains.step(&given.drainage, place, outlets, self.model)?;
+        let drains = self.drains.step(&given.drainage, place, outlets, &self.stages.absent(), self.model)?;
         self.damp(&given.damping, place)?;
         temperatures(&mut self.temperatures, given, place, span, self.model)?;
         check_defined(place, given, scheme, span, self.model)?;
@@ -301,19 +301,29 @@ pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: 
 /// Largest tolerance; a larger one would not define a value.
 const LOOSEST: f64 = 0.1;
 
-/// Returns the reaction that ends a step, if there is one.
+/// Returns what ends a step, if anything does.
 pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<Option<Until>> {
     let Some(given_until) = &given.until else { return Ok(None) };
     let UntilSettings { on, tolerance, .. } = given_until;
     let (place, tolerance) = (format!("{place}.until"), *tolerance);
-    let part = given_until.part();
-    let (part, value) = part.ok_or_else(|| ModelError::new(&place, "must give exactly one of fx, fy and force"))?;
+    let message = "must give exactly one of fx, fy, force and consolidation";
+    let (part, value) = given_until.part().ok_or_else(|| ModelError::new(&place, message))?;
+    let goal = match part {
+        Some(part) => reaction(&place, on, part, value, step, model)?,
+        None => consolidation(&place, on, value, step, model)?,
+    };
+    let message = format!("is {tolerance}: must be above 0 and at most {LOOSEST}; {UNTIL_TOLERANCE:e} is the default");
+    refuse_if(!(tolerance > 0.0 && tolerance <= LOOSEST), format!("{place}.tolerance"), message)?;
+    check_step(&place, given, step, model)?;
+    Ok(Some(Until { on: on.to_string(), goal, value, tolerance }))
+}
+
+/// A reaction that ends a step.
+fn reaction(place: &str, on: &Place, part: ForceComponent, value: f64, step: &Step, model: &Model) -> Checked<Goal> {
     let is_size = part == ForceComponent::Magnitude;
     let kind = if is_size { "zero or positive, the size of a force" } else { "a finite number" };
     let fails = !value.is_finite() || is_size && value < 0.0;
     refuse_if(fails, format!("{place}.{}", part.name()), format_args!("is {value}: must be {kind}"))?;
-    let message = format!("is {tolerance}: must be above 0 and at most {LOOSEST}; {UNTIL_TOLERANCE:e} is the default");
-    refuse_if(!(tolerance > 0.0 && tolerance <= LOOSEST), format!("{place}.tolerance"), message)?;
     let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
     let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
     let along = |i: usize| {
@@ -328,8 +338,19 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
     let message =
         format!("{on} has no support{axis} in this step, and no reaction: name the side that is moved or supported");
     refuse_if(!has, format!("{place}.on"), message)?;
-    check_step(&place, given, step, model)?;
-    Ok(Some(Until { on: on.to_string(), held, part, value, tolerance }))
+    Ok(Goal::Reaction(held, part))
+}
+
+/// A degree of consolidation that ends a step.
+fn consolidation(place: &str, on: &Place, value: f64, step: &Step, model: &Model) -> Checked<Goal> {
+    let message = format!("is {value}: must be above 0 and below 1");
+    refuse_if(!(value > 0.0 && value < 1.0), format!("{place}.consolidation"), message)?;
+    let place = format!("{place}.on");
+    let body = groups::body(model, &on.to_string(), &place)?;
+    let flowing = model.flow.iter().flat_map(|flow| &flow.bodies);
+    let number = flowing.copied().position(|other| other == body).filter(|_| step.has(body));
+    let message = format!("`{on}` is no body whose water flows in this step: give pore_fluid.permeability of it");
+    number.map(Goal::Consolidation).ok_or_else(|| ModelError::new(place, message))
 }
 
 /// Checks settings that refer to the whole step.
@@ -339,9 +360,10 @@ fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Chec
     let message = "and rupture cannot be combined: fast slip is integrated explicitly, without increments that could be cut \
                    back";
     refuse_if(given.rupture.is_some(), place, message)?;
-    let message = "may end the step early, and what fades over the step (stabilize, or the reaction of supports released by null) \
-                   would be left: let it fade in an earlier step";
-    refuse_if(given.stabilize.is_some() || !step.released.is_empty(), place, message)?;
+    let message = "may end the step early, and what fades over the step (stabilize, the reaction of supports released by null, or the forces of \
+                   bodies that come or go) would be left: let it fade in an earlier step";
+    let fades = given.stabilize.is_some() || !step.released.is_empty();
+    refuse_if(fades || !step.changed.is_empty() || !step.bars.changed.is_empty(), place, message)?;
     check_ramps(place, step, model)
 }
 
