@@ -71,6 +71,8 @@ impl Differentiated<'_> {
         let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
         refuse_if(self.begins_with, "gradients", message)?;
         self.model.steps.iter().try_for_each(check_step)?;
+        let message = "are not for bodies that come or go beside water that flows, whose pressures then begin anew: leave them out";
+        refuse_if(self.model.flow.is_some() && self.model.changes_bodies(), "gradients", message)?;
         let defaults: Value = serde_json::from_str(&resolved(self.case, self.model)).unwrap_or_default();
         let one = |(k, place): (usize, &String)| {
             let at = format!("gradients[{k}]");
