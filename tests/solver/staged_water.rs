@@ -91,7 +91,13 @@ fn ground_heaves_as_water_enters_below_an_excavation() {
             let state = first_after(&run, 1.0 + time);
             let [excess, degree] = terzaghi((state.time - 1.0) / 4.0);
             let below = WEIGHT - OF_WATER;
-            close("p at the base", pressure(&run, state, 0.0), 20.0 - below * excess, 0.06);
+            // The strain of 1.7 % stiffens the column of large strains.
+            close(
+                "p at the base",
+                pressure(&run, state, 0.0),
+                20.0 - below * excess,
+                if law == "linear" { 0.06 } else { 0.2 },
+            );
             let heave = state.displacement[2 * top + 1] * 1200.0 / (2.0 * below);
             close("heave", heave, degree, if law == "linear" { 4e-3 } else { 2e-2 });
         }
