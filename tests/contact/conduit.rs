@@ -231,6 +231,48 @@ fn a_transmissivity_follows_slip() {
     assert!(errors.iter().all(|error| *error < 2e-3), "{errors:?}");
 }
 
+/// A pressure p′ that closes the fault to half its transmissivity: what a held pressure lets in goes by half the diffusivity,
+/// S L P (1 − Σ 2/(λ L)² exp(−λ² D t/2)), λ = (k + ½) π/L.
+#[test]
+fn a_transmissivity_falls_with_the_pressure_on_it() {
+    let held = 1e-3;
+    let flow = json!({"closing": 100.0 / 2.0f64.ln(), "wells": [{"at": [0, 0], "pressure": held}]});
+    let run = finish(&block(40, water(flow), 4.0, 1.0));
+    balances(&run);
+    let left = |k: i32| {
+        let rate = (f64::from(k) + 0.5) * PI / LENGTH;
+        2.0 / (rate * LENGTH).powi(2) * (-rate * rate * 0.5 * 4.0).exp()
+    };
+    let expected = 1.0 - (0..400).map(left).sum::<f64>();
+    close("volume", run.last().conduits[0].amounts.injected / (STORAGE * LENGTH * held) / expected, 1.0, 5e-3);
+}
+
+/// Between two pressures that are held water flows at T/η ΔP/L everywhere in the end.
+#[test]
+fn what_flows_is_told_at_every_point() {
+    let flow = json!({"wells": [{"at": [0, 0], "pressure": 3}, {"at": [10, 0], "pressure": 1}]});
+    let run = finish(&block(20, water(flow), 400.0, 100.0));
+    for state in &run.last().contacts[0] {
+        let flow = state.water.as_ref().expect("water").flow;
+        close("flow", flow / (TRANSMISSIVITY / VISCOSITY * 2.0 / LENGTH), 1.0, 1e-3);
+    }
+}
+
+/// A well that takes more than there is stops the run.
+#[test]
+fn a_well_cannot_take_what_is_not_there() {
+    let flow = json!({"initial": 1, "wells": [{"at": [0, 0], "rate": -0.02}]});
+    let mut run = fecontact::run::Simulation::new(crate::common::model(&block(20, water(flow), 4.0, 1.0)));
+    let stopped = loop {
+        match run.next_increment() {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("it goes on"),
+            Err(error) => break error.to_string(),
+        }
+    };
+    assert!(stopped.contains("a well takes more than there is"), "{stopped}");
+}
+
 /// A dilatant fault between periodic sides that slips without drainage: p_w = p₀ − δ tan ψ/S, so that slip strengthens it, and it stops where
 /// G (u − δ − q/α_t)/H = q = μ (p + δ tan ψ/S). Where the water does not follow it slips by a third more.
 #[test]
