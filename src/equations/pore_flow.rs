@@ -57,8 +57,7 @@ pub(super) fn add(
     let (times, old) = (Times::of(trial), &trial.old.water);
     let wanted = sums.tangent.is_some();
     let of = |wet: &&WetElement| {
-        let wet = born.wet(wet);
-        Increment { flow, wet, trial, u, times }
+        Increment { flow, wet: born.wet(wet), trial, u, times }
             .evaluate(wanted)
             .map_err(|cause| TrialFailure::material(model, wet.element, cause))
     };
@@ -120,10 +119,9 @@ pub(super) fn add(
         }
     }
     water.change = change;
-    [&mut water.peaks, &mut water.excess, &mut water.brought]
-        .into_iter()
-        .zip([&old.peaks, &old.excess, &old.brought])
-        .for_each(|(own, old)| own.clone_from(old));
+    water.peaks.clone_from(&old.peaks);
+    water.excess.clone_from(&old.excess);
+    water.brought.clone_from(&old.brought);
     Ok(())
 }
 

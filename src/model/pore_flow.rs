@@ -12,7 +12,6 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 use super::boundary::Profile;
 use super::element::SolidElement;
 use super::state::{Outflow, State, Water};
-use super::step::Step;
 use super::{Body, Model};
 use crate::laws::bulk::GIVEN_PRESSURE;
 use crate::mesh::Mesh;
@@ -446,34 +445,6 @@ impl Model {
         }
     }
 
-    /// Lets the water of bodies that a step removes leave with them, while they are still what they were: pressures that no body has afterwards that
-    /// was there before are those of the start.
-    pub fn let_water_go(&self, step: &Step, state: &mut State) {
-        let Some(flow) = &self.flow else { return };
-        for (k, body) in flow.bodies.iter().enumerate().filter(|(_, body)| step.changed.contains(body)) {
-            let held = self.held_water(*body, state).filter(|_| !step.has(*body));
-            state.water.brought[k] -= held.map_or(0.0, |[taken, _]| taken);
-        }
-        let mut stays = vec![false; flow.count()];
-        for wet in &flow.elements {
-            let body = self.body_of_element[wet.element];
-            let there = step.has(body) && !step.changed.contains(&body);
-            wet.pressures.iter().filter(|_| there).for_each(|&k| stays[k] = true);
-        }
-        let lone = (0..flow.count()).filter(|&k| !stays[k]);
-        lone.for_each(|k| state.displacement[flow.dof(k)] = 0.0);
-    }
-
-    /// Lets bodies that a step adds come with their water.
-    pub fn let_water_come(&self, step: &Step, state: &mut State) {
-        let bodies = self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate());
-        for (k, &body) in bodies.filter(|(_, body)| step.changed.contains(body) && step.has(**body)) {
-            let [taken, excess] = self.held_water(body, state).unwrap_or_default();
-            state.water.brought[k] += taken;
-            (state.water.excess[k], state.water.peaks[k]) = (excess, 0.0);
-        }
-    }
-
     /// What a body in which water flows has taken up of it while it was there, ∫ (b (J − 1) + (p − p₀)/Q) dV since it came, and its mean pressure in
     /// excess of that at the start; `None` of any other [L³], [F/L²].
     pub fn water_of(&self, body: usize, state: &State) -> Option<[f64; 2]> {
@@ -483,7 +454,7 @@ impl Model {
     }
 
     /// The same, but for what it brought.
-    fn held_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
+    pub(super) fn held_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref().filter(|flow| flow.bodies.contains(&body))?;
         let law = self.bodies[body].material.description();
         let slot = law.slot(&GIVEN_PRESSURE)?;

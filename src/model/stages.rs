@@ -136,6 +136,34 @@ impl Model {
         born.map_or(Cow::Borrowed(given), Cow::Owned)
     }
 
+    /// Lets the water of bodies that a step removes leave with them, while they are still what they were: pressures that no body has afterwards that
+    /// was there before are those of the start.
+    pub fn let_water_go(&self, step: &Step, state: &mut State) {
+        let Some(flow) = &self.flow else { return };
+        for (k, body) in flow.bodies.iter().enumerate().filter(|(_, body)| step.changed.contains(body)) {
+            let held = self.held_water(*body, state).filter(|_| !step.has(*body));
+            state.water.brought[k] -= held.map_or(0.0, |[taken, _]| taken);
+        }
+        let mut stays = vec![false; flow.count()];
+        for wet in &flow.elements {
+            let body = self.body_of_element[wet.element];
+            let there = step.has(body) && !step.changed.contains(&body);
+            wet.pressures.iter().filter(|_| there).for_each(|&k| stays[k] = true);
+        }
+        let lone = (0..flow.count()).filter(|&k| !stays[k]);
+        lone.for_each(|k| state.displacement[flow.dof(k)] = 0.0);
+    }
+
+    /// Lets bodies that a step adds come with their water.
+    pub fn let_water_come(&self, step: &Step, state: &mut State) {
+        let bodies = self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate());
+        for (k, &body) in bodies.filter(|(_, body)| step.changed.contains(body) && step.has(**body)) {
+            let [taken, excess] = self.held_water(body, state).unwrap_or_default();
+            state.water.brought[k] += taken;
+            (state.water.excess[k], state.water.peaks[k]) = (excess, 0.0);
+        }
+    }
+
     /// Lets the elements of the bodies that a step adds come where their nodes are.
     ///
     /// # Errors
