@@ -1,91 +1,51 @@
-"""The figures of the paper that the law comes from, and numbers for its explanations: runs the cases, draws, and prints tables.
+"""The figures of the paper that the law comes from, and numbers for its explanations: figures and tables of docs/paper.md.
 
-    python3 docs/paper.py [PROGRAM] [FOLDER]
+    python3 docs/paper.py [PROGRAM]
 
-PROGRAM is target/release/fecontact by default; the runs go to FOLDER, out/paper by default, the figures to docs/figures. Some seconds.
-Needs numpy and matplotlib.
+runs the cases, draws the figures into docs/figures, and prints the tables (docs/tables.py writes them into the page). PROGRAM is
+target/release/fecontact by default. Some seconds. Needs numpy, and matplotlib for the figures.
 """
 
-import json
+import functools
 import math
-import pathlib
-import subprocess
 import sys
 
-import matplotlib
-
-matplotlib.use("svg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-CASES = HERE.parent / "cases"
-PROGRAM = sys.argv[1] if len(sys.argv) > 1 else str(HERE.parent / "target/release/fecontact")
-FOLDER = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else "out/paper")
-plt.rcParams.update({"svg.hashsalt": "fecontact", "font.size": 9, "legend.frameon": False})
+import results
+from results import ROOT, committed, text_of
 
 MU_S, MU_K, PRESSURE, ALPHA_T = 0.4, 0.2, 98.1, 1000.0
+ANGLE = math.atan(0.15)
+# The block on the slope stops there, in closed form.
+STOP = 10 / (9.81 * (MU_K * math.cos(ANGLE) - math.sin(ANGLE)))
 # More columns than can be told apart in a picture.
 COLUMNS = 600
 
 
-def history(name, case=None):
-    """Columns of a run of a case of cases/paper, or of a changed one under another name."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    path = CASES / "paper" / f"{name}.json"
-    if case is not None:
-        path = FOLDER / f"{name}.json"
-        path.write_text(json.dumps(case))
-    subprocess.run([PROGRAM, "run", str(path), "--out", str(FOLDER / name), "--quiet"], check=True, stderr=subprocess.DEVNULL)
-    return table(FOLDER / name / "history.csv")
+@functools.cache
+def history(program, name):
+    """Columns of a run of a case of cases/paper; cases 1 and 2 have damped increments as case 3 has them."""
+    of_case_3 = name in ("spring_mass_1_damped", "spring_mass_2_damped")
+    case = committed(f"cases/paper/{name.removesuffix('_damped') if of_case_3 else name}.json")
+    if of_case_3:
+        other = committed("cases/paper/spring_mass_3_damped.json")
+        case["steps"][0].update({key: other["steps"][0][key] for key in ("scheme", "dt")})
+    return results.Run(program, {**case, "output": {"fields": False}}).history
 
 
-def driven(name, alpha_t=ALPHA_T, dt=0.005, **friction):
+@functools.cache
+def springs(program):
+    """Histories of cases 1 to 5."""
+    return {k: history(program, f"spring_mass_{k}_damped") for k in range(1, 6)}
+
+
+@functools.cache
+def driven(program, alpha_t=ALPHA_T, dt=0.005, **friction):
     """Columns of a law test: u = sin t, as the paper's figure 11."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    case = {
-        "friction": {"law": "super_subloading", "mu_s": MU_S, "mu_k": MU_K, "r": 100, "kappa": 10, "xi": 0.002, "structure": 1, "alpha_t": alpha_t, **friction},
-        "initial": {"pressure": PRESSURE, "traction": MU_K * PRESSURE},
-        "dt": dt,
-        "path": [{"duration": 20, "slip": "sin(t)"}],
-    }
-    path = FOLDER / f"{name}.json"
-    path.write_text(json.dumps(case))
-    subprocess.run([PROGRAM, "law", str(path), "--out", str(FOLDER / name)], check=True, stderr=subprocess.DEVNULL)
-    return table(FOLDER / name / "law.csv")
-
-
-def table(path):
-    with path.open() as file:
-        names = file.readline().strip().split(",")
-        numbers = [k for k, name in enumerate(names) if name != "step"]
-        return dict(zip((names[k] for k in numbers), np.loadtxt(file, delimiter=",", usecols=numbers, unpack=True)))
-
-
-def damped(number):
-    """A case of cases/paper with damped, adaptive increments."""
-    case = json.loads((CASES / "paper" / f"spring_mass_{number}.json").read_text())
-    other = json.loads((CASES / "paper" / "spring_mass_3_damped.json").read_text())
-    case["steps"][0].update({key: other["steps"][0][key] for key in ("scheme", "dt")})
-    return case
-
-
-def thinned(time, *columns):
-    """The first, least and largest of every column: the picture stays the same."""
-    pieces = np.array_split(np.arange(time.size), min(COLUMNS, time.size))
-    rows = sorted({k for piece in pieces for of in columns for k in (piece[0], piece[of[piece].argmin()], piece[of[piece].argmax()])})
-    return [column[rows] for column in (time, *columns)]
-
-
-def figure(name, rows=1, columns=1, height=3.0, **more):
-    made, axes = plt.subplots(rows, columns, figsize=(8, height), layout="constrained", **more)
-    return made, np.atleast_1d(axes), lambda: made.savefig(HERE / "figures" / f"{name}.svg", metadata={"Date": None})
-
-
-def show(title, head, rows):
-    print(f"\n{title}\n\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
-    for row in rows:
-        print("| " + " | ".join(str(value) for value in row) + " |")
+    law = {"law": "super_subloading", "mu_s": MU_S, "mu_k": MU_K, "r": 100, "kappa": 10, "xi": 0.002, "structure": 1, "alpha_t": alpha_t, **friction}
+    initial = {"pressure": PRESSURE, "traction": MU_K * PRESSURE}
+    return results.law(program, {"friction": law, "initial": initial, "dt": dt, "path": [{"duration": 20, "slip": "sin(t)"}]})
 
 
 def onsets(run):
@@ -106,110 +66,65 @@ def onsets(run):
     return [(time[begin], slip[end] - slip[begin]) for begin, end in events if slip[end] - slip[begin] > 0.1]
 
 
-def springs():
-    """Figures 5, 7a and 7b: the driven spring and mass."""
-    runs = {1: history("spring_mass_1_damped", damped(1)), 2: history("spring_mass_2_damped", damped(2))}
-    runs |= {k: history(f"spring_mass_{k}_damped") for k in (3, 4, 5)}
-    made, (slip, friction), save = figure("paper_5", 2, height=5, sharex=True)
-    for k, look in ((1, "k:"), (2, "C1--"), (3, "C0-")):
-        time, way, force = thinned(runs[k]["time"], runs[k]["block.ux"], runs[k]["base.tangential_force"])
-        early = time <= 5000
-        slip.plot(time[early], way[early], look, lw=1, label=f"case {k}")
-        friction.plot(time[early], force[early], look, lw=1)
-    slip.set(ylabel="slip")
-    slip.legend()
-    for of, name in ((MU_S, "μ_s p"), (MU_K, "μ_k p")):
-        friction.axhline(of * PRESSURE, color="0.6", lw=0.6)
-        friction.annotate(name, (5000, of * PRESSURE), ha="right", va="bottom", fontsize=8)
-    friction.set(ylabel="friction", xlabel="time")
-    save()
-    made, (slip, friction), save = figure("paper_7", 1, 2, height=3.2)
-    for k, look in ((3, "C0-"), (4, "C1--"), (5, "C2-.")):
-        run = runs[k]
-        time, way = thinned(run["time"], run["block.ux"])
-        slip.plot(time, way, look, lw=1, label=f"case {k}")
-        _, normal, force = thinned(run["time"], run["base.normal_force"], run["base.tangential_force"])
-        friction.plot(normal, force, look, lw=0.8)
-    slip.set(xlabel="time", ylabel="slip")
-    slip.legend()
-    normal = np.array([20, 220])
-    friction.plot(normal, MU_K * normal, "k:", lw=0.8)
-    friction.set(xlabel="normal force", ylabel="friction")
-    save()
-    rows = []
-    for k in (3, 4, 5):
-        events = onsets(runs[k])
-        rows.append([k, len(events), ", ".join(f"{time:.0f}" for time, _ in events[:4]), ", ".join(f"{way:.2f}" for _, way in events[:4]),
-                     f"{runs[k]['base.tangential_force'].max() / PRESSURE:.4f}"])
-    show("Slips in 12 000 (case 5: 8000)", ["case", "slips", "begin at", "slip", "largest friction over 98.1"], rows)
-    one, two = (runs[k]["base.tangential_force"] for k in (1, 2))
-    show("Without recovery", ["case", "largest friction", "at the end"],
-         [[1, f"{one.max():.4f}", f"{one[-1]:.4f} (μ_s p = {MU_S * PRESSURE:.2f})"], [2, f"{two.max():.4f}", f"{two[-1]:.4f} (μ_k p = {MU_K * PRESSURE:.2f})"]])
+def slips(program):
+    """Slip events of cases 3 to 5."""
+    forces, rows = {3: "constant", 4: "+0.01 t", 5: "−0.01 t"}, [["case", "normal force", "slips", "begin at", "slip"]]
+    for k, force in forces.items():
+        run = springs(program)[k]
+        found = onsets(run)
+        count = f"{len(found)} in {run['time'][-1]:.0f}"
+        rows.append([str(k), force, count, ", ".join(f"{time:.0f}" for time, _ in found[:4]), ", ".join(f"{way:.2f}" for _, way in found[:4])])
+    return rows
 
 
-def slope():
-    """Figure 9: a block that stops on a slope."""
-    runs = {name: history(name) for name in ("slope", "slope_damped", "slope_wilson")}
-    made, (whole, end), save = figure("paper_9", 1, 2, height=3.2)
-    angle = math.atan(0.15)
-    weight = 98.1 * math.sin(angle)
-    stop = 10 / (9.81 * (MU_K * math.cos(angle) - math.sin(angle)))
-    rows = []
-    for (name, run), look in zip(runs.items(), ("C0-", "C1--", "C2:")):
+def peaks(program):
+    """Friction of the cases without recovery."""
+    rows = [["case", "largest friction", "at the end", "μ_s p", "μ_k p"]]
+    for k in (1, 2):
+        force = springs(program)[k]["base.tangential_force"]
+        rows.append([str(k), f"{force.max():.4f}", f"{force[-1]:.4f}", f"{MU_S * PRESSURE:.2f}", f"{MU_K * PRESSURE:.2f}"])
+    return rows
+
+
+def stop(program):
+    """The block that stops on a slope."""
+    rows = [["scheme", "friction falls at", "least after", "largest after", "mean of the last 2"]]
+    for name, said in (("slope", "trapezoidal rule"), ("slope_damped", "damped"), ("slope_wilson", "Wilson-θ")):
+        run = history(program, name)
         time, force = run["time"], run["base.tangential_force"]
-        whole.plot(*thinned(time, force), look, lw=0.8, label=name)
-        late = time > 20
-        end.plot(*thinned(time[late], force[late]), look, lw=0.8)
-        after = time > stop
-        speed = np.gradient(run["base.mean_slip"], time)
-        rows.append([name, f"{time[np.flatnonzero(force < 0.99 * force[10])[0]]:.3f}", f"{force[after].min():.3f}", f"{force[after].max():.3f}", f"{force[time > time[-1] - 2].mean():.3f}"])
-    whole.axhline(weight, color="0.6", lw=0.6)
-    whole.set(xlabel="time", ylabel="friction")
-    whole.legend(loc="lower left")
-    end.axhline(weight, color="0.6", lw=0.6)
-    end.set(xlabel="time", xlim=(20, 26))
-    save()
-    show(f"The stop: m g sin θ = {weight:.3f}, μ_k p = {MU_K * 98.1 * math.cos(angle):.3f}, in closed form at {stop:.4f}",
-         ["run", "friction falls at", "least after", "largest after", "mean of the last 2"], rows)
+        after, falls = time > STOP, time[np.flatnonzero(force < 0.99 * force[10])[0]]
+        rows.append([said, f"{falls:.2f}", f"{force[after].min():.2f}", f"{force[after].max():.2f}", f"{force[time > time[-1] - 2].mean():.2f}"])
+    return rows
 
 
-def oscillation():
-    """Figure 11: forced oscillation."""
-    run = driven("forced")
-    made, (way, friction), save = figure("paper_11", 2, height=4.4, sharex=True)
-    way.plot(run["time"], run["slip"], "k-", lw=0.8, label="displacement")
-    way.plot(run["time"], run["slip"] - run["traction"] / ALPHA_T, "C1--", lw=0.8, label="plastic")
-    way.legend(loc="upper right")
-    friction.plot(run["time"], run["traction"], "C0-", lw=0.8)
-    friction.set(xlabel="time", ylabel="friction")
-    save()
-    rows = []
+def along(program):
+    """Where friction acts along the motion, and below μ_k p: shares of the time."""
+    rows = [["α_t", "friction along the motion", "by √(2 μ_k p/α_t)", "friction below 0.999 μ_k p", "least work of an increment"]]
     for alpha_t in (1e3, 1e4, 1e5, 1e6):
-        run = driven(f"forced_{alpha_t:g}", alpha_t, 0.001)
-        late = run["time"] > 2 * math.pi
-        rate, q = np.cos(run["time"]), run["traction"]
-        along = (rate * q < 0) & late
-        plastic = np.diff(run["plastic_slip"])
-        against = (plastic * q[1:])[late[1:]]
+        run = driven(program, alpha_t, 0.001)
+        late, q = run["time"] > 2 * math.pi, run["traction"]
+        with_it = (np.cos(run["time"]) * q < 0) & late
         below = late & (abs(q) < 0.999 * MU_K * PRESSURE)
+        work = (np.diff(run["plastic_slip"]) * q[1:])[late[1:]].min()
         # Four reversals, after each of which the contact spring goes back by q/α_t under u̇ = t − t₀.
         predicted = 4 * math.sqrt(2 * MU_K * PRESSURE / alpha_t) / (20 - 2 * math.pi)
-        rows.append([f"{alpha_t:g}", f"{along.sum() / late.sum():.4f}", f"{predicted:.4f}", f"{below.sum() / late.sum():.4f}", f"{max(0.0, -against.min()):.1e}"])
-    show("Share of the time", ["α_t", "friction along the motion", "4 √(2 μ_k p/α_t) of the time", "friction below 0.999 μ_k p", "least work of plastic slip"], rows)
-    exact = driven("forced_exact", dt=0.001, tolerance=1e-9)
-    rows = []
+        shares = [f"{with_it.sum() / late.sum():.4f}", f"{predicted:.4f}", f"{below.sum() / late.sum():.3f}"]
+        rows.append([f"10^{round(math.log10(alpha_t))}", *shares, "0" if work >= 0.0 else f"{work:.1e}"])
+    return rows
+
+
+def increments(program):
+    """Friction at several Δt against that of 0.001 at a tolerance of 1e-9, between its samples linearly."""
+    exact = driven(program, dt=0.001, tolerance=1e-9)
+    rows = [["Δt", "controlled", "backward Euler", "evaluations, controlled", "backward Euler"]]
     for dt in (0.3, 0.1, 0.01, 0.001):
-        found = []
-        for integration in ("controlled", "backward_euler"):
-            run = driven(f"forced_{integration}_{dt:g}", dt=dt, integration=integration)
-            off = np.abs(run["traction"] - np.interp(run["time"], exact["time"], exact["traction"]))
-            found += [f"{off.max():.1e}", f"{int(run['evaluations'].max())}"]
-        rows.append([f"{dt:g}", *found])
-    show("Largest difference of friction to Δt = 0.001 at a tolerance of 1e-9, between samples linearly",
-         ["Δt", "controlled", "most evaluations", "backward Euler", "most evaluations"], rows)
+        runs = [driven(program, dt=dt, integration=integration) for integration in ("controlled", "backward_euler")]
+        off = [np.abs(run["traction"] - np.interp(run["time"], exact["time"], exact["traction"])).max() for run in runs]
+        rows.append([f"{dt:g}", *(f"{value:.1e}" for value in off), *(f"{run['evaluations'].max():.0f}" for run in runs)])
+    return rows
 
 
-def tensors():
+def tensors(_):
     """The rate form in vectors, equations 15 to 19, on an interface that turns, against the scalar form."""
     mu_s, mu_k, r, kappa, xi, alpha = MU_S, MU_K, 100.0, 10.0, 0.002, ALPHA_T
 
@@ -268,13 +183,105 @@ def tensors():
     other = integrated(tensor, np.array([-4.0, PRESSURE, 0.35]))
     angle = spin * 2.0
     n, s = np.array([-math.sin(angle), math.cos(angle)]), np.array([math.cos(angle), math.sin(angle)])
-    show("Vectors on an interface that turns by 4 radians, and the scalar form",
-         ["form", "q", "p", "μ"],
-         [["scalar", *(f"{value:.9f}" for value in one)], ["tensor", f"{-other[:2] @ s:.9f}", f"{other[:2] @ n:.9f}", f"{other[2]:.9f}"]])
+    numbers = [[*one], [-other[:2] @ s, other[:2] @ n, other[2]]]
+    return [["form", "q", "p", "μ"], *([name, *(f"{value:.7f}" for value in row)] for name, row in zip(("scalar", "tensor"), numbers))]
+
+
+PAPER = {
+    "paper_peaks": peaks,
+    "paper_slips": slips,
+    "paper_stop": stop,
+    "paper_along": along,
+    "paper_increments": increments,
+    "paper_tensor": tensors,
+}
+
+
+def thinned(time, *columns):
+    """The first, least and largest of every column: the picture stays the same."""
+    pieces = np.array_split(np.arange(time.size), min(COLUMNS, time.size))
+    rows = sorted({k for piece in pieces for of in columns for k in (piece[0], piece[of[piece].argmin()], piece[of[piece].argmax()])})
+    return [column[rows] for column in (time, *columns)]
+
+
+def figure(name, rows=1, columns=1, height=3.0, **more):
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams.update({"svg.hashsalt": "fecontact", "font.size": 9, "legend.frameon": False})
+    made, axes = plt.subplots(rows, columns, figsize=(8, height), layout="constrained", **more)
+    return np.atleast_1d(axes), lambda: made.savefig(ROOT / "docs" / "figures" / f"{name}.svg", metadata={"Date": None})
+
+
+def draw_springs(program):
+    """Figures 5, 7a and 7b: the driven spring and mass."""
+    runs = springs(program)
+    (slip, friction), save = figure("paper_5", 2, height=5, sharex=True)
+    for k, look in ((1, "k:"), (2, "C1--"), (3, "C0-")):
+        time, way, force = thinned(runs[k]["time"], runs[k]["block.ux"], runs[k]["base.tangential_force"])
+        early = time <= 5000
+        slip.plot(time[early], way[early], look, lw=1, label=f"case {k}")
+        friction.plot(time[early], force[early], look, lw=1)
+    slip.set(ylabel="slip")
+    slip.legend()
+    for of, name in ((MU_S, "μ_s p"), (MU_K, "μ_k p")):
+        friction.axhline(of * PRESSURE, color="0.6", lw=0.6)
+        friction.annotate(name, (5000, of * PRESSURE), ha="right", va="bottom", fontsize=8)
+    friction.set(ylabel="friction", xlabel="time")
+    save()
+    (slip, friction), save = figure("paper_7", 1, 2, height=3.2)
+    for k, look in ((3, "C0-"), (4, "C1--"), (5, "C2-.")):
+        run = runs[k]
+        time, way = thinned(run["time"], run["block.ux"])
+        slip.plot(time, way, look, lw=1, label=f"case {k}")
+        _, normal, force = thinned(run["time"], run["base.normal_force"], run["base.tangential_force"])
+        friction.plot(normal, force, look, lw=0.8)
+    slip.set(xlabel="time", ylabel="slip")
+    slip.legend()
+    normal = np.array([20, 220])
+    friction.plot(normal, MU_K * normal, "k:", lw=0.8)
+    friction.set(xlabel="normal force", ylabel="friction")
+    save()
+
+
+def draw_slope(program):
+    """Figure 9: a block that stops on a slope."""
+    (whole, end), save = figure("paper_9", 1, 2, height=3.2)
+    for name, look in (("slope", "C0-"), ("slope_damped", "C1--"), ("slope_wilson", "C2:")):
+        run = history(program, name)
+        time, force = run["time"], run["base.tangential_force"]
+        whole.plot(*thinned(time, force), look, lw=0.8, label=name)
+        late = time > 20
+        end.plot(*thinned(time[late], force[late]), look, lw=0.8)
+    weight = PRESSURE * math.sin(ANGLE)
+    whole.axhline(weight, color="0.6", lw=0.6)
+    whole.set(xlabel="time", ylabel="friction")
+    whole.legend(loc="lower left")
+    end.axhline(weight, color="0.6", lw=0.6)
+    end.set(xlabel="time", xlim=(20, 26))
+    save()
+
+
+def draw_oscillation(program):
+    """Figure 11: forced oscillation."""
+    run = driven(program)
+    (way, friction), save = figure("paper_11", 2, height=4.4, sharex=True)
+    way.plot(run["time"], run["slip"], "k-", lw=0.8, label="displacement")
+    way.plot(run["time"], run["slip"] - run["traction"] / ALPHA_T, "C1--", lw=0.8, label="plastic")
+    way.legend(loc="upper right")
+    friction.plot(run["time"], run["traction"], "C0-", lw=0.8)
+    friction.set(xlabel="time", ylabel="friction")
+    save()
+
+
+def main():
+    program = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "target/release/fecontact")
+    for draw in (draw_springs, draw_slope, draw_oscillation):
+        draw(program)
+    print("\n\n".join(text_of(make(program)) for make in PAPER.values()))
 
 
 if __name__ == "__main__":
-    tensors()
-    springs()
-    slope()
-    oscillation()
+    main()

@@ -26,6 +26,7 @@ from error_bars import BARS, SLOW_BARS
 from faults_and_water import SLOW_WATER, WATER
 from forming import FORMING
 from limit_loads import LIMIT
+from paper import PAPER
 from penalties import PENALTIES
 from piles_in_clay import SLOW_PILES
 from problems import COST, QUICK
@@ -42,7 +43,7 @@ FRONTS = "cargo test --release --test published -- --nocapture fronts_run"
 LABORATORY = """cargo run --release -- run cases/laboratory/fault_4m.json &&
     python3 docs/figures/laboratory.py out/fault_4m docs/figures/laboratory.svg"""
 # Of the quick tier: the function that makes it.
-TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS, **PENALTIES, **BARS, **WATER}
+TABLES = {**QUICK, **CLOSED, **CHOOSING, **LIMIT, **WALLS, **FORMING, **SHAFTS, **PENALTIES, **BARS, **WATER, **PAPER}
 # Written, but not compared: iterations that do not converge hang on the last digit, which differs between processors.
 LOOSE = {"cut_back", "drawing", "penalties"}
 # Of the slow tier: the command that prints it, and which of the tables that it prints.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from numbers import Real
 from typing import Any
 
@@ -18,6 +19,9 @@ Parameters = Mapping[str, Any]
 MACHINE = ("stiffness", "mass")
 # Parameters of a record that no law has: those of the machine, and what the measured traction drifts by along the way.
 OF_RECORDS = (*MACHINE, "drift")
+# Rows with which a search begins, and the error that steps of a spring-slider have there and later.
+ROWS = 200
+ROUGH, EXACT = 1e-5, 1e-8
 
 
 class Interface:
@@ -40,6 +44,8 @@ class Interface:
     kind = "traction"
     # What is led.
     led = "slip"
+    # Error of steps that adapt themselves to slip events.
+    _tolerance = EXACT
 
     def __init__(
         self,
@@ -60,6 +66,15 @@ class Interface:
         self.initial = float(array_of("initial", initial, 1).ravel()[0])
         self.sigma, self.weight = noise_of(sigma, weight, size)
         self.opening = None if opening is None else np.broadcast_to(array_of("opening", opening, size), size)
+
+    def rough(self) -> Interface:
+        """The record as a search begins with it: with longer steps, and of a long one some rows only."""
+        short, every = copy(self), max(self.time.size // ROWS, 1)
+        short._tolerance = ROUGH
+        for name in ("time", "slip", "pressure", "measured", "sigma", "opening"):
+            if (column := getattr(self, name)) is not None:
+                setattr(short, name, column[::every])
+        return short
 
     def scales(self) -> tuple[float, float, float]:
         """Coefficient of friction, slip [L] and time [T] that the record covers."""
@@ -138,7 +153,7 @@ class SpringSlider(Interface):
         whole = {**_of_law(parameters), "alpha_t": np.broadcast_to(parameters["alpha_t"], sets)}
         stiffness, mass = (np.broadcast_to(parameters[name], sets) for name in MACHINE)
         path = (self.time, self.slip, self.pressure)
-        return law(whole).ride(*path, stiffness=stiffness, mass=mass, force=self.initial, by=by, threads=threads)
+        return law(whole).ride(*path, stiffness=stiffness, mass=mass, force=self.initial, by=by, tolerance=self._tolerance, threads=threads)
 
     def _series(self, parameters: Parameters) -> tuple[Array, dict[str, Array]]:
         """α, and its derivatives by k and α_t."""
@@ -228,6 +243,10 @@ class Holds:
         starts = np.concatenate([[0.0], np.cumsum(self.hold + slide / rate)])
         self._time = (starts[:, None] + slide / rate * self.SAMPLES).ravel()
         self._slip = (slide * (np.arange(size + 1)[:, None] + self.SAMPLES)).ravel()
+
+    def rough(self) -> Holds:
+        """The record as a search begins with it: the same."""
+        return self
 
     def scales(self) -> tuple[float, float, float]:
         """Coefficient of friction, slip [L] and time [T] that the record covers."""

@@ -27,6 +27,7 @@ def _coefficient(given: dict[str, Any], rate: Array) -> Array:
         return np.asarray(given["mu_d"], dtype=float)
     if name == "rate_and_state":
         a, b, reference = given["a"], given["b"], given["V_0"]
+        b += given.get("b_2") or 0.0
         exponent = (given["f_0"] + b * np.log(reference / rate)) / a + np.log(rate / (2.0 * reference))
         # a arsinh(e^x), which e^x alone would overflow.
         return np.asarray(a * np.logaddexp(exponent, 0.5 * np.logaddexp(0.0, 2.0 * exponent)))

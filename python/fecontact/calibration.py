@@ -71,7 +71,7 @@ def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: 
     """Ends of the searches, the best first: many are started, the most promising are continued."""
     from scipy.stats import qmc
 
-    rough = _Problem(problem.records, problem.space.rough(), problem.threads)
+    rough = _Problem([record.rough() for record in problem.records], problem.space.rough(), problem.threads)
     spread = qmc.LatinHypercube(len(problem.space.names), rng=seed).random(SCREENED)
     with np.errstate(over="ignore"):
         costs = np.sum(rough.residuals(problem.space.within(spread)) ** 2, axis=-1)

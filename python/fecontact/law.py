@@ -209,7 +209,7 @@ class Law:
         ```text
         coulomb            μ
         slip_weakening     μ_d, without cohesion
-        rate_and_state     a arsinh(V/(2 V₀) exp((f₀ + b ln(V₀/V))/a))
+        rate_and_state     a arsinh(V/(2 V₀) exp((f₀ + (b + b₂) ln(V₀/V))/a))
         super_subloading   the root of κ V (μ/μ_k − 1)^m = ξ (1 − μ/μ_s)^n; (κ V + ξ)/(κ V/μ_k + ξ/μ_s) for m = n = 1;
                            times 1 + a ln(1 + V/V₀)
         ```

@@ -1,5 +1,6 @@
 //! Friction laws written in Python: a callable over arrays of points.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -10,6 +11,7 @@ use fecontact::laws::friction::{
 use fecontact::run::error::Error;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyStopIteration, PyTypeError, PyValueError};
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
@@ -110,10 +112,10 @@ impl PythonLaw {
     ) -> PyResult<Vec<Answer>> {
         let array = |value: &dyn Fn(usize) -> f64| PyArray1::from_iter(py, closed.iter().map(|&i| value(i)));
         let before = PyDict::new(py);
-        before.set_item("traction", array(&|i| old[i].traction))?;
-        before.set_item("pressure", array(&|i| old[i].pressure))?;
-        before.set_item("plastic_slip", array(&|i| old[i].plastic_slip))?;
-        before.set_item("dissipation", array(&|i| old[i].dissipation))?;
+        before.set_item(intern!(py, "traction"), array(&|i| old[i].traction))?;
+        before.set_item(intern!(py, "pressure"), array(&|i| old[i].pressure))?;
+        before.set_item(intern!(py, "plastic_slip"), array(&|i| old[i].plastic_slip))?;
+        before.set_item(intern!(py, "dissipation"), array(&|i| old[i].dissipation))?;
         for (k, name) in self.variables.iter().enumerate() {
             before.set_item(name, array(&|i| old[i].variables[k]))?;
         }
@@ -154,8 +156,8 @@ impl PythonLaw {
     fn check_names(&self, said: &Bound<PyMapping>) -> PyResult<()> {
         let known = ["traction", "dtraction_dslip", "dtraction_dpressure", "plastic_increment", "dissipation"];
         for name in said.keys()? {
-            let name: String = name.extract()?;
-            if !known.contains(&name.as_str()) && !self.variables.contains(&name.as_str()) {
+            let name: Cow<str> = name.extract()?;
+            if !known.contains(&&*name) && !self.variables.contains(&&*name) {
                 let known: Vec<&str> = known.iter().chain(self.variables).copied().collect();
                 return Err(PyValueError::new_err(format!("it returned `{name}`; known are {}", known.join(", "))));
             }
@@ -179,6 +181,13 @@ fn values(said: &Bound<PyMapping>, name: &str, points: usize) -> PyResult<Vec<f6
     let py = said.py();
     let missing = |_| PyValueError::new_err(format!("it did not return `{name}`"));
     let given = said.get_item(name).map_err(missing)?;
+    // What laws mostly return is read as it is: conversions take as long as the law.
+    if let Some(values) = given.cast::<PyArray1<f64>>().ok().map(|array| array.readonly()) {
+        let values: Vec<f64> = values.as_array().to_vec();
+        if values.len() == points && values.iter().all(|value| value.is_finite()) {
+            return Ok(values);
+        }
+    }
     let given = py.import("numpy")?.call_method1("asarray", (given,))?;
     let kind: String = given.getattr("dtype")?.getattr("kind")?.extract()?;
     if !"fiub".contains(&kind) {

@@ -109,6 +109,8 @@ struct Motion {
     rate: f64,
     /// ü [L/T²]
     acceleration: f64,
+    /// Change of ü over the last step, per time, from which the next one starts [L/T³]
+    jerk: f64,
 }
 
 /// One step that was taken: from where, how, and to where.
@@ -138,9 +140,9 @@ enum Halt {
 const WHOLE: u64 = 1 << 40;
 /// More steps than this are a slip of the keyboard.
 const MOST_STEPS: usize = 5_000_000;
-/// Newton's method: most iterations of a step, and when it is solved, as a share of the largest pressure.
+/// Newton's method: most iterations of a step, and when it is solved, as a share of the tolerance.
 const MOST_ITERATIONS: usize = 12;
-const SOLVED: f64 = 1e-13;
+const SOLVED: f64 = 1e-4;
 /// A step is doubled where its error is below this share of what is allowed: errors go with the third power.
 const DOUBLED: f64 = 1.0 / 16.0;
 
@@ -148,7 +150,7 @@ impl Slider<'_> {
     /// The ride, with its steps if they are to be kept.
     fn ride(&self, keep: bool) -> Result<Ride, Halt> {
         let scale = self.course.iter().map(|[_, _, pressure]| pressure.abs()).fold(0.0, f64::max);
-        let mut motion = Motion { slip: 0.0, rate: 0.0, acceleration: 0.0 };
+        let mut motion = Motion { slip: 0.0, rate: 0.0, acceleration: 0.0, jerk: 0.0 };
         let mut state = self.start.clone();
         let mut ride = Ride { rows: vec![self.row(self.course[0][1], &motion)], steps: Vec::new() };
         let (mut longest, mut taken) = (f64::INFINITY, 0);
@@ -219,16 +221,18 @@ impl Slider<'_> {
     ) -> Result<(FrictionResponse, Motion), Option<LawFailure>> {
         let per = 4.0 * self.mass / (dt * dt);
         let driven = self.start.traction + self.stiffness * (load_point - self.course[0][1] - from.slip);
-        let mut slip = dt * (from.rate + 0.5 * dt * from.acceleration);
+        let solved = SOLVED * self.tolerance * scale;
+        let mut slip = dt * (from.rate + dt * (0.5 * from.acceleration + 0.25 * dt * from.jerk));
         for _ in 0..MOST_ITERATIONS {
             let answer = self.law.respond(state, Sliding { slip, pressure, dt }).map_err(Some)?;
             let inertia = per * (slip - dt * from.rate) - self.mass * from.acceleration;
             let residual = driven - self.stiffness * slip - answer.state.traction - inertia;
             let round_off = 4.0 * f64::EPSILON * (per * slip.abs() + inertia.abs());
-            if residual.abs() <= SOLVED * scale + round_off {
+            if residual.abs() <= solved + round_off {
                 let rate = 2.0 * slip / dt - from.rate;
                 let acceleration = inertia / self.mass;
-                return Ok((answer, Motion { slip: from.slip + slip, rate, acceleration }));
+                let jerk = (acceleration - from.acceleration) / dt;
+                return Ok((answer, Motion { slip: from.slip + slip, rate, acceleration, jerk }));
             }
             slip += residual / (per + self.stiffness + answer.dtraction_dslip);
         }

@@ -83,12 +83,20 @@ def test_a_velocity_step_of_basalt_has_the_constants_of_its_authors() -> None:
 
 def test_friction_that_rises_after_a_step_asks_for_a_negative_b() -> None:
     step = loaded("rising_step")
-    positive, negative = (step.fitted(name) for name in ("b positive", "b negative"))
+    positive, negative = (step.fitted(name, 565.0) for name in ("b positive", "b negative"))
     # Before the step friction is f₀; from rate to rate steady friction differs by a − b per e-fold, (0.501 − 0.4546)/ln 10.
     value = negative.table["value"]
     assert value["f_0"] == pytest.approx(step.BEFORE, abs=1e-3)
     assert value["a"] - value["b"] == pytest.approx((0.501 - 0.4546) / np.log(10), rel=0.05)
     assert negative.noise < 0.3 * positive.noise
+
+
+def test_friction_that_rises_and_falls_asks_for_two_states() -> None:
+    step = loaded("rising_step")
+    negative, both = (step.fitted(name, 1e3) for name in ("b negative", "two states"))
+    # The last rows are 0.006 below the highest ones, which one state cannot follow.
+    assert both.noise < 0.5 * negative.noise
+    assert both.table["value"]["b"] < 0 < both.table["value"]["b_2"]
 
 
 def test_the_shaft_of_a_pile_carries_what_its_head_did() -> None:

@@ -65,6 +65,50 @@ def test_a_slider_is_that_of_scipy(scipys: np.ndarray) -> None:
     assert errors[1] < 2e-4 and errors[0] > 5.0 * errors[1], errors
 
 
+@pytest.mark.parametrize("evolution", ["ageing", "slip"])
+def test_two_states_are_those_of_scipy(evolution: str) -> None:
+    # Velocity steps up and down, on a driven contact and behind a spring with inertia, by scipy's stiff integrator at 1e-10.
+    from scipy.integrate import solve_ivp
+
+    f_0, reference, a, b, length, b_2, length_2 = 0.6, 1.0, 0.01, 0.012, 5.0, -0.006, 60.0
+    alpha_t, stiffness, mass = 0.5, 0.02, 0.05
+    time = np.linspace(0.0, 60.0, 61)
+    way = np.interp(time, [0.0, 10.0, 35.0, 60.0], [0.0, 10.0, 260.0, 310.0])
+
+    def evolved(v: float, x: float, length: float) -> float:
+        return (reference * np.exp(-x) - v) / length if evolution == "ageing" else -v / length * (x + np.log(v / reference))
+
+    def rate(q: float, x: float, y: float) -> float:
+        return float(2.0 * reference * np.exp(-(f_0 + b * x + b_2 * y) / a) * np.sinh(q / a))
+
+    def driven(t: float, z: np.ndarray, v: float) -> list[float]:
+        q, x, y = z
+        slip = rate(q, x, y)
+        return [alpha_t * (v - slip), evolved(slip, x, length), evolved(slip, y, length_2)]
+
+    def ridden(t: float, z: np.ndarray, v: float) -> list[float]:
+        u, speed, force, *z = z
+        return [speed, (force - z[0]) / mass, stiffness * (v - speed), *driven(t, np.array(z), speed)]
+
+    def ends(rates: object, start: list[float], at: int) -> np.ndarray:
+        state, found = np.array(start), [start[at]]
+        for k in range(time.size - 1):
+            v = way[k + 1] - way[k]
+            state = solve_ivp(rates, (0.0, 1.0), state, "LSODA", args=(v,), rtol=1e-10, atol=1e-12).y[:, -1]
+            found.append(state[at])
+        return np.array(found)
+
+    law = fc.law("rate_and_state", f_0=f_0, V_0=reference, a=a, b=b, D_c=length, b_2=b_2, D_c2=length_2, evolution=evolution, alpha_t=alpha_t)
+    drive = law.drive(time, way, 1.0, traction=0.6)
+    exact = ends(driven, [0.6, 0.0, 0.0], 0)
+    # 1e-6 of f₀ p, and a few of them one after another
+    np.testing.assert_allclose(drive.traction, exact, atol=2e-6)
+    assert abs(exact[34] - 0.6 - (a - b - b_2) * np.log(10.0)) < 2e-3, "and the steady state is nearly reached"
+    ride = law.ride(time, way, 1.0, stiffness=stiffness, mass=mass, force=0.6, tolerance=1e-9)
+    exact = ends(ridden, [0.0, 0.0, 0.6, 0.6, 0.0, 0.0], 2)
+    np.testing.assert_allclose(ride.force, exact, atol=5e-5)
+
+
 def test_mass_and_stiffness_of_a_machine_are_found(scipys: np.ndarray) -> None:
     noise = 2e-3 * np.random.default_rng(6).normal(size=TIME.size)
     free = {name: (LAW[name] / 3.0, LAW[name] * 3.0) for name in ("mu_s", "mu_k", "kappa", "xi")}

@@ -352,7 +352,7 @@ fn same_defaults(before: &Value, now: &Case, mesh: &Mesh) -> Checked<()> {
 }
 
 /// Friction parameters that affect only the start of a run, or stored states.
-const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
+const STARTING: [&str; 5] = ["alpha_t", "law", "structure", "theta", "theta_2"];
 
 /// Maximum number of differences listed in one message.
 const MOST_LISTED: usize = 5;

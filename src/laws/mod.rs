@@ -5,4 +5,5 @@ pub mod bulk;
 mod dual;
 pub mod friction;
 pub mod parameter;
+pub(crate) mod tableau;
 pub(crate) mod text;

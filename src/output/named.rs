@@ -11,6 +11,7 @@ pub fn spoken(name: &str) -> String {
     match name {
         "mu" => "μ".into(),
         "theta" => "θ".into(),
+        "theta_2" => "θ₂".into(),
         "structure" => "structure 1/R*".into(),
         "pressure" => "pressure p".into(),
         "traction" => "traction q".into(),

@@ -246,8 +246,9 @@ pub const IN_FRAMES: [Quantity; 11] =
 pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
 
 /// Quantities at the points of some contacts, in both; names of other internal variables and observables come from their law.
-pub const OF_SOME: [Quantity; 7] = [
+pub const OF_SOME: [Quantity; 8] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
+    q("theta_2", TIME, "θ₂: its second state, where the law has one"),
     q("dilation", LENGTH, "opening by dilatancy"),
     q("wear", LENGTH, "depth of wear"),
     q("fluid_pressure", STRESS, "p_w: pressure of the fluid, in addition to the contact pressure"),

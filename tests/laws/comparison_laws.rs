@@ -28,6 +28,9 @@ const WEAKENING: SlipWeakeningParameters = SlipWeakeningParameters::new(0.6, 0.5
 const RATE_AND_STATE: RateAndStateParameters =
     RateAndStateParameters::new(0.6, 1.0, 0.010, 0.015, 10.0).evolution(StateEvolution::Ageing).alpha_t(0.5);
 
+/// [`RATE_AND_STATE`] with a second state over a fifth of the slip, of either sign.
+const TWO_STATES: [RateAndStateParameters; 2] = [RATE_AND_STATE.second(0.004, 2.0), RATE_AND_STATE.second(-0.004, 2.0)];
+
 fn weakening(parameters: SlipWeakeningParameters) -> SlipWeakening {
     SlipWeakening::new(&parameters, f64::NAN).expect("valid parameters")
 }
@@ -334,20 +337,78 @@ fn steady_sliding_has_the_coefficient_of_its_rate() {
 #[test]
 fn a_jump_of_the_rate_acts_directly_and_then_by_the_state() {
     // A stiff contact, so that the plastic slip follows the total: the jump is a ln 10, then −b ln 10 decays over D_c.
-    let law = rate_and_state(RATE_AND_STATE.alpha_t(1e6).evolution(StateEvolution::Slip));
-    let mut state = law.initial_state(0.0, 0.0);
-    for _ in 0..10 {
-        state = respond(&law, &state, 1.0, 100.0, 1.0).state;
+    for p in [RATE_AND_STATE, TWO_STATES[0], TWO_STATES[1]] {
+        let law = rate_and_state(p.alpha_t(1e6).evolution(StateEvolution::Slip));
+        let mut state = law.initial_state(0.0, 0.0);
+        for _ in 0..10 {
+            state = respond(&law, &state, 1.0, 100.0, 1.0).state;
+        }
+        assert_close(state.traction, 60.0, 1e-5, "steady at V₀");
+        let mut slipped = 0.0;
+        for _ in 0..3000 {
+            state = respond(&law, &state, 0.01, 100.0, 0.001).state;
+            slipped += 0.01;
+            // Slip law at constant V: the part b ln(V/V₀) of a state decays as exp(−D/D_c), each over its own D_c.
+            let decayed = |b: f64, length: f64| b * (1.0 - f64::exp(-slipped / length));
+            let second = decayed(p.b_2.unwrap_or(0.0), p.critical_slip_2.unwrap_or(1.0));
+            let expected = 60.0 + 100.0 * 10f64.ln() * (0.010 - decayed(0.015, 10.0) - second);
+            if slipped > 0.05 {
+                assert_close(state.traction, expected, 2e-4, &format!("after {slipped}"));
+            }
+        }
     }
-    assert_close(state.traction, 60.0, 1e-5, "steady at V₀");
-    let mut slipped = 0.0;
-    for _ in 0..3000 {
-        state = respond(&law, &state, 0.01, 100.0, 0.001).state;
-        slipped += 0.01;
-        // Slip law at constant V: ψ + b ln(V/V₀) − f₀ decays as exp(−D/D_c).
-        let expected = 60.0 + 100.0 * 10f64.ln() * (0.010 - 0.015 * (1.0 - f64::exp(-slipped / 10.0)));
-        if slipped > 0.05 {
-            assert_close(state.traction, expected, 2e-4, &format!("after {slipped}"));
+}
+
+/// A second state without effect changes no bit of anything but itself, at single increments, along records and in slip rates.
+#[test]
+fn a_second_state_without_effect_changes_nothing() {
+    let mut random = Random(8);
+    for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
+        let laws = [RATE_AND_STATE, RATE_AND_STATE.second(0.0, 2.0)].map(|p| rate_and_state(p.evolution(evolution)));
+        let controlled = [0, 1].map(|k| laws[k].controlled().expect("it is controlled"));
+        let mut states = laws.each_ref().map(|law| law.initial_state(100.0, 50.0));
+        for k in 0..300 {
+            let slip = random.between(-2.0, 8.0);
+            let sliding = Sliding::new(slip, random.between(50.0, 120.0), 10f64.powf(random.between(-3.0, 2.0)));
+            let answer = |of: usize| match k % 2 {
+                0 => laws[of].respond(&states[of], sliding).expect("an answer"),
+                _ => controlled[of].respond(&states[of], sliding).expect("an answer"),
+            };
+            let [one, two] = [0, 1].map(answer);
+            let second = two.state.variables[1];
+            assert!(second > 0.0, "{second}");
+            assert_eq!((one.dtraction_dslip, one.evaluations), (two.dtraction_dslip, two.evaluations), "{k}");
+            let point = PointLoad { traction: one.state.traction, pressure: one.state.pressure, damping: 0.1 };
+            let [rate, other] = [(0, &one), (1, &two)].map(|(of, answer)| {
+                let rates = laws[of].rates().expect("it has rates");
+                let x = rates.evolving(&answer.state);
+                let rate = rates.slip_rate(x, point);
+                (rate, rates.evolution(x, rate)[0], rates.regime(x, rate))
+            });
+            assert_eq!(rate, other);
+            states = [one.state, two.state];
+            let theta = states[1].variables[0];
+            assert_eq!(states[0], states[1].clone().with_variables([theta]));
+        }
+    }
+}
+
+#[test]
+fn two_states_slide_steadily_by_the_sum_of_their_effects() {
+    for p in TWO_STATES {
+        for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
+            for rate in [1e-6, 1.0, 1e4] {
+                let law = rate_and_state(p.evolution(evolution));
+                let mut state = law.initial_state(0.0, 0.0);
+                for _ in 0..3000 {
+                    state = respond(&law, &state, 0.5, 100.0, 0.5 / rate).state;
+                }
+                let steady = 100.0 * (0.6 + (0.010 - 0.015 - p.b_2.expect("given")) * f64::ln(rate));
+                assert_close(state.traction, steady, 1e-6 * steady, &format!("{evolution:?} at {rate}"));
+                let [theta, second] = [0, 1].map(|k| state.variables[k]);
+                assert_close(theta * rate / 10.0, 1.0, 1e-6, "θ");
+                assert_close(second * rate / 2.0, 1.0, 1e-6, "θ₂");
+            }
         }
     }
 }
@@ -372,23 +433,33 @@ fn rest_heals_with_the_logarithm_of_time_in_the_ageing_law_only() {
     }
 }
 
-/// Rates of (q, θ) of the law's equations at the slip rate v of the whole.
-fn rates(p: &RateAndStateParameters, pressure: f64, v: f64, [q, theta]: [f64; 2]) -> [f64; 2] {
-    let psi = p.f_0 + p.b * (p.reference_rate * theta / p.critical_slip).ln();
+/// ψ of the law's equations.
+fn psi(p: &RateAndStateParameters, [theta, second]: [f64; 2]) -> f64 {
+    let (b_2, length) = (p.b_2.unwrap_or(0.0), p.critical_slip_2.unwrap_or(1.0));
+    let first = p.b * (p.reference_rate * theta / p.critical_slip).ln();
+    p.f_0 + first + b_2 * (p.reference_rate * second / length).ln()
+}
+
+/// Rates of (q, θ, θ₂) of the law's equations at the slip rate v of the whole.
+fn rates(p: &RateAndStateParameters, pressure: f64, v: f64, [q, theta, second]: [f64; 3]) -> [f64; 3] {
+    let psi = psi(p, [theta, second]);
     let slip_rate = 2.0 * p.reference_rate * (q / (p.a * pressure)).sinh() * (-psi / p.a).exp();
-    let y = slip_rate.abs() * theta / p.critical_slip;
-    let dtheta = match p.evolution {
-        StateEvolution::Ageing => 1.0 - y,
-        _ => -y * y.ln(),
+    let evolution = |theta: f64, length: f64| {
+        let y = slip_rate.abs() * theta / length;
+        match p.evolution {
+            StateEvolution::Ageing => 1.0 - y,
+            _ => -y * y.ln(),
+        }
     };
-    [p.alpha_t.expect("given") * (v - slip_rate), dtheta]
+    let second = evolution(second, p.critical_slip_2.unwrap_or(1.0));
+    [p.alpha_t.expect("given") * (v - slip_rate), evolution(theta, p.critical_slip), second]
 }
 
 #[test]
 fn increments_converge_to_the_differential_equations() {
-    let laws = [StateEvolution::Ageing, StateEvolution::Slip].map(|evolution| [0.015, -0.015].map(|b| (evolution, b)));
-    for (evolution, b) in laws.into_iter().flatten() {
-        let p = with!(RATE_AND_STATE.evolution(evolution), b: b);
+    let laws = [RATE_AND_STATE, with!(RATE_AND_STATE, b: -0.015), TWO_STATES[0], TWO_STATES[1]];
+    let all = [StateEvolution::Ageing, StateEvolution::Slip].map(|evolution| laws.map(|p| p.evolution(evolution)));
+    for p in all.into_iter().flatten() {
         let law = rate_and_state(p);
         // Slip at V₀, then ten times as fast, then back at a third: 60 s by the method of Runge and Kutta.
         let rate = |t: f64| {
@@ -400,17 +471,17 @@ fn increments_converge_to_the_differential_equations() {
                 -3.0
             }
         };
-        let mut y = [59.0, 10.0];
+        let mut y = [59.0, 10.0, p.critical_slip_2.unwrap_or(1.0)];
         let h = 1e-4;
         for k in 0..600_000u32 {
             let v = rate((f64::from(k) + 0.5) * h);
-            let f = |y: [f64; 2]| rates(&p, 100.0, v, y);
-            let step = |y: [f64; 2], k: [f64; 2], s: f64| [y[0] + s * k[0], y[1] + s * k[1]];
+            let f = |y: [f64; 3]| rates(&p, 100.0, v, y);
+            let step = |y: [f64; 3], k: [f64; 3], s: f64| [0, 1, 2].map(|i| y[i] + s * k[i]);
             let k1 = f(y);
             let k2 = f(step(y, k1, 0.5 * h));
             let k3 = f(step(y, k2, 0.5 * h));
             let k4 = f(step(y, k3, h));
-            for i in 0..2 {
+            for i in 0..3 {
                 y[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
             }
         }
@@ -420,12 +491,11 @@ fn increments_converge_to_the_differential_equations() {
             for k in 0..steps {
                 state = respond(&law, &state, rate((f64::from(k) + 0.5) * dt) * dt, 100.0, dt).state;
             }
-            let psi = p.f_0 + p.b * (p.reference_rate * y[1] / p.critical_slip).ln();
-            (state.traction - y[0]).abs() + 100.0 * (psi_of(&law, &state) - psi).abs()
+            (state.traction - y[0]).abs() + 100.0 * (psi_of(&law, &state) - psi(&p, [y[1], y[2]])).abs()
         };
         let (coarse, fine) = (error(6000), error(12000));
-        assert!(fine < 0.02, "{evolution:?}, b = {b}: {fine}");
-        assert!((1.8..2.2).contains(&(coarse / fine)), "{evolution:?}, b = {b}: {coarse:e} became {fine:e}");
+        assert!(fine < 0.02, "{p:?}: {fine}");
+        assert!((1.8..2.2).contains(&(coarse / fine)), "{p:?}: {coarse:e} became {fine:e}");
     }
 }
 
@@ -438,10 +508,12 @@ fn rate_and_state_tangents_are_exact() {
         // The weakening b p/D_c is 0.15 at the usual pressure: some contacts are softer than that.
         let alpha_t = Some(10f64.powf(random.between(-1.0, 2.0)));
         let b = [0.015, -0.015][k / 2 % 2];
-        let law = rate_and_state(with!(RATE_AND_STATE.evolution(evolution), alpha_t: alpha_t, b: b));
+        let p = [RATE_AND_STATE, TWO_STATES[0], TWO_STATES[1]][k % 3];
+        let law = rate_and_state(with!(p.evolution(evolution), alpha_t: alpha_t, b: b));
         let pressure = random.between(1.0, 150.0);
         let psi = random.between(0.5, 0.7);
-        let old = with_psi(psi).loaded(pressure, random.between(-80.0, 80.0));
+        let variables = [with_psi(psi).variables[0], p.critical_slip_2.unwrap_or(0.0) * random.between(0.1, 10.0)];
+        let old = FrictionState::default().with_variables(variables).loaded(pressure, random.between(-80.0, 80.0));
         let slip = random.between(-40.0, 40.0) / law.description().stiffness;
         let dt = 10f64.powf(random.between(-6.0, 3.0));
         smooth += usize::from(check_tangents(&law, &old, slip, random.between(1.0, 150.0), dt));
@@ -456,10 +528,14 @@ fn answers_meet_their_equations_and_are_the_first_root() {
     for k in 0..20000 {
         let evolution = if k % 2 == 0 { StateEvolution::Ageing } else { StateEvolution::Slip };
         let alpha_t = 10f64.powf(random.between(-2.0, 3.0));
-        let p = with!(RATE_AND_STATE.evolution(evolution).alpha_t(alpha_t), b: [0.015, -0.015][k / 2 % 2]);
+        let p = [RATE_AND_STATE, RATE_AND_STATE, TWO_STATES[0], TWO_STATES[1]][k / 4 % 4];
+        let p = with!(p.evolution(evolution).alpha_t(alpha_t), b: [0.015, -0.015][k / 2 % 2]);
         let law = rate_and_state(p);
         let psi0 = random.between(0.3, 0.8);
-        let old = with_psi(psi0).loaded(100.0, 0.0);
+        let (b_2, length) = (p.b_2.unwrap_or(0.0), p.critical_slip_2.unwrap_or(2.0));
+        let second = length * 10f64.powf(random.between(-4.0, 4.0));
+        let variables = [with_psi(psi0).variables[0], if p.b_2.is_some() { second } else { 0.0 }];
+        let old = FrictionState::default().with_variables(variables).loaded(100.0, 0.0);
         let dt = 10f64.powf(random.between(-8.0, 6.0));
         let trial = 10f64.powf(random.between(-3.0, 2.5));
         let response = respond(&law, &old, trial / alpha_t, 100.0, dt);
@@ -470,13 +546,15 @@ fn answers_meet_their_equations_and_are_the_first_root() {
         assert_close(traction, trial - alpha_t * plastic_slip, 1e-9 * trial, "slip");
         // Evaluated afresh, in logarithms: θ₁ of (4) or (5), q of (2).
         let excess = |slip: f64| {
-            let (x, v) = (slip / 10.0, slip / dt);
-            let log0 = (psi0 - 0.6) / 0.015;
-            let log = match evolution {
-                StateEvolution::Ageing => (log0.exp() * (-x).exp() + dt / 10.0 * (1.0 - (-x).exp()) / x).ln(),
-                _ => log0 * (-x).exp() - v.ln() * (1.0 - (-x).exp()),
+            let v = slip / dt;
+            let after = |log0: f64, length: f64| {
+                let x = slip / length;
+                match evolution {
+                    StateEvolution::Ageing => (log0.exp() * (-x).exp() + dt / length * (1.0 - (-x).exp()) / x).ln(),
+                    _ => log0 * (-x).exp() - v.ln() * (1.0 - (-x).exp()),
+                }
             };
-            let psi = 0.6 + p.b * log;
+            let psi = 0.6 + p.b * after((psi0 - 0.6) / 0.015, 10.0) + b_2 * after((second / length).ln(), length);
             let w = (0.5 * v).ln() + psi / 0.01;
             let arsinh = if w > 30.0 { w + 2f64.ln() } else { w.exp().asinh() };
             (trial - alpha_t * slip - 0.01 * 100.0 * arsinh, psi)
@@ -510,6 +588,12 @@ fn parameters_out_of_range_are_named() {
         (with!(RATE_AND_STATE, b: f64::INFINITY), "b"),
         (with!(RATE_AND_STATE, critical_slip: f64::NAN), "D_c"),
         (RATE_AND_STATE.theta(0.0), "theta"),
+        (RATE_AND_STATE.second(f64::NAN, 1.0), "b_2"),
+        (RATE_AND_STATE.second(0.01, 0.0), "D_c2"),
+        (with!(RATE_AND_STATE, b_2: Some(0.01)), "D_c2"),
+        (with!(RATE_AND_STATE, critical_slip_2: Some(0.01)), "D_c2"),
+        (RATE_AND_STATE.theta_2(1.0), "theta_2"),
+        (RATE_AND_STATE.second(0.01, 1.0).theta_2(-1.0), "theta_2"),
         (RATE_AND_STATE.alpha_t(-1.0), "alpha_t"),
     ] {
         assert_eq!(RateAndState::new(&parameters, 1.0).expect_err("refused").name, name);
@@ -540,6 +624,8 @@ fn no_increment_panics_or_is_not_a_number() {
                 RATE_AND_STATE,
                 a: magnitude(&mut random, -6.0, 0.0),
                 b: [0.0, 1.0, -1.0, 1.0, 1.0, 1.0, -1.0][k % 7] * magnitude(&mut random, -6.0, 0.0),
+                b_2: [None, Some([0.0, 1.0, -1.0][k / 2 % 3] * magnitude(&mut random, -6.0, 0.0))][k / 7 % 2],
+                critical_slip_2: [None, Some(magnitude(&mut random, -9.0, 3.0))][k / 7 % 2],
                 critical_slip: magnitude(&mut random, -9.0, 3.0),
                 reference_rate: magnitude(&mut random, -9.0, 3.0),
                 evolution: if k % 3 == 1 { StateEvolution::Ageing } else { StateEvolution::Slip },
@@ -571,32 +657,37 @@ fn the_slip_rate_follows_from_traction_and_state() {
     for k in 0..4000 {
         let evolution = [StateEvolution::Ageing, StateEvolution::Slip][k % 2];
         let b = [0.015, -0.015][k / 4 % 2];
-        let parameters = with!(RATE_AND_STATE.evolution(evolution), a: 0.003 + 0.03 * random.unit(), b: b);
+        let p = [RATE_AND_STATE, TWO_STATES[0], TWO_STATES[1]][k % 3];
+        let parameters = with!(p.evolution(evolution), a: 0.003 + 0.03 * random.unit(), b: b);
         let law = rate_and_state(parameters);
         let rates = law.rates().expect("it has rates");
-        let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, .. } = parameters;
+        let RateAndStateParameters { f_0, reference_rate, a, b, b_2, critical_slip, critical_slip_2, .. } = parameters;
         let rate = 10f64.powf(-30.0 + 40.0 * random.unit()) * [1.0, -1.0][k / 2 % 2];
         let x = -10.0 + 50.0 * random.unit();
         let (pressure, damping) = (0.1 + 100.0 * random.unit(), 10f64.powf(-6.0 + 8.0 * random.unit()));
-        let psi = f_0 + b * x;
+        let x = [x, if b_2.is_some() { 20.0 * random.unit() } else { 0.0 }];
+        let psi = f_0 + b * x[0] + b_2.unwrap_or(0.0) * x[1];
         let log = (rate.abs() / (2.0 * reference_rate)).ln() + psi / a;
         let arsinh = if log > 20.0 { log + std::f64::consts::LN_2 } else { log.exp().asinh() };
         let traction = rate.signum() * a * pressure * arsinh + damping * rate;
         let found = rates.slip_rate(x, PointLoad { traction, pressure, damping });
         // Round-off of τ is that of its larger part, and friction makes an error of arsinh times its size of it.
-        let allowed = 1e-13 * (1.0 + arsinh + psi / a) * (1.0 + damping * rate.abs() / (a * pressure));
-        assert_close(found / rate, 1.0, allowed.min(1e-6), &format!("V = {rate:e}, x = {x}, a = {a}"));
-        let theta = critical_slip / reference_rate * x.exp();
-        let slid = rate.abs() * theta / critical_slip;
-        let expected = match evolution {
-            StateEvolution::Ageing => (1.0 - slid) / theta,
-            _ => -slid * slid.ln() / theta,
-        };
-        let size = (1.0 + slid * (1.0 + slid.ln().abs())) / theta;
-        assert_close(rates.evolution(x, rate) / size, expected / size, 1e-12, "evolution");
+        let allowed = 1e-13 * (1.0 + arsinh + psi.abs() / a) * (1.0 + damping * rate.abs() / (a * pressure));
+        assert_close(found / rate, 1.0, allowed.min(1e-6), &format!("V = {rate:e}, x = {x:?}, a = {a}"));
         let state = rates.remember(x, FrictionState::default());
-        assert_close(state.variables[0] / theta, 1.0, 1e-12, "θ");
-        assert_close(rates.evolving(&state), x, 1e-12 * x.abs(), "x");
+        let lengths = std::iter::once(critical_slip).chain(critical_slip_2);
+        for (i, critical_slip) in lengths.enumerate() {
+            let theta = critical_slip / reference_rate * x[i].exp();
+            let slid = rate.abs() * theta / critical_slip;
+            let expected = match evolution {
+                StateEvolution::Ageing => (1.0 - slid) / theta,
+                _ => -slid * slid.ln() / theta,
+            };
+            let size = (1.0 + slid * (1.0 + slid.ln().abs())) / theta;
+            assert_close(rates.evolution(x, rate)[i] / size, expected / size, 1e-12, "evolution");
+            assert_close(state.variables[i] / theta, 1.0, 1e-12, "θ");
+            assert_close(rates.evolving(&state)[i], x[i], 1e-12 * x[i].abs(), "x");
+        }
     }
 }
 

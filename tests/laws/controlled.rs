@@ -57,23 +57,28 @@ fn driven(law: &dyn FrictionLaw, increments: usize) -> Vec<FrictionResponse> {
     (0..SAMPLES).map(sample).collect()
 }
 
-/// (q, ln θ, W + q²/(2 α_t)) at the samples by the method of Runge and Kutta, of the equations as they are written.
-fn integrated(p: &RateAndStateParameters) -> Vec<[f64; 3]> {
+/// (q, ln θ, W + q²/(2 α_t), ln θ₂) at the samples by the method of Runge and Kutta, of the equations as they are written.
+fn integrated(p: &RateAndStateParameters) -> Vec<[f64; 4]> {
     const STEPS: usize = 2500;
     let alpha_t = p.alpha_t.expect("given");
     let h = SAMPLE / STEPS as f64;
-    let rates = |v: f64, pressure: f64, [q, log, _]: [f64; 3]| {
-        let psi = p.f_0 + p.b * (p.reference_rate / p.critical_slip).ln() + p.b * log;
+    let (b_2, length) = (p.b_2.unwrap_or(0.0), p.critical_slip_2.unwrap_or(1.0));
+    let rates = |v: f64, pressure: f64, [q, log, _, second]: [f64; 4]| {
+        let effect = |b: f64, length: f64, log: f64| b * (p.reference_rate / length).ln() + b * log;
+        let psi = p.f_0 + effect(p.b, p.critical_slip, log) + effect(b_2, length, second);
         let slip_rate = 2.0 * p.reference_rate * (q / (p.a * pressure)).sinh() * (-psi / p.a).exp();
-        let y = slip_rate * log.exp() / p.critical_slip;
-        let dlog = match p.evolution {
-            StateEvolution::Ageing => (1.0 - y) * (-log).exp(),
-            _ => -y * y.ln() * (-log).exp(),
+        let dlog = |log: f64, length: f64| {
+            let y = slip_rate * log.exp() / length;
+            match p.evolution {
+                StateEvolution::Ageing => (1.0 - y) * (-log).exp(),
+                _ => -y * y.ln() * (-log).exp(),
+            }
         };
-        [alpha_t * (v - slip_rate), dlog, q * v]
+        [alpha_t * (v - slip_rate), dlog(log, p.critical_slip), q * v, dlog(second, length)]
     };
-    let mut y = [START[1], (p.critical_slip / p.reference_rate).ln(), START[1] * START[1] / (2.0 * alpha_t)];
-    let step = |y: [f64; 3], k: [f64; 3], s: f64| [0, 1, 2].map(|i| y[i] + s * k[i]);
+    let [log, second] = [p.critical_slip, length].map(|length| (length / p.reference_rate).ln());
+    let mut y = [START[1], log, START[1] * START[1] / (2.0 * alpha_t), second];
+    let step = |y: [f64; 4], k: [f64; 4], s: f64| [0, 1, 2, 3].map(|i| y[i] + s * k[i]);
     let sample = |k: usize| {
         let v = rate(k);
         for i in 0..STEPS {
@@ -82,35 +87,40 @@ fn integrated(p: &RateAndStateParameters) -> Vec<[f64; 3]> {
             let k2 = rates(v, at(0.5), step(y, k1, 0.5 * h));
             let k3 = rates(v, at(0.5), step(y, k2, 0.5 * h));
             let k4 = rates(v, at(1.0), step(y, k3, h));
-            y = [0, 1, 2].map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+            y = [0, 1, 2, 3].map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
         }
         y
     };
     (0..SAMPLES).map(sample).collect()
 }
 
-/// Largest differences of traction, ln θ and work.
-fn differences(answers: &[FrictionResponse], exact: &[[f64; 3]]) -> [f64; 3] {
-    let mut most = [0.0f64; 3];
+/// Largest differences of traction, ln θ, work and, of a law with a second state, ln θ₂.
+fn differences(answers: &[FrictionResponse], exact: &[[f64; 4]]) -> [f64; 4] {
+    let mut most = [0.0f64; 4];
     for (FrictionResponse { state, .. }, exact) in answers.iter().zip(exact) {
         let work = state.dissipation + state.traction * state.traction / (2.0 * 1000.0);
-        let found = [state.traction, state.variables[0].ln(), work];
-        (0..3).for_each(|i| most[i] = most[i].max((found[i] - exact[i]).abs()));
+        let second = if state.variables[1] > 0.0 { state.variables[1].ln() } else { exact[3] };
+        let found = [state.traction, state.variables[0].ln(), work, second];
+        (0..4).for_each(|i| most[i] = most[i].max((found[i] - exact[i]).abs()));
     }
     most
 }
 
 #[test]
 fn coarse_records_are_answered_by_the_differential_equations() {
-    for (evolution, b) in EVOLUTIONS.map(|evolution| [0.015, -0.01].map(|b| (evolution, b))).into_iter().flatten() {
-        let parameters = with!(LABORATORY.evolution(evolution), b: b);
+    let laws =
+        [LABORATORY, with!(LABORATORY, b: -0.01), LABORATORY.second(-0.006, 0.2), LABORATORY.second(0.004, 0.005)];
+    for parameters in EVOLUTIONS.map(|evolution| laws.map(|law| law.evolution(evolution))).into_iter().flatten() {
+        let evolution = parameters.evolution;
         let exact = integrated(&parameters);
         for increments in [1, 3, 20] {
-            let [traction, state, work] = differences(&driven(&*law(&parameters), increments), &exact);
+            let [traction, state, work, second] = differences(&driven(&*law(&parameters), increments), &exact);
             println!("{evolution:?} {increments}: {traction:e} {state:e} {work:e}");
             // 1e-6 f₀ p in q, 1e-6 f₀ in (a + b) ln θ; the work is that of 0.2 mm.
             assert!(traction < 3e-6, "{evolution:?}, {increments}: {traction:e}");
             assert!(state < 2.4e-5, "{evolution:?}, {increments}: {state:e}");
+            // 1e-6 f₀ in b₂ ln θ₂, of at least 0.004
+            assert!(second < 1.5e-4, "{evolution:?}, {increments}: {second:e}");
             assert!(work < 1e-6, "{evolution:?}, {increments}: {work:e}");
         }
         let single = RateAndState::new(&parameters, f64::NAN).expect("valid parameters");
@@ -124,7 +134,7 @@ fn coarse_records_are_answered_by_the_differential_equations() {
 fn sensitivities_along_records_are_those_of_the_answers() {
     const CHANGES: [(f64, f64); 4] = [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)];
     for evolution in EVOLUTIONS {
-        let parameters = LABORATORY.evolution(evolution).theta(17.0);
+        let parameters = LABORATORY.evolution(evolution).theta(17.0).second(-0.006, 0.2).theta_2(150.0);
         let law = law(&parameters);
         let sensitive = law.sensitivities().expect("differentiated");
         for name in sensitive.parameters() {
@@ -164,6 +174,9 @@ fn value(p: &RateAndStateParameters, name: &str) -> f64 {
         "b" => p.b,
         "D_c" => p.critical_slip,
         "alpha_t" => p.alpha_t.expect("given"),
+        "b_2" => p.b_2.expect("given"),
+        "D_c2" => p.critical_slip_2.expect("given"),
+        "theta_2" => p.theta_2.expect("given"),
         _ => p.theta.expect("given"),
     }
 }
@@ -178,6 +191,9 @@ fn with(p: &RateAndStateParameters, name: &str, share: f64) -> RateAndStateParam
         "b" => with!(*p, b: changed),
         "D_c" => with!(*p, critical_slip: changed),
         "alpha_t" => p.alpha_t(changed),
+        "b_2" => with!(*p, b_2: Some(changed)),
+        "D_c2" => with!(*p, critical_slip_2: Some(changed)),
+        "theta_2" => p.theta_2(changed),
         _ => p.theta(changed),
     }
 }

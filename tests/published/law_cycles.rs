@@ -12,27 +12,29 @@ const DAMPING: f64 = 1e4;
 /// Rate of the far side, and ten times that: the patch slips.
 const LOADING: f64 = 1e-5;
 const FAST: f64 = 1e-4;
+/// Slip of an event, at least.
+const LEAST: f64 = 1e-4;
 
-/// The fault on a number of edges such that the patch ends halfway between two nodes; the softer the rock, the shorter what must be
-/// resolved.
-fn fault(edges: usize, modulus: f64, scheme: &Value, dt: &Value) -> Value {
-    assert_eq!(edges % 4, 2);
+/// The fault on a number of edges such that the patch ends halfway between two nodes. The process zone, 9π/16 G/(1 − ν) μ_k/(κ (μ_s − μ_k) p),
+/// is 0.754 long, of a patch of 3.
+fn fault(edges: usize, scheme: &Value, dt: &Value) -> Value {
+    assert_eq!(edges % 8, 4);
     json!({
         "mesh": {"blocks": [{
-            "body": "rock", "corners": [[-3, 0], [3, 0], [3, 4], [-3, 4]], "elements": [edges, edges / 4], "grading": [1, 6],
+            "body": "rock", "corners": [[-2, 0], [2, 0], [2, 4], [-2, 4]], "elements": [edges, edges / 4], "grading": [1, 6],
             "sides": ["fault", null, "top", null],
         }]},
-        "bodies": {"rock": {"material": {"model": "linear", "E": modulus, "nu": 0.25}}},
+        "bodies": {"rock": {"material": {"model": "linear", "E": 8000, "nu": 0.25}}},
         "contacts": {"fault": {
             "slave": "fault", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "method": "node_to_segment",
             "normal": {"alpha_n": 1e7}, "sliding": "small", "radiation_damping": DAMPING,
-            "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 1e6, "r": 1e4, "kappa": 1000, "xi": 0.002},
+            "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 1e6, "r": 1e4, "kappa": 100, "xi": 0.002},
             "along": {"law": [
                 {"where": "abs(x)-1.5", "friction": {"law": "prescribed", "slip_rate": LOADING, "alpha_t": 1e6}},
             ]},
             "initial": {"pressure": 100, "traction": 20, "balanced": true},
         }},
-        "steps": [{"name": "cycles", "duration": 1000, "scheme": scheme, "dt": dt,
+        "steps": [{"name": "cycles", "duration": 2200, "scheme": scheme, "dt": dt,
             "supports": [{"on": "top", "ux": {"rate": LOADING}, "uy": 0}]}],
     })
 }
@@ -54,7 +56,8 @@ fn events(case: &Value) -> Vec<[f64; 2]> {
         match begun {
             None if before[2] < FAST && now[2] >= FAST => begun = Some(at),
             Some([time, slip]) if now[2] < FAST => {
-                events.push([time, at[1] - slip]);
+                // The end of an event may be ragged.
+                events.extend((at[1] - slip > LEAST).then_some([time, at[1] - slip]));
                 begun = None;
             }
             _ => {}
@@ -74,37 +77,30 @@ fn cycles(events: &[[f64; 2]]) -> Vec<[f64; 2]> {
     events.windows(2).take(3).map(|pair| [pair[1][0] - pair[0][0], pair[1][1]]).collect()
 }
 
-/// Edges and tolerance halved change periods by less than 1 % (119.06 and 119.70 in a cycle); slips, which depend on the rate from which
-/// on they count, are printed.
+/// Periods and slips agree, each within a share.
+fn agree(some: &[[f64; 2]], others: &[[f64; 2]], share: f64) {
+    assert_eq!((some.len(), others.len()), (3, 3));
+    for (one, other) in some.iter().zip(others) {
+        println!("period {} and {}, slip {} and {}", one[0], other[0], one[1], other[1]);
+        assert!((0..2).all(|i| (one[i] / other[i] - 1.0).abs() < share), "{one:?} {other:?}");
+    }
+}
+
+/// Edges, of which the process zone has eleven or more, and tolerance halved change periods and slips by less than 1 % (a minute).
 #[test]
 #[ignore = "minutes"]
 fn edges_and_tolerance_do_not_matter() {
     let dt = json!({"initial": 0.01});
-    let [coarse, fine] = [(62, 4e-6), (122, 2e-6)]
-        .map(|(edges, tolerance)| cycles(&events(&fault(edges, 8000.0, &quasi_dynamic(tolerance), &dt))));
-    assert_eq!((coarse.len(), fine.len()), (3, 3));
-    for (coarse, fine) in coarse.iter().zip(&fine) {
-        assert!((coarse[0] / fine[0] - 1.0).abs() < 0.01, "{coarse:?} {fine:?}");
-    }
+    let [coarse, fine] = [(60, 4e-6), (124, 2e-6)]
+        .map(|(edges, tolerance)| cycles(&events(&fault(edges, &quasi_dynamic(tolerance), &dt))));
+    agree(&coarse, &fine, 0.01);
 }
 
-/// Static increments with radiation damping come to the same: of first order in their length, so that half of the error is left with a
-/// quarter of it, and extrapolated to none.
+/// Static increments with radiation damping on the same mesh come to the same within 0.5 %.
 #[test]
 #[ignore = "minutes"]
 fn static_increments_come_to_the_same() {
-    let exact = cycles(&events(&fault(62, 5000.0, &quasi_dynamic(1e-6), &json!({"initial": 0.01}))));
-    let [long, short] = [1e-7, 2.5e-8].map(|error| {
-        cycles(&events(&fault(
-            62,
-            5000.0,
-            &json!("static"),
-            &json!({"initial": 0.01, "max": 2, "min": 1e-8, "error": error}),
-        )))
-    });
-    assert_eq!((exact.len(), long.len(), short.len()), (3, 3, 3));
-    for (exact, (long, short)) in exact.iter().zip(long.iter().zip(&short)) {
-        let period = 2.0 * short[0] - long[0];
-        assert!((period / exact[0] - 1.0).abs() < 0.005, "{period} {exact:?}");
-    }
+    let exact = cycles(&events(&fault(60, &quasi_dynamic(4e-6), &json!({"initial": 0.01}))));
+    let dt = json!({"initial": 0.01, "max": 2, "min": 1e-8, "error": 2.5e-7});
+    agree(&exact, &cycles(&events(&fault(60, &json!("static"), &dt))), 0.005);
 }

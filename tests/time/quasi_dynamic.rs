@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, finish, finish_at, goes_on, model, refusal, turned};
 use crate::slabs::{differences, slabs};
+use fecontact::laws::friction::FrictionState;
 use fecontact::run::Simulation;
 use serde_json::{Value, json};
 
@@ -84,6 +85,41 @@ fn a_spring_slider_follows_its_differential_equation() {
             errors[2] < 2e-4 && errors[2] < 0.2 * errors[1] && errors[1] < 0.2 * errors[0],
             "{evolution}: {errors:?}"
         );
+    }
+}
+
+/// A second state of the law, which strengthens over ten times the slip, against LSODA at 1e-10 (`spring_slider.py`). Without effect
+/// it changes no bit of the run.
+#[test]
+fn two_states_follow_their_differential_equations() {
+    let with_second = |evolution: &str, b_2: f64, tolerance: f64| {
+        let mut case = slider(evolution, 60.0, &quasi_dynamic(tolerance, 1));
+        let friction = case["contacts"]["base"]["friction"].as_object_mut().expect("an object");
+        let second = json!({"b_2": b_2, "D_c2": 0.08, "theta_2": 0.5 * 0.08 / 1e-9});
+        friction.extend(second.as_object().expect("an object").clone());
+        case
+    };
+    for (evolution, [slip, x, x_2], times) in [
+        ("ageing", [2.119412429, 9.554447914, 7.257691579], [4.329076, 21.662281, 39.040317, 56.418819]),
+        ("slip", [1.618509630, 8.590653414, -5.455897535], [4.356442, 19.641543, 33.907449, 48.159156]),
+    ] {
+        let run = finish(&with_second(evolution, -0.004, 1e-8));
+        let events = events(&run, 1e-3);
+        println!("{evolution}: {} steps, {events:?}", run.report.increments);
+        assert_eq!(events.len(), times.len());
+        (0..times.len()).for_each(|k| close("onset", events[k][0], times[k], 2e-4));
+        let friction = &run.last().contacts[0][0].friction;
+        close("slip", friction.plastic_slip, slip, 1e-5);
+        close("ln θ", (1e-6 * friction.variables[0] / 0.008).ln(), x, 1e-3);
+        close("ln θ₂", (1e-6 * friction.variables[1] / 0.08).ln(), x_2, 1e-3);
+        let one = finish(&slider(evolution, 60.0, &quasi_dynamic(1e-6, 1)));
+        let idle = finish(&with_second(evolution, 0.0, 1e-6));
+        let ends = [one, idle].map(|run| {
+            let contact = &run.last().contacts[0][0];
+            let FrictionState { plastic_slip, traction, .. } = contact.friction;
+            (run.report.increments, plastic_slip, traction, contact.friction.variables[0])
+        });
+        assert_eq!(ends[0], ends[1]);
     }
 }
 

@@ -56,6 +56,32 @@ run("ageing", 100)
 run("slip", 100)
 
 
+# Two states, psi = f0 + b x + b2 x2: the second one strengthens over ten times the slip.
+def two_states(law, years, b2=-0.004, D2=0.08):
+    x0 = np.log(V0 * 0.5 / Vp)
+
+    def speed(z, t):
+        return rate(tau0 + k * (Vp * t - z[0]), z[1] + b2 / b * z[2])
+
+    def of(t, z):
+        V = speed(z, t)
+        if law == "ageing":
+            return [V, (V0 * np.exp(-z[1]) - V) / D, (V0 * np.exp(-z[2]) - V) / D2]
+        return [V, -V / D * (z[1] + np.log(V / V0)), -V / D2 * (z[2] + np.log(V / V0))]
+
+    def fast(t, z):
+        return np.log(speed(z, t) / 1e-3)
+
+    solution = solve_ivp(of, [0, years * year], [0, x0, x0], method="LSODA", rtol=1e-10, atol=[1e-12, 1e-10, 1e-10], events=fast)
+    z = solution.y[:, -1]
+    print("two states,", law, "s, x, x2, V at the end:", *(f"{v:.9e}" for v in (*z, speed(z, solution.t[-1]))))
+    print("  V passes 1e-3 at", *(f"{t / year:.6f}" for t in solution.t_events[0]), "yr")
+
+
+two_states("ageing", 60)
+two_states("slip", 60)
+
+
 # Water: the pressure p - pw(t) is that of a block under a constant weight.
 def under_water(years):
     water = lambda t: 12 * (1 - np.exp(-t / (2 * year))) * (1 + 0.2 * np.sin(t / year))

@@ -448,38 +448,44 @@ pub struct PointLoad {
     pub damping: f64,
 }
 
-/// A law whose slip rate follows from traction and state, so that an interface can be integrated separately.
+/// Number of states that a [`RateLaw`] may have.
+pub const MOST_STATES: usize = 2;
+
+/// A value of every state of a [`RateLaw`]; 0 where a law has no further one.
+pub type States<T = f64> = [T; MOST_STATES];
+
+/// A law whose slip rate follows from traction and states, so that an interface can be integrated separately.
 ///
 /// ```text
-/// τ = q(V, x, p) + η V          solved for V, which has the sign of τ; x: the state, a number without dimension
+/// τ = q(V, x, p) + η V          solved for V, which has the sign of τ; x: the states, numbers without dimension
 /// ẋ = ẋ(V, x)
 /// ```
 pub trait RateLaw: Debug + Send + Sync {
     /// V; NaN if the law has no solution [L/T].
-    fn slip_rate(&self, x: f64, loading: PointLoad) -> f64;
+    fn slip_rate(&self, x: States, loading: PointLoad) -> f64;
 
     /// ẋ at a slip rate [1/T].
-    fn evolution(&self, _x: f64, _slip_rate: f64) -> f64 {
-        0.0
+    fn evolution(&self, _x: States, _slip_rate: f64) -> States {
+        States::default()
     }
 
     /// x in a state.
-    fn evolving(&self, _state: &FrictionState) -> f64 {
-        0.0
+    fn evolving(&self, _state: &FrictionState) -> States {
+        States::default()
     }
 
     /// The state with x in its variables.
-    fn remember(&self, _x: f64, state: FrictionState) -> FrictionState {
+    fn remember(&self, _x: States, state: FrictionState) -> FrictionState {
         state
     }
 
     /// |∂(q/p)/∂x|: effect of an error of x on the friction coefficient [-].
-    fn weight(&self) -> f64 {
-        0.0
+    fn weights(&self) -> States {
+        States::default()
     }
 
     /// Whether the point sticks or slips.
-    fn regime(&self, x: f64, slip_rate: f64) -> Regime;
+    fn regime(&self, x: States, slip_rate: f64) -> Regime;
 }
 
 /// |q| at the onset of plastic slip, in an increment in which the elastic traction and the strength both vary linearly from

@@ -1,7 +1,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, PointLoad, RateLaw, Regime, Sliding};
+use super::{
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, PointLoad, RateLaw, Regime, Sliding, States,
+};
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
 
 /// Parameters of [`PrescribedSlip`] as in the case file.
@@ -95,11 +97,11 @@ impl FrictionLaw for PrescribedSlip {
 }
 
 impl RateLaw for PrescribedSlip {
-    fn slip_rate(&self, _: f64, _: PointLoad) -> f64 {
+    fn slip_rate(&self, _: States, _: PointLoad) -> f64 {
         self.slip_rate
     }
 
-    fn regime(&self, _: f64, slip_rate: f64) -> Regime {
+    fn regime(&self, _: States, slip_rate: f64) -> Regime {
         regime(slip_rate)
     }
 }

@@ -264,14 +264,14 @@ fn check_ends(model: &Model, pair: &ContactPair, ends: [usize; 2]) -> Checked<()
             let loading =
                 PointLoad { traction: friction.traction, pressure: friction.pressure, damping: pair.radiation };
             let ask = |law: &dyn RateLaw| {
-                let state = law.evolving(friction);
-                let slip_rate = law.slip_rate(state, loading);
-                [state, slip_rate, law.evolution(state, slip_rate), law.evolution(state, 2.0 * slip_rate)]
+                let states = law.evolving(friction);
+                let slip_rate = law.slip_rate(states, loading);
+                [states, [slip_rate; 2], law.evolution(states, slip_rate), law.evolution(states, 2.0 * slip_rate)]
             };
             let stiffness = pair.law(slave).description.stiffness;
             let rates = pair.ask_law(slave, [time, time], |law| law.law.rates().map(ask)).ok().flatten();
-            let [a, b, c, d] = rates.unwrap_or([f64::NAN; 4]);
-            [a, b, c, d, stiffness, pair.fluid_pressure(slave, &x, time)]
+            let rates = rates.unwrap_or([[f64::NAN; 2]; 4]);
+            [rates.concat(), vec![stiffness, pair.fluid_pressure(slave, &x, time)]].concat()
         };
         let [one, other] = ends.map(of);
         one.into_iter().zip(other).all(|(a, b)| alike([a, b]))

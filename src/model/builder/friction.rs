@@ -346,7 +346,7 @@ impl Debug for Friction {
 }
 
 /// Parameters of the initial state of a point, and the stiffness of its stored energy.
-const OF_THE_START: [&str; 3] = ["alpha_t", "structure", "theta"];
+const OF_THE_START: [&str; 4] = ["alpha_t", "structure", "theta", "theta_2"];
 
 /// Reference position of a slave point.
 pub fn position(point: &SlavePoint, mesh: &Mesh) -> Vector2<f64> {

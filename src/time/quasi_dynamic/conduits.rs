@@ -3,10 +3,10 @@
 //! Within a step the slip, by which a transmissivity may go, goes on at the rate at its start; the surfaces neither open nor dilate.
 
 use super::slip_equations::Rates;
-use super::tableau::{C, STAGES};
 use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Wall};
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
+use crate::laws::tableau::{C, STAGES};
 use crate::model::Model;
 use crate::model::state::State;
 

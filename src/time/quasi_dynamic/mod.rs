@@ -13,7 +13,6 @@ mod conduits;
 mod slip_equations;
 mod steps;
 mod stiff;
-mod tableau;
 
 use std::sync::Arc;
 
@@ -219,7 +218,7 @@ impl QuasiDynamic {
                     new.friction.plastic_increment = steps.last[k];
                     new.friction.dissipation += steps.works[k][0];
                     let remembered = with_rates(pair, slave, time, |law| {
-                        let x = steps.z[n + k];
+                        let x = std::array::from_fn(|i| steps.z[(1 + i) * n + k]);
                         let friction = law.remember(x, new.friction.clone());
                         crate::laws::friction::FrictionState { regime: law.regime(x, slip_rate), ..friction }
                     });

@@ -1,7 +1,7 @@
 //! The differential equations of an interface on linear bodies, point by point.
 //!
 //! ```text
-//! ṡ = V,   ẋ = ẋ(V, x)                         s: slip, x: state of the law                                         (1)
+//! ṡ = V,   ẋ = ẋ(V, x)                         s: slip, x: states of the law                                        (1)
 //! τ = q(V, x, p) + q_b + η V                    solved for V at every point; q_b = s(Λ) sgn τ: a bond, 0 without one     (2)
 //! (p, −τ) = (p, −τ)₀ + Y s + Z (p_w − p_w0) + ẏ (t − t₀)                                                       (3)
 //! ```
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::{BondState, Cohesion, PointLoad, RateLaw};
+use crate::laws::friction::{BondState, Cohesion, PointLoad, RateLaw, States};
 use crate::mesh::configuration::Configuration;
 
 /// Number of points that one thread takes at a time; no sum depends on their order.
@@ -28,7 +28,7 @@ pub struct Rates {
     /// V [L/T]
     pub slip_rate: f64,
     /// ẋ [1/T]
-    pub evolution: f64,
+    pub evolution: States,
     /// q of friction and a bond together, p and η V [F/L²]
     pub traction: f64,
     /// q_b [F/L²]
@@ -42,7 +42,7 @@ pub struct Rates {
 impl Rates {
     /// Whether the point is closed and has a finite slip rate.
     pub fn is_good(&self) -> bool {
-        self.pressure > 0.0 && self.slip_rate.is_finite() && self.evolution.is_finite()
+        self.pressure > 0.0 && self.slip_rate.is_finite() && self.evolution.iter().all(|rate| rate.is_finite())
     }
 
     /// Power dissipated by friction, and radiated, per area [F/(L T)].
@@ -109,10 +109,11 @@ impl SlipEquations<'_> {
         };
         let loading = PointLoad { traction: free, pressure, damping: pair.radiation };
         let answer = with_rates(pair, slave, now, |law| {
-            let slip_rate = law.slip_rate(z[n + k], loading);
-            (slip_rate, law.evolution(z[n + k], slip_rate))
+            let x = std::array::from_fn(|i| z[(1 + i) * n + k]);
+            let slip_rate = law.slip_rate(x, loading);
+            (slip_rate, law.evolution(x, slip_rate))
         });
-        let (slip_rate, evolution) = answer.unwrap_or((f64::NAN, f64::NAN));
+        let (slip_rate, evolution) = answer.unwrap_or((f64::NAN, States::default()));
         let radiation = pair.radiation * slip_rate;
         Rates { slip_rate, evolution, traction: traction - radiation, bond: traction - free, pressure, radiation }
     }

@@ -7,7 +7,8 @@
 
 use super::conduits::Conduits;
 use super::slip_equations::{Rates, SlipEquations, with_rates};
-use super::tableau::{A, C, E, STAGES};
+use crate::laws::friction::{MOST_STATES, States};
+use crate::laws::tableau::{A, C, E, STAGES};
 
 /// Safety factor on the length that the error allows.
 pub(super) const SAFETY: f64 = 0.9;
@@ -28,14 +29,14 @@ pub struct Steps<'a> {
     interface: SlipEquations<'a>,
     /// Water that flows along contacts
     pub conduits: Conduits<'a>,
-    /// w, and |∂τ/∂s|/p [-], [1/L]
-    weights: Vec<[f64; 2]>,
+    /// w of the states, and |∂τ/∂s|/p [-], [1/L]
+    weights: Vec<(States, f64)>,
     tolerance: f64,
     /// t₀ [T]
     start: f64,
     /// t − t₀ [T]
     pub since: f64,
-    /// Slips since t₀, and state variables of the laws
+    /// Slips since t₀, and states of the laws, the first of all points before the second
     pub z: Vec<f64>,
     /// Slips of the last step [L]
     pub last: Vec<f64>,
@@ -52,12 +53,14 @@ impl<'a> Steps<'a> {
         interface.water = conduits.now();
         let n = interface.points.len();
         let state = |&(pair, slave, state): &(_, _, &crate::contact::force::ContactState)| {
-            with_rates(pair, slave, start, |law| law.evolving(&state.friction)).unwrap_or(f64::NAN)
+            with_rates(pair, slave, start, |law| law.evolving(&state.friction)).unwrap_or([f64::NAN; MOST_STATES])
         };
-        let z = std::iter::repeat_n(0.0, n).chain(interface.points.iter().map(state)).collect::<Vec<f64>>();
+        let states: Vec<States> = interface.points.iter().map(state).collect();
+        let of_laws = (0..MOST_STATES).flat_map(|i| states.iter().map(move |x| x[i]));
+        let z = std::iter::repeat_n(0.0, n).chain(of_laws).collect::<Vec<f64>>();
         let weight = |(k, &(pair, slave, state)): (usize, &(_, _, &crate::contact::force::ContactState))| {
-            let of_state = with_rates(pair, slave, start, |law| law.weight()).unwrap_or(0.0);
-            [of_state, interface.by_slip[(n + k) * n + k].abs() / state.friction.pressure]
+            let of_states = with_rates(pair, slave, start, |law| law.weights()).unwrap_or_default();
+            (of_states, interface.by_slip[(n + k) * n + k].abs() / state.friction.pressure)
         };
         let weights = interface.points.iter().enumerate().map(weight).collect();
         let mut rates = vec![Vec::new(); STAGES];
@@ -115,20 +118,24 @@ impl<'a> Steps<'a> {
         let Self { z, trial, rates, last, .. } = self;
         let n = last.len();
         for k in 0..n {
-            let sum = |of: fn(&Rates) -> f64| a.iter().zip(&*rates).map(|(a, rates)| a * of(&rates[k])).sum::<f64>();
-            trial[k] = z[k] + h * sum(|rates| rates.slip_rate);
-            trial[n + k] = z[n + k] + h * sum(|rates| rates.evolution);
+            let sum =
+                |of: &dyn Fn(&Rates) -> f64| a.iter().zip(&*rates).map(|(a, rates)| a * of(&rates[k])).sum::<f64>();
+            trial[k] = z[k] + h * sum(&|rates| rates.slip_rate);
+            for i in 0..MOST_STATES {
+                let at = (1 + i) * n + k;
+                trial[at] = z[at] + h * sum(&|rates| rates.evolution[i]);
+            }
         }
     }
 
     /// e, and the point at which it occurs.
     fn error(&self, h: f64) -> (f64, usize) {
         let mut largest = (0.0f64, 0);
-        for (k, [of_state, of_slip]) in self.weights.iter().enumerate() {
+        for (k, (of_states, of_slip)) in self.weights.iter().enumerate() {
             let sum =
-                |of: fn(&Rates) -> f64| E.iter().zip(&self.rates).map(|(e, rates)| e * of(&rates[k])).sum::<f64>();
-            let (slip, state) = (h * sum(|rates| rates.slip_rate), h * sum(|rates| rates.evolution));
-            let error = (of_state * state.abs()).max(of_slip * slip.abs());
+                |of: &dyn Fn(&Rates) -> f64| E.iter().zip(&self.rates).map(|(e, rates)| e * of(&rates[k])).sum::<f64>();
+            let states = of_states.iter().enumerate().map(|(i, of)| of * (h * sum(&|rates| rates.evolution[i])).abs());
+            let error = states.fold(of_slip * (h * sum(&|rates| rates.slip_rate)).abs(), f64::max);
             if error > largest.0 {
                 largest = (error, k);
             }

@@ -133,7 +133,7 @@ impl<'a> Stiff<'a> {
             let (radiation, state) = (front.radiation[k], &front.states[k]);
             let slip_rate = radiation / self.interface.points[k].0.radiation;
             let (traction, pressure) = (state.traction, state.pressure);
-            Rates { slip_rate, evolution: 0.0, traction, bond: 0.0, pressure, radiation }
+            Rates { slip_rate, evolution: Default::default(), traction, bond: 0.0, pressure, radiation }
         };
         (0..front.slips.len()).map(of).collect()
     }

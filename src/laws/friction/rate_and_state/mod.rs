@@ -1,20 +1,21 @@
 //! Rate-and-state friction: the law, its increments of first order (`relaxation.rs`) and their error-controlled integration
-//! along prescribed paths (`path.rs`).
+//! along prescribed paths (`path.rs`, `explicit.rs`).
+mod explicit;
 mod path;
 mod relaxation;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, PointLoad, RateLaw,
-    Regime, Sliding, traction_at_yield,
+    Regime, Sliding, States, traction_at_yield,
 };
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
 use path::{PathState, Ramp};
 pub use relaxation::StateEvolution;
-use relaxation::{Coefficients, Relaxation, arsinh_of_exp};
+use relaxation::{Coefficients, Effect, Relaxation, arsinh_of_exp};
 
 /// Parameters of [`RateAndState`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -40,6 +41,15 @@ pub struct RateAndStateParameters {
     /// θ: state at the start, θ > 0; default D_c/V₀, steady sliding at V₀ [T]
     #[serde(default)]
     pub theta: Option<f64>,
+    /// b₂: effect of a second state, of either sign; with `D_c2` [-]
+    #[serde(default)]
+    pub b_2: Option<f64>,
+    /// D_c2: slip over which the second state evolves, D_c2 > 0 [L]
+    #[serde(default, rename = "D_c2")]
+    pub critical_slip_2: Option<f64>,
+    /// θ₂: second state at the start, θ₂ > 0; default D_c2/V₀ [T]
+    #[serde(default)]
+    pub theta_2: Option<f64>,
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
     #[serde(default)]
     pub alpha_t: Option<f64>,
@@ -50,7 +60,9 @@ impl RateAndStateParameters {
     /// stiffness.
     pub const fn new(f_0: f64, reference_rate: f64, a: f64, b: f64, critical_slip: f64) -> Self {
         let evolution = StateEvolution::Ageing;
-        Self { f_0, reference_rate, a, b, critical_slip, evolution, theta: None, alpha_t: None }
+        let (theta, alpha_t) = (None, None);
+        let (b_2, critical_slip_2, theta_2) = (None, None, None);
+        Self { f_0, reference_rate, a, b, critical_slip, evolution, theta, b_2, critical_slip_2, theta_2, alpha_t }
     }
 
     /// Sets the evolution law of the state.
@@ -63,6 +75,16 @@ impl RateAndStateParameters {
         Self { theta: Some(theta), ..self }
     }
 
+    /// Adds a second state, with its effect b₂ and the slip over which it evolves [L].
+    pub const fn second(self, b_2: f64, critical_slip_2: f64) -> Self {
+        Self { b_2: Some(b_2), critical_slip_2: Some(critical_slip_2), ..self }
+    }
+
+    /// Sets the initial second state θ₂ [T].
+    pub const fn theta_2(self, theta_2: f64) -> Self {
+        Self { theta_2: Some(theta_2), ..self }
+    }
+
     /// Sets the tangential stiffness α_t [F/L³].
     pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
@@ -70,7 +92,8 @@ impl RateAndStateParameters {
 }
 
 numbers!(
-    RateAndStateParameters: "f_0" f_0, "V_0" reference_rate, "a" a, "b" b, "D_c" critical_slip; "alpha_t" alpha_t, "theta" theta
+    RateAndStateParameters: "f_0" f_0, "V_0" reference_rate, "a" a, "b" b, "D_c" critical_slip;
+    "alpha_t" alpha_t, "theta" theta, "b_2" b_2, "D_c2" critical_slip_2, "theta_2" theta_2
 );
 
 /// Rate-and-state friction on an elastic contact, regularized: finite at every slip rate V of either sign.
@@ -80,10 +103,12 @@ numbers!(
 /// |q| = a p arsinh(V/(2 V₀) exp(ψ/a)),   ψ = f₀ + b ln(V₀ θ/D_c)      ≈ p (ψ + a ln(V/V₀))                  (2)
 /// θ̇ = 1 − V θ/D_c   or   θ̇ = −(V θ/D_c) ln(V θ/D_c)                                                       (3)
 /// ```
-/// The internal variable is θ. V₀ is only the rate to which f₀ refers: with f₀ + (a − b) ln(V₁/V₀) and V₁ in their place, and
+/// With a second state θ₂, given by b₂ and D_c2, ψ = f₀ + b ln(V₀ θ/D_c) + b₂ ln(V₀ θ₂/D_c2), and θ₂ evolves by (3) with D_c2.
+///
+/// The internal variables are θ and, where given, θ₂. V₀ is only the rate to which f₀ refers: with f₀ + (a − b − b₂) ln(V₁/V₀) and V₁ in their place, and
 /// the same θ, friction is the same. The observable μ is ψ, the coefficient at V₀, and R = |q|/(ψ p) is 1 at V₀.
 ///
-/// Plastic slip occurs whenever there is traction. A point *slips* where slip outweighs ageing, V θ/D_c ≥ ½: in (3), where it
+/// Plastic slip occurs whenever there is traction. A point *slips* where slip outweighs ageing, V θ/D_c ≥ ½ of the first state: in (3), where it
 /// reduces θ by at least half of the increase with time. Steady sliding has V θ/D_c = 1 at every rate, a locked interface
 /// almost 0, an accelerating one more than 1.
 ///
@@ -96,8 +121,9 @@ numbers!(
 /// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening with slip, G decreases monotonically;
 /// otherwise bounds of its slope isolate the first root. The method is of first order in Δt: increments whose slip is not known to a
 /// small fraction of D_c damp an instability away, and are controlled by default ([`Description::critical_slip`]). Along
-/// [prescribed](FrictionLaw::controlled) paths, sub-steps of an increment, linear in slip and pressure, are extrapolated from
-/// such responses and halved until their error is below 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ.
+/// [prescribed](FrictionLaw::controlled) paths, where increments are linear in slip and pressure, sub-steps hold the error below
+/// 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ and b₂ ln θ₂: explicit ones of fifth order where friction follows slowly, else such
+/// responses, extrapolated.
 ///
 /// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V after the traction, elastic until then, has
 /// reached at q_y the strength (2) at V; this varies linearly from its value at the start to |q|.
@@ -110,9 +136,10 @@ numbers!(
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateAndState {
     coefficients: Coefficients,
-    initial_theta: f64,
-    /// Whether the initial θ is given, instead of D_c/V₀.
-    has_theta: bool,
+    /// θ at the start
+    initial: States,
+    /// Whether they are given, instead of D_c/V₀.
+    are_given: States<bool>,
     /// Whether the error of an increment is controlled.
     is_controlled: bool,
 }
@@ -123,7 +150,8 @@ impl RateAndState {
     /// # Errors
     /// Returns [`InvalidParameter`] if a parameter is out of range.
     pub fn new(parameters: &RateAndStateParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
-        let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, evolution, .. } = *parameters;
+        let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, .. } = *parameters;
+        let RateAndStateParameters { theta, b_2, critical_slip_2, theta_2, .. } = *parameters;
         let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
         require_positive("f_0", f_0)?;
         require_positive("V_0", reference_rate)?;
@@ -131,15 +159,26 @@ impl RateAndState {
         require("b", b, true, "it must be finite")?;
         require_positive("D_c", critical_slip)?;
         require_positive("alpha_t", alpha_t)?;
-        let theta = parameters.theta.unwrap_or(critical_slip / reference_rate);
-        require_positive("theta", theta)?;
-        let coefficients = Coefficients { f_0, reference_rate, a, b, critical_slip, evolution, alpha_t };
-        Ok(Self { coefficients, initial_theta: theta, has_theta: parameters.theta.is_some(), is_controlled: false })
+        if let Some(b_2) = b_2 {
+            require("b_2", b_2, true, "it must be finite")?;
+            require_positive("D_c2", critical_slip_2.unwrap_or(f64::NAN))?;
+        } else if let Some((name, value)) =
+            [("D_c2", critical_slip_2), ("theta_2", theta_2)].into_iter().find_map(|(name, value)| Some((name, value?)))
+        {
+            require(name, value, false, "it is of a second state, whose effect b_2 is not given")?;
+        }
+        let coefficients = Coefficients::new(parameters, alpha_t);
+        let given = [theta, theta_2];
+        let initial = coefficients.each(|k, effect| given[k].unwrap_or(effect.critical_slip / reference_rate));
+        for (name, theta) in ["theta", "theta_2"].into_iter().zip(initial).take(coefficients.effects().len()) {
+            require_positive(name, theta)?;
+        }
+        Ok(Self { coefficients, initial, are_given: given.map(|theta| theta.is_some()), is_controlled: false })
     }
 
     /// Whether slip at the end of an increment outweighs ageing, V θ/D_c ≥ ½.
     fn slips(&self, slip: f64, theta: f64, dt: f64) -> bool {
-        slip * theta >= OUTWEIGHS * self.coefficients.critical_slip * dt
+        slip * theta >= OUTWEIGHS * self.coefficients.effects()[0].critical_slip * dt
     }
 
     /// One increment of first order, with the slip that solves its equation if there is one.
@@ -151,12 +190,12 @@ impl RateAndState {
         if !trial.is_finite() {
             return Err(LawFailure::Overflow { traction: trial });
         }
-        let log_state = law.log_state(old.variables[0]);
-        let relaxation = Relaxation { law, trial: trial.abs(), pressure, dt, log_state };
+        let log_states = law.log_states(thetas(old));
+        let relaxation = Relaxation { law, trial: trial.abs(), pressure, dt, log_states };
         if dt == 0.0 || pressure <= 0.0 || trial == 0.0 {
             // No slip, for zero time or zero traction.
-            let aged = |theta| if dt == 0.0 { theta } else { law.theta(relaxation.log_state_after(0.0).0) };
-            let old = old.clone().with_variables([aged(old.variables[0])]);
+            let aged = if dt == 0.0 { thetas(old) } else { law.theta(relaxation.log_states_after(0.0).0) };
+            let old = old.clone().with_variables(aged);
             if pressure <= 0.0 {
                 return Ok((FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t)?, None));
             }
@@ -169,13 +208,13 @@ impl RateAndState {
         let traction = trial.signum() * found.traction.min(trial.abs());
         // Strength (2) at the start for the slip rate of the increment
         let rate_share = (trial.abs() - traction.abs()) / alpha_t / (2.0 * law.reference_rate * dt);
-        let before = law.a * old.pressure * arsinh_of_exp(rate_share.ln() + law.psi(log_state) / law.a).0;
+        let before = law.a * old.pressure * arsinh_of_exp(rate_share.ln() + law.psi(log_states) / law.a).0;
         let elastic = [trial.signum() * old.traction, trial.abs()];
         let mean = 0.5 * (traction_at_yield(elastic, [before, traction.abs()]) + traction.abs());
         let softness = alpha_t / found.slope.max(LEAST_SLOPE * alpha_t);
-        let theta = law.theta(found.log_state);
-        let state = old.slid(trial, traction, mean, pressure, alpha_t).with_variables([theta]);
-        let slips = self.slips(state.plastic_increment.abs(), theta, dt);
+        let theta = law.theta(found.log_states);
+        let state = old.slid(trial, traction, mean, pressure, alpha_t).with_variables(theta);
+        let slips = self.slips(state.plastic_increment.abs(), theta[0], dt);
         let response = FrictionResponse {
             state: FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state },
             dtraction_dslip: alpha_t * (1.0 - softness),
@@ -190,14 +229,19 @@ impl RateAndState {
 /// V θ/D_c above which a point counts as slipping.
 const OUTWEIGHS: f64 = 0.5;
 
-/// x = ln(V₀ θ/D_c), ψ = f₀ + b x.
+/// θ in a state; 0 where the law has no further one.
+fn thetas(state: &FrictionState) -> States {
+    std::array::from_fn(|k| state.variables[k])
+}
+
+/// x = ln(V₀ θ/D_c) of every state, ψ = f₀ + Σ b x.
 ///
 /// ```text
 /// a p z + 2 V₀ η e^(−ψ/a) sinh z = |τ|,   V = 2 V₀ e^(−ψ/a) sinh z          rising and convex in z = |q|/(a p)
 /// ẋ = (V₀ e⁻ˣ − V)/D_c   or   ẋ = −V/D_c (x + ln(V/V₀))
 /// ```
 impl RateLaw for RateAndState {
-    fn slip_rate(&self, x: f64, PointLoad { traction, pressure, damping }: PointLoad) -> f64 {
+    fn slip_rate(&self, x: States, PointLoad { traction, pressure, damping }: PointLoad) -> f64 {
         let Coefficients { a, reference_rate, .. } = self.coefficients;
         if traction == 0.0 {
             return 0.0;
@@ -229,31 +273,30 @@ impl RateLaw for RateAndState {
         traction.signum() * rate
     }
 
-    fn evolution(&self, x: f64, slip_rate: f64) -> f64 {
-        let Coefficients { reference_rate, critical_slip, evolution, .. } = self.coefficients;
+    fn evolution(&self, x: States, slip_rate: f64) -> States {
+        let Coefficients { reference_rate, evolution, .. } = self.coefficients;
         let rate = slip_rate.abs();
-        match evolution {
-            StateEvolution::Ageing => (reference_rate * (-x).exp() - rate) / critical_slip,
+        self.coefficients.each(|k, Effect { critical_slip, .. }| match evolution {
+            StateEvolution::Ageing => (reference_rate * (-x[k]).exp() - rate) / critical_slip,
             StateEvolution::Slip if rate == 0.0 => 0.0,
-            StateEvolution::Slip => -rate / critical_slip * (x + (rate / reference_rate).ln()),
-        }
+            StateEvolution::Slip => -rate / critical_slip * (x[k] + (rate / reference_rate).ln()),
+        })
     }
 
-    fn evolving(&self, state: &FrictionState) -> f64 {
-        self.coefficients.log_state(state.variables[0])
+    fn evolving(&self, state: &FrictionState) -> States {
+        self.coefficients.log_states(thetas(state))
     }
 
-    fn remember(&self, x: f64, state: FrictionState) -> FrictionState {
-        state.with_variables([self.coefficients.theta(x)])
+    fn remember(&self, x: States, state: FrictionState) -> FrictionState {
+        state.with_variables(self.coefficients.theta(x))
     }
 
-    fn weight(&self) -> f64 {
-        self.coefficients.b.abs()
+    fn weights(&self) -> States {
+        self.coefficients.each(|_, effect| effect.b.abs())
     }
 
-    fn regime(&self, x: f64, slip_rate: f64) -> Regime {
-        let theta = self.coefficients.theta(x);
-        let slips = slip_rate.abs() * theta >= OUTWEIGHS * self.coefficients.critical_slip;
+    fn regime(&self, x: States, slip_rate: f64) -> Regime {
+        let slips = self.slips(slip_rate.abs(), self.coefficients.theta(x)[0], 1.0);
         if slips { Regime::Slip } else { Regime::Stick }
     }
 }
@@ -266,20 +309,28 @@ const MOST_STEPS: usize = 60;
 
 impl FrictionLaw for RateAndState {
     fn description(&self) -> Description {
+        let effects = self.coefficients.effects();
+        let lengths = effects.iter().filter(|effect| effect.b != 0.0).map(|effect| effect.critical_slip);
+        let weakening = self.coefficients.weakening();
+        let names: [&[&str]; 2] = if effects.len() > 1 {
+            [&["theta", "theta_2"], &["R", "mu", "theta", "theta_2"]]
+        } else {
+            [&["theta"], &["R", "mu", "theta"]]
+        };
         Description {
             stiffness: self.coefficients.alpha_t,
-            variables: &["theta"],
-            observables: Some(&["R", "mu", "theta"]),
-            weakening: self.coefficients.b.max(0.0) / self.coefficients.critical_slip,
-            // d(|q|/p)/dΔλ ≥ a/Δλ − b/D_c by (2) to (5)
-            unique_slip: self.coefficients.a / self.coefficients.b.max(0.0) * self.coefficients.critical_slip,
-            critical_slip: Some(self.coefficients.critical_slip),
+            variables: names[0],
+            observables: Some(names[1]),
+            weakening,
+            // d(|q|/p)/dΔλ ≥ a/Δλ − Σ b/D_c by (2) to (5)
+            unique_slip: self.coefficients.a / weakening,
+            critical_slip: Some(lengths.fold(f64::INFINITY, f64::min).min(effects[0].critical_slip)),
             ..Description::default()
         }
     }
 
     fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
-        FrictionState::default().with_variables([self.initial_theta]).loaded(pressure, traction)
+        FrictionState::default().with_variables(self.initial).loaded(pressure, traction)
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -302,11 +353,12 @@ impl FrictionLaw for RateAndState {
     }
 
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
-        let psi = || self.coefficients.psi(self.coefficients.log_state(state.variables[0]));
+        let psi = || self.coefficients.psi(self.coefficients.log_states(thetas(state)));
         match name {
             "R" => Some(state.ratio(psi())),
             "mu" => Some(psi()),
             "theta" => Some(state.variables[0]),
+            "theta_2" if self.coefficients.effects().len() > 1 => Some(state.variables[1]),
             _ => None,
         }
     }
@@ -318,14 +370,14 @@ impl SensitiveLaw for RateAndState {
     }
 
     fn start(&self, parameter: &str) -> Variation {
-        let Coefficients { reference_rate, critical_slip, .. } = self.coefficients;
-        let dtheta = match (parameter, self.has_theta) {
-            ("theta", true) => 1.0,
-            ("D_c", false) => 1.0 / reference_rate,
+        let Coefficients { reference_rate, .. } = self.coefficients;
+        let by = self.coefficients.each(|k, Effect { critical_slip, .. }| match (parameter, self.are_given[k]) {
+            (name, true) if name == ["theta", "theta_2"][k] => 1.0,
+            (name, false) if name == ["D_c", "D_c2"][k] => 1.0 / reference_rate,
             ("V_0", false) => -critical_slip / (reference_rate * reference_rate),
             _ => 0.0,
-        };
-        Variation::new(0.0, dtheta)
+        });
+        Variation { traction: 0.0, variables: by.into_iter().collect() }
     }
 
     fn vary(
@@ -337,6 +389,9 @@ impl SensitiveLaw for RateAndState {
         let mut ramp = Ramp::new(self, old, Inputs::new(old, sliding, directions)?);
         let PathState { traction, theta, .. } =
             if self.is_controlled && sliding.dt > 0.0 { ramp.end_of_path()? } else { ramp.single()? };
-        Ok(variations(traction, theta))
+        Ok([0, 1].map(|along| Variation {
+            traction: traction.by[along],
+            variables: theta.iter().map(|theta| theta.by[along]).collect(),
+        }))
     }
 }

@@ -1,43 +1,46 @@
 //! Rate-and-state friction along a prescribed path: error-controlled increments of slip and pressure linear in time.
 
 use super::RateAndState;
-use super::relaxation::{Coefficients, Relaxation};
+use super::relaxation::{Coefficients, Effect, Relaxation};
 use crate::laws::dual::{Dual, Number};
 use crate::laws::friction::extrapolation::{FirstOrder, WHOLE, changes, largest_share, share};
 use crate::laws::friction::sensitivity::Inputs;
-use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, PointLoad, RateLaw, Regime, Sliding};
+use crate::laws::friction::{
+    Answer, FrictionResponse, FrictionState, LawFailure, PointLoad, RateLaw, Regime, Sliding, States,
+};
 
-/// Tolerance of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ, relative to f₀:
+/// Tolerance of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ and b₂ ln θ₂, relative to f₀:
 /// the errors of several, and of their initial values, sum to at most 1e-6.
-const TOLERANCE: f64 = 2e-7;
+pub(super) const TOLERANCE: f64 = 2e-7;
 
 /// Relative round-off; errors below are ignored.
 const NOISE: f64 = 2e-13;
 
-/// Decrease of |q|/(a p) that the rows of a sub-step resolve.
-const RESOLVED: f64 = 2.0;
+/// Decrease of |q|/(a p) that the rows or stages of a sub-step resolve.
+pub(super) const RESOLVED: f64 = 2.0;
 
 /// State at an integration point along the path, with the derivatives of its traction and θ.
 #[derive(Clone)]
 pub(super) struct PathState {
-    state: FrictionState,
+    pub state: FrictionState,
     pub traction: Dual,
-    pub theta: Dual,
+    pub theta: States<Dual>,
 }
 
 /// An increment whose slip and pressure are linear in time.
 pub(super) struct Ramp<'a> {
-    law: &'a RateAndState,
-    coefficients: Coefficients<Dual>,
-    start: PathState,
-    inputs: Inputs,
+    pub law: &'a RateAndState,
+    pub coefficients: Coefficients<Dual>,
+    pub start: PathState,
+    pub inputs: Inputs,
     /// Number of evaluations of the law's equation so far
-    evaluations: usize,
+    pub evaluations: usize,
 }
 
 impl<'a> Ramp<'a> {
     pub(super) fn new(law: &'a RateAndState, old: &FrictionState, inputs: Inputs) -> Self {
-        let start = PathState { state: old.clone(), traction: inputs.traction, theta: inputs.variable };
+        let start =
+            PathState { state: old.clone(), traction: inputs.traction, theta: [inputs.variable, inputs.second] };
         Self { law, coefficients: law.coefficients.along(&inputs), start, inputs, evaluations: 0 }
     }
 
@@ -73,6 +76,9 @@ impl<'a> Ramp<'a> {
     /// # Errors
     /// The same as for the response.
     pub(super) fn end_of_path(&mut self) -> Result<PathState, LawFailure> {
+        if let Some(end) = self.explicit_end() {
+            return Ok(end);
+        }
         let start = self.start.clone();
         self.end(&start)
     }
@@ -83,7 +89,7 @@ impl<'a> Ramp<'a> {
     }
 }
 
-impl FirstOrder<4> for Ramp<'_> {
+impl FirstOrder<5> for Ramp<'_> {
     type State = PathState;
 
     /// A sub-step by `count` increments.
@@ -103,47 +109,55 @@ impl FirstOrder<4> for Ramp<'_> {
             let (traction, theta) = match found {
                 Some(slip) => {
                     let sign = trial.value.signum();
-                    let log_state = law.log_state(old.theta);
-                    let end = Relaxation { law: &law, trial: trial * sign, pressure, dt, log_state }.end(slip);
-                    (end[0] * sign, end[1])
+                    let log_states = law.log_states(old.theta);
+                    let relaxation = Relaxation { law: &law, trial: trial * sign, pressure, dt, log_states };
+                    let (traction, theta) = relaxation.end(slip);
+                    (traction * sign, theta)
                 }
                 None if pressure.value <= 0.0 => (0.0.into(), old.theta),
                 None => (trial * (answer.dtraction_dslip / law.alpha_t.value), old.theta),
             };
             let state = answer.state;
-            let (traction, theta) = (traction.map(state.traction, 1.0), theta.map(state.variables[0], 1.0));
+            let traction = traction.map(state.traction, 1.0);
+            let theta = std::array::from_fn(|k| theta[k].map(state.variables[k], 1.0));
             path_state = PathState { state, traction, theta };
         }
         Ok(path_state)
     }
 
-    /// q, ln θ, plastic slip, and the work ∫ q du = W + q²/(2 α_t), of which the first two have derivatives
-    fn entry(&self, PathState { state, traction, theta }: &PathState) -> [Dual; 4] {
+    /// q, ln θ of the states, plastic slip, and the work ∫ q du = W + q²/(2 α_t), of which all but the last two have derivatives
+    fn entry(&self, PathState { state, traction, theta }: &PathState) -> [Dual; 5] {
         let work = state.dissipation + 0.5 * state.traction * state.traction / self.law.coefficients.alpha_t;
-        [*traction, theta.ln(), state.plastic_slip.into(), work.into()]
+        let [log, second] = self.coefficients.each(|k, _| theta[k].ln());
+        [*traction, log, second, state.plastic_slip.into(), work.into()]
     }
 
-    fn state(&self, &[traction, log_theta, plastic_slip, work]: &[Dual; 4], fine: PathState) -> PathState {
-        let theta = log_theta.exp();
+    fn state(&self, &[traction, log, second, plastic_slip, work]: &[Dual; 5], fine: PathState) -> PathState {
+        let theta = self.coefficients.each(|k, _| [log, second][k].exp());
         let stored = 0.5 * traction.value * traction.value / self.law.coefficients.alpha_t;
         let (plastic_slip, dissipation) = (plastic_slip.value, work.value - stored);
         let state = FrictionState { traction: traction.value, plastic_slip, dissipation, ..fine.state };
-        PathState { state: state.with_variables([theta.value]), traction, theta }
+        PathState { state: state.with_variables(theta.map(|theta| theta.value)), traction, theta }
     }
 
-    fn error(&self, entries: [&[Dual; 4]; 2], factor: f64, [from, to]: [&PathState; 2], step: u64) -> f64 {
+    fn error(&self, entries: [&[Dual; 5]; 2], factor: f64, [from, to]: [&PathState; 2], step: u64) -> f64 {
         let law = &self.law.coefficients;
-        let [traction, log_theta, _, work] = changes(entries, factor);
+        let [traction, log, second, _, work] = changes(entries, factor);
         let strength = law.f_0 * from.state.pressure.max(to.state.pressure);
         let slip = self.inputs.slip.value.abs() * share(step) + (to.state.plastic_slip - from.state.plastic_slip).abs();
         let loaded = law.alpha_t * self.inputs.slip.value.abs() * share(step);
         let noise = NOISE / TOLERANCE;
         let overlooked = self.overlooked(&from.state, &to.state, step);
+        let states = law.each(|k, Effect { b, critical_slip }| {
+            let direct = if k == 0 { law.a } else { 0.0 };
+            (direct + b.abs()) * ([log, second][k] + overlooked / critical_slip)
+        });
         let allowed = |of: f64| TOLERANCE * of;
         largest_share([
             [traction + law.alpha_t * overlooked, allowed(strength + noise * loaded)],
-            [(law.a + law.b.abs()) * (log_theta + overlooked / law.critical_slip), allowed(law.f_0)],
-            [work, allowed(strength * slip + noise * entries[0][3].value.abs())],
+            [states[0], allowed(law.f_0)],
+            [states[1], allowed(law.f_0)],
+            [work, allowed(strength * slip + noise * entries[0][4].value.abs())],
         ])
     }
 
