@@ -91,14 +91,6 @@ def test_friction_that_rises_after_a_step_asks_for_a_negative_b() -> None:
     assert negative.noise < 0.3 * positive.noise
 
 
-def test_friction_that_rises_and_falls_asks_for_two_states() -> None:
-    step = loaded("rising_step")
-    negative, both = (step.fitted(name, 1e3) for name in ("b negative", "two states"))
-    # The last rows are 0.006 below the highest ones, which one state cannot follow.
-    assert both.noise < 0.5 * negative.noise
-    assert both.table["value"]["b"] < 0 < both.table["value"]["b_2"]
-
-
 def test_the_shaft_of_a_pile_carries_what_its_head_did() -> None:
     test = loaded("pile_load_test")
     found = test.fitted(test.PRESSURES["from 50 kPa on"])

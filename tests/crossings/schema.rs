@@ -38,7 +38,10 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     (&["groups", "box", "center"], "another way to name sides and nodes: tests/solver/groups.rs"),
     (&["node"], "another way to name a node: tests/solver/boundary.rs"),
     (&["materials", "frictions"], "another way to write a law: tests/command/by_name.rs"),
-    (&["b_2", "D_c2", "theta_2"], "a second state of friction: tests/laws/comparison_laws.rs, tests/time/quasi_dynamic.rs"),
+    (
+        &["b_2", "D_c2", "theta_2"],
+        "a second state of friction: tests/laws/comparison_laws.rs, tests/time/quasi_dynamic.rs",
+    ),
     (&["area"], "slaves that are points: tests/contact/contact.rs"),
     (&["hole"], "the rim of a hole: tests/contact/contact.rs"),
     (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),

@@ -16,7 +16,7 @@ use crate::laws::tableau::{A, C, E, STAGES};
 /// q, ln(V₀ θ/D_c) of the states, and the work ∫ q du.
 type Point = [Dual; 4];
 
-/// α_t V Δt/(a p), by how many factors of e the contact spring is slack within an increment, above which implicit steps are cheaper ...
+/// The larger of α_t V Δt/(a p) and V Δt/D_c, by how many factors of e spring and states may change within an increment, above which implicit steps are cheaper ...
 const STIFF: f64 = 4.0;
 
 /// ... and the same of a step, up to which not only its values but also their derivatives are right.
@@ -90,8 +90,7 @@ impl Ramp<'_> {
         let hidden = if fall > RESOLVED { (h * self.slip_in(first)).abs() / fall } else { 0.0 };
         let traction = (error(0) + law.alpha_t * hidden) / strength;
         let states = law.each(|k, Effect { b, critical_slip }| {
-            let direct = if k == 0 { law.a } else { 0.0 };
-            (direct + b.abs()) * (error(1 + k) + hidden / critical_slip) / law.f_0
+            (law.a + b.abs()) * (error(1 + k) + hidden / critical_slip) / law.f_0
         });
         let slip = h * (self.inputs.slip.value.abs() + self.slip_in(first).abs().max(self.slip_in(&last).abs()));
         let work = if slip > 0.0 { error(3) / (strength * slip) } else { 0.0 };
@@ -104,9 +103,11 @@ impl Ramp<'_> {
         self.start.state.pressure.min(self.inputs.pressure.value)
     }
 
-    /// α_t V Δt/(a p) of a slip V Δt.
+    /// The larger of α_t V Δt/(a p) and V Δt/D_c, of a slip V Δt.
     fn slack(&self, slip: f64) -> f64 {
-        self.law.coefficients.alpha_t * slip / (self.law.coefficients.a * self.least_pressure())
+        let law = &self.law.coefficients;
+        let spring = law.alpha_t / (law.a * self.least_pressure());
+        slip * law.effects().iter().map(|effect| 1.0 / effect.critical_slip).fold(spring, f64::max)
     }
 
     /// p at a fraction of the increment.

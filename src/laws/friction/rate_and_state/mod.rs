@@ -122,7 +122,7 @@ numbers!(
 /// otherwise bounds of its slope isolate the first root. The method is of first order in Δt: increments whose slip is not known to a
 /// small fraction of D_c damp an instability away, and are controlled by default ([`Description::critical_slip`]). Along
 /// [prescribed](FrictionLaw::controlled) paths, where increments are linear in slip and pressure, sub-steps hold the error below
-/// 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ and b₂ ln θ₂: explicit ones of fifth order where friction follows slowly, else such
+/// 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ of every state: explicit ones of fifth order where friction follows slowly, else such
 /// responses, extrapolated.
 ///
 /// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V after the traction, elastic until then, has

@@ -9,7 +9,7 @@ use crate::laws::friction::{
     Answer, FrictionResponse, FrictionState, LawFailure, PointLoad, RateLaw, Regime, Sliding, States,
 };
 
-/// Tolerance of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ and b₂ ln θ₂, relative to f₀:
+/// Tolerance of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ of every state, relative to f₀:
 /// the errors of several, and of their initial values, sum to at most 1e-6.
 pub(super) const TOLERANCE: f64 = 2e-7;
 
@@ -148,10 +148,8 @@ impl FirstOrder<5> for Ramp<'_> {
         let loaded = law.alpha_t * self.inputs.slip.value.abs() * share(step);
         let noise = NOISE / TOLERANCE;
         let overlooked = self.overlooked(&from.state, &to.state, step);
-        let states = law.each(|k, Effect { b, critical_slip }| {
-            let direct = if k == 0 { law.a } else { 0.0 };
-            (direct + b.abs()) * ([log, second][k] + overlooked / critical_slip)
-        });
+        let states = law
+            .each(|k, Effect { b, critical_slip }| (law.a + b.abs()) * ([log, second][k] + overlooked / critical_slip));
         let allowed = |of: f64| TOLERANCE * of;
         largest_share([
             [traction + law.alpha_t * overlooked, allowed(strength + noise * loaded)],
