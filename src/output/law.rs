@@ -22,10 +22,9 @@ impl<'a> LawTable<'a> {
     /// # Errors
     /// Returns [`Error::Output`] if it cannot be written.
     pub fn create(folder: &Path, law: &'a ContactLaw) -> Result<Self, Error> {
-        let further = observables::further([&law.description]).into_iter().map(String::from);
+        let further = further(law).map(String::from);
         let gap = (!law.description.opening.is_empty()).then(|| OPENED.name.into());
-        let bonded = matches!(law.cohesion, Some(Cohesion::Beside(_)));
-        let bond = names(&BONDED).filter(|_| bonded);
+        let bond = names(&BONDED).filter(|_| is_bonded(law));
         let header = names(&LAW).chain(further).chain(gap).chain(bond).collect();
         Ok(Self { table: Table::create(&folder.join("law.csv"), header)?, law })
     }
@@ -47,7 +46,7 @@ impl<'a> LawTable<'a> {
         write(&observables::ALWAYS.map(|(name, _)| observed(name)));
         write(&[state.plastic_slip, dissipation, *dtraction_dslip, *dtraction_dpressure]);
         table.count(*evaluations);
-        table.numbers(observables::further([&law.description]).into_iter().map(observed));
+        table.numbers(further(law).map(observed));
         if !law.description.opening.is_empty() {
             table.number(*gap);
         }
@@ -64,4 +63,16 @@ impl<'a> LawTable<'a> {
     pub fn finish(mut self) -> Result<(), Error> {
         self.table.flush()
     }
+}
+
+/// Whether a bond beside friction has columns of its own.
+fn is_bonded(law: &ContactLaw) -> bool {
+    matches!(law.cohesion, Some(Cohesion::Beside(_)))
+}
+
+/// Further observables of a law that are not columns of its bond.
+fn further(law: &ContactLaw) -> impl Iterator<Item = &'static str> {
+    let bonded = is_bonded(law);
+    let is_other = move |name: &&str| !(bonded && names(&BONDED).any(|own| own == **name));
+    observables::further([&law.description]).into_iter().filter(is_other)
 }

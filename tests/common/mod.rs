@@ -268,10 +268,15 @@ pub fn close(what: &str, a: f64, b: f64, tolerance: f64) {
 /// Columns of a table by name; NaN is what is no number.
 pub type Columns = BTreeMap<String, Vec<f64>>;
 
-/// Reads the columns of a table; of two of one name the last.
+/// Reads the columns of a table, each of a name of its own.
 pub fn table(path: impl AsRef<Path>) -> Columns {
     let text = std::fs::read_to_string(path).expect("a table");
     let names = text.lines().next().expect("a header").split(',').enumerate();
     let cell = |line: &str, k: usize| line.split(',').nth(k).and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN);
-    names.map(|(k, name)| (name.to_owned(), text.lines().skip(1).map(|line| cell(line, k)).collect())).collect()
+    let columns: Columns = names
+        .clone()
+        .map(|(k, name)| (name.to_owned(), text.lines().skip(1).map(|line| cell(line, k)).collect()))
+        .collect();
+    assert_eq!(columns.len(), names.count(), "two columns have one name");
+    columns
 }
