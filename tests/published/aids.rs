@@ -260,8 +260,11 @@ const CASES: [Case; 27] = [
 /// Three numbers of a case, unchanged.
 const AS_IT_IS: [f64; 3] = [1.0; 3];
 
+/// A case by name, and its model with three of its numbers times what is given.
+type Neighbours = (&'static str, fn([f64; 3]) -> Model);
+
 /// Cases in which many states are on edge, with three of their numbers times what is given: slope, slot or gap; μ; an edge of the mesh.
-const ON_EDGE: [(&str, fn([f64; 3]) -> Model); 6] = [
+const ON_EDGE: [Neighbours; 6] = [
     ("ridge", |[slope, mu, length]| faceted(0.2 * slope, 0.3 * mu, length)),
     ("valley", |[slope, mu, length]| ridge(0.1 * slope, 0.5 * mu, length)),
     ("self_contact", slotted_ring),
