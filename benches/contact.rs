@@ -7,7 +7,7 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::{Hats, mortar_points};
-use fecontact::contact::pair::{ContactIncrement, ContactPair, LawsInTime, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, LawsInTime, Prediction};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::{Index, KeptSearch};
 use fecontact::contact::segment_search::SegmentSearch;
@@ -103,7 +103,7 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
         group.bench_function(BenchmarkId::new("update", n), |bench| {
             let mut response = PairResponse::default();
             let mut respond =
-                || pair.respond(&old, [&x, &x], increment, |_| Presumption::default(), Request::Tangent, &mut response);
+                || pair.respond(&old, [&x, &x], increment, |_| Prediction::default(), Request::Tangent, &mut response);
             bench.iter(|| respond().is_ok());
         });
     }
@@ -231,7 +231,7 @@ fn update(pool: &rayon::ThreadPool, nodes: &[Vector2<f64>], pair: &ContactPair, 
         let during = ContactIncrement { dt: 1.0, time, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
         let clock = std::time::Instant::now();
         let [was, is] = [&before, &now].map(|u| Configuration::new(nodes, u));
-        pool.install(|| pair.respond(&old, [&was, &is], during, |_| Presumption::default(), request, &mut response))
+        pool.install(|| pair.respond(&old, [&was, &is], during, |_| Prediction::default(), request, &mut response))
             .expect("an answer");
         if k > 4 {
             shortest = shortest.min(clock.elapsed().as_secs_f64());

@@ -137,17 +137,25 @@ fn count(case: &Value, least: usize, pools: &[(usize, ThreadPool)]) {
                     last += 1e-2;
                     explicit.go_to(last, &mut state, &mut assembler, &|| false).expect("increments");
                 }
-                let feet = |state: &State| -> Vec<Option<usize>> {
-                    state.contacts.iter().flatten().map(|point| point.foot.map(|foot| foot.segment)).collect()
+                let master_points = |state: &State| -> Vec<Option<usize>> {
+                    state
+                        .contacts
+                        .iter()
+                        .flatten()
+                        .map(|point| point.master_point.map(|master_point| master_point.segment))
+                        .collect()
                 };
-                let met = feet(&state);
+                let met = master_points(&state);
                 let (before, increments) = (COUNTED.stats(), state.increment);
                 let end = if model.contacts.is_empty() { 0.5 } else { 0.15 };
                 explicit.go_to(last + end, &mut state, &mut assembler, &|| false).expect("increments");
                 let after = COUNTED.stats();
                 let done = state.increment - increments;
                 if goes_far(case) {
-                    assert!(feet(&state).iter().zip(&met).filter(|(now, met)| now != met).count() > 10, "points go on");
+                    assert!(
+                        master_points(&state).iter().zip(&met).filter(|(now, met)| now != met).count() > 10,
+                        "points go on"
+                    );
                 }
                 assert!(done > least && (model.contacts.is_empty() || done < 180), "{done} increments");
                 let slips = state.contacts.iter().flatten().filter(|point| point.regime() == Regime::Slip).count();

@@ -18,7 +18,7 @@
 use super::force::PointEvaluation;
 use super::nodal_forces::{Beside, ClosedPoints};
 use super::pair::ContactPair;
-use super::point::{ContactState, PointIncrement, Presume};
+use super::point::{ContactState, PointIncrement, PredictedStatus};
 use super::surface::SlavePoint;
 use crate::laws::friction::{BondResponse, BondState, Cohesion, FrictionResponse, FrictionState, Regime};
 
@@ -93,7 +93,7 @@ impl PointEvaluation<'_> {
     /// Share of the slip that counts for a bond, and the derivative of that slip by y.
     fn counted_by_bond(&self, opening: f64, y: f64) -> [f64; 2] {
         let (old, from) = (self.old, self.old.clearance());
-        if !old.apart(self.pair.touch + opening) || old.foot.is_none() {
+        if !old.apart(self.pair.touch + opening) || old.master_point.is_none() {
             return [1.0, 0.0];
         }
         let share = ((opening + y) / (from + y)).max(0.0);
@@ -114,7 +114,7 @@ impl PointEvaluation<'_> {
         let before = self.old.bond.unwrap_or_default();
         let way = self.pair.compliance_after_touch(self.increment.during.settles) * self.asked;
         let counted = self.counted_by_bond(bond.opening(), way);
-        let sticks = self.increment.presumption.presume == Presume::Stick;
+        let sticks = self.increment.prediction.predicted == PredictedStatus::Stick;
         let mut response = bond.respond(&before, 0.0, self.whole * counted[0], sticks);
         response.state.elastic_slip = self.left_of_bond(&before, response.state.traction, bond.stiffness());
         Some(Held { response, counted })
@@ -132,7 +132,7 @@ impl PointEvaluation<'_> {
         let before = if is_own { of_law } else { old.bond.unwrap_or_default() };
         let [share, by_way] = self.counted_by_bond(bond.opening(), -opening);
         let slip = whole * share;
-        let sticks = increment.presumption.presume == Presume::Stick;
+        let sticks = increment.prediction.predicted == PredictedStatus::Stick;
         let mut answer = bond.respond(&before, opening, slip, sticks);
         answer.state.elastic_slip = self.left_of_bond(&before, answer.state.traction, bond.stiffness());
         let [faded, fades] = bond.fading(opening);
@@ -168,7 +168,7 @@ impl PointEvaluation<'_> {
         };
         ContactState {
             friction,
-            foot: place.foot,
+            master_point: place.master_point,
             length: k.length,
             gap: place.gap,
             slip: whole,

@@ -48,8 +48,8 @@ use super::kinematics::{Kinematics, kinematics};
 use super::nodal_forces::Beside;
 pub use super::nodal_forces::{Closed, ClosedPoints, nodal_forces};
 use super::pair::ContactPair;
-pub use super::point::{ContactState, PointIncrement, Presume, Tractions};
-use super::point::{MasterPoint, Presumption, SlavePoint};
+pub use super::point::{ContactState, PointIncrement, PredictedStatus, Tractions};
+use super::point::{MasterPoint, Prediction, SlavePoint};
 use super::pores::effective;
 use super::projection::Projection;
 use crate::laws::friction::{Answer, Bracket, ContactLaw, FrictionResponse, LawFailure, MOST_ANSWERS, Opened, Sliding};
@@ -129,11 +129,11 @@ impl<'a> PointEvaluation<'a> {
 
     /// Sets the pressure of a point that is closed by its gap or, with dilatancy, by its slip.
     fn close(&mut self) -> Result<(), LawFailure> {
-        let Presumption { kept, presume, .. } = self.increment.presumption;
+        let Prediction { kept, predicted, .. } = self.increment.prediction;
         let clearance = self.place.gap - self.old.friction.opening;
-        if may_ride(self.pair, self.slave, self.old) {
+        if may_alternate(self.pair, self.slave, self.old) {
             self.lift = self.alpha_n * (self.parting()? - self.old.friction.opening);
-            self.place.closes = kept > 0.0 || !self.parts() || touches(self.pair, clearance, self.old, presume);
+            self.place.closes = kept > 0.0 || !self.parts() || touches(self.pair, clearance, self.old, predicted);
         }
         if self.place.closes {
             let (lifted, before) = (self.free + self.lift, self.old.friction.pressure);
@@ -141,7 +141,7 @@ impl<'a> PointEvaluation<'a> {
             // The lift by slip alone far exceeds that limited by friction.
             let first = if self.lift > 0.0 && before > 0.0 { free.min(before) } else { free };
             // A tie pulls as well.
-            self.load(if self.pair.tied { free } else { carried(first, self.increment.presumption) });
+            self.load(if self.pair.tied { free } else { carried(first, self.increment.prediction) });
         }
         Ok(())
     }
@@ -191,7 +191,7 @@ impl<'a> PointEvaluation<'a> {
     /// Returns [`LawFailure`] of the law, or if its opening and its pressure do not converge.
     pub fn finish(mut self, answer: Answer, closed: &mut ClosedPoints) -> Result<ContactState, LawFailure> {
         let mut response = self.met(answer?);
-        let PointPlace { gap, foot, closes, fluid, .. } = self.place;
+        let PointPlace { gap, master_point, closes, fluid, .. } = self.place;
         if !closes && self.place.bonded {
             return Ok(self.opened(response.state, closed));
         }
@@ -203,7 +203,16 @@ impl<'a> PointEvaluation<'a> {
             let length = closed.push_open(self.kinematics, fluid).unwrap_or(self.old.length);
             let parted =
                 ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, elastic_slip: 0.0, ..self.old.clone() };
-            return Ok(ContactState { friction: response.state, foot, gap, length, fluid, pores: 0.0, bond, ..parted });
+            return Ok(ContactState {
+                friction: response.state,
+                master_point,
+                gap,
+                length,
+                fluid,
+                pores: 0.0,
+                bond,
+                ..parted
+            });
         }
         let (pressure, carried) = (self.agree(&mut response)?, self.asked);
         let (seen, [_, by_pressure]) = (self.effective(pressure)[0], self.effective(carried));
@@ -211,12 +220,13 @@ impl<'a> PointEvaluation<'a> {
         let counted = self.counted(carried);
         // To a node the point is held by α_n in either direction: where it was off the node by more than it goes in, no other
         // tractions turn as its own do.
-        let at_node = foot.is_some_and(|foot| foot.xi == 1.0) && self.increment.presumption.astride.is_some();
-        let promised = self.increment.presumption.promised.filter(|_| !at_node);
+        let at_node = master_point.is_some_and(|master_point| master_point.xi == 1.0)
+            && self.increment.prediction.alternating.is_some();
+        let predicted_tractions = self.increment.prediction.predicted_tractions.filter(|_| !at_node);
         let held = self.held();
         let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
         let stiffness = law.stiffness;
-        if increment.presumption.presume == Presume::Stick {
+        if increment.prediction.predicted == PredictedStatus::Stick {
             response.state.traction = old.friction.traction + stiffness * sliding.slip;
             response.dtraction_dslip = stiffness;
             response.dtraction_dpressure = 0.0;
@@ -230,11 +240,11 @@ impl<'a> PointEvaluation<'a> {
         }
         let clearance = gap - response.state.opening;
         // At p = 0 the law has no response, and near it round-off decides.
-        if touches(pair, clearance, old, increment.presumption.presume) {
+        if touches(pair, clearance, old, increment.prediction.predicted) {
             response.dtraction_dslip = stiffness;
         }
         let bond = held.map_or(0.0, |held| held.response.state.traction);
-        let limited = law.cohesion.is_some() && increment.presumption.presume != Presume::Stick;
+        let limited = law.cohesion.is_some() && increment.prediction.predicted != PredictedStatus::Stick;
         let limited = limited && law.limit(&old.friction, &mut response, bond);
         kinematics.slip = sliding.slip;
         if kinematics.varied {
@@ -249,14 +259,14 @@ impl<'a> PointEvaluation<'a> {
         }
         let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
         let pores = pressure - seen;
-        closed.push(kinematics, &response, Beside { radiates, fluid, pores, bond }, promised);
+        closed.push(kinematics, &response, Beside { radiates, fluid, pores, bond }, predicted_tractions);
         let elastic_slip = pair.left_of_stick(law, old, response.state.traction);
         if let Some(held) = held {
             held.adds_to(&mut response.state, law.stiffness > 0.0);
         }
         Ok(ContactState {
             friction: response.state,
-            foot,
+            master_point,
             length: kinematics.length,
             gap,
             slip: whole,
@@ -279,9 +289,9 @@ impl<'a> PointEvaluation<'a> {
     }
 
     /// Pressure consistent with the opening of the law, p = p̄ − α_n (g − d): iterated until both agree, or by the tangent of
-    /// one response if a presumption prescribes the pressure of the law.
+    /// one response if a prediction prescribes the pressure of the law.
     fn agree(&mut self, response: &mut FrictionResponse) -> Result<f64, LawFailure> {
-        let presumed = self.increment.presumption.carried.is_some() || self.parts();
+        let is_predicted = self.increment.prediction.carried.is_some() || self.parts();
         // p − p̄ + α_n (g − d) changes its sign in it.
         let mut bracket = Bracket::new();
         for _ in 0..MOST_ANSWERS {
@@ -295,7 +305,7 @@ impl<'a> PointEvaluation<'a> {
             let size = asked.abs() + self.alpha_n * (opened.abs() + response.state.opening.abs());
             let slipped = self.alpha_n * self.sliding.slip.abs();
             match bracket.after(asked, Opened { found, next, size, slipped }) {
-                Some(pressure) if !presumed => self.load(pressure),
+                Some(pressure) if !is_predicted => self.load(pressure),
                 _ => return Ok(next),
             }
             *response = self.met(self.law.respond(&self.old.friction, self.sliding)?);
@@ -328,9 +338,9 @@ fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<Counted>, clo
     }
 }
 
-/// Pressure of the friction response: for a point that is only presumed closed the presumed one, beyond which its
+/// Pressure of the friction response: for a point that is only predicted closed the predicted one, beyond which its
 /// response is extrapolated linearly.
-fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64 {
+fn carried(pressure: f64, Prediction { carried, kept, .. }: Prediction) -> f64 {
     carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
 }
 
@@ -340,7 +350,7 @@ pub struct PointPlace {
     /// g; 0 without a projection [L]
     pub gap: f64,
     /// Closest-point projection on the master, if there is one
-    pub foot: Option<MasterPoint>,
+    pub master_point: Option<MasterPoint>,
     /// Whether it is closed, and has kinematics
     pub closes: bool,
     /// Whether it may carry tractions where it is open; it has kinematics too
@@ -368,34 +378,34 @@ pub fn place(
     let fluid = pair.acting_pressure(slave, old, x, increment.during.time);
     let bonded = pair.reaches(slave, gap, old, increment);
     if closes || bonded || fluid != 0.0 {
-        kinematics(slave, &pair.master, &projection, old.foot, x, k);
-        if old.foot.is_none() {
+        kinematics(slave, &pair.master, &projection, old.master_point, x, k);
+        if old.master_point.is_none() {
             k.count_from(pair.master.rigid_body(), before, x);
         }
     }
-    PointPlace { gap, foot: Some(projection.foot), closes, bonded, fluid, pore_pressure: None }
+    PointPlace { gap, master_point: Some(projection.master_point), closes, bonded, fluid, pore_pressure: None }
 }
 
-/// Whether a point with this gap carries pressure or is presumed to.
+/// Whether a point with this gap carries pressure or is predicted to.
 pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactState, increment: PointIncrement) -> bool {
-    let kept = increment.presumption.kept > 0.0;
+    let kept = increment.prediction.kept > 0.0;
     let clearance = gap - old.friction.opening;
     let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
-    let presume = increment.presumption.presume;
-    pair.tied && old.foot.is_some()
+    let predicted = increment.prediction.predicted;
+    pair.tied && old.master_point.is_some()
         || kept
         || pressure > 0.0
-        || touches(pair, clearance, old, presume)
-        || may_ride(pair, slave, old)
+        || touches(pair, clearance, old, predicted)
+        || may_alternate(pair, slave, old)
 }
 
 /// Whether slip may keep a point closed or open it, whatever its gap; this is known once its slip is.
-fn may_ride(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
-    old.foot.is_some() && !pair.law(slave).description.opening.is_empty() && !old.apart(pair.touch)
+fn may_alternate(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
+    old.master_point.is_some() && !pair.law(slave).description.opening.is_empty() && !old.apart(pair.touch)
 }
 
-/// Whether a zero gap is presumed closed and sticking.
-pub fn touches(pair: &ContactPair, clearance: f64, old: &ContactState, presume: Presume) -> bool {
-    let presumed = presume == Presume::Touch && old.foot.is_some();
-    presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= pair.touch)
+/// Whether a zero gap is predicted closed and sticking.
+pub fn touches(pair: &ContactPair, clearance: f64, old: &ContactState, predicted: PredictedStatus) -> bool {
+    let is_predicted = predicted == PredictedStatus::Touch && old.master_point.is_some();
+    is_predicted && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= pair.touch)
 }

@@ -79,7 +79,7 @@ pub struct Kinematics {
     /// δp_w of these, two entries per node [F/L³]
     pub dpores: Vec<f64>,
     /// δξ of the projection
-    dfoot: Vec<f64>,
+    dxi: Vec<f64>,
 }
 
 /// Motion of a slave point relative to a rigid master that rotates: b per displacement of the node that carries the rotation.
@@ -97,7 +97,7 @@ pub struct Meeting {
     /// g [L]
     pub gap: f64,
     /// Projection
-    pub foot: MasterPoint,
+    pub master_point: MasterPoint,
 }
 
 /// Computes the kinematics of `slave` projected on `master`, with slip relative to the committed projection `from`.
@@ -141,7 +141,7 @@ pub fn past_rigid(
         k.drotation[2 * at] += 1.0 / body.radius;
     }
     if let Some(from) = from {
-        k.slip = rigid.way(slave, from, projection.foot, x);
+        k.slip = rigid.way(slave, from, projection.master_point, x);
         k.vary_past(slave, rigid, s * advance, |k| &mut k.dslip);
     }
 }
@@ -154,26 +154,27 @@ fn on_surface(
     x: &Configuration,
     k: &mut Kinematics,
 ) {
-    let MasterPoint { segment, xi } = projection.foot;
+    let MasterPoint { segment, xi } = projection.master_point;
     let curve = &surface.segments[segment];
-    let path =
-        from.and_then(|from| surface.path(from, projection.foot)).filter(|path| slides(surface, path, projection, x));
+    let path = from
+        .and_then(|from| surface.path(from, projection.master_point))
+        .filter(|path| slides(surface, path, projection, x));
     k.begin(projection.normal);
     k.list_slave(slave);
     k.list(curve.nodes());
     let parts = || path.into_iter().flat_map(Path::parts);
     parts().for_each(|part| k.list(surface.segments[part.segment].nodes()));
     k.take_slave(slave, x);
-    let foot = curve.position(xi);
-    for &(node, w) in &foot {
+    let master_point = curve.position(xi);
+    for &(node, w) in &master_point {
         let at = k.local(node);
         k.relative[at] -= w;
     }
-    k.vary_foot(slave, surface, projection, x);
+    k.vary_projection(slave, surface, projection, x);
     parts().for_each(|part| k.slide(surface, part, x));
     if k.varied && path.is_some() {
         let length = x.combine(&curve.slope(xi)).norm();
-        k.dslip.iter_mut().zip(&k.dfoot).for_each(|(dslip, dfoot)| *dslip += dfoot * length);
+        k.dslip.iter_mut().zip(&k.dxi).for_each(|(dslip, dxi)| *dslip += dxi * length);
     }
 }
 
@@ -207,10 +208,10 @@ impl Kinematics {
     /// Sets all weights and variations to zero, once the nodes are listed.
     pub fn clear(&mut self) {
         let dofs = if self.varied { 2 * self.nodes.len() } else { 0 };
-        let Self { relative, dgap, dslip, drotation, dlength, dfoot, .. } = self;
+        let Self { relative, dgap, dslip, drotation, dlength, dxi, .. } = self;
         relative.clear();
         relative.resize(self.nodes.len(), 0.0);
-        for row in [dgap, dslip, drotation, dlength, dfoot] {
+        for row in [dgap, dslip, drotation, dlength, dxi] {
             row.clear();
             row.resize(dofs, 0.0);
         }
@@ -226,18 +227,18 @@ impl Kinematics {
     }
 
     /// Computes δg, δθ, δξ and δw of a projection on a surface.
-    fn vary_foot(&mut self, slave: &SlavePoint, surface: &Surface, projection: &Projection, x: &Configuration) {
+    fn vary_projection(&mut self, slave: &SlavePoint, surface: &Surface, projection: &Projection, x: &Configuration) {
         if !self.varied {
             return;
         }
-        let MasterPoint { segment, xi } = projection.foot;
+        let MasterPoint { segment, xi } = projection.master_point;
         let (curve, n, s, gap) = (&surface.segments[segment], self.normal, self.tangent, projection.gap);
-        let (foot, slope) = (curve.position(xi), curve.slope(xi));
+        let (master_point, slope) = (curve.position(xi), curve.slope(xi));
         let length = x.combine(&slope).norm();
         // Variation of x_s − x_m
         let vary = |k: &mut Self, direction: Vector2<f64>, row: fn(&mut Self) -> &mut Vec<f64>| {
             k.vary(&slave.position, direction, row);
-            k.vary(&foot, -direction, row);
+            k.vary(&master_point, -direction, row);
         };
         vary(self, n, |k| &mut k.dgap);
         match projection.bound {
@@ -246,12 +247,12 @@ impl Kinematics {
             Bound::Segment => {
                 let bend = x.combine(&curve.bend(xi)).dot(&n);
                 let stiffness = length * length - gap * bend;
-                vary(self, s * (length / stiffness), |k| &mut k.dfoot);
-                self.vary(&slope, n * (gap / stiffness), |k| &mut k.dfoot);
+                vary(self, s * (length / stiffness), |k| &mut k.dxi);
+                self.vary(&slope, n * (gap / stiffness), |k| &mut k.dxi);
                 self.vary(&slope, n / length, |k| &mut k.drotation);
-                let Self { drotation, dfoot, drelative, .. } = self;
-                drotation.iter_mut().zip(&*dfoot).for_each(|(turn, dfoot)| *turn += dfoot * (bend / length));
-                slope.iter().for_each(|(_, rate)| drelative.extend(dfoot.iter().map(|dfoot| dfoot * -rate)));
+                let Self { drotation, dxi, drelative, .. } = self;
+                drotation.iter_mut().zip(&*dxi).for_each(|(turn, dxi)| *turn += dxi * (bend / length));
+                slope.iter().for_each(|(_, rate)| drelative.extend(dxi.iter().map(|dxi| dxi * -rate)));
                 slope.iter().for_each(|&(node, _)| self.changing.push(self.local(node)));
             }
         }

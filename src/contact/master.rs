@@ -149,15 +149,15 @@ impl Shape {
 
 impl Plane {
     /// Foot of the perpendicular from a position.
-    pub fn foot(&self, at: Vector2<f64>) -> Vector2<f64> {
+    pub fn master_point(&self, at: Vector2<f64>) -> Vector2<f64> {
         at - self.normal * (at - self.point).dot(&self.normal)
     }
 
     fn project(&self, [reference, displacement]: [Vector2<f64>; 2]) -> Projection {
         let (n, s) = (self.normal, tangent_of(self.normal));
-        let foot = MasterPoint { segment: 0, xi: displacement.dot(&s) };
+        let master_point = MasterPoint { segment: 0, xi: displacement.dot(&s) };
         let bound = Bound::Rigid { advance: 1.0, turn: 0.0 };
-        Projection { foot, gap: reference.dot(&n) + displacement.dot(&n), normal: n, bound }
+        Projection { master_point, gap: reference.dot(&n) + displacement.dot(&n), normal: n, bound }
     }
 }
 
@@ -172,7 +172,7 @@ impl Circle {
         let farther = displacement.dot(&(reference + offset)) / (distance + start);
         let angle = reference.perp(&displacement).atan2(reference.dot(&offset));
         (distance > 0.0).then(|| Projection {
-            foot: MasterPoint { segment: 0, xi: -sign * self.radius * angle },
+            master_point: MasterPoint { segment: 0, xi: -sign * self.radius * angle },
             gap: sign * ((start - self.radius) + farther),
             normal: offset * (sign / distance),
             bound: Bound::Rigid { advance: self.radius / distance, turn: -sign / distance },
@@ -267,8 +267,8 @@ impl Polyline {
         let Some(neighbour) = neighbour else {
             let normal = normal_of(s);
             let gap = reference.dot(&normal) + displacement.dot(&normal);
-            let foot = MasterPoint { segment: k, xi: displacement.dot(&s) };
-            return Some(Projection { foot, gap, normal, bound: Bound::Rigid { advance: 1.0, turn: 0.0 } });
+            let master_point = MasterPoint { segment: k, xi: displacement.dot(&s) };
+            return Some(Projection { master_point, gap, normal, bound: Bound::Rigid { advance: 1.0, turn: 0.0 } });
         };
         let arm = offset - s * along;
         let mean = normal_of(s + self.direction(neighbour)).normalize();
@@ -277,7 +277,7 @@ impl Polyline {
         let beside = self.is_convex(first_after) && arm.dot(&normal_of(self.direction(neighbour))) >= 0.0;
         let gap = if arm.dot(&mean) < 0.0 && !beside { -distance } else { distance };
         let (normal, turn) = if gap == 0.0 { (mean, 0.0) } else { (arm / gap, -1.0 / gap) };
-        let foot = MasterPoint { segment: k, xi: along - reference.dot(&s) };
-        Some(Projection { foot, gap, normal, bound: Bound::Rigid { advance: 0.0, turn } })
+        let master_point = MasterPoint { segment: k, xi: along - reference.dot(&s) };
+        Some(Projection { master_point, gap, normal, bound: Bound::Rigid { advance: 0.0, turn } })
     }
 }

@@ -121,7 +121,7 @@ impl ContactPair {
                 false => law.law.initial_state(pressure, traction - of_bond),
             };
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
-            let (gap, foot) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.foot)).unzip();
+            let (gap, master_point) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.master_point)).unzip();
             let multiplier = if self.penetration.is_some() { total } else { 0.0 };
             let touches = total > 0.0 || gap.is_some_and(|gap| gap <= self.touch);
             let apart = (!touches).then(|| gap.unwrap_or(f64::INFINITY));
@@ -129,14 +129,14 @@ impl ContactPair {
                 bond: self.bond_at_start(slave, apart, of_bond),
                 elastic_slip: 0.0,
                 friction,
-                foot,
+                master_point,
                 length,
                 gap: gap.unwrap_or(0.0),
                 slip: 0.0,
                 radiation: 0.0,
                 radiated: 0.0,
                 multiplier,
-                fluid: if foot.is_some() { self.fluid_pressure(slave, x, 0.0) } else { 0.0 },
+                fluid: if master_point.is_some() { self.fluid_pressure(slave, x, 0.0) } else { 0.0 },
                 pores: total - pressure,
                 water: None,
                 came: Came::default(),
@@ -166,11 +166,11 @@ impl ContactPair {
     ) -> Vec<ContactState> {
         let given = self.meetings(mesh, false);
         let state = |(((slave, met), given), apart): (((&SlavePoint, Met), Met), ContactState)| {
-            let Some((Meeting { gap, foot }, kinematics)) = met else { return apart };
+            let Some((Meeting { gap, master_point }, kinematics)) = met else { return apart };
             let fluid = self.fluid_pressure(slave, x, time);
-            let ends = self.master.segments().get(foot.segment).map(|segment| segment.ends);
+            let ends = self.master.segments().get(master_point.segment).map(|segment| segment.ends);
             let [near, far] = ends.unwrap_or_default();
-            let on_master = [(near, 1.0 - foot.xi), (far, foot.xi)];
+            let on_master = [(near, 1.0 - master_point.xi), (far, master_point.xi)];
             let sum = |weights: &[(usize, f64)]| -> Option<Matrix2<f64>> {
                 weights.iter().map(|(node, w)| Some(stress.get(node)? * *w)).sum()
             };
@@ -188,7 +188,7 @@ impl ContactPair {
             ContactState {
                 bond: self.bond_at_start(slave, (own > self.touch).then_some(own), of_bond),
                 friction: law.law.initial_state(pressure, traction - of_bond),
-                foot: Some(foot),
+                master_point: Some(master_point),
                 length: kinematics.length,
                 gap: own,
                 multiplier: if self.penetration.is_some() { pressure } else { 0.0 },
@@ -207,7 +207,7 @@ impl ContactPair {
             bond: self.bond_at_start(slave, Some(f64::INFINITY), 0.0),
             elastic_slip: 0.0,
             friction: self.law(slave).law.initial_state(0.0, 0.0),
-            foot: None,
+            master_point: None,
             length: 0.0,
             gap: 0.0,
             slip: 0.0,
@@ -235,13 +235,13 @@ impl ContactPair {
 
     /// Switches to small sliding: every point keeps its projection in the configuration `x`.
     pub fn slide_little(&mut self, x: &Configuration) {
-        self.keep_feet(false, x);
+        self.keep_master_points(false, x);
     }
 
     /// Tie the surfaces as they lie in the configuration `x`: every point keeps its place on the master and its gap, in axes that
     /// turn with the slave unless rotations are small.
     pub fn tie(&mut self, small: bool, x: &Configuration) {
-        self.keep_feet(!small, x);
+        self.keep_master_points(!small, x);
         let met = self.meetings(x, false);
         self.points
             .iter_mut()
@@ -269,7 +269,7 @@ impl ContactPair {
         self.initial = Some(initial);
     }
 
-    fn keep_feet(&mut self, turning: bool, x: &Configuration) {
+    fn keep_master_points(&mut self, turning: bool, x: &Configuration) {
         let met = self.meetings(x, false).into_iter().zip(&self.points);
         let point = |((met, k), slave): ((Meeting, Kinematics), &SlavePoint)| {
             let point = SmallPoint::new(met, &k, slave, &self.master, x);
@@ -307,7 +307,7 @@ impl ContactPair {
                 _ => {
                     let projection = index.project(slave, None, x)?;
                     kinematics(slave, &self.master, &projection, None, x, k);
-                    Some(Meeting { gap: projection.gap, foot: projection.foot })
+                    Some(Meeting { gap: projection.gap, master_point: projection.master_point })
                 }
             };
             Some((met?, found))
@@ -329,7 +329,7 @@ impl ContactPair {
         let index = Index::new(&self.both.as_ref()?.slave, x);
         let depth = |point: &SlavePoint| {
             let met = index.project(point, None, x).filter(|met| met.gap < 0.0)?;
-            let [a, b] = slave.segments[met.foot.segment].ends;
+            let [a, b] = slave.segments[met.master_point.segment].ends;
             let share = -met.gap / x.between(a, b).norm();
             // A node deeper than the length of the edge belongs to another part of the body.
             (share < 1.0 && closed.contains(&a) && closed.contains(&b)).then(|| (point.at(x), -met.gap, share))
@@ -366,8 +366,8 @@ impl ContactPair {
         let index = Index::new(&self.master, x);
         let mut k = Kinematics::new(true);
         let mut slips = |(slave, state): (&SlavePoint, &ContactState)| {
-            let Some(projection) = index.project(slave, state.foot, x) else { return 0.0 };
-            kinematics(slave, &self.master, &projection, state.foot, x, &mut k);
+            let Some(projection) = index.project(slave, state.master_point, x) else { return 0.0 };
+            kinematics(slave, &self.master, &projection, state.master_point, x, &mut k);
             rate(&k)
         };
         self.points.iter().zip(states).map(&mut slips).collect()

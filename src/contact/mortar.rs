@@ -169,7 +169,7 @@ impl Facing<'_> {
         k: &mut Kinematics,
         room: &mut Averaging<N>,
     ) -> Option<Meeting> {
-        let foot = self.foot(point)?;
+        let master_point = self.master_point(point)?;
         let Averaging { frame, averages, relative } = room;
         self.list(point, &mut frame.nodes);
         for &(node, _) in old.into_iter().flatten() {
@@ -197,7 +197,7 @@ impl Facing<'_> {
             slip = s.dot(&moved.minus(&mean));
         }
         let length = length.scaled(self.surface.share());
-        let met = Meeting { gap: gap.value(), foot };
+        let met = Meeting { gap: gap.value(), master_point };
         MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, axes: [s, n] }.write(k);
         Some(met)
     }
@@ -223,7 +223,7 @@ impl Facing<'_> {
     }
 
     /// Overlapping segment nearest to a point along its edges.
-    fn foot(&self, point: usize) -> Option<MasterPoint> {
+    fn master_point(&self, point: usize) -> Option<MasterPoint> {
         let all = self.near(point).map(|(part, overlap)| (overlap, NODE_AT[part.node]));
         let away = |o: &Overlap, at: f64| (at - at.clamp(o.ends[0].xi, o.ends[1].xi)).abs();
         let (nearest, at) = all.min_by(|a, b| away(a.0, a.1).total_cmp(&away(b.0, b.1)))?;
@@ -400,7 +400,7 @@ struct Sums {
     along: Vector2<f64>,
     /// Lever of a moving rigid body
     arm: Vector2<f64>,
-    foot: Option<MasterPoint>,
+    master_point: Option<MasterPoint>,
 }
 
 impl Mortar {
@@ -444,12 +444,12 @@ impl Mortar {
         turns.iter_mut().for_each(|turn| *turn = zeros(std::mem::take(turn), dofs));
         for slave in around {
             if let Some(projection) = meet(slave, k) {
-                sums.foot.get_or_insert(projection.foot);
+                sums.master_point.get_or_insert(projection.master_point);
                 sums.add(k, projection.gap, mean, turns);
             }
         }
-        let Sums { length, gap, slip, along, arm, foot } = sums;
-        let foot = foot?;
+        let Sums { length, gap, slip, along, arm, master_point } = sums;
+        let master_point = master_point?;
         mean.normal = along.normalize();
         mean.tangent = tangent_of(mean.normal);
         (mean.length, mean.slip) = (length, slip / length);
@@ -468,7 +468,7 @@ impl Mortar {
         }
         let rates = drotation.iter_mut().zip(turns[0].iter().zip(&turns[1]));
         rates.for_each(|(turn, (dx, dy))| *turn = -(dx * tangent.x + dy * tangent.y) / along.norm());
-        Some(Meeting { gap: gap / length, foot })
+        Some(Meeting { gap: gap / length, master_point })
     }
 }
 
@@ -523,7 +523,7 @@ fn zeros(mut values: Vec<f64>, count: usize) -> Vec<f64> {
 /// Projection of one Gauss point on the body.
 fn meet(slave: &SlavePoint, rigid: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
     let projection = rigid.project(slave, x)?;
-    let from = rigid.project(slave, before).map(|was| was.foot);
+    let from = rigid.project(slave, before).map(|was| was.master_point);
     past_rigid(slave, rigid, &projection, from, x, k);
     if from.is_none() {
         k.count_from(rigid.body.as_ref(), before, x);

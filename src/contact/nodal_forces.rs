@@ -58,7 +58,7 @@ pub(super) struct Beside {
 
 impl Closed<'_> {
     /// p + δp and q + δq for a correction of the nodes' displacements; zero where the pressure would be negative.
-    pub fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
+    pub fn prediction(&self, correction: impl Fn(usize) -> f64) -> Tractions {
         let dofs = || self.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         let along = |rates: &[f64]| dofs().zip(rates).map(|(dof, rate)| rate * correction(dof)).sum::<f64>();
         let pressure = self.tractions.pressure + along(self.dpressure);
@@ -160,7 +160,7 @@ impl ClosedPoints {
         k: &Kinematics,
         response: &FrictionResponse,
         Beside { radiates, fluid, pores, bond }: Beside,
-        promised: Option<Tractions>,
+        predicted_tractions: Option<Tractions>,
     ) {
         let FrictionState { pressure, traction, .. } = response.state;
         let tractions = Tractions { pressure: pressure + pores, traction: traction + bond };
@@ -185,7 +185,7 @@ impl ClosedPoints {
         }
         self.force.resize(self.force.len() + 2 * k.behind.len(), 0.0);
         if k.varied {
-            self.push_tangent(k, response, radiates[1], whole(promised.unwrap_or(tractions)));
+            self.push_tangent(k, response, radiates[1], whole(predicted_tractions.unwrap_or(tractions)));
         }
     }
 
@@ -211,7 +211,13 @@ impl ClosedPoints {
         self.dpressure.extend(k.dpores.iter().map(|_| 0.0));
     }
 
-    fn push_tangent(&mut self, k: &Kinematics, response: &FrictionResponse, damping: f64, promised: Tractions) {
+    fn push_tangent(
+        &mut self,
+        k: &Kinematics,
+        response: &FrictionResponse,
+        damping: f64,
+        predicted_tractions: Tractions,
+    ) {
         let Self { tangent, dpressure, dtraction, rows, bond, .. } = self;
         let (dofs, all) = (2 * k.nodes.len(), 2 * (k.nodes.len() + k.behind.len()));
         let dpressure = &dpressure[dtraction.len()..];
@@ -222,13 +228,13 @@ impl ClosedPoints {
         dtraction[first..].iter_mut().zip(&*bond).for_each(|(dtraction, dbond)| *dtraction += dbond);
         bond.clear();
         let dtraction = &dtraction[first..];
-        let force = turned(k, promised);
+        let force = turned(k, predicted_tractions);
         for (i, row) in rows.iter_mut().enumerate() {
             row.clear();
             row.extend((0..dofs).map(|c| {
-                let along_normal = dpressure[c] - k.drotation[c] * promised.traction;
+                let along_normal = dpressure[c] - k.drotation[c] * predicted_tractions.traction;
                 let resisting = dtraction[c] + damping * k.dslip[c];
-                let along_tangent = -(resisting + k.drotation[c] * promised.pressure);
+                let along_tangent = -(resisting + k.drotation[c] * predicted_tractions.pressure);
                 (along_normal * k.normal[i] + along_tangent * k.tangent[i]) * k.length + k.dlength[c] * force[i]
             }));
             row.extend(dtraction[dofs..].iter().map(|dtraction| -dtraction * k.tangent[i] * k.length));
@@ -347,7 +353,7 @@ impl ContactPair {
         let index = Index::new(&self.master, x);
         let acting = |point: usize| {
             let slave = &self.points[point];
-            let projection = index.project(slave, states[point].foot, x)?;
+            let projection = index.project(slave, states[point].master_point, x)?;
             let mut k = Kinematics::new(false);
             kinematics(slave, &self.master, &projection, None, x, &mut k);
             Some(Acting { point, place: slave.position.clone(), kinematics: k })

@@ -33,7 +33,7 @@ pub use super::fluid::{BadPressure, Fluid};
 use super::master::Master;
 use super::mortar::Mortar;
 use super::point::ContactState;
-pub use super::point::{ContactIncrement, Presumption};
+pub use super::point::{ContactIncrement, Prediction};
 use super::pores::Pores;
 use super::small_sliding::SmallSliding;
 use super::surface::SlavePoint;
@@ -142,7 +142,7 @@ pub struct Arrival {
     /// Predicted time of closure, as a fraction of the increment; 0 without a prediction
     pub at: f64,
     /// Friction force that is uncertain because the slip before closure is not known [F]
-    pub doubt: f64,
+    pub uncertainty: f64,
 }
 
 impl ContactPair {
@@ -351,17 +351,18 @@ impl ContactPair {
             let sliding = Sliding { slip, pressure, dt };
             self.ask_law(slave, [time - dt, time], |law| law.respond(&old.friction, sliding))?
         };
-        let mut doubt = 0.0f64;
+        let mut uncertainty = 0.0f64;
         for slip in [now.slip, now.slip - free] {
             let of_bond = self.bond_off(slave, [old, now], slip);
-            doubt = doubt.max((respond(slip)?.state.traction - now.friction.traction + of_bond).abs() * now.length);
+            uncertainty =
+                uncertainty.max((respond(slip)?.state.traction - now.friction.traction + of_bond).abs() * now.length);
         }
         if !self.law(slave).description.opening.is_empty() {
             let way = self.compliance_after_touch(true) * pressure;
             let lift = respond(now.slip * way / (old.clearance() + way))?.state.opening - now.friction.opening;
-            doubt = doubt.hypot(lift / (self.compliance + 1.0 / self.alpha_n) * now.length);
+            uncertainty = uncertainty.hypot(lift / (self.compliance + 1.0 / self.alpha_n) * now.length);
         }
-        Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
+        Ok((uncertainty > 0.0).then_some(Arrival { at, uncertainty }))
     }
 
     /// Pressure that remains at a point that closed within one iterate after the bodies have deformed: p/(1 + α_n c).

@@ -1,4 +1,4 @@
-//! A contact point: its position on both sides, its state, and presumptions of the linear solve.
+//! A contact point: its position on both sides, its state, and predictions of the linear solve.
 //!
 //! # Points
 //!
@@ -8,9 +8,9 @@
 //!
 //! The state of a contact point is kept between increments.
 //!
-//! # Presumptions
+//! # Predictions
 //!
-//! A contact is evaluated in an increment, with presumptions of a linear solve about each point.
+//! A contact is evaluated in an increment, with predictions of a linear solve about each point.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -237,7 +237,7 @@ pub struct ContactState {
     /// State of friction
     pub friction: FrictionState,
     /// Projection on the master, open or closed; `None` without a projection
-    pub foot: Option<MasterPoint>,
+    pub master_point: Option<MasterPoint>,
     /// Tributary length of the point: its own or, with mortar, its part that overlaps the master; for an open point the last
     /// value (the current one under fluid pressure) [L]
     pub length: f64,
@@ -322,7 +322,7 @@ impl ContactState {
         self.friction.pressure > 0.0 || self.friction.regime == Regime::Tied
     }
 
-    /// Open, stick or slip according to the law; a point closed only by a presumption is open.
+    /// Open, stick or slip according to the law; a point closed only by a prediction is open.
     pub fn regime(&self) -> Regime {
         if self.is_closed() { self.friction.regime } else { Regime::Open }
     }
@@ -352,22 +352,22 @@ impl ContactIncrement {
     }
 }
 
-/// Increment of a contact point, and the presumptions of the iteration about it.
+/// Increment of a contact point, and the predictions of the iteration about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointIncrement {
     /// Length of the increment, and other data common to all points
     pub during: ContactIncrement,
-    /// Presumptions of the linear solve about the point
-    pub presumption: Presumption,
+    /// Predictions of the linear solve about the point
+    pub prediction: Prediction,
 }
 
-/// Presumptions of a linear solve about a point, from earlier solves; empty in an accepted state.
+/// Predictions of a linear solve about a point, from earlier solves; empty in an accepted state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Presumption {
-    /// Presumption about its state
-    pub presume: Presume,
+pub struct Prediction {
+    /// Prediction about its state
+    pub predicted: PredictedStatus,
     /// Predicted tractions for the geometric tangent; those of the trial state if `None`
-    pub promised: Option<Tractions>,
+    pub predicted_tractions: Option<Tractions>,
     /// Pressure of a point that is kept closed whatever its gap, also used by friction unless its own pressure is positive;
     /// 0 if it is not kept
     pub kept: f64,
@@ -376,20 +376,20 @@ pub struct Presumption {
     /// is to slip.
     pub carried: Option<f64>,
     /// Two segments between which its projection alternates
-    pub astride: Option<[usize; 2]>,
+    pub alternating: Option<[usize; 2]>,
 }
 
-/// Presumption of the next linear solve about a point, for convergence; an accepted state has none.
+/// Prediction of the next linear solve about a point, for convergence; an accepted state has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Presume {
-    /// The laws respond without presumptions
+pub enum PredictedStatus {
+    /// The laws respond without predictions
     #[default]
     Nothing,
     /// A zero gap is closed and sticks; otherwise it would alternate between open and closed at p = 0
     Touch,
     /// The point sticks, q = q₀ + α_t Δu_t whatever its size. From one iterate to the next it slipped in opposite directions,
     /// past the narrow and stiff range of sticking in between: the tangents on both sides are soft, and Newton's method would
-    /// alternate indefinitely. It is presumed again if the point then slips although the predicted tractions would have held
+    /// alternate indefinitely. It is predicted again if the point then slips although the predicted tractions would have held
     /// it.
     Stick,
 }

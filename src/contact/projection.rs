@@ -9,7 +9,7 @@ use crate::mesh::configuration::Configuration;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
     /// Projected point of the master
-    pub foot: MasterPoint,
+    pub master_point: MasterPoint,
     /// g = (x − x_foot)·n, negative when penetrating [L]
     pub gap: f64,
     /// n: unit normal out of the master
@@ -55,7 +55,7 @@ pub fn normal_of(tangent: Vector2<f64>) -> Vector2<f64> {
 /// Projection of a slave point on one segment in the configuration `x`; `None` beyond the end of the surface.
 pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Option<Projection> {
     let found = on_curve(slave, surface, segment, x);
-    let xi = found.foot.xi;
+    let xi = found.master_point.xi;
     let neighbour = if xi < 0.0 { surface.previous(segment) } else { surface.next(segment) };
     let side = if xi < 0.0 { 0 } else { 1 };
     match neighbour {
@@ -63,7 +63,7 @@ pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Con
             // Smooth segments share the normal at their node: the projection passes from one to the other.
             let smooth = surface.segments[segment].beyond[side].and_then(|_| {
                 let found = on_curve(slave, surface, neighbour, x);
-                (-OVERHANG..=1.0 + OVERHANG).contains(&found.foot.xi).then_some(found)
+                (-OVERHANG..=1.0 + OVERHANG).contains(&found.master_point.xi).then_some(found)
             });
             smooth.or_else(|| Some(at_node(slave, surface, segment, neighbour, xi, x)))
         }
@@ -77,7 +77,7 @@ pub fn on_curve(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Confi
     let curve = &surface.segments[segment];
     let Nearest { xi, offset, slope, .. } = nearest(slave, curve, x);
     let normal = normal_of(slope.normalize());
-    Projection { foot: MasterPoint { segment, xi }, gap: offset.dot(&normal), normal, bound: Bound::Segment }
+    Projection { master_point: MasterPoint { segment, xi }, gap: offset.dot(&normal), normal, bound: Bound::Segment }
 }
 
 /// The closest point of a curve.
@@ -156,5 +156,5 @@ pub fn at_node(
     let on_node = offset.norm() <= ON_NODE * x.between(a, b).norm();
     let gap = if on_node { 0.0 } else { side * offset.norm() };
     let normal = if gap == 0.0 { mean.normalize() } else { offset / gap };
-    Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Node(node) }
+    Projection { master_point: MasterPoint { segment, xi }, gap, normal, bound: Bound::Node(node) }
 }

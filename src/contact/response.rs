@@ -11,7 +11,7 @@ use super::master::{Master, Rigid};
 use super::mortar::{Committed, Facing, Mortar, Overlaps, Room};
 use super::nodal_forces::{Closed, ClosedPoints};
 use super::pair::ContactPair;
-use super::point::{ContactIncrement, ContactState, PointIncrement, Presumption};
+use super::point::{ContactIncrement, ContactState, PointIncrement, Prediction};
 use super::search::{Index, KeptSearch};
 use super::small_sliding::SmallPoint;
 use super::surface::SlavePoint;
@@ -109,9 +109,9 @@ struct Question<'a, P> {
     pair: &'a ContactPair,
     /// Laws of the increment
     laws: Cow<'a, [Arc<ContactLaw>]>,
-    /// Increment of a point, and its presumptions
+    /// Increment of a point, and its predictions
     during: ContactIncrement,
-    presumed: P,
+    is_predicted: P,
     locating: Locating<'a>,
     before: &'a Configuration<'a>,
     x: &'a Configuration<'a>,
@@ -151,7 +151,7 @@ impl<'a> Locating<'a> {
 
 impl ContactPair {
     /// Evaluates every point's trial state and contribution to the equations in the configuration `x`, each with its own
-    /// presumption, and the tangent on request; `before` is the committed configuration. Pure, and the same for any number of
+    /// prediction, and the tangent on request; `before` is the committed configuration. Pure, and the same for any number of
     /// threads: only the memory of `response` is reused.
     ///
     /// # Errors
@@ -161,7 +161,7 @@ impl ContactPair {
         old: &[ContactState],
         [before, x]: [&Configuration; 2],
         during: ContactIncrement,
-        presumed: impl Fn(usize) -> Presumption + Sync,
+        is_predicted: impl Fn(usize) -> Prediction + Sync,
         request: Request,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
@@ -169,7 +169,7 @@ impl ContactPair {
         let PairResponse { states, answered: LastAnswers(answered), parts, kept } = response;
         let locating = Locating::of(self, [before, x], kept);
         let varied = request == Request::Tangent;
-        let question = Question { pair: self, laws, during, presumed, locating, before, x, varied };
+        let question = Question { pair: self, laws, during, is_predicted, locating, before, x, varied };
         states.clear();
         states.extend_from_slice(old);
         answered.resize_with(self.points.len().div_ceil(TOGETHER), Together::default);
@@ -217,8 +217,8 @@ impl<P> Question<'_, P> {
             }
             Locating::AveragedOnRigid(mortar, body) => mortar.meet_rigid(k, body, [before, x], kinematics, room),
             Locating::Projected(index) => {
-                let valley = increment.presumption.astride.and_then(|segments| index.in_valley(slave, segments, x));
-                let projection = valley.or_else(|| index.project(slave, old.foot, x));
+                let valley = increment.prediction.alternating.and_then(|segments| index.in_valley(slave, segments, x));
+                let projection = valley.or_else(|| index.project(slave, old.master_point, x));
                 return place(pair, slave, projection, old, increment, [before, x], kinematics);
             }
         };
@@ -228,7 +228,7 @@ impl<P> Question<'_, P> {
 
 impl Chunk {
     /// Evaluates several points: location, responses of their laws, resulting states.
-    fn evaluate<P: Fn(usize) -> Presumption>(
+    fn evaluate<P: Fn(usize) -> Prediction>(
         &mut self,
         question: &Question<P>,
         numbers: std::ops::Range<usize>,
@@ -246,7 +246,7 @@ impl Chunk {
             let mut sliding = [Sliding { slip: 0.0, pressure: 0.0, dt: 0.0 }; TOGETHER];
             for (i, kinematics) in kinematics.iter_mut().take(points.len()).enumerate() {
                 let (slave, old) = (&points[i], &old[i]);
-                let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
+                let increment = PointIncrement { during, prediction: (question.is_predicted)(first + i) };
                 kinematics.varied = question.varied;
                 kinematics.behind.clear();
                 kinematics.dpores.clear();
@@ -339,12 +339,12 @@ fn averaged(
     increment: PointIncrement,
     x: &Configuration,
 ) -> PointPlace {
-    let Some(Meeting { gap, foot }) = meeting else { return PointPlace::default() };
+    let Some(Meeting { gap, master_point }) = meeting else { return PointPlace::default() };
     let gap = slave.gap(gap - old.came.gap, increment.during.fading);
     let fluid = pair.acting_pressure(slave, old, x, increment.during.time);
     PointPlace {
         gap,
-        foot: Some(foot),
+        master_point: Some(master_point),
         closes: closes(pair, slave, gap, old, increment),
         bonded: pair.reaches(slave, gap, old, increment),
         fluid,

@@ -79,7 +79,9 @@ impl<'a, S: SegmentSearch> Index<'a, S> {
         let nearest = self.nearest(slave, from.map(|from| from.segment), x)?;
         match (self, from) {
             (Self::Mesh(surface, _, sight), Some(from))
-                if nearest.bound == Bound::Segment && nearest.gap < 0.0 && nearest.foot.segment != from.segment =>
+                if nearest.bound == Bound::Segment
+                    && nearest.gap < 0.0
+                    && nearest.master_point.segment != from.segment =>
             {
                 let outward = slave.outward(x);
                 let viewer = sight.as_ref().and_then(|sight| sight.point(slave));
@@ -93,7 +95,7 @@ impl<'a, S: SegmentSearch> Index<'a, S> {
         }
     }
 
-    /// Presumed projection of a point that alternates between two segments: their node, if they form a concave corner. The
+    /// Predicted projection of a point that alternates between two segments: their node, if they form a concave corner. The
     /// closest point is the node only in a strip as narrow as the penetration times the change of the normal, which Newton's
     /// method would step over from either side indefinitely.
     pub fn in_valley(&self, slave: &SlavePoint, [a, b]: [usize; 2], x: &Configuration) -> Option<Projection> {
@@ -117,7 +119,11 @@ impl<'a, S: SegmentSearch> Index<'a, S> {
                     // A point can lie behind the common node of two segments only if it may be in contact with both: points on
                     // the other side of a wall see the far side of a hole beyond its end, through the body.
                     let beside = |at: &Projection| {
-                        if at.foot.xi > 0.0 { surface.next(at.foot.segment) } else { surface.previous(at.foot.segment) }
+                        if at.master_point.xi > 0.0 {
+                            surface.next(at.master_point.segment)
+                        } else {
+                            surface.previous(at.master_point.segment)
+                        }
                     };
                     return on_segment(slave, surface, nearest, x).filter(|at| {
                         at.gap >= 0.0
@@ -177,8 +183,8 @@ fn behind_ridge(
     meets: impl Fn(usize) -> bool,
     x: &Configuration,
 ) -> Projection {
-    let way = surface.path(nearest.foot, from).into_iter().flat_map(Path::parts);
+    let way = surface.path(nearest.master_point, from).into_iter().flat_map(Path::parts);
     let earlier = way.skip(1).map(|part| part.segment).take_while(|&segment| meets(segment));
     let behind = earlier.map(|segment| on_curve(slave, surface, segment, x));
-    behind.take_while(|at| at.gap < 0.0 && (0.0..=1.0).contains(&at.foot.xi)).last().unwrap_or(nearest)
+    behind.take_while(|at| at.gap < 0.0 && (0.0..=1.0).contains(&at.master_point.xi)).last().unwrap_or(nearest)
 }

@@ -66,7 +66,7 @@ pub struct SmallPoint {
     /// ℓ: tributary length of the point [L]
     pub length: f64,
     /// Closest-point projection on the master
-    pub foot: MasterPoint,
+    pub master_point: MasterPoint,
     /// Part of the master on which its projection stays
     against: Against,
 }
@@ -105,7 +105,7 @@ pub const LITTLE_TURN: f64 = 0.02;
 impl SmallPoint {
     /// Creates the operator of a point with this projection in the reference configuration `x`.
     pub fn new(met: Meeting, k: &Kinematics, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
-        let Meeting { gap, foot } = met;
+        let Meeting { gap, master_point } = met;
         let Kinematics { normal, tangent, length, .. } = *k;
         let takes_part =
             |k: &Kinematics, at: usize| k.relative[at] != 0.0 || k.lever.is_some_and(|lever| lever.at == at);
@@ -120,7 +120,7 @@ impl SmallPoint {
                 Against::Rigid { normal: body.project(slave, x).map_or(normal, |projection| projection.normal) }
             }
             Master::Mesh(surface) => {
-                let Segment { ends, middle, .. } = surface.segments[foot.segment];
+                let Segment { ends, middle, .. } = surface.segments[master_point.segment];
                 let spacing = |(quadratic, [a, b]): (bool, [usize; 2])| {
                     let edge = x.between(a, b).norm();
                     if quadratic { 0.5 * edge } else { edge }
@@ -129,7 +129,7 @@ impl SmallPoint {
                 Against::Mesh { ends, spacing: own.fold(spacing((middle.is_some(), ends)), f64::min) }
             }
         };
-        Self { nodes, weights, lever, turning: None, normal, tangent, gap, length, foot, against }
+        Self { nodes, weights, lever, turning: None, normal, tangent, gap, length, master_point, against }
     }
 
     /// Turns the axes with the edges of the slave.
@@ -242,7 +242,7 @@ impl SmallPoint {
                 dslip[dof] = w * s[dof % 2] + n.dot(&r) * turn;
             }
         }
-        Meeting { gap: n.dot(&r), foot: self.foot }
+        Meeting { gap: n.dot(&r), master_point: self.master_point }
     }
 
     /// Projection of the point on the master, with the slip since the configuration `before`.
@@ -262,7 +262,7 @@ impl SmallPoint {
         k.slip = self.tangent.dot(&self.relative(|node| x.since(before, node)));
         k.dgap.iter_mut().zip(self.normal_row()).for_each(|(dgap, value)| *dgap = value);
         k.dslip.iter_mut().zip(self.tangent_row()).for_each(|(dslip, value)| *dslip = value);
-        Meeting { gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
+        Meeting { gap: self.gap + self.normal.dot(&self.displacement(x)), master_point: self.master_point }
     }
 }
 

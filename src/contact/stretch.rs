@@ -149,7 +149,7 @@ impl ContactPair {
     fn edge_at(&self, k: usize, state: &ContactState, x: &Configuration) -> Option<(f64, f64)> {
         let is_quadratic = self.points[k].length.iter().any(|share| share.tangent.len() > 2);
         let slave = (self.points[k].edge_length(x)?, if is_quadratic && self.mortar.is_none() { 2.0 } else { 1.0 });
-        let under = state.foot.and_then(|foot| self.master.segments().get(foot.segment));
+        let under = state.master_point.and_then(|master_point| self.master.segments().get(master_point.segment));
         let master = under.map(|segment| {
             let [start, end] = segment.ends;
             (x.between(start, end).norm(), if segment.middle.is_some() { 2.0 } else { 1.0 })
@@ -172,8 +172,8 @@ impl ContactPair {
                 }
             },
             Master::Mesh(surface) => {
-                let feet = [states[from].foot, states[to].foot];
-                let [Some(from), Some(to)] = feet else { return true };
+                let master_points = [states[from].master_point, states[to].master_point];
+                let [Some(from), Some(to)] = master_points else { return true };
                 surface.path(from, to).is_none_or(|path| bends(surface, path.parts().map(|part| part.segment), x))
             }
         }
@@ -204,7 +204,7 @@ impl Seen<'_> {
         while let Some((next, length)) = step(at) {
             (at, gone) = (next, gone + length);
             let state = &self.states[at];
-            if state.is_closed() || state.foot.is_none() {
+            if state.is_closed() || state.master_point.is_none() {
                 return None;
             }
             let open = Open { way: way + gone, gap: state.clearance() };

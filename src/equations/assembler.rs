@@ -11,7 +11,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::contact::pair::Presumption;
+use crate::contact::pair::Prediction;
 use crate::contact::response::{LastAnswers, PairResponse};
 use crate::equations::convergence::{ConvergenceCriterion, missed};
 use crate::equations::coupling::{Coupling, Layout};
@@ -50,7 +50,7 @@ pub struct Assembler {
     /// Sum of the forces' magnitudes at each dof [F]
     pub(super) magnitudes: Vec<f64>,
     pub(super) equilibrium: ConvergenceCriterion,
-    /// Responses of contacts without presumptions, kept to reuse their memory
+    /// Responses of contacts without predictions, kept to reuse their memory
     responses: Vec<PairResponse>,
     /// Last answers of the laws of each contact
     pub(super) answered: Vec<LastAnswers>,
@@ -91,7 +91,7 @@ impl Assembler {
         let solids = Solids::new(model, |_| true, &born);
         Self {
             model: model.clone(),
-            layout: Layout::new(model, term::skew(model)),
+            layout: Layout::new(model, term::unsymmetric(model)),
             absent: Vec::new(),
             bars_absent: Vec::new(),
             evolving: Evolving::new(model, solids.constant(), |_| true, &born),
@@ -162,7 +162,7 @@ impl Assembler {
         }
     }
 
-    /// Computes the residual at the displacement `u`, without presumptions, and measures it.
+    /// Computes the residual at the displacement `u`, without predictions, and measures it.
     ///
     /// # Errors
     /// Returns [`TrialFailure`] if an element inverts, a friction law fails, or a load has no finite value.
@@ -195,7 +195,7 @@ impl Assembler {
         evaluated
     }
 
-    /// Computes the residual and the tangent without presumptions, and on request the linearized forces of the bodies: none where nodes
+    /// Computes the residual and the tangent without predictions, and on request the linearized forces of the bodies: none where nodes
     /// follow others by their rotation, with which forces turn.
     ///
     /// # Errors
@@ -454,7 +454,7 @@ impl Assembler {
 
     /// Extends the pattern to all contact points.
     fn cover(&mut self, step: &Step, old: &State, responses: &[PairResponse]) {
-        let marked = self.layout.mark(&term::skew_of(&self.model, step));
+        let marked = self.layout.mark(&term::unsymmetric_of(&self.model, step));
         if self.layout.cover(responses, old) || marked {
             (self.mass, self.damping_mass) = (None, None);
         }
@@ -462,7 +462,7 @@ impl Assembler {
 }
 
 impl Assembler {
-    /// Calls a function with the responses of all contact points without presumptions.
+    /// Calls a function with the responses of all contact points without predictions.
     ///
     /// # Errors
     /// Returns [`TrialFailure`] if a friction law fails, and the errors of the function.
@@ -474,7 +474,7 @@ impl Assembler {
         act: impl FnOnce(&mut Self, &[PairResponse]) -> Result<T, TrialFailure>,
     ) -> Result<T, TrialFailure> {
         let mut responses = std::mem::take(&mut self.responses);
-        let found = self.interfaces(trial, u, |_, _| Presumption::default(), request, &mut responses);
+        let found = self.interfaces(trial, u, |_, _| Prediction::default(), request, &mut responses);
         let done = found.and_then(|()| act(self, &responses));
         self.responses = responses;
         done

@@ -382,7 +382,7 @@ fn nodes_of(model: &Model, pair: &ContactPair) -> Vec<Vec<usize>> {
 struct Jump {
     slave: usize,
     /// Nodes of the master and N_a, which sum to one; empty on a rigid body
-    feet: Vec<(usize, f64)>,
+    master_points: Vec<(usize, f64)>,
     /// Constant contribution of contact to its normal equation while closed: n and α_n ℓ
     steady: Steady,
 }
@@ -403,12 +403,14 @@ impl Jumps {
         let mut tied = vec![false; uses.len()];
         model.ties.pairs().iter().for_each(|&(copy, original)| (tied[copy], tied[original]) = (true, true));
         let fixed: Vec<Vec<bool>> = model.steps.iter().map(|step| fixed(model, step)).collect();
-        let left_over = |slave: usize, foot: usize| {
-            fixed.iter().any(|fixed| (0..2).any(|i| fixed[2 * slave + i] && !fixed[2 * foot + i]))
+        let left_over = |slave: usize, master_point: usize| {
+            fixed.iter().any(|fixed| (0..2).any(|i| fixed[2 * slave + i] && !fixed[2 * master_point + i]))
         };
-        let fits = |Jump { slave, feet, .. }: &Jump| {
+        let fits = |Jump { slave, master_points, .. }: &Jump| {
             let free = uses[*slave] == 1 && !tied[*slave];
-            free && feet.iter().all(|&(foot, _)| !tied[foot] && !left_over(*slave, foot))
+            free && master_points
+                .iter()
+                .all(|&(master_point, _)| !tied[master_point] && !left_over(*slave, master_point))
         };
         // Friction that goes by pores depends on the nodes behind the surface too.
         let pairs = model.contacts.iter().filter(|pair| pair.pores.is_none());
@@ -428,8 +430,8 @@ impl Jumps {
         self.numbers[node].is_some()
     }
 
-    fn feet(&self, node: usize) -> &[(usize, f64)] {
-        self.numbers[node].map_or(&[], |number| &self.jumps[number as usize].feet)
+    fn master_points(&self, node: usize) -> &[(usize, f64)] {
+        self.numbers[node].map_or(&[], |number| &self.jumps[number as usize].master_points)
     }
 
     /// Contribution of contact to the equation of a node's normal jump while it is closed, in equations that are not `fixed`.
@@ -441,7 +443,7 @@ impl Jumps {
 
     /// 1 + Σ N_a²: the residual of all equations is that of a jump times its square root, if the master's is zero in L r.
     pub fn share(&self, node: usize) -> f64 {
-        1.0 + self.feet(node).iter().map(|(_, weight)| weight * weight).sum::<f64>()
+        1.0 + self.master_points(node).iter().map(|(_, weight)| weight * weight).sum::<f64>()
     }
 
     /// J of a node, or u of one without a jump.
@@ -453,10 +455,11 @@ impl Jumps {
 
     /// Σ N_a u_a; the motion of the first node is subtracted first to avoid round-off of a common motion.
     fn base(&self, node: usize, u: &[f64]) -> [f64; 2] {
-        let Some((&(first, _), others)) = self.feet(node).split_first() else { return [0.0; 2] };
+        let Some((&(first, _), others)) = self.master_points(node).split_first() else { return [0.0; 2] };
         [0, 1].map(|i| {
             let common = u[2 * first + i];
-            common + others.iter().map(|&(foot, weight)| weight * (u[2 * foot + i] - common)).sum::<f64>()
+            common
+                + others.iter().map(|&(master_point, weight)| weight * (u[2 * master_point + i] - common)).sum::<f64>()
         })
     }
 
@@ -470,20 +473,22 @@ impl Jumps {
 
     /// Computes L r, in place.
     pub fn balance(&self, fixed: &[bool], r: &mut [f64]) {
-        for Jump { slave, feet, .. } in &self.jumps {
-            for &(foot, weight) in feet {
-                let free = |i: &usize| !fixed[2 * slave + i] && !fixed[2 * foot + i];
-                (0..2).filter(free).for_each(|i| r[2 * foot + i] += weight * r[2 * slave + i]);
+        for Jump { slave, master_points, .. } in &self.jumps {
+            for &(master_point, weight) in master_points {
+                let free = |i: &usize| !fixed[2 * slave + i] && !fixed[2 * master_point + i];
+                (0..2).filter(free).for_each(|i| r[2 * master_point + i] += weight * r[2 * slave + i]);
             }
         }
     }
 
     /// Pattern of L A T for A with the pattern `plain`, all `kept` nodes coupled with each other.
     pub fn pattern(&self, plain: &Pattern, kept: &[usize]) -> Pattern {
-        let with_feet = |node: usize| std::iter::once(node).chain(self.feet(node).iter().map(|&(foot, _)| foot));
+        let with_master_points = |node: usize| {
+            std::iter::once(node).chain(self.master_points(node).iter().map(|&(master_point, _)| master_point))
+        };
         let groups = (0..plain.nodes()).flat_map(|column| {
             let coupled = plain.neighbours(column).iter().filter(move |row| **row <= column);
-            coupled.map(move |&row| with_feet(row).chain(with_feet(column)).collect::<Vec<_>>())
+            coupled.map(move |&row| with_master_points(row).chain(with_master_points(column)).collect::<Vec<_>>())
         });
         let groups: Vec<Vec<usize>> = groups.chain([kept.to_vec()]).collect();
         Pattern::new(plain.nodes(), groups.iter().map(|group| &group[..]))
@@ -496,7 +501,7 @@ impl Jumps {
             (0..nodes).flat_map(|column| plain.pattern.neighbours(column).iter().map(move |&row| (row, column)));
         for (row, column) in pairs {
             let Some(from) = plain.pattern.block(row, column) else { continue };
-            let itself = |node: usize| std::iter::once((node, 1.0)).chain(self.feet(node).iter().copied());
+            let itself = |node: usize| std::iter::once((node, 1.0)).chain(self.master_points(node).iter().copied());
             for (to_column, by_column) in itself(column) {
                 for (to_row, by_row) in itself(row) {
                     let to = sum.pattern.block(to_row, to_column).expect("coupled with the feet");
@@ -526,10 +531,10 @@ fn jump(slave: usize, point: &SmallPoint, alpha_n: f64) -> Option<Jump> {
     if point.lever.is_some() {
         return None;
     }
-    let (mut own, mut feet) = (0.0, Vec::new());
+    let (mut own, mut master_points) = (0.0, Vec::new());
     for (&node, &weight) in point.nodes.iter().zip(&point.weights) {
-        if node == slave { own += weight } else { feet.push((node, -weight)) }
+        if node == slave { own += weight } else { master_points.push((node, -weight)) }
     }
     let steady = Steady { direction: point.normal, stiffness: alpha_n * point.length };
-    (own == 1.0).then_some(Jump { slave, feet, steady })
+    (own == 1.0).then_some(Jump { slave, master_points, steady })
 }

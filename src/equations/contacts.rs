@@ -6,7 +6,7 @@ use super::Assembler;
 use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
 use crate::contact::force::ContactState;
-use crate::contact::pair::{BadPressure, ContactIncrement, ContactPair, InitialTraction, Presumption};
+use crate::contact::pair::{BadPressure, ContactIncrement, ContactPair, InitialTraction, Prediction};
 use crate::contact::response::{LastAnswers, PairResponse};
 use crate::contact::surface::SlavePoint;
 use crate::equations::sums::TrialFailure;
@@ -20,7 +20,7 @@ pub(super) fn dependence(model: &Model) -> Dependence {
 }
 
 impl Assembler {
-    /// Evaluates the responses of all contact points at the displacement `u`, one a pair, with presumptions about each point of a pair for
+    /// Evaluates the responses of all contact points at the displacement `u`, one a pair, with predictions about each point of a pair for
     /// a tangent only: a residual that may be accepted has none. The result is in `responses`, whose memory is reused. What laws answered
     /// goes from one evaluation to the next, whatever its responses are for.
     ///
@@ -30,7 +30,7 @@ impl Assembler {
         &mut self,
         trial: Trial,
         u: &[f64],
-        presumed: impl Fn(usize, usize) -> Presumption + Sync,
+        is_predicted: impl Fn(usize, usize) -> Prediction + Sync,
         request: Request,
         responses: &mut Vec<PairResponse>,
     ) -> Result<(), TrialFailure> {
@@ -56,9 +56,9 @@ impl Assembler {
                 let contact = pair.name.clone();
                 return Err(TrialFailure::FluidPressure { contact, at: [at.x, at.y], pressure, time });
             }
-            let presumed = |point| presumed(number, point);
+            let is_predicted = |point| is_predicted(number, point);
             std::mem::swap(&mut response.answered, answered);
-            let answer = pair.respond(old, [&before, &x], during, presumed, request, response);
+            let answer = pair.respond(old, [&before, &x], during, is_predicted, request, response);
             std::mem::swap(&mut response.answered, answered);
             answer.map_err(|(point, cause)| TrialFailure::Friction { contact: pair.name.clone(), point, cause })?;
         }

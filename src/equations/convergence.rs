@@ -385,7 +385,7 @@ impl ContactEdges {
 
     /// The longer of the edges that meet at a point: gaps are measured on them, and on no others.
     fn at(&self, point: usize, state: &ContactState) -> f64 {
-        let faced = state.foot.and_then(|foot| self.master.get(foot.segment));
+        let faced = state.master_point.and_then(|master_point| self.master.get(master_point.segment));
         self.slave[point].max(faced.copied().unwrap_or(0.0))
     }
 }

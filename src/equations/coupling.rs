@@ -39,7 +39,7 @@ impl Coupling {
 
 /// Nodes between which the tangent is not symmetric: see [`Pattern::symmetric_but`].
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Skew {
+pub(super) struct Unsymmetric {
     /// Nodes that such contributions couple with each other
     pub nodes: Vec<usize>,
     /// Nodes whose equations are not those of their forces, or no more: these and all they couple with
@@ -53,7 +53,7 @@ pub(super) struct Layout {
     /// current coupling
     pub coupling: Arc<Coupling>,
     /// what is not symmetric beside contact
-    skew: Skew,
+    unsymmetric: Unsymmetric,
     /// the pattern
     pub pattern: Arc<Pattern>,
     /// Position of the block of every node pair of every element, in the current pattern
@@ -68,7 +68,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Creates the layout of all elements, loads and pairs of tied nodes.
-    pub fn new(model: &Arc<Model>, skew: Skew) -> Self {
+    pub fn new(model: &Arc<Model>, unsymmetric: Unsymmetric) -> Self {
         let starts = std::iter::once(0).chain(model.mesh.elements.iter().scan(0, |sum, element| {
             *sum += element.nodes.len().pow(2);
             Some(*sum)
@@ -76,7 +76,7 @@ impl Layout {
         let mut layout = Self {
             model: model.clone(),
             coupling: Arc::new(Coupling { groups: Vec::new(), ahead: 1 }),
-            skew,
+            unsymmetric,
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             starts: starts.collect(),
@@ -119,8 +119,8 @@ impl Layout {
         let all = elements.chain(wet).chain(others);
         let tied = self.tied(all.clone());
         let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
-        let skew = self.all_skew(&pattern);
-        self.pattern = Arc::new(pattern.symmetric_but(skew));
+        let unsymmetric = self.all_unsymmetric(&pattern);
+        self.pattern = Arc::new(pattern.symmetric_but(unsymmetric));
         let mut blocks = std::mem::take(&mut self.blocks);
         blocks.clear();
         blocks.reserve_exact(self.starts.last().copied().unwrap_or(0));
@@ -131,30 +131,34 @@ impl Layout {
     }
 
     /// Flags of all nodes between which the tangent is not symmetric.
-    fn all_skew(&self, pattern: &Pattern) -> Vec<bool> {
-        let (model, Skew { nodes, around }) = (&*self.model, &self.skew);
-        let mut skew = vec![false; pattern.nodes()];
-        nodes.iter().for_each(|&node| skew[self.original(node)] = true);
-        around.iter().flat_map(|&node| pattern.neighbours(node)).for_each(|&node| skew[node] = true);
+    fn all_unsymmetric(&self, pattern: &Pattern) -> Vec<bool> {
+        let (model, Unsymmetric { nodes, around }) = (&*self.model, &self.unsymmetric);
+        let mut unsymmetric = vec![false; pattern.nodes()];
+        nodes.iter().for_each(|&node| unsymmetric[self.original(node)] = true);
+        around.iter().flat_map(|&node| pattern.neighbours(node)).for_each(|&node| unsymmetric[node] = true);
         // A copy's equation is that it moves with its original.
-        model.ties.pairs().iter().for_each(|&(copy, original)| (skew[copy], skew[original]) = (true, true));
+        model
+            .ties
+            .pairs()
+            .iter()
+            .for_each(|&(copy, original)| (unsymmetric[copy], unsymmetric[original]) = (true, true));
         let mut slides = vec![false; pattern.nodes()];
-        let skew_pairs = model.contacts.iter().filter(|pair| !pair.is_symmetric());
-        skew_pairs.flat_map(|pair| pair.nodes()).for_each(|node| slides[node] = true);
+        let unsymmetric_pairs = model.contacts.iter().filter(|pair| !pair.is_symmetric());
+        unsymmetric_pairs.flat_map(|pair| pair.nodes()).for_each(|node| slides[node] = true);
         let groups = self.coupling.groups.iter().flatten();
-        groups.filter(|node| slides[**node]).for_each(|&node| skew[self.original(node)] = true);
-        skew
+        groups.filter(|node| slides[**node]).for_each(|&node| unsymmetric[self.original(node)] = true);
+        unsymmetric
     }
 
     /// Take what is not symmetric in a step that has been changed; whether it was not known yet.
-    pub fn mark(&mut self, skew: &Skew) -> bool {
-        let known = self.pattern.skew();
-        let around = skew.around.iter().flat_map(|&node| self.pattern.neighbours(node));
-        let mut all = skew.nodes.iter().map(|&node| self.original(node)).chain(around.copied());
+    pub fn mark(&mut self, unsymmetric: &Unsymmetric) -> bool {
+        let known = self.pattern.unsymmetric();
+        let around = unsymmetric.around.iter().flat_map(|&node| self.pattern.neighbours(node));
+        let mut all = unsymmetric.nodes.iter().map(|&node| self.original(node)).chain(around.copied());
         let new = all.any(|node| !known[node]);
         if new {
-            self.skew.nodes.extend(&skew.nodes);
-            self.skew.around.extend(&skew.around);
+            self.unsymmetric.nodes.extend(&unsymmetric.nodes);
+            self.unsymmetric.around.extend(&unsymmetric.around);
             self.set();
         }
         new
@@ -241,16 +245,16 @@ impl Layout {
                     groups.extend(met.map(|point| point.nodes.iter().copied().chain(behind.clone()).collect()));
                     continue;
                 }
-                let Some(foot) = state.foot.or(old.foot) else { continue };
+                let Some(master_point) = state.master_point.or(old.master_point) else { continue };
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(responses.acting(k).into_iter().flat_map(|closed| closed.nodes));
                 nodes.extend(pair.master.rigid_body().into_iter().flat_map(RigidBody::nodes).chain(behind));
                 if let Master::Mesh(surface) = &pair.master {
-                    let way = old.foot.and_then(|from| surface.path(from, foot)).into_iter();
+                    let way = old.master_point.and_then(|from| surface.path(from, master_point)).into_iter();
                     let slip: f64 = way.flat_map(Path::parts).map(|part| part.end - part.start).sum();
                     let [behind, ahead] = if slip < 0.0 { [ahead, 1] } else { [1, ahead] };
-                    let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
-                    let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
+                    let back = std::iter::successors(Some(master_point.segment), |&segment| surface.previous(segment));
+                    let forth = std::iter::successors(Some(master_point.segment), |&segment| surface.next(segment));
                     let around = back.take(1 + behind).chain(forth.take(1 + ahead));
                     nodes.extend(around.flat_map(|segment| surface.segments[segment].nodes()));
                 }
@@ -284,7 +288,7 @@ impl Layout {
             found.all(|block| block.map(|block| blocks.push(block)).is_some())
         });
         self.contact_blocks = blocks;
-        let covered = coupled && self.knows_skew(responses);
+        let covered = coupled && self.knows_unsymmetric(responses);
         if !covered {
             self.contacts.clear();
         }
@@ -293,11 +297,11 @@ impl Layout {
 
     /// Whether the pattern says of all that closed points couple with each other that it is not symmetric, where theirs is not: on a
     /// rigid master these are nodes of one element, for which no new place is needed.
-    fn knows_skew(&self, responses: &[PairResponse]) -> bool {
-        let skew = self.pattern.skew();
+    fn knows_unsymmetric(&self, responses: &[PairResponse]) -> bool {
+        let unsymmetric = self.pattern.unsymmetric();
         let pairs = self.model.contacts.iter().zip(responses).filter(|(pair, _)| !pair.is_symmetric());
         let mut nodes = pairs.flat_map(|(_, responses)| responses.all_acting()).flat_map(|(_, closed)| closed.nodes);
-        nodes.all(|&node| skew[self.original(node)])
+        nodes.all(|&node| unsymmetric[self.original(node)])
     }
 
     /// Blocks of the closed contact points last included, point after point, each column by column.

@@ -60,11 +60,11 @@ pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
 }
 
 /// Nodes of the bodies whose viscous stress is not that of a constant stiffness, and of viscous bars: their tangent is not symmetric.
-pub(super) fn skew(model: &Model, step: &Step) -> Vec<usize> {
+pub(super) fn unsymmetric(model: &Model, step: &Step) -> Vec<usize> {
     let viscous = model.bodies.iter().zip(model.dampings(step)).filter(|(_, damping)| damping.retardation > 0.0);
-    let skew = viscous.filter(|(body, _)| !damps_by_stiffness(&*body.material));
+    let unsymmetric = viscous.filter(|(body, _)| !damps_by_stiffness(&*body.material));
     let bars = model.bars_in(step).filter(|(_, bar)| bar.retardation > 0.0).flat_map(|(_, bar)| bar.nodes());
-    skew.flat_map(|(body, _)| body.nodes.iter().copied()).chain(bars).collect()
+    unsymmetric.flat_map(|(body, _)| body.nodes.iter().copied()).chain(bars).collect()
 }
 
 /// Whether a bar that is there damps by its stiffness.

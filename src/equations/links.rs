@@ -115,7 +115,7 @@ pub fn relieved<'a>(model: &Model, u: &[f64], force: &'a [f64]) -> Cow<'a, [f64]
 }
 
 /// Nodes that follow or lead: followers' equations are summed up, and their columns are not.
-pub(super) fn skew(model: &Model) -> Vec<usize> {
+pub(super) fn unsymmetric(model: &Model) -> Vec<usize> {
     model.linkage.nodes()
 }
 

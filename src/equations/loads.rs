@@ -19,7 +19,7 @@ pub(super) fn dependence(step: &Step) -> Dependence {
 }
 
 /// Nodes of the pressures, whose tangent is not symmetric: that of an edge by itself.
-pub(super) fn skew(step: &Step) -> Vec<usize> {
+pub(super) fn unsymmetric(step: &Step) -> Vec<usize> {
     step.loads.pressures.iter().flat_map(|load| load.edges.iter().flatten().copied()).collect()
 }
 

@@ -34,7 +34,7 @@ pub fn fixed(model: &Model, step: &Step) -> Vec<bool> {
 }
 
 /// Nodes held along an inclined direction: their equations are turned, and their columns are not.
-pub(super) fn skew(step: &Step) -> Vec<usize> {
+pub(super) fn unsymmetric(step: &Step) -> Vec<usize> {
     step.supports.iter().filter(|support| support.at.inclined.is_some()).map(|support| support.at.node()).collect()
 }
 

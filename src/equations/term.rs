@@ -1,6 +1,6 @@
 //! The terms of the equations.
 
-use super::coupling::Skew;
+use super::coupling::Unsymmetric;
 use super::sums::Dependence;
 use super::{bars, contacts, damping, inertia, links, loads, pore_flow, solids, supports};
 use crate::model::{Model, Step};
@@ -75,19 +75,19 @@ impl Term {
 
 /// Returns where the tangent of a step is unsymmetric beside contacts, as those say who add to it; inertia, dashpots and dead loads
 /// are symmetric.
-pub(super) fn skew_of(model: &Model, step: &Step) -> Skew {
-    let mut nodes = loads::skew(step);
-    nodes.extend(damping::skew(model, step));
-    let mut around = supports::skew(step);
-    around.extend(links::skew(model));
-    Skew { nodes, around }
+pub(super) fn unsymmetric_of(model: &Model, step: &Step) -> Unsymmetric {
+    let mut nodes = loads::unsymmetric(step);
+    nodes.extend(damping::unsymmetric(model, step));
+    let mut around = supports::unsymmetric(step);
+    around.extend(links::unsymmetric(model));
+    Unsymmetric { nodes, around }
 }
 
 /// The same in all steps of a model.
-pub(super) fn skew(model: &Model) -> Skew {
-    let mut all = Skew { nodes: solids::skew(model), around: Vec::new() };
+pub(super) fn unsymmetric(model: &Model) -> Unsymmetric {
+    let mut all = Unsymmetric { nodes: solids::unsymmetric(model), around: Vec::new() };
     for step in &model.steps {
-        let Skew { nodes, around } = skew_of(model, step);
+        let Unsymmetric { nodes, around } = unsymmetric_of(model, step);
         all.nodes.extend(nodes);
         all.around.extend(around);
     }

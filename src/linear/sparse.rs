@@ -16,7 +16,7 @@ pub struct Pattern {
     /// Row nodes coupled with each column node, ascending, including the node itself
     rows: Vec<usize>,
     /// Whether values between each node and others of this kind, or its own, may be unsymmetric
-    skew: Vec<bool>,
+    unsymmetric: Vec<bool>,
 }
 
 /// Position of the 2×2 block of a (row node, column node) pair in the values.
@@ -62,22 +62,22 @@ impl Pattern {
             rows.extend_from_slice(list);
             starts.push(rows.len());
         }
-        Self { starts, rows, skew: vec![true; nodes] }
+        Self { starts, rows, unsymmetric: vec![true; nodes] }
     }
 
     /// The same for values that are symmetric but between these nodes.
-    pub fn symmetric_but(self, skew: Vec<bool>) -> Self {
-        Self { skew, ..self }
+    pub fn symmetric_but(self, unsymmetric: Vec<bool>) -> Self {
+        Self { unsymmetric, ..self }
     }
 
     /// Flags of the nodes between which values may be unsymmetric.
-    pub fn skew(&self) -> &[bool] {
-        &self.skew
+    pub fn unsymmetric(&self) -> &[bool] {
+        &self.unsymmetric
     }
 
     /// Whether values may be unsymmetric between all nodes.
-    pub(super) fn is_all_skew(&self) -> bool {
-        !self.skew.contains(&false)
+    pub(super) fn is_all_unsymmetric(&self) -> bool {
+        !self.unsymmetric.contains(&false)
     }
 
     /// Number of nodes.
@@ -228,7 +228,7 @@ impl SparseMatrix {
     }
 
     /// Replace the row of `dof` by `diagonal` on the diagonal and zeros elsewhere, to which others may be added: what its column
-    /// has is skew then.
+    /// has is unsymmetric then.
     pub fn replace_row(&mut self, dof: usize, diagonal: f64) {
         let (node, d) = (dof / 2, dof % 2);
         self.held[dof] = false;

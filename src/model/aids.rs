@@ -10,7 +10,7 @@ pub struct Aids {
     /// The start value extrapolates the last increment: [`crate::solve::equilibrium`]
     pub start: bool,
     /// Tractions predicted by the linear solve rotate and stretch with the surface: [`crate::solve::contact_iteration`]
-    pub promise: bool,
+    pub prediction: bool,
     /// At the start of an increment the predicted tractions are limited: [`crate::solve::contact_iteration`]
     pub limit: bool,
     /// Points with a predicted pressure are closed: [`crate::solve::contact_iteration`]
@@ -23,7 +23,7 @@ pub struct Aids {
     pub touch: bool,
     /// A point whose slip alternates in direction sticks: [`crate::solve::contact_iteration`]
     pub stick: bool,
-    /// It is presumed to stick once more if the predicted tractions would have held it: [`crate::solve::contact_iteration`]
+    /// It is predicted to stick once more if the predicted tractions would have held it: [`crate::solve::contact_iteration`]
     pub stick_again: bool,
     /// A projection that alternates between two segments is placed at their node: [`crate::solve::contact_iteration`]
     pub valley: bool,
@@ -43,7 +43,7 @@ impl Default for Aids {
     fn default() -> Self {
         Self {
             start: true,
-            promise: true,
+            prediction: true,
             limit: true,
             keep: true,
             pull: true,

@@ -206,7 +206,7 @@ pub fn between_nodes<'a>(nodes: &'a [SlavePoint], faced: &Master, x: &Configurat
         let middle = faced.segments()[segment].middle.map(|_| 0.5);
         [0.0, 1.0].into_iter().chain(middle).all(|node| (xi - node).abs() > FACE)
     };
-    nodes.iter().find(|node| index.project(node, None, x).is_some_and(|projection| is_between(projection.foot)))
+    nodes.iter().find(|node| index.project(node, None, x).is_some_and(|projection| is_between(projection.master_point)))
 }
 
 /// Known weakness of the requested method for these surfaces, if any.

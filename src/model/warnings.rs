@@ -486,7 +486,7 @@ impl Gaps {
             high: f64::NEG_INFINITY,
             fit: None,
         };
-        for (point, state) in pair.points.iter().zip(&states).filter(|(_, state)| state.foot.is_some()) {
+        for (point, state) in pair.points.iter().zip(&states).filter(|(_, state)| state.master_point.is_some()) {
             let (gap, overlap) = (rounded(point, state.gap), rounded(point, point.overlap));
             gaps.facing += 1;
             gaps.high = gaps.high.max(gap);

@@ -34,7 +34,7 @@ use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 use crate::time::step_size::LocalError;
-use crate::time::touching::DOUBT;
+use crate::time::touching::UNCERTAINTY;
 
 /// Smallest reported penetration of a master by a node that the contact does not check or press on, as a fraction of the
 /// slave's longest edge.
@@ -50,7 +50,7 @@ pub struct Warnings {
     /// Names of the steps with a warning about their time error
     inexact: BTreeSet<String>,
     /// Names of the steps with a warning about friction after closure
-    doubtful: BTreeSet<String>,
+    uncertain: BTreeSet<String>,
     /// Steps with a warning about their linear systems
     perturbed: BTreeSet<String>,
     /// How far each linear body had been strained in this step when it was looked at, as [`most_strained`] estimates it
@@ -277,7 +277,7 @@ impl Warnings {
             self.open.remove(&number);
             return;
         }
-        let gaps = states.iter().filter(|state| state.foot.is_some()).map(ContactState::clearance);
+        let gaps = states.iter().filter(|state| state.master_point.is_some()).map(ContactState::clearance);
         let (_, least) = self.open.entry(number).or_insert_with(|| (pair.name.clone(), None));
         *least = gaps.chain(*least).min_by(f64::total_cmp);
     }
@@ -417,9 +417,9 @@ impl Warnings {
 
     /// Uncertain friction after closure in increments of the shortest length, which are accepted in any case.
     fn error_of_touch(&mut self, attempt: &Attempt) {
-        let Some(doubt) = attempt.doubt.filter(|doubt| *doubt > DOUBT) else { return };
-        if self.doubtful.insert(attempt.step.name.clone()) {
-            let percent = 100.0 * doubt;
+        let Some(uncertainty) = attempt.uncertainty.filter(|uncertainty| *uncertainty > UNCERTAINTY) else { return };
+        if self.uncertain.insert(attempt.step.name.clone()) {
+            let percent = 100.0 * uncertainty;
             let found =
                 format!("contact closed within it: friction force uncertain by {percent:.1} % of the contact force");
             self.list.push(shortest(attempt, &found));

@@ -37,7 +37,7 @@ impl Simulation {
         let stop = model.next_corner(old.time).map_or(output, |corner| Some(output.unwrap_or(corner).min(corner)));
         let dt = bounded(step, old.time, dt, stop);
         let Advanced { iterations, state: solved, foreseen, passes, coupling } = advance(model, step, old, dt, work);
-        let (mut local_error, mut doubt, mut accepted) = (None, None, None);
+        let (mut local_error, mut uncertainty, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
         let half = step.shorter(dt, 1);
         // Linear bodies lose their stability by their contacts only, and may be condensed on them, where nothing is counted.
@@ -49,7 +49,7 @@ impl Simulation {
                 let why = if judgement.accepted { Verdict::Touch } else { Verdict::Error };
                 if judgement.accepted && !step.scheme.is_dynamic() {
                     let judged = touching.judge(model, step, old, &mut new, foreseen.as_deref(), judgement);
-                    (judgement, doubt) = (judged.0, Some(judged.1));
+                    (judgement, uncertainty) = (judged.0, Some(judged.1));
                 } else {
                     touching.give_up();
                 }
@@ -86,7 +86,7 @@ impl Simulation {
         };
         let increments = usize::from(accepted.is_some());
         let candidate = self.without_iterations(number, dt, accepted, increments, outcome);
-        Candidate { iterations, local_error, doubt, passes, coupling, ..candidate }
+        Candidate { iterations, local_error, uncertainty, passes, coupling, ..candidate }
     }
 
     /// Outcome of an increment that could not be solved.
@@ -166,14 +166,14 @@ impl Simulation {
         outcome: Outcome,
     ) -> Candidate {
         let (iterations, coupling) = (Vec::new(), self.work.assembler.coupling());
-        let (local_error, doubt, passes, explicit) = (None, None, Vec::new(), None);
+        let (local_error, uncertainty, passes, explicit) = (None, None, Vec::new(), None);
         Candidate {
             number,
             dt,
             iterations,
             accepted,
             local_error,
-            doubt,
+            uncertainty,
             passes,
             increments,
             outcome,

@@ -95,7 +95,8 @@ pub fn is_of(state: &State, model: &Model) -> bool {
             Master::Mesh(surface) => surface.segments.len(),
             Master::Rigid(_) => usize::MAX,
         };
-        let stands = |state: &ContactState| state.foot.is_none_or(|foot| foot.segment < segments);
+        let stands =
+            |state: &ContactState| state.master_point.is_none_or(|master_point| master_point.segment < segments);
         states.len() == pair.points.len() && states.iter().all(stands)
     };
     all.into_iter().chain([&start.displacement, &start.reaction]).chain(last).all(|values| values.len() == model.dofs())
@@ -221,7 +222,7 @@ pub struct Candidate {
     pub(super) iterations: Vec<IterationRecord>,
     pub(super) accepted: Option<Arc<State>>,
     pub(super) local_error: Option<LocalError>,
-    pub(super) doubt: Option<f64>,
+    pub(super) uncertainty: Option<f64>,
     pub(super) passes: Vec<Pass>,
     /// number of accepted increments in it
     pub(super) increments: usize,

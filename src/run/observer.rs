@@ -82,7 +82,7 @@ pub struct Attempt<'a> {
     pub local_error: Option<LocalError>,
     /// fraction of a contact's force that is uncertain because contact closed at an unknown time within the increment,
     /// in static steps [-]
-    pub doubt: Option<f64>,
+    pub uncertainty: Option<f64>,
     /// its passes, if it is an implicit or static increment that was solved
     #[doc(hidden)]
     pub passes: &'a [Pass],
@@ -230,7 +230,7 @@ impl Attempt<'_> {
             Verdict::Passed => "solved, but the reaction overshot the value that ends the step".into(),
             Verdict::Error => self.inexact(),
             Verdict::Touch => {
-                let share = 100.0 * self.doubt.unwrap_or_default();
+                let share = 100.0 * self.uncertainty.unwrap_or_default();
                 format!(
                     "solved, but contact closed within the increment; friction force uncertain by {share:.2} % of the \
                      contact force"

@@ -168,7 +168,7 @@ impl Simulation {
             verdict: candidate.verdict(),
             cause: candidate.cause(),
             local_error: candidate.local_error,
-            doubt: candidate.doubt,
+            uncertainty: candidate.uncertainty,
             passes: &candidate.passes,
         };
         attempt.row = attempt.row_after(&self.model, self.control.last_row);

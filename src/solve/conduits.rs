@@ -160,12 +160,12 @@ impl Flowing<'_> {
 
     /// Pressures from the surfaces at the end, with the rates that these began with on request.
     fn march(&self, trial: Trial, rates: Option<&[Wall]>) -> Result<Reached, IncrementFailure> {
-        let presumed = if self.pressure.is_empty() { &self.old.pressure } else { &self.pressure };
+        let is_predicted = if self.pressure.is_empty() { &self.old.pressure } else { &self.pressure };
         let course = Course {
             span: [trial.old.time, trial.time],
             walls: [&self.old.walls, &self.walls],
             rates,
-            gives_way: [&self.compliance, presumed],
+            gives_way: [&self.compliance, is_predicted],
             steps: self.steps,
         };
         self.conduit.march(&self.old.pressure, &course).map_err(|TooFast { time, step }| {
@@ -204,12 +204,12 @@ impl Flowing<'_> {
             );
             return Err(self.failure(why));
         }
-        let mut doubt = 0.0;
+        let mut uncertainty = 0.0;
         if self.is_coupled() && trial.old.last_increment.is_some() {
             let bent = self.march(trial, Some(&old.rates))?;
             let apart = bent.pressure.iter().zip(&new.pressure).map(|(bent, p)| (bent - p).abs()).fold(0.0, f64::max);
             let round_off = ROUND_OFF * new.pressure.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
-            doubt = if apart <= round_off { 0.0 } else { apart / (self.conduit.error * self.scale()) };
+            uncertainty = if apart <= round_off { 0.0 } else { apart / (self.conduit.error * self.scale()) };
         }
         let rate = 1.0 / trial.dt;
         // The water has reckoned with surfaces that follow it from p_k to p̂, which is what the next increment goes on from.
@@ -224,7 +224,7 @@ impl Flowing<'_> {
             rates,
             amounts: old.amounts.combined(1.0, new.amounts, 1.0),
             mass_error: old.mass_error + volume - new.amounts.injected + new.amounts.leaked,
-            doubt,
+            uncertainty,
         })
     }
 }

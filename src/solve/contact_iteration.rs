@@ -1,13 +1,13 @@
 //! Contact iteration: data passed from one linear solve of an increment to the next to improve convergence.
 //!
 //! A contact opens, closes, sticks and slips from one iterate to the next, and the tangent of each status contains no
-//! information about the others. A convergence aid makes a presumption about a point when a *tangent* is evaluated; the
+//! information about the others. A convergence aid makes a prediction about a point when a *tangent* is evaluated; the
 //! residual that decides on acceptance contains none, so every accepted state solves the same equations. Which increments are made
 //! follows from the motion under error control; otherwise from the number of tangents, too, and from what could not be solved.
 //!
-//! | aid | presumption |
+//! | aid | prediction |
 //! |---|---|
-//! | `promise` | the geometric tangent uses the tractions predicted by the last linear solve |
+//! | `prediction` | the geometric tangent uses the tractions predicted by the last linear solve |
 //! | `keep` | points with a positive predicted pressure are closed |
 //! | `carried` | friction of a point that has just closed uses the pressure that remains after the bodies deform |
 //! | `touch` | a point with zero gap at the start of an increment is closed and sticks, in the first iterate |
@@ -21,8 +21,8 @@
 //!
 //! A stiff penalty turns every error of a displacement into a pressure far too high, and this into a geometric stiffness p δn ℓ
 //! that misleads the next iterate. The linearized prediction of the last linear solve, p + δp, has an error of second order in
-//! its correction only ([`Closed::promise`]), and replaces p and q in the geometric part of the tangent. Switch `promise`;
-//! `aid_promise` counts the closed points where the prediction differs from their own tractions.
+//! its correction only ([`Closed::prediction`]), and replaces p and q in the geometric part of the tangent. Switch `prediction`;
+//! `aid_prediction` counts the closed points where the prediction differs from their own tractions.
 //!
 //! The first linear solve of an increment uses the start value instead. Points extrapolated past the edge of a contact
 //! penetrate far too deep, so the predicted pressure is limited to twice the committed one (switch `limit`; `aid_limit` counts
@@ -75,15 +75,15 @@
 //! # Stick, stick again
 //!
 //! A point that slips in one direction and then in the other has passed the narrow and stiff range of sticking in
-//! between. The tangents on both sides are soft, and Newton's method would alternate indefinitely; presumed to stick, the point
+//! between. The tangents on both sides are soft, and Newton's method would alternate indefinitely; predicted to stick, the point
 //! finds the range. Switch `stick`; `aid_stick` counts the points.
 //!
 //! With a stiff α_t a start value takes what stuck past that range before anything else is known: of a disk that rolls, no point
 //! would stick in the first tangent, and the correction would throw the disk off. Points that stuck in the last increment stick in the first
 //! linear solve, where α_t is a penalty above 20 (λ + 2G)/h. Below that it gains nothing.
 //!
-//! A point that was presumed to stick but slips may have missed the range because of errors of its neighbours only. It is
-//! presumed to stick once more if the tractions predicted by that linear solve would have held it. Switch `stick_again`, which
+//! A point that was predicted to stick but slips may have missed the range because of errors of its neighbours only. It is
+//! predicted to stick once more if the tractions predicted by that linear solve would have held it. Switch `stick_again`, which
 //! requires `stick`; `aid_stick_again` counts the points.
 //!
 //! Source: sticking is linear, so one solve shows whether the point ends in that range: the predictor of return
@@ -92,20 +92,20 @@
 //! # Valley
 //!
 //! Between two segments at a concave corner, a projection may alternate indefinitely, each tangent leading to the
-//! other segment. It is presumed to be the node between them. Switch `valley`; `aid_valley` counts the points.
+//! other segment. It is predicted to be the node between them. Switch `valley`; `aid_valley` counts the points.
 //!
 //! Source: in a concave corner the gap is the lesser of two, with a kink where they are the same. From the node the normal goes
 //! to the point, which lies between the normals of both sides, and Newton's method ends at the kink instead of crossing it. The force
-//! towards the node is that of a spring α_n in both directions, linear in the displacements with the tractions that the point has: promised
+//! towards the node is that of a spring α_n in both directions, linear in the displacements with the tractions that the point has: predicted
 //! ones would hold it far too softly along the surface.
 //!
 //! # The record
 //!
 //! The actions of the aids in one iteration ([`Acted`]), and contact states that return every other iterate ([`Flips`]).
 
-use crate::contact::force::{Closed, ContactState, Presume, Tractions, touches};
+use crate::contact::force::{Closed, ContactState, PredictedStatus, Tractions, touches};
 use crate::contact::pair::ContactPair;
-use crate::contact::point::{Presumption, SlavePoint};
+use crate::contact::point::{Prediction, SlavePoint};
 use crate::contact::response::PairResponse;
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
@@ -118,12 +118,12 @@ use crate::model::state::State;
 /// Data of one contact point from the linear solves of the increment so far.
 #[derive(Clone, Debug, Default)]
 struct Point {
-    /// Nothing is presumed of what cannot open or slide
+    /// Nothing is predicted of what cannot open or slide
     tied: bool,
     slipping: Slipping,
-    feet: Feet,
-    presume: Presume,
-    promised: Tractions,
+    master_points: MasterPoints,
+    predicted: PredictedStatus,
+    predicted_tractions: Tractions,
     /// Whether it was limited at the start of the increment
     limited: bool,
     /// Whether the committed state keeps it closed
@@ -133,16 +133,16 @@ struct Point {
 }
 
 impl Point {
-    fn presumption(&self, aids: Aids) -> Presumption {
+    fn prediction(&self, aids: Aids) -> Prediction {
         if self.tied {
-            return Presumption::default();
+            return Prediction::default();
         }
-        Presumption {
-            presume: self.presume,
-            promised: aids.promise.then_some(self.promised),
-            kept: if aids.keep { self.promised.pressure } else { 0.0 },
+        Prediction {
+            predicted: self.predicted,
+            predicted_tractions: aids.prediction.then_some(self.predicted_tractions),
+            kept: if aids.keep { self.predicted_tractions.pressure } else { 0.0 },
             carried: self.carried.filter(|_| aids.carried),
-            astride: self.feet.astride.filter(|_| aids.valley),
+            alternating: self.master_points.alternating.filter(|_| aids.valley),
         }
     }
 
@@ -159,17 +159,17 @@ impl Point {
         if self.tied {
             return;
         }
-        let presumption = self.presumption(aids);
-        let sticks = self.presume == Presume::Stick;
-        acted.promise += usize::from(promise_acts(&presumption, closed));
+        let prediction = self.prediction(aids);
+        let sticks = self.predicted == PredictedStatus::Stick;
+        acted.prediction += usize::from(prediction_acts(&prediction, closed));
         acted.limit += usize::from(self.limited);
-        acted.keep += usize::from(keep_acts(&presumption, closed));
-        acted.pull += usize::from(self.pulled && keep_acts(&presumption, closed));
-        acted.carried += usize::from(presumption.carried.is_some());
-        acted.touch += usize::from(touch_acts(pair, &presumption, state, old));
+        acted.keep += usize::from(keep_acts(&prediction, closed));
+        acted.pull += usize::from(self.pulled && keep_acts(&prediction, closed));
+        acted.carried += usize::from(prediction.carried.is_some());
+        acted.touch += usize::from(touch_acts(pair, &prediction, state, old));
         acted.stick += usize::from(sticks && !self.slipping.stuck);
         acted.stick_again += usize::from(sticks && self.slipping.stuck);
-        acted.valley += usize::from(valley_acts(&presumption, state));
+        acted.valley += usize::from(valley_acts(&prediction, state));
     }
 }
 
@@ -196,7 +196,7 @@ impl ContactIteration {
         self.points.clear();
     }
 
-    /// Evaluates the contact points at the displacement `u`: for a residual without presumptions; for a tangent with all of them, about
+    /// Evaluates the contact points at the displacement `u`: for a residual without predictions; for a tangent with all of them, about
     /// which [`ContactIteration::note`] is told once it is assembled.
     ///
     /// # Errors
@@ -209,28 +209,28 @@ impl ContactIteration {
         request: Request,
     ) -> Result<&[PairResponse], TrialFailure> {
         if request != Request::Tangent {
-            assembler.interfaces(trial, u, |_, _| Presumption::default(), request, &mut self.plain)?;
+            assembler.interfaces(trial, u, |_, _| Prediction::default(), request, &mut self.plain)?;
             return Ok(&self.plain);
         }
         let aids = assembler.model().aids;
-        self.presume(assembler.model(), &assembler.evaluation.contacts, trial.old, trial.stiffening, u);
+        self.predicted(assembler.model(), &assembler.evaluation.contacts, trial.old, trial.stiffening, u);
         let mut sticking = aids.stick;
         loop {
             let points = &self.points;
             // Before the first residual nothing is known about any point.
-            let presumed = |pair: usize, point: usize| {
-                points[pair].get(point).map_or_else(Presumption::default, |point| point.presumption(aids))
+            let is_predicted = |pair: usize, point: usize| {
+                points[pair].get(point).map_or_else(Prediction::default, |point| point.prediction(aids))
             };
-            assembler.interfaces(trial, u, presumed, request, &mut self.next)?;
-            if !std::mem::take(&mut sticking) || !self.presume_sticking(assembler.model()) {
+            assembler.interfaces(trial, u, is_predicted, request, &mut self.next)?;
+            if !std::mem::take(&mut sticking) || !self.predict_sticking(assembler.model()) {
                 return Ok(&self.next);
             }
         }
     }
 
-    /// Sets the presumptions of the next linear solve about each point, from its last two iterates, except for sticking.
+    /// Sets the predictions of the next linear solve about each point, from its last two iterates, except for sticking.
     /// `states` are those of the residual at `u`.
-    fn presume(&mut self, model: &Model, states: &[Vec<ContactState>], old: &State, stiffening: f64, u: &[f64]) {
+    fn predicted(&mut self, model: &Model, states: &[Vec<ContactState>], old: &State, stiffening: f64, u: &[f64]) {
         let (first, aids) = (self.points.is_empty(), model.aids);
         self.points.resize_with(model.contacts.len(), Vec::new);
         let at = &self.linearized_at;
@@ -241,36 +241,36 @@ impl ContactIteration {
                 let last = if first { None } else { self.linearized[number].closed(k) };
                 let was_closed = if first { old.friction.pressure > 0.0 } else { last.is_some() };
                 point.carried = carried(pair, was_closed, state, stiffening);
-                point.promised = match last {
-                    Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
-                    None if first && state.friction.pressure > 0.0 => promised_at_start(state, old, aids.limit),
+                point.predicted_tractions = match last {
+                    Some(closed) => closed.prediction(|dof| u[dof] - at[dof]),
+                    None if first && state.friction.pressure > 0.0 => predicted_at_start(state, old, aids.limit),
                     None if first && aids.pull => kept_at_start(pair, state, old),
                     None => Tractions::default(),
                 };
                 point.tied = pair.tied;
                 let closed = state.friction.pressure > 0.0;
-                point.limited = first && closed && point.promised.pressure < state.contact_pressure();
-                point.pulled = first && !closed && point.promised.pressure > 0.0;
-                point.feet.note(state);
-                point.slipping.stuck = aids.stick_again && point.presume == Presume::Stick;
-                point.presume = match first {
-                    true if aids.stick && sticks_on(pair, &pair.points[k], old) => Presume::Stick,
-                    true if aids.touch => Presume::Touch,
-                    _ => Presume::Nothing,
+                point.limited = first && closed && point.predicted_tractions.pressure < state.contact_pressure();
+                point.pulled = first && !closed && point.predicted_tractions.pressure > 0.0;
+                point.master_points.note(state);
+                point.slipping.stuck = aids.stick_again && point.predicted == PredictedStatus::Stick;
+                point.predicted = match first {
+                    true if aids.stick && sticks_on(pair, &pair.points[k], old) => PredictedStatus::Stick,
+                    true if aids.touch => PredictedStatus::Touch,
+                    _ => PredictedStatus::Nothing,
                 };
             }
         }
     }
 
-    /// Presumes sticking where points slip in alternating directions between the linear solves; returns whether there are any.
-    fn presume_sticking(&mut self, model: &Model) -> bool {
+    /// Predicts sticking where points slip in alternating directions between the linear solves; returns whether there are any.
+    fn predict_sticking(&mut self, model: &Model) -> bool {
         let mut any = false;
         for (points, (pair, response)) in self.points.iter_mut().zip(model.contacts.iter().zip(&self.next)) {
             let rough = pair.points.iter().map(|slave| pair.law(slave).description.stiffness > 0.0);
             let answers = points.iter_mut().zip(&response.states);
             for ((point, state), _) in answers.zip(rough).filter(|(_, rough)| *rough) {
-                if !point.tied && point.slipping.sticks(state, point.promised) {
-                    point.presume = Presume::Stick;
+                if !point.tied && point.slipping.sticks(state, point.predicted_tractions) {
+                    point.predicted = PredictedStatus::Stick;
                     any = true;
                 }
             }
@@ -300,14 +300,14 @@ impl ContactIteration {
 const MOST_GROWTH: f64 = 2.0;
 
 /// Predicted traction of a point that is closed in the start value.
-fn promised_at_start(state: &ContactState, old: &ContactState, limit: bool) -> Tractions {
+fn predicted_at_start(state: &ContactState, old: &ContactState, limit: bool) -> Tractions {
     let tractions = Tractions::of(state);
     if limit { tractions.limited(MOST_GROWTH * old.contact_pressure()) } else { tractions }
 }
 
 /// Whether the tangent of a point uses tractions other than its own.
-fn promise_acts(presumption: &Presumption, closed: &Closed) -> bool {
-    presumption.promised.is_some_and(|promised| promised != closed.tractions)
+fn prediction_acts(prediction: &Prediction, closed: &Closed) -> bool {
+    prediction.predicted_tractions.is_some_and(|predicted_tractions| predicted_tractions != closed.tractions)
 }
 
 /// Range within which the penalty may draw back a point that was closed, in multiples of p/α_n.
@@ -328,8 +328,8 @@ fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -
 }
 
 /// Whether a point is closed only because of a predicted pressure.
-fn keep_acts(presumption: &Presumption, closed: &Closed) -> bool {
-    presumption.kept > 0.0 && closed.tractions.pressure <= 0.0
+fn keep_acts(prediction: &Prediction, closed: &Closed) -> bool {
+    prediction.kept > 0.0 && closed.tractions.pressure <= 0.0
 }
 
 /// Pressure used by friction at a point that has just closed; `None` at any other.
@@ -339,8 +339,8 @@ fn carried(pair: &ContactPair, was_closed: bool, state: &ContactState, stiffenin
 }
 
 /// Whether a closed point sticks because of the aid `touch`.
-fn touch_acts(pair: &ContactPair, presumption: &Presumption, state: &ContactState, old: &ContactState) -> bool {
-    touches(pair, state.clearance(), old, presumption.presume)
+fn touch_acts(pair: &ContactPair, prediction: &Prediction, state: &ContactState, old: &ContactState) -> bool {
+    touches(pair, state.clearance(), old, prediction.predicted)
 }
 
 /// Ratio to the slip at the last solve below which the slip of a point counts as abating.
@@ -349,7 +349,7 @@ const ABATES: f64 = 0.5;
 /// α_t c above which the start value is more than the range of sticking off, with the compliance c of the bodies [-]
 const STIFF: f64 = 20.0;
 
-/// Returns whether a point that stuck in the last increment is presumed to stick in the first linear solve of the next.
+/// Returns whether a point that stuck in the last increment is predicted to stick in the first linear solve of the next.
 fn sticks_on(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
     let Description { stiffness, stiffness_is_penalty, .. } = pair.law(slave).description;
     let stiff = stiffness_is_penalty && stiffness * pair.compliance > STIFF;
@@ -364,26 +364,27 @@ const FAR_LOWER: f64 = 0.9;
 struct Slipping {
     /// Plastic slip of the increment at the last solve [L]
     slip: f64,
-    /// Whether it was presumed to stick in the last solve
+    /// Whether it was predicted to stick in the last solve
     stuck: bool,
 }
 
 impl Slipping {
-    /// Records the slip from which the next linear solve starts; returns whether the point is presumed to stick. It is if it
-    /// slips in the opposite direction to the last solve, or was presumed to stick and slips, but would not with the tractions
+    /// Records the slip from which the next linear solve starts; returns whether the point is predicted to stick. It is if it
+    /// slips in the opposite direction to the last solve, or was predicted to stick and slips, but would not with the tractions
     /// predicted by that solve: it missed the narrow range of sticking only because of its own error.
-    fn sticks(&mut self, state: &ContactState, promised: Tractions) -> bool {
+    fn sticks(&mut self, state: &ContactState, predicted_tractions: Tractions) -> bool {
         let friction = &state.friction;
         let slip = friction.plastic_increment;
         let slips = friction.regime == Regime::Slip;
         // A point closed only by a prediction has a negative pressure.
         let of_bond = state.bond.map_or(0.0, |bond| bond.traction.abs());
-        let strength = (friction.traction / friction.pressure).abs() * (promised.pressure - state.pores) + of_bond;
+        let strength =
+            (friction.traction / friction.pressure).abs() * (predicted_tractions.pressure - state.pores) + of_bond;
         // A point that slips below its strength would also slip with these tractions, unless they are far lower or the slip
         // abates.
         let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };
         let sticks = match self.stuck {
-            true => slips && promised.traction.abs() < held,
+            true => slips && predicted_tractions.traction.abs() < held,
             false => self.slip * slip < 0.0,
         };
         self.slip = slip;
@@ -393,27 +394,27 @@ impl Slipping {
 
 /// Segments of a point's projections in the linear solves of the increment.
 #[derive(Clone, Copy, Debug, Default)]
-struct Feet {
+struct MasterPoints {
     /// Projected segments at the last two solves
     last: [Option<usize>; 2],
     /// The two segments between which the projection alternates
-    astride: Option<[usize; 2]>,
+    alternating: Option<[usize; 2]>,
 }
 
-impl Feet {
+impl MasterPoints {
     /// Records the segment from which the next linear solve starts.
     fn note(&mut self, state: &ContactState) {
-        let segment = state.foot.map(|foot| foot.segment);
+        let segment = state.master_point.map(|master_point| master_point.segment);
         let [last, before] = self.last;
-        self.astride =
+        self.alternating =
             segment.zip(last).filter(|(segment, last)| segment != last && Some(*segment) == before).map(Into::into);
         self.last = [segment, last];
     }
 }
 
-/// Whether the projection of a point is presumed to be the node between two segments, and is.
-fn valley_acts(presumption: &Presumption, state: &ContactState) -> bool {
-    presumption.astride.is_some() && state.foot.is_some_and(|foot| foot.xi == 1.0)
+/// Whether the projection of a point is predicted to be the node between two segments, and is.
+fn valley_acts(prediction: &Prediction, state: &ContactState) -> bool {
+    prediction.alternating.is_some() && state.master_point.is_some_and(|master_point| master_point.xi == 1.0)
 }
 
 /// Contact status of every point at the last two iterates.
@@ -439,7 +440,7 @@ pub struct Acted {
     /// the start value extrapolates the last increment
     pub start: usize,
     /// the geometric part of the tangent uses predicted tractions
-    pub promise: usize,
+    pub prediction: usize,
     /// these were limited at the start of the increment
     pub limit: usize,
     /// closed by the prediction alone
@@ -470,7 +471,7 @@ impl Acted {
     /// Columns of `newton.csv`.
     pub const COLUMNS: [&str; 14] = [
         "aid_start",
-        "aid_promise",
+        "aid_prediction",
         "aid_limit",
         "aid_keep",
         "aid_pull",
@@ -487,11 +488,11 @@ impl Acted {
 
     /// Returns the counts in the order of the columns.
     pub fn counts(self) -> [usize; Self::COLUMNS.len()] {
-        let Self { start, promise, limit, keep, pull, carried, touch, .. } = self;
+        let Self { start, prediction, limit, keep, pull, carried, touch, .. } = self;
         let Self { stick, stick_again, valley, condense, downhill, stiffening, softening, .. } = self;
         [
             start,
-            promise,
+            prediction,
             limit,
             keep,
             pull,

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! r′(u′) = r(u),   u′ ← u′ − K⁻¹ (r′ − r)              until ‖r′ − r‖ ≤ 1e-12 ‖f‖                               (1)
-//! K = ∂r/∂u at the solution u of the run, without presumptions, factorized once for all its neighbours
+//! K = ∂r/∂u at the solution u of the run, without predictions, factorized once for all its neighbours
 //! ```
 //!
 //! r is the residual that the tolerance of the run has left, r′ that of a neighbour by its own equations. Its tangent differs from K by

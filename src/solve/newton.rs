@@ -307,8 +307,8 @@ impl Convergence {
         }
         if let Some(last) = iterations.last_mut() {
             last.residual = residual;
-            let kept_promise = last.factorized || gain(size, residual, self.before) <= 1.0 / OLD_TANGENT;
-            self.old_tangent_serves &= kept_promise && !last.fallback;
+            let prediction_met = last.factorized || gain(size, residual, self.before) <= 1.0 / OLD_TANGENT;
+            self.old_tangent_serves &= prediction_met && !last.fallback;
         }
         if done > 0 && residual <= self.settings.tolerance {
             return Ok(None);

@@ -236,7 +236,7 @@ impl Multipliers {
 }
 
 /// Least number of negative eigenvalues of the tangent at a static equilibrium. The last tangent of the iterations, whose number is
-/// given, is that of a state before it, and may contain presumptions about contact points. Where it has none, nor is the equilibrium
+/// given, is that of a state before it, and may contain predictions about contact points. Where it has none, nor is the equilibrium
 /// supposed to have any; elsewhere its own tangent is factorized.
 fn count_negative(trial: Trial, u: &[f64], last: Option<usize>, work: &mut Workspace) -> Option<usize> {
     if trial.step.scheme.is_dynamic() || last.is_none_or(|negative| negative == 0) {

@@ -169,7 +169,7 @@ fn judge_flow(step: &Step, [old, new]: [&State; 2], [easy, repeated]: [bool; 2])
 /// The worst error of the pressure of water by what surfaces do within an increment, over the allowed one; `None` where no water flows.
 fn flow_error(new: &State) -> Option<LocalError> {
     let flowing = new.conduits.iter().filter(|water| !water.pressure.is_empty());
-    let worst = flowing.map(|water| LocalError { estimate: water.doubt, allowed: 1.0 });
+    let worst = flowing.map(|water| LocalError { estimate: water.uncertainty, allowed: 1.0 });
     worst.reduce(LocalError::worse)
 }
 

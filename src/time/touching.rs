@@ -22,7 +22,7 @@ use crate::model::state::State;
 use crate::model::{Model, Step};
 
 /// Largest uncertain fraction of a contact's force in a static increment in which points closed.
-pub const DOUBT: f64 = 0.02;
+pub const UNCERTAINTY: f64 = 0.02;
 /// Fraction of that limit at which the next attempt aims.
 const AIM: f64 = 0.5;
 /// Largest growth of the parts of a subdivided increment.
@@ -59,8 +59,8 @@ impl Touching {
         foreseen: Option<&[Vec<ContactState>]>,
         judged: Judgement,
     ) -> (Judgement, f64) {
-        let (doubt, share, meets) = self.doubt(model, [old, new], foreseen.unwrap_or(&new.contacts));
-        if doubt > DOUBT && can_shorten(step, old, new) {
+        let (uncertainty, share, meets) = self.uncertainty(model, [old, new], foreseen.unwrap_or(&new.contacts));
+        if uncertainty > UNCERTAINTY && can_shorten(step, old, new) {
             self.whole.get_or_insert((new.time, new.dt));
             // A rejected attempt shows that the prediction was inaccurate.
             let most = if self.refused == 0 { 1.0 } else { 0.5 };
@@ -69,7 +69,7 @@ impl Touching {
             self.ends_in_touch = meets;
             let share = if meets { share } else { share.max(LEAST_SHARE) };
             let next = (share.min(most) * new.dt).max(step.increments.min);
-            return (Judgement { accepted: false, next, ..judged }, doubt);
+            return (Judgement { accepted: false, next, ..judged }, uncertainty);
         }
         self.refused = 0;
         let touches = std::mem::take(&mut self.ends_in_touch);
@@ -78,51 +78,56 @@ impl Touching {
         }
         let Some((end, dt)) = self.whole else {
             self.forces.clear();
-            return (judged, doubt);
+            return (judged, uncertainty);
         };
         self.longest = self.longest.max(new.dt);
         let left = end - new.time;
         if left > step.increments.min {
             // Where points close one after the other, the uncertainty grows with Δt².
-            let share = (AIM * DOUBT / doubt).sqrt().clamp(LEAST_SHARE, GROWTH);
+            let share = (AIM * UNCERTAINTY / uncertainty).sqrt().clamp(LEAST_SHARE, GROWTH);
             let next = if touches { left } else { left.min(share * new.dt) };
-            return (Judgement { next, ..judged }, doubt);
+            return (Judgement { next, ..judged }, uncertainty);
         }
         let next = if self.was_refused { self.longest } else { GROWTH * self.longest };
         self.give_up();
         let end = (new.time + dt).min(step.span.end);
         if next < dt && end - new.time > step.increments.min {
             self.whole = Some((end, dt));
-            return (Judgement { next, ..judged }, doubt);
+            return (Judgement { next, ..judged }, uncertainty);
         }
-        (Judgement { next: dt, ..judged }, doubt)
+        (Judgement { next: dt, ..judged }, uncertainty)
     }
 
     /// Largest uncertain fraction of a contact's force; the fraction of the increment for which it is small enough, and whether
     /// the increment ends there at the first closure of a contact.
-    fn doubt(&mut self, model: &Model, [old, new]: [&State; 2], foreseen: &[Vec<ContactState>]) -> (f64, f64, bool) {
+    fn uncertainty(
+        &mut self,
+        model: &Model,
+        [old, new]: [&State; 2],
+        foreseen: &[Vec<ContactState>],
+    ) -> (f64, f64, bool) {
         self.forces.resize(model.contacts.len(), 0.0);
-        let mut doubt = 0.0f64;
+        let mut uncertainty = 0.0f64;
         let (mut share, mut meets) = (1.0f64, false);
         for (k, pair) in model.contacts.iter().enumerate() {
             let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
             let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.time, new.dt);
-            let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
+            let unknown = Some(Arrival { at: 0.0, uncertainty: f64::INFINITY });
             let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
             let force = |state: &ContactState| state.contact_pressure().hypot(state.shear()) * state.length;
             self.forces[k] = self.forces[k].max(new.contacts[k].iter().map(force).sum());
-            let all: f64 = arrivals.iter().map(|arrival| arrival.doubt).sum();
+            let all: f64 = arrivals.iter().map(|arrival| arrival.uncertainty).sum();
             if all > 0.0 {
-                doubt = doubt.max(all / self.forces[k]);
+                uncertainty = uncertainty.max(all / self.forces[k]);
                 let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
                 let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| !state.is_closed());
-                let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
+                let most = if meets_first { first } else { longest(&arrivals, AIM * UNCERTAINTY * self.forces[k]) };
                 if most < share {
                     (share, meets) = (most, meets_first);
                 }
             }
         }
-        (doubt, share, meets)
+        (uncertainty, share, meets)
     }
 
     /// Records that the attempt could not be solved and is shortened.
@@ -139,12 +144,12 @@ impl Touching {
 /// Fraction of an increment in which the uncertain force is at most `allowed`, if the force of each point grows linearly
 /// after its closure.
 fn longest(arrivals: &[Arrival], allowed: f64) -> f64 {
-    let doubt =
-        |share: f64| -> f64 { arrivals.iter().map(|a| a.doubt * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum() };
+    let uncertainty =
+        |share: f64| -> f64 { arrivals.iter().map(|a| a.uncertainty * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum() };
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if doubt(middle) > allowed { high = middle } else { low = middle }
+        if uncertainty(middle) > allowed { high = middle } else { low = middle }
     }
     low
 }

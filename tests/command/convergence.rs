@@ -108,8 +108,8 @@ fn block_on_ground_slips_from_the_edge_and_converges_quadratically() {
     let starts: Vec<Vec<bool>> = increments.values().map(starts).collect();
     assert!(starts.iter().all(|solves| !solves[1..].contains(&true)));
     assert!(starts.iter().filter(|solves| solves[0]).count() + 3 >= increments.len());
-    let promised: f64 = increments.values().flatten().map(|row| number(row, "aid_promise")).sum();
-    assert!(promised > 0.0 && increments.values().flatten().all(|row| number(row, "aid_stiffening") == 0.0));
+    let predicted_tractions: f64 = increments.values().flatten().map(|row| number(row, "aid_prediction")).sum();
+    assert!(predicted_tractions > 0.0 && increments.values().flatten().all(|row| number(row, "aid_stiffening") == 0.0));
     let (mut checked, mut slow) = (0, 0);
     for (increment, solves) in &increments {
         let [.., before, last] = &solves[..] else { continue };

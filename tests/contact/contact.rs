@@ -9,7 +9,7 @@ use fecontact::contact::force::{
 use fecontact::contact::kinematics::{Kinematics, kinematics};
 use fecontact::contact::master::{Circle, Master, Plane, Polyline, Rigid, Shape};
 use fecontact::contact::mortar::{Hats, Mortar, Overlaps, Room, mortar_points};
-use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Prediction};
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
@@ -101,8 +101,8 @@ impl Kept {
         Some(Self { contribution, points })
     }
 
-    fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
-        self.points.get(0).expect("a closed point").promise(correction)
+    fn prediction(&self, correction: impl Fn(usize) -> f64) -> Tractions {
+        self.points.get(0).expect("a closed point").prediction(correction)
     }
 }
 
@@ -120,28 +120,28 @@ fn respond(
     during: ContactIncrement,
 ) -> Vec<(ContactState, Option<Contribution>)> {
     let mut response = PairResponse::default();
-    pair.respond(old, configurations, during, |_| Presumption::default(), Request::Tangent, &mut response)
+    pair.respond(old, configurations, during, |_| Prediction::default(), Request::Tangent, &mut response)
         .expect("an answer");
     let closed = |k| response.closed(k).map(contribution);
     response.states.iter().enumerate().map(|(k, state)| (state.clone(), closed(k))).collect()
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
-    let (state, closed) = promised(pair, k, old, x, None);
+    let (state, closed) = predicted_tractions(pair, k, old, x, None);
     (state, closed.map(|closed| closed.contribution))
 }
 
-/// The answer of a point whose last linear solve promised something.
-fn promised(
+/// The answer of a point whose last linear solve predicted something.
+fn predicted_tractions(
     pair: &ContactPair,
     k: usize,
     old: &ContactState,
     x: &Positions,
-    promised: Option<Tractions>,
+    predicted_tractions: Option<Tractions>,
 ) -> (ContactState, Option<Kept>) {
-    let kept = promised.map_or(0.0, |promised| promised.pressure);
-    let presumption = Presumption { promised, kept, ..Presumption::default() };
-    let increment = PointIncrement { during: INCREMENT, presumption };
+    let kept = predicted_tractions.map_or(0.0, |predicted_tractions| predicted_tractions.pressure);
+    let prediction = Prediction { predicted_tractions, kept, ..Prediction::default() };
+    let increment = PointIncrement { during: INCREMENT, prediction };
     answer(pair, k, old, x, increment)
 }
 
@@ -213,23 +213,24 @@ fn check_tangent(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions
 /// A committed state whose foot lies `back` before the present one.
 fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: FrictionState, gap: f64) -> ContactState {
     let x = &displaced(x);
-    let foot = Index::new(&pair.master, x).project(&pair.points[k], None, x).expect("the point faces the master").foot;
-    let at = foot.segment as f64 + foot.xi - back;
-    let foot = match &pair.master {
+    let master_point =
+        Index::new(&pair.master, x).project(&pair.points[k], None, x).expect("the point faces the master").master_point;
+    let at = master_point.segment as f64 + master_point.xi - back;
+    let master_point = match &pair.master {
         Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
-        Master::Rigid(_) => MasterPoint { xi: foot.xi - back, ..foot },
+        Master::Rigid(_) => MasterPoint { xi: master_point.xi - back, ..master_point },
     };
-    committed(friction, foot, gap)
+    committed(friction, master_point, gap)
 }
 
 /// A committed state that has not slipped.
-fn committed(friction: FrictionState, foot: impl Into<Option<MasterPoint>>, gap: f64) -> ContactState {
+fn committed(friction: FrictionState, master_point: impl Into<Option<MasterPoint>>, gap: f64) -> ContactState {
     ContactState {
         water: None,
         came: Default::default(),
         bond: None,
         friction,
-        foot: foot.into(),
+        master_point: master_point.into(),
         length: 1.0,
         gap,
         slip: 0.0,
@@ -300,7 +301,8 @@ fn nothing_jumps_on_a_smooth_surface() {
         let mut largest = 0.0f64;
         for k in 0..500 {
             let (a, b) = (place(k), place(k + 1));
-            let along = |p: &fecontact::contact::projection::Projection| p.foot.segment as f64 + p.foot.xi;
+            let along =
+                |p: &fecontact::contact::projection::Projection| p.master_point.segment as f64 + p.master_point.xi;
             assert!((along(&b) - along(&a) - 0.008).abs() < 0.012, "the foot jumps from {a:?} to {b:?}");
             assert!((b.gap - a.gap).abs() < 0.003, "the gap jumps from {a:?} to {b:?}");
             largest = largest.max((b.normal - a.normal).norm());
@@ -312,36 +314,36 @@ fn nothing_jumps_on_a_smooth_surface() {
     assert!(smooth < 0.006 && straight > 0.1, "{smooth}, {straight}");
 }
 
-/// The promise of a point is its tractions at the end of a correction but for terms of second order: it is off by a quarter
+/// The prediction of a point is its tractions at the end of a correction but for terms of second order: it is off by a quarter
 /// when the correction is half as long. It changes the geometric part of the tangent, and no force.
 #[test]
-fn a_promise_is_of_second_order_and_changes_no_force() {
+fn a_prediction_is_of_second_order_and_changes_no_force() {
     let (edges, x) = wavy();
     let pair = pair(nodal_points(&[vec![6, 7], vec![7, 8]]), Master::Mesh(Surface::new(&edges)), COULOMB);
     let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
     let old = pulled(&pair, 1, &x, 0.3, pressed, -0.02);
-    let (state, closed) = promised(&pair, 1, &old, &x, None);
+    let (state, closed) = predicted_tractions(&pair, 1, &old, &x, None);
     let closed = closed.expect("a closed point");
     let error = |size: f64| {
         let correction = |dof: usize| size * [0.3, 1.0, -0.7, 0.4, -0.2, 0.9][dof % 6];
         let moved: Positions =
             (0..x.len()).map(|node| x[node] + Vector2::new(correction(2 * node), correction(2 * node + 1))).collect();
-        let now = promised(&pair, 1, &old, &moved, None).0.friction;
-        let promise = closed.promise(correction);
-        (promise.pressure - now.pressure).abs() + (promise.traction - now.traction).abs()
+        let now = predicted_tractions(&pair, 1, &old, &moved, None).0.friction;
+        let prediction = closed.prediction(correction);
+        (prediction.pressure - now.pressure).abs() + (prediction.traction - now.traction).abs()
     };
     let ratio = error(2e-3) / error(1e-3);
     assert!((3.7..4.3).contains(&ratio), "{ratio}");
     let other = Some(Tractions { pressure: 3.0, traction: -1.0 });
-    let (same, changed) = promised(&pair, 1, &old, &x, other);
+    let (same, changed) = predicted_tractions(&pair, 1, &old, &x, other);
     let changed = changed.expect("a closed point");
     assert_eq!((same, &changed.contribution.force), (state, &closed.contribution.force));
     assert_ne!(changed.contribution.tangent, closed.contribution.tangent);
-    // Lifted a little, the point opens; with a promise it is held back by what its spring would pull.
+    // Lifted a little, the point opens; with a prediction it is held back by what its spring would pull.
     let mut lifted = x.clone();
     lifted[7].y += 0.06;
-    assert!(promised(&pair, 1, &old, &lifted, None).1.is_none());
-    let (held, _) = promised(&pair, 1, &old, &lifted, other);
+    assert!(predicted_tractions(&pair, 1, &old, &lifted, None).1.is_none());
+    let (held, _) = predicted_tractions(&pair, 1, &old, &lifted, other);
     assert_eq!(held.friction.pressure, -pair.alpha_n * held.gap);
     assert!(held.gap > 0.0 && held.friction.pressure < 0.0);
 }
@@ -358,7 +360,7 @@ fn slip_counts_from_touch() {
         let old = pulled(pair, 0, &x, 0.005, pair.laws[0].law.initial_state(0.0, 0.0), 0.03);
         check_tangent(pair, 0, &old, &x, "after touch");
         let friction =
-            answer(pair, 0, &old, &x, PointIncrement { during, presumption: Presumption::default() }).0.friction;
+            answer(pair, 0, &old, &x, PointIncrement { during, prediction: Prediction::default() }).0.friction;
         assert!((friction.pressure - 10.0).abs() < 1e-12);
         let expected = 700.0 * 0.005 * d / (0.03 + d);
         assert!((friction.traction - expected).abs() < 1e-12, "{}, not {expected}", friction.traction);
@@ -380,16 +382,14 @@ fn a_carried_pressure_is_where_the_answer_is_exact() {
     let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
     for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
         let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].law.initial_state(0.0, 0.0), gap);
-        let increment = |carried| PointIncrement {
-            during: INCREMENT,
-            presumption: Presumption { carried, ..Presumption::default() },
-        };
+        let increment =
+            |carried| PointIncrement { during: INCREMENT, prediction: Prediction { carried, ..Prediction::default() } };
         let (deep, closed) = answer(&pair, 0, &old, &at(-0.04), increment(Some(5.0)));
         assert!((deep.friction.pressure - 40.0).abs() < 1e-12);
-        let promise = closed.expect("a closed point").promise(|dof| if dof % 2 == 1 { 0.035 } else { 0.0 });
+        let prediction = closed.expect("a closed point").prediction(|dof| if dof % 2 == 1 { 0.035 } else { 0.0 });
         let there = answer(&pair, 0, &old, &at(-0.005), increment(None)).0.friction;
-        let off = (promise.pressure - there.pressure).abs().max((promise.traction - there.traction).abs());
-        assert!(off < 1e-12 && there.traction > 0.0, "{promise:?}, {there:?}");
+        let off = (prediction.pressure - there.pressure).abs().max((prediction.traction - there.traction).abs());
+        assert!(off < 1e-12 && there.traction > 0.0, "{prediction:?}, {there:?}");
     }
 }
 
@@ -452,7 +452,7 @@ fn a_rigid_body_that_moves_answers_as_one_at_rest() {
                     ContactPair { mortar: mortar.clone(), ..pair(points.clone(), Master::Rigid(rigid), COULOMB) };
                 let (before, x) = (displaced(before), displaced(x));
                 let mut old = pair.initial_states(&before);
-                old.iter_mut().for_each(|state| state.foot = state.foot.filter(|_| faced));
+                old.iter_mut().for_each(|state| state.master_point = state.master_point.filter(|_| faced));
                 respond(&pair, &old, [&before, &x], INCREMENT)
             };
             let still = answer(shape.clone().into(), &before, &rest);
@@ -500,7 +500,7 @@ fn feet_on_a_rigid_circle() {
         let [from, to] = [&ways[0], &ways[1]].map(|x| body.project(point, x).expect("a foot"));
         assert!((from.gap - 0.1 * side).abs() < 1e-14);
         // From 3.1 to 2π − 3.1 counter-clockwise, which is against s on a disk.
-        let way = body.way(point, from.foot, to.foot, &ways[1]);
+        let way = body.way(point, from.master_point, to.master_point, &ways[1]);
         assert!((way + side * 2.0 * (2.0 * std::f64::consts::PI - 6.2)).abs() < 1e-14, "{way}");
     }
 }
@@ -523,7 +523,7 @@ fn feet_on_a_quadratic_edge_lie_on_the_parabola() {
         let pair = pair(nodal_points(&[vec![3, 4]]), master, COULOMB);
         let at = Configuration::undeformed(&x);
         let found = Index::new(&pair.master, &at).project(&pair.points[0], None, &at).expect("a foot");
-        assert!((found.gap - h).abs() < tolerance && (found.foot.xi - 0.75).abs() < tolerance, "{found:?}");
+        assert!((found.gap - h).abs() < tolerance && (found.master_point.xi - 0.75).abs() < tolerance, "{found:?}");
         let from = Some(MasterPoint { segment: 0, xi: 0.5 });
         let mut met = Kinematics::new(false);
         kinematics(&pair.points[0], &pair.master, &found, from, &at, &mut met);
@@ -587,9 +587,9 @@ fn behind_a_ridge_a_point_belongs_to_the_side_it_comes_from() {
         let x = Configuration::undeformed(&x);
         let from = from.map(|segment| MasterPoint { segment, xi: 0.5 });
         let found = Index::new(&master, &x).project(&lone_point(3, 1.0), from, &x).expect("a foot");
-        let right = if found.foot.segment == 1 { along } else { -along };
+        let right = if found.master_point.segment == 1 { along } else { -along };
         assert!((found.gap - (right * angle.sin() - depth * angle.cos())).abs() < 1e-14, "{found:?}");
-        found.foot.segment
+        found.master_point.segment
     };
     for along in [0.5, 0.9, 0.99].map(|share| share * reach) {
         assert_eq!([Some(0), None, Some(1)].map(|from| side(along, from)), [0, 1, 1], "{along}");
@@ -625,8 +625,8 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let friction = pair.laws[0].law.initial_state(0.0, 0.0);
                 let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction.clone() };
                 let friction = if gap > 0.0 { friction } else { pressed };
-                let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
-                let old = vec![committed(friction, foot, gap); pair.points.len()];
+                let master_point = Some(MasterPoint { segment: 0, xi: 0.0 });
+                let old = vec![committed(friction, master_point, gap); pair.points.len()];
                 let answer = |x: &Positions| {
                     let (before, x) = (displaced(&before), displaced(x));
                     respond(&pair, &old, [&before, &x], INCREMENT)
@@ -986,7 +986,7 @@ fn check_mortar_tangent(
     let open = pair.laws[0].law.initial_state(0.0, 0.0);
     let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
     let old = committed(friction, MasterPoint { segment: 0, xi: 0.0 }, gap);
-    let increment = PointIncrement { during: INCREMENT, presumption: Presumption::default() };
+    let increment = PointIncrement { during: INCREMENT, prediction: Prediction::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
         let is = overlaps(pair, mortar, surface, &x);
@@ -995,7 +995,12 @@ fn check_mortar_tangent(
         let met = facing.meet(k, weights.as_ref(), &x, &mut kinematics, &mut Room::default());
         let met = met.expect("the master faces the point");
         closes(pair, &pair.points[k], met.gap, &old, increment).then(|| {
-            let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true, ..PointPlace::default() };
+            let place = PointPlace {
+                gap: met.gap,
+                master_point: Some(met.master_point),
+                closes: true,
+                ..PointPlace::default()
+            };
             finish(pair, k, &old, increment, place, &mut kinematics).1.expect("a closed point").contribution
         })
     };
@@ -1028,8 +1033,8 @@ fn tangent_equals_differences_at_a_concave_corner() {
         [(-1.0, 0.5), (0.0, 0.0), (1.0, 0.5), (-0.3, -0.101), (0.3, -0.1)].map(|(x, y)| Vector2::new(x, y)).to_vec();
     let pair = pair(gauss_points(&[vec![3, 4]], 3), Master::Mesh(Surface::new(&[vec![1, 0], vec![2, 1]])), SUPER);
     let at = &Configuration::undeformed(&x);
-    let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
-    assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
+    let master_point = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
+    assert!(master_point.gap < 0.0 && master_point.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
     let old = committed(pressed, Some(MasterPoint { segment: 0, xi: 0.9 }), -0.05);
     check_tangent(&pair, 1, &old, &x, "concave corner");
@@ -1184,7 +1189,7 @@ fn what_is_kept_and_what_is_left_out_changes_no_bit() {
                 }
                 let [was, is] = [&before, &now].map(|u| Configuration::new(&x, u));
                 let answer = |request: Request, response: &mut PairResponse| {
-                    let nothing = |_| Presumption::default();
+                    let nothing = |_| Prediction::default();
                     pair.respond(&old, [&was, &is], INCREMENT, nothing, request, response).expect("an answer");
                 };
                 let [mut fresh, mut whole] = [(); 2].map(|()| PairResponse::default());
@@ -1203,7 +1208,7 @@ fn what_is_kept_and_what_is_left_out_changes_no_bit() {
                         |closed: Option<Closed>| closed.map(|c| (c.nodes.to_vec(), c.force.to_vec(), c.tractions));
                     assert_eq!(forces(a), forces(c), "{what}, point {point}");
                     closed += usize::from(a.is_some());
-                    let segment = |state: &ContactState| state.foot.map(|foot| foot.segment);
+                    let segment = |state: &ContactState| state.master_point.map(|master_point| master_point.segment);
                     went_over += usize::from(segment(first) != segment(last));
                 }
                 old.clone_from(&fresh.states);
@@ -1248,7 +1253,7 @@ fn a_search_from_any_segment_finds_the_first_of_the_nearest() {
                 }
             }
             if let Some(met) = expected {
-                assert_eq!(met.foot.segment, first);
+                assert_eq!(met.master_point.segment, first);
             }
         }
     }

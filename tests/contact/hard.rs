@@ -196,7 +196,7 @@ fn rolling(alpha_t: Option<f64>) -> (f64, [usize; 2]) {
 }
 
 /// Where a disk rolls, every point sticks in a range of slip that is the narrower the stiffer α_t is. With the default, three times that of
-/// explicit steps, the solves are at most one and a half times as many (more than twice where nothing is presumed of points that stuck).
+/// explicit steps, the solves are at most one and a half times as many (more than twice where nothing is predicted of points that stuck).
 #[test]
 fn what_rolls_rolls_with_the_default() {
     let (alpha_t, [default, cut]) = rolling(None);

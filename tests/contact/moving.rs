@@ -185,7 +185,7 @@ fn a_box_that_comes_down_sliding_rides_up() {
 }
 
 /// A block that comes down sliding and dilates finds its equilibrium by every method, and the same whatever the increments; in
-/// dynamics, which have no doubt about touch, as the increments become short.
+/// dynamics, which have no uncertainty about touch, as the increments become short.
 #[test]
 fn a_block_that_comes_down_sliding_rides_up() {
     let landing = |method: &str, model: &str, normal: Value, scheme: Value, dt: f64| {

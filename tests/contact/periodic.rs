@@ -145,8 +145,8 @@ fn sides_that_do_not_lie_alike_are_refused() {
     refused(bar(&good).periodic("bar_left", "bar_rigth").step(fly()), "periodic[0]");
     refused(bar(&good).periodic("bar_left", "bar_top").step(fly()), "`bar_left` has 3 nodes and `bar_top` has 5");
     refused(bar(&good).periodic("bar_left", "bar_left").step(fly()), "is on both sides");
-    let skew = Blocks::default().block("bar", [4, 2], |s, t| [s, 0.5 * (t + 0.2 * s * t * (1.0 - t))]);
-    refused(bar(&skew).periodic("bar_left", "bar_right").step(fly()), "has no partner on `bar_right`");
+    let unsymmetric = Blocks::default().block("bar", [4, 2], |s, t| [s, 0.5 * (t + 0.2 * s * t * (1.0 - t))]);
+    refused(bar(&unsymmetric).periodic("bar_left", "bar_right").step(fly()), "has no partner on `bar_right`");
     // A static step needs supports against translation, but none against rotation.
     let held = || LoadStep::new("hold", 1.0).fix(Place::Node(0));
     let free = bar(&good).periodic("bar_left", "bar_right").step(LoadStep::new("hold", 1.0));

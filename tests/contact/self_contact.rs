@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::common::{Blocks, Finished, close, distance, finish, finish_at};
 use fecontact::contact::master::Master;
-use fecontact::contact::pair::{ContactIncrement, Presumption};
+use fecontact::contact::pair::{ContactIncrement, Prediction};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Surface, gauss_points};
@@ -131,9 +131,9 @@ fn tangent_of_self_contact_equals_differences() {
         let respond = |u: &[f64]| {
             let during =
                 ContactIncrement { dt: 0.1, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
-            let presumed = |_| Presumption::default();
+            let is_predicted = |_| Prediction::default();
             let (x, mut response) = (run.model.configuration(u), PairResponse::default());
-            pair.respond(&old.contacts[0], [&before, &x], during, presumed, Request::Tangent, &mut response)
+            pair.respond(&old.contacts[0], [&before, &x], during, is_predicted, Request::Tangent, &mut response)
                 .expect("an answer");
             response
         };
@@ -203,7 +203,7 @@ fn a_tube_pressed_flat_touches_itself() {
     let [before, x] = [old, new].map(|state| run.model.configuration(&state.displacement));
     let during =
         ContactIncrement { dt: new.dt, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
-    let nothing = |_| Presumption::default();
+    let nothing = |_| Prediction::default();
     let (states, mut answer) = (&old.contacts[number], PairResponse::default());
     run.model.contacts[number]
         .respond(states, [&before, &x], during, nothing, Request::Residual, &mut answer)

@@ -7,7 +7,7 @@ use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, q
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::{Circle, Master, Shape};
 use fecontact::contact::mortar::{Hats, mortar_points};
-use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, Prediction};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::small_sliding::{LITTLE_SLIP, LITTLE_TURN};
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
@@ -175,8 +175,8 @@ pub fn answer(
 ) -> (Vec<f64>, Vec<Vec<f64>>, Vec<ContactState>) {
     let [before, now] = [before, u].map(|u| Configuration::new(x, u));
     let mut response = PairResponse::default();
-    let presumed = |_| Presumption::default();
-    pair.respond(old, [&before, &now], INCREMENT, presumed, Request::Tangent, &mut response).expect("an answer");
+    let is_predicted = |_| Prediction::default();
+    pair.respond(old, [&before, &now], INCREMENT, is_predicted, Request::Tangent, &mut response).expect("an answer");
     let n = 2 * x.len();
     let (mut forces, mut tangent) = (vec![0.0; n], vec![vec![0.0; n]; n]);
     for (_, added) in response.all_acting() {

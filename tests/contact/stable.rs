@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fecontact::contact::force::ContactState;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, Prediction};
 use fecontact::contact::response::PairResponse;
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
@@ -102,7 +102,7 @@ fn weakest(model: Model) -> Weakest {
     model.mesh.nodes_of(slave).into_iter().for_each(|node| u[2 * node + 1] = -1e-9);
     let [before, x] = [&state.displacement, &u].map(|u| model.configuration(u));
     let during = ContactIncrement { dt: 1.0, time: 1.0, radiates: false, fading: 0.0, stiffening: 1.0, settles: true };
-    let (mut response, nothing) = (PairResponse::default(), |_| Presumption::default());
+    let (mut response, nothing) = (PairResponse::default(), |_| Prediction::default());
     pair.respond(&state.contacts[0], [&before, &x], during, nothing, Request::Tangent, &mut response)
         .expect("an answer");
     assert!(response.states.iter().all(ContactState::is_closed));

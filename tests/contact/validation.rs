@@ -9,7 +9,7 @@ use crate::common::{
 };
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
-use fecontact::contact::pair::{ContactIncrement, Presumption};
+use fecontact::contact::pair::{ContactIncrement, Prediction};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{SlavePoint, Surface, nodal_points};
@@ -386,14 +386,15 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
                 stiffening: 1.0,
                 settles: true,
             };
-            let nothing = |_| Presumption::default();
+            let nothing = |_| Prediction::default();
             pair.respond(&states[0].contacts[0], [&before, &x], during, nothing, Request::Residual, &mut found)
                 .expect("an answer");
             for (found, accepted) in found.states.iter().zip(&states[1].contacts[0]) {
                 assert_eq!(found, accepted, "{method}, height {height}, t = {}", states[1].time);
             }
             let changed = states[0].contacts[0].iter().zip(&states[1].contacts[0]).filter(|(old, new)| {
-                let [old, new] = [old.foot, new.foot].map(|foot| foot.map(|foot| foot.segment));
+                let [old, new] = [old.master_point, new.master_point]
+                    .map(|master_point| master_point.map(|master_point| master_point.segment));
                 old != new
             });
             over += changed.count();
@@ -976,7 +977,7 @@ fn feet_at_ridges_and_valleys() {
         let expected = zigzag.windows(2).map(|pair| to_segment(at, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
         let found = project(at).unwrap_or_else(|| panic!("no foot at {at:?}"));
         close(&format!("gap at {at:?}"), found.gap, expected * depth.signum() * f64::from(u8::from(j != 0)), 1e-12);
-        assert!((found.normal.norm() - 1.0).abs() < 1e-12 && found.foot.xi.is_finite());
+        assert!((found.normal.norm() - 1.0).abs() < 1e-12 && found.master_point.xi.is_finite());
     }
     assert!(project(Vector2::new(2.5, -0.1)).is_none() && project(Vector2::new(-2.5, -0.1)).is_none());
 }

@@ -282,7 +282,7 @@ type Switch = (&'static str, fn(&mut Aids));
 
 const SWITCHES: [Switch; 14] = [
     ("start", |aids| aids.start = false),
-    ("promise", |aids| aids.promise = false),
+    ("prediction", |aids| aids.prediction = false),
     ("limit", |aids| aids.limit = false),
     ("keep", |aids| aids.keep = false),
     ("pull", |aids| aids.pull = false),
@@ -376,7 +376,7 @@ struct Afresh {
 
 impl Observer for Afresh {
     /// From the committed state and the accepted displacement alone, by an assembler that has seen nothing before, nothing
-    /// presumed.
+    /// predicted.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(new) = attempt.accepted else { return Ok(()) };
         // The multipliers of the last pass, as they are at the stiffness given; 0 for the plain penalty.
@@ -430,7 +430,7 @@ fn every_aid_saves_solves_or_a_failure() {
     let mut all = BTreeMap::new();
     for (aid, name) in [
         ("start", "greco"),
-        ("promise", "ridge"),
+        ("prediction", "ridge"),
         ("limit", "hertz_q4"),
         ("keep", "ridge"),
         ("pull", "ridge"),

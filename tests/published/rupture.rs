@@ -225,7 +225,7 @@ fn accepted(fronts: &mut Fronts, model: &Model, old: &State, new: &State) {
         row: Row::Written,
         verdict: Verdict::Accepted,
         cause: None,
-        doubt: None,
+        uncertainty: None,
         local_error: None,
     };
     fronts.record(model, &told).expect("a row");

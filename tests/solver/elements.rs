@@ -585,8 +585,12 @@ fn the_tangent_of_memory_and_of_laws_without_a_potential_equals_differences() {
                 let error = ((moved(h) - moved(-h)) / (2.0 * h) - tangent.column(column)).amax();
                 assert!(error < 1e-7 * tangent.amax(), "{kind:?} {formulation:?} {material:?}: {error}");
             }
-            let skew = (&tangent - tangent.transpose()).amax() / tangent.amax();
-            assert_eq!(skew < 1e-12, material.description().is_symmetric, "{kind:?} {material:?}: {skew}");
+            let unsymmetric = (&tangent - tangent.transpose()).amax() / tangent.amax();
+            assert_eq!(
+                unsymmetric < 1e-12,
+                material.description().is_symmetric,
+                "{kind:?} {material:?}: {unsymmetric}"
+            );
         }
     }
 }

@@ -106,7 +106,7 @@ fn an_increment_is_a_pure_function_of_the_state() {
     close("in the run", difference(&first, new), 0.0, 1e-12);
 }
 
-/// A tangent that is asked for before any residual presumes nothing: its residual is that of the equations.
+/// A tangent that is asked for before any residual predicts nothing: its residual is that of the equations.
 #[test]
 fn a_tangent_may_come_first() {
     let run = finish(&dragged("gauss_to_segment", 0.05, 25));

@@ -143,8 +143,8 @@ fn a_corner_that_is_shared_is_a_hinge() {
     refused(hinged(step()), "in rotation: the supports do not constrain it");
     // A support whose line goes through the hinge does not hold.
     refused(hinged(step().support(Support::on(Place::Near([2.0, 1.0])).ux(0.0))), "`body1` can move freely");
-    let foot = Support::on(Place::Near([2.0, 1.0])).uy(0.0);
-    let run = run_through(hinged(step().support(foot).load(Load::force(Place::Near([2.0, 2.0]), [0.3, 0.0]))));
+    let master_point = Support::on(Place::Near([2.0, 1.0])).uy(0.0);
+    let run = run_through(hinged(step().support(master_point).load(Load::force(Place::Near([2.0, 2.0]), [0.3, 0.0]))));
     close("foot", run.last().reaction[2 * 4 + 1], 0.3, 1e-12);
     let [x, y] = run.reaction("left", run.last());
     close("left along x", x, -0.3, 1e-12);

@@ -23,14 +23,14 @@ fn linear() -> Value {
 }
 
 /// A grid of parallelograms of growing width, of one kind of elements; `skew` moves its top.
-fn grid(kind: &str, [columns, rows]: [usize; 2], skew: f64) -> Value {
-    let map = |s: f64, t: f64| [1.0 + s * (1.0 + s) + skew * t, 0.7 * t];
+fn grid(kind: &str, [columns, rows]: [usize; 2], unsymmetric: f64) -> Value {
+    let map = |s: f64, t: f64| [1.0 + s * (1.0 + s) + unsymmetric * t, 0.7 * t];
     let mesh = Blocks::default().block("body", [columns, rows], map).json();
     match kind {
         "Q4" | "f_bar" => mesh,
         "Q8" | "reduced" => quadratic(&mesh, half_way),
         _ => {
-            let block = json!({"body": "body", "corners": [[1, 0], [3, 0], [3.0 + skew, 0.7], [1.0 + skew, 0.7]], "elements": [columns, rows],
+            let block = json!({"body": "body", "corners": [[1, 0], [3, 0], [3.0 + unsymmetric, 0.7], [1.0 + unsymmetric, 0.7]], "elements": [columns, rows],
                                "sides": ["body_bottom", "body_right", "body_top", "body_left"], "grading": [3, 1], "kind": kind});
             json!({"blocks": [block]})
         }
@@ -56,12 +56,12 @@ fn a_linear_field_is_recovered_to_round_off() {
     for section in [Value::Null, json!("axisymmetric"), json!({"plane_stress": {"thickness": 0.3}})] {
         for kind in ["Q4", "Q8", "reduced", "T6"] {
             // Q4 has u_r ∝ r z on rectangles alone.
-            let skew = if section.is_string() { 0.0 } else { 0.2 };
+            let unsymmetric = if section.is_string() { 0.0 } else { 0.2 };
             let mut body = linear();
             if kind == "reduced" {
                 body["element"] = json!("reduced");
             }
-            let mut case = case(&section, grid(kind, [6, 5], skew), body, json!([]));
+            let mut case = case(&section, grid(kind, [6, 5], unsymmetric), body, json!([]));
             case["steps"][0]["supports"] = json!([{"on": "body", "ux": 0, "uy": 0}]);
             case["probes"] =
                 json!({"corner": {"at": [1.0, 0.0]}, "inside": {"at": [2.07, 0.31]}, "side": {"at": [2.0, 0.7]}});

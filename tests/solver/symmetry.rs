@@ -34,11 +34,11 @@ fn entry(matrix: &SparseMatrix, row: usize, column: usize) -> f64 {
 /// and columns of some dofs are left out.
 fn skewness(matrix: &SparseMatrix, left_out: &[bool]) -> [f64; 2] {
     let (mut found, mut largest) = ([0.0f64; 2], f64::MIN_POSITIVE);
-    let skew = matrix.pattern.skew();
+    let unsymmetric = matrix.pattern.unsymmetric();
     for column in (0..matrix.size()).filter(|&column| !left_out[column]) {
         let rows = matrix.pattern.neighbours(column / 2).iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         for row in rows.filter(|&row| !left_out[row]) {
-            let kind = usize::from(skew[row / 2] && skew[column / 2]);
+            let kind = usize::from(unsymmetric[row / 2] && unsymmetric[column / 2]);
             found[kind] = found[kind].max((entry(matrix, row, column) - entry(matrix, column, row)).abs());
             largest = largest.max(entry(matrix, row, column).abs());
         }
@@ -65,7 +65,7 @@ fn base(law: impl Into<fecontact::model::builder::Friction>) -> Contact {
 /// The tangent of a term, and that of the whole, at an arbitrary displacement: symmetric wherever no contribution says otherwise;
 /// `skew` says whether one does, and then the tangent is not.
 #[track_caller]
-fn check(what: &str, term: Term, builder: Builder, skew: bool) {
+fn check(what: &str, term: Term, builder: Builder, unsymmetric: bool) {
     let model = Arc::new(builder.build().unwrap_or_else(|error| panic!("{what}: {error}")));
     let (state, step) = (moving(&model), &model.steps[0]);
     let mut u = arbitrary_displacement(&model, 1e-3);
@@ -79,7 +79,7 @@ fn check(what: &str, term: Term, builder: Builder, skew: bool) {
     let fixed = fecontact::equations::supports::fixed(&model, step);
     let [elsewhere, there] = skewness(&assembler.tangent_of(term, trial, &u).expect("a tangent"), &fixed);
     assert!(elsewhere < 1e-12, "{what}: {term:?} is not as symmetric as it says, by {elsewhere:.1e}");
-    assert_eq!(there > 1e-9, skew, "{what}: {term:?} is skew by {there:.1e}");
+    assert_eq!(there > 1e-9, unsymmetric, "{what}: {term:?} is skew by {there:.1e}");
     let (mut system, mut responses) = (assembler.system(), Vec::new());
     assembler.interfaces(trial, &u, |_, _| Default::default(), Request::Tangent, &mut responses).expect("responses");
     assembler.assemble(trial, &u, &responses, Request::Tangent, &mut system).expect("a tangent");
@@ -165,7 +165,7 @@ fn symmetrize(matrix: &mut SparseMatrix) {
                 continue;
             };
             for (i, j) in (0..2).flat_map(|i| (0..2).map(move |j| (i, j))) {
-                if !(pattern.skew()[row] && pattern.skew()[column]) {
+                if !(pattern.unsymmetric()[row] && pattern.unsymmetric()[column]) {
                     matrix.values[above.value(j, i)] = matrix.values[below.value(i, j)];
                 }
             }
@@ -210,11 +210,11 @@ fn a_shifted_chain_has_as_many_negative_pivots_as_frequencies_below_the_shift() 
 }
 
 /// The two grids without friction, held at the bottom by dofs with equations of their own.
-fn held_grids(nx: usize, ny: usize, friction: f64, skew: impl Fn(&Grids) -> Vec<usize>) -> SparseMatrix {
+fn held_grids(nx: usize, ny: usize, friction: f64, unsymmetric: impl Fn(&Grids) -> Vec<usize>) -> SparseMatrix {
     let grids = Grids { friction, ..Grids::new(nx, ny, 1e3) };
     let plain = grids.floating();
     let mut flags = vec![false; plain.pattern.nodes()];
-    skew(&grids).into_iter().for_each(|node| flags[node] = true);
+    unsymmetric(&grids).into_iter().for_each(|node| flags[node] = true);
     let pattern = Pattern::clone(&plain.pattern).symmetric_but(flags);
     let mut matrix = SparseMatrix { pattern: Arc::new(pattern), ..plain };
     for i in 0..=nx {
@@ -233,12 +233,12 @@ fn at_contact(grids: &Grids) -> Vec<usize> {
 #[test]
 fn fronts_of_either_kind_have_the_same_solution() {
     for (nx, ny) in [(3, 2), (17, 9), (60, 40)] {
-        for (friction, skew) in [(0.0, false), (0.3, true)] {
-            let matrix = held_grids(nx, ny, friction, |grids| if skew { at_contact(grids) } else { Vec::new() });
+        for (friction, unsymmetric) in [(0.0, false), (0.3, true)] {
+            let matrix = held_grids(nx, ny, friction, |grids| if unsymmetric { at_contact(grids) } else { Vec::new() });
             let x = noise(matrix.size());
             let b = matrix.multiply(&x);
             let solution = solved(&matrix, &b);
-            assert_eq!(solution.negative_pivots, if skew { None } else { Some(0) });
+            assert_eq!(solution.negative_pivots, if unsymmetric { None } else { Some(0) });
             assert!(solution.backward_error < 1e-13 && !solution.fallback, "{}", solution.backward_error);
             let all = matrix.pattern.nodes();
             let unsymmetric = Arc::new(Pattern::clone(&matrix.pattern).symmetric_but(vec![true; all]));
@@ -254,9 +254,9 @@ fn fronts_of_either_kind_have_the_same_solution() {
 /// other.
 #[test]
 fn symmetric_fronts_take_half_the_memory() {
-    let fill = |friction: f64, skew: &dyn Fn(&Grids) -> Vec<usize>| {
+    let fill = |friction: f64, unsymmetric: &dyn Fn(&Grids) -> Vec<usize>| {
         let mut solver = Multifrontal::default();
-        solver.analyse(&held_grids(90, 40, friction, skew).pattern).expect("small");
+        solver.analyse(&held_grids(90, 40, friction, unsymmetric).pattern).expect("small");
         solver.fill() as f64
     };
     let all = fill(0.3, &|grids| (0..2 * (grids.nx + 1) * (grids.ny + 1)).collect());
@@ -344,8 +344,8 @@ fn the_bits_do_not_depend_on_threads_or_on_what_was_factorized_before() {
 fn any_graph() -> impl Strategy<Value = (usize, Vec<Vec<usize>>, Vec<usize>, u64)> {
     (1usize..60).prop_flat_map(|nodes| {
         let group = prop::collection::vec(0..nodes, 1..6);
-        let skew = prop::collection::vec(0..nodes, 0..4);
-        (Just(nodes), prop::collection::vec(group, 0..80), skew, any::<u64>())
+        let unsymmetric = prop::collection::vec(0..nodes, 0..4);
+        (Just(nodes), prop::collection::vec(group, 0..80), unsymmetric, any::<u64>())
     })
 }
 
@@ -355,10 +355,10 @@ proptest! {
     /// exchanges all rows, and as many negative pivots as a dense matrix has negative eigenvalues; the least number of them is odd
     /// where the determinant of a dense matrix is negative.
     #[test]
-    fn any_symmetric_pattern((nodes, mut groups, skew, seed) in any_graph()) {
+    fn any_symmetric_pattern((nodes, mut groups, unsymmetric, seed) in any_graph()) {
         groups.iter_mut().for_each(|group| { group.sort_unstable(); group.dedup() });
         let mut flags = vec![false; nodes];
-        skew.iter().for_each(|&node| flags[node] = true);
+        unsymmetric.iter().for_each(|&node| flags[node] = true);
         let pattern = Pattern::new(nodes, groups.iter().map(|group| &group[..])).symmetric_but(flags);
         let mut matrix = SparseMatrix::zero(Arc::new(pattern));
         let shift = (seed % 1000) as usize;

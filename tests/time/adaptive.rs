@@ -576,7 +576,7 @@ fn touch_is_stepped_onto() {
 }
 
 /// The compliance c that helps Newton's method at touch is a number of the mesh, not of the model: what is accepted depends
-/// on it by no more than the doubt about friction that is allowed. Points of a slab with a bow touch one after the other.
+/// on it by no more than the uncertainty about friction that is allowed. Points of a slab with a bow touch one after the other.
 #[test]
 fn accepted_friction_does_not_depend_on_the_compliance_after_touch() {
     let bowed = Slab { bow: 0.004, friction: coulomb(0.3), normal: json!({}), ..Slab::default() };

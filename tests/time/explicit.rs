@@ -198,12 +198,12 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 /// A bar of ρ = 1, E = 1, ν = 0.3, c_p = 1.16, that hits a rigid wall at the speed `v`; every other node inside is moved by
 /// the share `skew` of an element's size.
-fn struck(law: &str, v: f64, safety: f64, skew: f64) -> Value {
+fn struck(law: &str, v: f64, safety: f64, unsymmetric: f64) -> Value {
     let mut blocks = Blocks::default().rectangle("bar", [4, 20], [0.0, 0.0], [0.1, 0.5]);
     for (k, node) in blocks.nodes.iter_mut().enumerate() {
         let (i, j) = (k % 5, k / 5);
         if (1..4).contains(&i) && (1..20).contains(&j) && (i + j) % 2 == 1 {
-            *node = node.map(|x| x + 0.025 * skew);
+            *node = node.map(|x| x + 0.025 * unsymmetric);
         }
     }
     json!({

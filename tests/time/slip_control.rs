@@ -112,7 +112,7 @@ fn implicit_stick_slip_is_followed_by_default() {
 }
 
 /// Slip that the loads of a new step end at once: the first increment of the step is compared with the last one before it. (Taken for rest,
-/// that one let a single increment pass over all that follows, a hundredth of D_c.) No increment has more than the promised error, and the slip
+/// that one let a single increment pass over all that follows, a hundredth of D_c.) No increment has more than the predicted error, and the slip
 /// is that of increments of a fixed length 5000 times shorter.
 #[test]
 fn slip_that_a_new_step_ends_is_followed() {

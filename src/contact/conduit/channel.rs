@@ -38,7 +38,7 @@ impl Wall {
     /// At a contact point.
     pub fn of(state: &ContactState) -> Self {
         let lifted = state.friction.opening;
-        let apart = if state.foot.is_some() { (state.gap - lifted).max(0.0) } else { 0.0 };
+        let apart = if state.master_point.is_some() { (state.gap - lifted).max(0.0) } else { 0.0 };
         let pressure = (state.friction.pressure - state.tension()).max(0.0);
         Self { opening: lifted + apart, slip: state.friction.plastic_slip, pressure }
     }
@@ -69,7 +69,7 @@ pub struct ConduitState {
     /// What the volume in the contact has changed by, less what has come in [L³]
     pub mass_error: f64,
     /// Estimated error of the pressure in the last increment by what the surfaces did within it, over the allowed one [-]
-    pub doubt: f64,
+    pub uncertainty: f64,
 }
 
 /// A pressure below zero that is the error of the steps, over the largest change of the pressure since the start of the run [-]

@@ -29,9 +29,9 @@ pub(super) fn dependence(model: &Model) -> Dependence {
 }
 
 /// Nodes of the elements whose tangent is not symmetric, as their law's is not.
-pub(super) fn skew(model: &Model) -> Vec<usize> {
-    let is_skew = |e: &usize| !model.bodies[model.body_of_element[*e]].material.description().is_symmetric;
-    (0..model.solids.len()).filter(is_skew).flat_map(|e| model.mesh.elements[e].nodes.iter().copied()).collect()
+pub(super) fn unsymmetric(model: &Model) -> Vec<usize> {
+    let is_unsymmetric = |e: &usize| !model.bodies[model.body_of_element[*e]].material.description().is_symmetric;
+    (0..model.solids.len()).filter(is_unsymmetric).flat_map(|e| model.mesh.elements[e].nodes.iter().copied()).collect()
 }
 
 /// Forces of the bodies about a displacement, to first order, and their energy, to second; those of bodies with internal variables or an

@@ -343,7 +343,7 @@ impl Bond {
     }
 
     /// Response to an increment of slip that ends at the opening w: 0 where the surfaces are closed, with no derivative by it.
-    /// `held` presumes that it sticks.
+    /// `held` predicts that it sticks.
     #[must_use]
     pub fn respond(&self, old: &BondState, opening: f64, slip: f64, held: bool) -> BondResponse {
         let Self { slip: softening, stiffness, .. } = *self;

@@ -30,7 +30,7 @@ pub struct Scaling {
 impl Scaling {
     /// Scales of a matrix as the fronts of its pattern need them, 0 for what is held.
     pub fn compute(&mut self, matrix: &SparseMatrix) {
-        if matrix.pattern.is_all_skew() {
+        if matrix.pattern.is_all_unsymmetric() {
             self.compute_two_sided(matrix);
         } else {
             self.clear(matrix.size());
@@ -58,15 +58,15 @@ impl Scaling {
 
 #[inline(always)]
 fn symmetric(matrix: &SparseMatrix, scales: &mut [f64]) {
-    let skew = matrix.pattern.skew();
+    let unsymmetric = matrix.pattern.unsymmetric();
     each_column(matrix, |column, nodes, values| {
         if matrix.held[column] {
             return;
         }
         scales[column] = largest(values).max(scales[column]);
         // A row is like its column but between nodes with unsymmetric values.
-        if skew[column / 2] {
-            let rows = nodes.iter().zip(values.as_chunks::<2>().0).filter(|(row, _)| skew[**row]);
+        if unsymmetric[column / 2] {
+            let rows = nodes.iter().zip(values.as_chunks::<2>().0).filter(|(row, _)| unsymmetric[**row]);
             rows.for_each(|(&row, pair)| (0..2).for_each(|i| grow(&mut scales[2 * row + i], pair[i])));
         }
     });

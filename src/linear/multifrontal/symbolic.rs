@@ -50,7 +50,7 @@ impl Symbolic {
         order.retain(|&node| !stays[node]);
         order.extend(kept);
         let eliminated = pattern.nodes() - kept.len();
-        let elimination = with_skew_late(&pattern, Elimination::new(&pattern, order));
+        let elimination = with_unsymmetric_late(&pattern, Elimination::new(&pattern, order));
         let supernodes = supernodes(&elimination, eliminated);
         let mut fronts = fronts(&pattern, &elimination, &supernodes);
         fronts.iter_mut().for_each(|front| front.open = front.first >= 2 * eliminated);
@@ -113,8 +113,8 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
         if let Some(&row) = rows.first() {
             families[owner[row as usize]].push(s as u32);
         }
-        let skew = |node: &usize| pattern.skew()[*node];
-        let own = !elimination.nodes[first..end].iter().any(skew);
+        let unsymmetric = |node: &usize| pattern.unsymmetric()[*node];
+        let own = !elimination.nodes[first..end].iter().any(unsymmetric);
         let mut front = Front {
             first: 2 * first,
             pivots: 2 * (end - first),
@@ -250,14 +250,15 @@ pub fn order(pattern: &Pattern) -> Result<Vec<usize>, LinearFailure> {
 }
 
 /// The elimination with the nodes between which values are unsymmetric at its end, if it costs less than the one given.
-fn with_skew_late(pattern: &Pattern, elimination: Elimination) -> Elimination {
-    let count = pattern.skew().iter().filter(|skew| **skew).count() as f64;
+fn with_unsymmetric_late(pattern: &Pattern, elimination: Elimination) -> Elimination {
+    let count = pattern.unsymmetric().iter().filter(|unsymmetric| **unsymmetric).count() as f64;
     let work = elimination.work(pattern);
     // They are a dense matrix in the end, as a rule.
-    if count == 0.0 || pattern.is_all_skew() || 2.0 / 3.0 * count.powi(3) > work {
+    if count == 0.0 || pattern.is_all_unsymmetric() || 2.0 / 3.0 * count.powi(3) > work {
         return elimination;
     }
-    let (late, mut order): (Vec<usize>, Vec<usize>) = elimination.nodes.iter().partition(|node| pattern.skew()[**node]);
+    let (late, mut order): (Vec<usize>, Vec<usize>) =
+        elimination.nodes.iter().partition(|node| pattern.unsymmetric()[**node]);
     order.extend(late);
     let other = Elimination::new(pattern, order);
     if other.work(pattern) < work { other } else { elimination }
@@ -297,12 +298,12 @@ impl Elimination {
 
     /// Operations of the elimination node by node, up to a factor: twice as many where a node is unsymmetric or above one that is.
     fn work(&self, pattern: &Pattern) -> f64 {
-        let mut skew: Vec<bool> = self.nodes.iter().map(|&node| pattern.skew()[node]).collect();
+        let mut unsymmetric: Vec<bool> = self.nodes.iter().map(|&node| pattern.unsymmetric()[node]).collect();
         let mut work = 0.0;
         for (k, (&parent, &count)) in self.parents.iter().zip(&self.counts).enumerate() {
-            work += (count * count) as f64 * if skew[k] { 2.0 } else { 1.0 };
+            work += (count * count) as f64 * if unsymmetric[k] { 2.0 } else { 1.0 };
             if parent != ROOT {
-                skew[parent] |= skew[k];
+                unsymmetric[parent] |= unsymmetric[k];
             }
         }
         work

@@ -264,7 +264,7 @@ impl Sides {
 
     fn distance(&self, side: usize, at: Vector2<f64>) -> f64 {
         let [a, b] = self.ends(side);
-        let (share, foot) = match self.arcs[side] {
+        let (share, master_point) = match self.arcs[side] {
             Some((centre, angle)) => {
                 let (from, arm) = (a - centre, at - centre);
                 (from.perp(&arm).atan2(from.dot(&arm)) / angle, centre + arm * (from.norm() / arm.norm()))
@@ -274,15 +274,15 @@ impl Sides {
                 (share, a + share * (b - a))
             }
         };
-        let foot = if share <= 0.0 {
+        let master_point = if share <= 0.0 {
             a
         } else if share >= 1.0 {
             b
         } else {
-            foot
+            master_point
         };
         let beyond = (at - a).norm().min((at - b).norm());
-        (at - foot).norm().min(beyond)
+        (at - master_point).norm().min(beyond)
     }
 
     /// Offset of a curved side from its chord; zero where it is straight.

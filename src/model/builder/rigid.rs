@@ -291,7 +291,7 @@ pub fn add_bodies(given: &[(String, RigidBodyInput)], contacts: &[Contact], mesh
     Ok(())
 }
 
-/// Distance of the farthest point of a rigid master from a point: of its outline, and of the feet of the slave's nodes on a plane,
+/// Distance of the farthest point of a rigid master from a point: of its outline, and of the projections of the slave's nodes on a plane,
 /// which has no end. `None` where the contact has no such shape, which is refused in its turn [L].
 fn reach(contact: &Contact, from: Vector2<f64>, mesh: &Mesh) -> Option<f64> {
     let shape = contact::shape(&contact.master, mesh, "").ok()?;
@@ -300,8 +300,8 @@ fn reach(contact: &Contact, from: Vector2<f64>, mesh: &Mesh) -> Option<f64> {
         Shape::Circle(circle) => (circle.centre - from).norm() + circle.radius,
         Shape::Polyline(polyline) => polyline.corners().iter().map(|corner| (corner - from).norm()).fold(0.0, f64::max),
         Shape::Plane(plane) => {
-            let foot = |&node: &usize| plane.foot(mesh.nodes[node]);
-            slave.iter().map(|node| (foot(node) - from).norm()).fold(0.0, f64::max)
+            let master_point = |&node: &usize| plane.master_point(mesh.nodes[node]);
+            slave.iter().map(|node| (master_point(node) - from).norm()).fold(0.0, f64::max)
         }
     })
 }

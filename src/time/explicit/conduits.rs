@@ -94,7 +94,7 @@ impl Explicit {
                 rates: walls.iter().zip(&old.walls).map(|(new, old)| new.combined(rate, *old, -rate)).collect(),
                 amounts: old.amounts.combined(1.0, reached.amounts, 1.0),
                 mass_error: old.mass_error + volume - reached.amounts.injected + reached.amounts.leaked,
-                doubt: 0.0,
+                uncertainty: 0.0,
                 pressure: reached.pressure,
                 walls,
             }))

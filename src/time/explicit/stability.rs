@@ -224,10 +224,10 @@ impl Stability {
         added.resize(model.mesh.nodes.len(), 0.0);
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
             for (slave, state) in pair.points.iter().zip(states) {
-                let Some(foot) = state.foot else { continue };
+                let Some(master_point) = state.master_point else { continue };
                 let stiffness = pair.stiffest(slave) * slave.current_length(&x);
                 let faced = match &pair.master {
-                    Master::Mesh(surface) => surface.segments[foot.segment].position(foot.xi),
+                    Master::Mesh(surface) => surface.segments[master_point.segment].position(master_point.xi),
                     Master::Rigid(rigid) => rigid_weights(rigid.body.as_ref(), slave, mass, &x),
                 };
                 let weights = || slave.position.iter().chain(&faced);
@@ -267,7 +267,7 @@ fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
 
 /// Segment of the projection of every contact point; `None` without a projection.
 fn segments(state: &State) -> impl Iterator<Item = Option<usize>> {
-    state.contacts.iter().flatten().map(|contact| contact.foot.map(|foot| foot.segment))
+    state.contacts.iter().flatten().map(|contact| contact.master_point.map(|master_point| master_point.segment))
 }
 
 /// (4) from ω² and c [T].

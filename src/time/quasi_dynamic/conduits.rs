@@ -115,7 +115,7 @@ impl<'a> Conduits<'a> {
                 walls,
                 amounts: flowing.state.amounts.combined(1.0, amounts, 1.0),
                 mass_error: flowing.state.mass_error + volume - amounts.injected + amounts.leaked,
-                doubt: 0.0,
+                uncertainty: 0.0,
             };
         }
     }

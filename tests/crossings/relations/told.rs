@@ -45,7 +45,7 @@ pub(super) fn watered(base: &Base) -> Outcome {
     base.same(with("-1e-306"), SAME, NOTHING)
 }
 
-/// Slip of friction that increments integrate to first order in time has the error per increment that is promised, or more is told. What
+/// Slip of friction that increments integrate to first order in time has the error per increment that is predicted, or more is told. What
 /// is seen of it is the mean of points that stay closed.
 pub(super) fn followed(base: &Base) -> Outcome {
     let draft = base.draft;

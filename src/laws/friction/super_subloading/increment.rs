@@ -64,7 +64,7 @@ pub(super) struct PathState {
     /// [F/L²]
     pub overlooked: f64,
     /// Difference between the rules of the mean of q in the work of the last sub-step, if not that of steady slip was taken [F/L]
-    pub doubt: f64,
+    pub spread: f64,
 }
 
 impl LoadPath<'_> {
@@ -82,7 +82,7 @@ impl LoadPath<'_> {
             weighed_slip,
             work: 0.0,
             overlooked: 0.0,
-            doubt: 0.0,
+            spread: 0.0,
         }
     }
 
@@ -117,7 +117,7 @@ impl LoadPath<'_> {
         let mu = self.varied.evolution.rested(from.mu, self.time * share);
         let curve_point = self.law.curve.start(traction.value / (mu.value * pressure.value));
         let ratio = if self.varied.direct.is_some() { traction / (mu * pressure) } else { from.ratio };
-        let mut to = PathState { x, traction, mu, curve_point, ratio, overlooked: 0.0, doubt: 0.0, ..*from };
+        let mut to = PathState { x, traction, mu, curve_point, ratio, overlooked: 0.0, spread: 0.0, ..*from };
         let rates = [from, &to].map(|at| self.balance(at).rate());
         to.overlooked = self.law.alpha_t * share * mean_of_positive(rates);
         to
@@ -173,9 +173,9 @@ impl LoadPath<'_> {
         }
         let plastic_slip = from.plastic_slip + slip;
         let (ratio, work) = ((ratio + dslip * curve_point.rate).map(curve_point.ratio, 1.0), from.work);
-        let (overlooked, doubt) = (0.0, 0.0);
+        let (overlooked, spread) = (0.0, 0.0);
         let mut to =
-            PathState { x, traction, mu, curve_point, ratio, plastic_slip, weighed_slip, work, overlooked, doubt };
+            PathState { x, traction, mu, curve_point, ratio, plastic_slip, weighed_slip, work, overlooked, spread };
         self.book(from, &mut to, slip);
         to
     }
@@ -206,7 +206,7 @@ impl LoadPath<'_> {
                 to.work += slip * steady;
             } else {
                 to.work += slip * mean;
-                to.doubt = slip * (steady - mean).abs();
+                to.spread = slip * (steady - mean).abs();
             }
         }
         if !start.in_core && !start.exceeds && end.drive > 0.0 {

@@ -103,10 +103,10 @@ impl Halves<'_> {
         slips(self.from, self.coarse) && slips(self.from, self.middle) && slips(self.middle, self.fine)
     }
 
-    /// Doubt of the work, which the difference of whole and halves shows only if one rule was taken in all three.
-    fn doubt(&self) -> f64 {
-        let doubts = [self.coarse, self.middle, self.fine].map(|state| state.doubt);
-        if doubts.iter().all(|doubt| *doubt > 0.0) { 0.0 } else { doubts.into_iter().fold(0.0, f64::max) }
+    /// Uncertainty of the work, which the difference of whole and halves shows only if one rule was taken in all three.
+    fn spread(&self) -> f64 {
+        let spreads = [self.coarse, self.middle, self.fine].map(|state| state.spread);
+        if spreads.iter().all(|spread| *spread > 0.0) { 0.0 } else { spreads.into_iter().fold(0.0, f64::max) }
     }
 }
 
@@ -148,7 +148,7 @@ impl LoadPath<'_> {
         let (differences, allowed) = (self.differences(&halves), self.allowed(&halves));
         let overlooked = coarse.overlooked.max(middle.overlooked).max(fine.overlooked);
         let agree = overlooked <= allowed[0]
-            && halves.doubt() <= allowed[2]
+            && halves.spread() <= allowed[2]
             && (0..3).all(|i| {
                 let left = differences[i].abs() / CAUTION;
                 let left = if halves.slide() { left.min((differences[i] - expected[i]).abs()) } else { left };
@@ -227,7 +227,7 @@ impl LoadPath<'_> {
             weighed_slip: fine.weighed_slip + (fine.weighed_slip - coarse.weighed_slip) / 3.0,
             work: (energy - 0.5 * traction.value * traction.value / self.law.alpha_t).max(from.work),
             overlooked: 0.0,
-            doubt: 0.0,
+            spread: 0.0,
         }
     }
 
