@@ -38,12 +38,15 @@ class Bar(dict[str, Any]):
 
     Args:
         ea: EA: axial stiffness, above 0 [F]
+        damping: Damping in dynamic steps, as that of bodies: of EA and EI by `stiffness`, in implicit steps,
+            and not of its bond
         ei: EI: bending stiffness; default: 0, a truss [F L²]
         embedded: Body that it lies in, with bond along its whole length; default: none, it is joined to others
             by its ends and shared nodes alone
         end: How it ends; default: free
         limit: N_p: force at which it yields in tension and compression, at constant force; default: none [F]
-        mass: Mass per length; needed in dynamic steps [M/L]
+        mass: Mass per length; needed in dynamic steps, and for the weight of the bar by a load `gravity` on its
+            name [M/L]
         on: Group of edges of a body whose nodes it shares, or of lines of the mesh that are sides of no element
         points: Points [x, y] of its axis, joined by straight lines. Either these or `on`
         segments: Number of segments that it is divided into; default: with `embedded` about one to an element
@@ -55,6 +58,7 @@ class Bar(dict[str, Any]):
         self,
         *,
         ea: float,
+        damping: Damping | Given = NOT_GIVEN,
         ei: float | Given = NOT_GIVEN,
         embedded: Embedding | None | Given = NOT_GIVEN,
         end: BarEnd | None | Given = NOT_GIVEN,
@@ -65,7 +69,26 @@ class Bar(dict[str, Any]):
         segments: int | None | Given = NOT_GIVEN,
         start: BarEnd | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"ea": ea, "ei": ei, "embedded": embedded, "end": end, "limit": limit, "mass": mass, "on": on, "points": points, "segments": segments, "start": start}))
+        super().__init__(_given({"ea": ea, "damping": damping, "ei": ei, "embedded": embedded, "end": end, "limit": limit, "mass": mass, "on": on, "points": points, "segments": segments, "start": start}))
+
+
+class Damping(dict[str, Any]):
+    """Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
+
+    Args:
+        mass: Force per momentum: damps slow motions most, free flight included [1/T]
+        stiffness: Kelvin-Voigt damping: retardation time by which the elastic stress of the strain rate is
+            multiplied to give the viscous stress; damps high frequencies most, and shortens explicit increments
+            [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        mass: float | Given = NOT_GIVEN,
+        stiffness: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"mass": mass, "stiffness": stiffness}))
 
 
 class Embedding(dict[str, Any]):
@@ -501,25 +524,6 @@ class SysCamClay(dict[str, Any]):
         super().__init__({"model": "sys_cam_clay", **_given({"lambda_": lambda_, "kappa": kappa, "p_min": p_min, "G": G, "M": M, "OCR": OCR, "a": a, "b_r": b_r, "c_s": c_s, "density": density, "e": e, "m": m, "m_b": m_b, "nu": nu, "p_c": p_c, "phi": phi, "structure": structure, "viscosity": viscosity, "zeta": zeta})})
 
 
-class Damping(dict[str, Any]):
-    """Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
-
-    Args:
-        mass: Force per momentum: damps slow motions most, free flight included [1/T]
-        stiffness: Kelvin-Voigt damping: retardation time by which the elastic stress of the strain rate is
-            multiplied to give the viscous stress; damps high frequencies most, and shortens explicit increments
-            [T]
-    """
-
-    def __init__(
-        self,
-        *,
-        mass: float | Given = NOT_GIVEN,
-        stiffness: float | Given = NOT_GIVEN,
-    ) -> None:
-        super().__init__(_given({"mass": mass, "stiffness": stiffness}))
-
-
 class Layer(dict[str, Any]):
     """A layer of the ground.
 
@@ -765,6 +769,9 @@ class Contact(dict[str, Any]):
             it is constant. Edges have lengths of their own [L for thickness 1, or L²]
         bond: Bond of the surfaces beside friction: strength without pressure. With `adhesion`, or `cohesion` of
             slip_weakening, it takes the `opening` over which that fades, and a `limit`
+        clearance: Gap of the surfaces at the start, the same at every point that faces the master, instead of
+            the gaps of the mesh: positive for a clearance, negative for an interference. All later gaps are
+            measured relative to it, so that neither facets nor the accuracy of the mesh change it [L]
         dilatancy: Dilatancy: opening by plastic slip
         fluid_pressure: p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend
             on the run time t and on the reference position x, y of the slave. It acts on both surfaces wherever
@@ -801,8 +808,8 @@ class Contact(dict[str, Any]):
             steps have inertia, and omit it
         rigid_body: Moving rigid body to which a rigid master belongs: one of `rigid_bodies`; default: the
             master is fixed
-        shrink_fit: Whether the initial overlap of the surfaces is applied gradually over the first step (shrink
-            fit) instead of at once
+        shrink_fit: Whether the initial overlap of the surfaces, or a negative `clearance`, is applied gradually
+            over the first step (shrink fit) instead of at once
         sliding: Sliding range: finite, or small compared with the distance between nodes
         smooth: Whether the master's straight edges are replaced by a smooth curve through their nodes (not with
             mortar), so that forces do not jump where a slave slides from one edge to the next. Corners of more
@@ -827,6 +834,7 @@ class Contact(dict[str, Any]):
         along: Mapping[str, Any] | Given = NOT_GIVEN,
         area: float | None | Given = NOT_GIVEN,
         bond: Bond | None | Given = NOT_GIVEN,
+        clearance: float | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
         fluid_pressure: FluidForms | None | Given = NOT_GIVEN,
         friction: Friction | str | Given = NOT_GIVEN,
@@ -845,7 +853,7 @@ class Contact(dict[str, Any]):
         tied: bool | Given = NOT_GIVEN,
         wear: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "interface": interface, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
+        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "clearance": clearance, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "interface": interface, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
 
 
 class Plane(dict[str, Any]):
@@ -1060,10 +1068,13 @@ class RateAndState(dict[str, Any]):
         b: b: effect of the state; steady sliding weakens with the rate where b > a, and where b < 0 slip
             strengthens [-]
         D_c: D_c: slip over which the state evolves, D_c > 0 [L]
+        D_c2: D_c2: slip over which the second state evolves, D_c2 > 0 [L]
         alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
             [F/L³]
+        b_2: b₂: effect of a second state, of either sign; with `D_c2` [-]
         evolution: Evolution law of the state
         theta: θ: state at the start, θ > 0; default D_c/V₀, steady sliding at V₀ [T]
+        theta_2: θ₂: second state at the start, θ₂ > 0; default D_c2/V₀ [T]
     """
 
     def __init__(
@@ -1074,11 +1085,14 @@ class RateAndState(dict[str, Any]):
         a: float,
         b: float,
         D_c: float,
+        D_c2: float | None | Given = NOT_GIVEN,
         alpha_t: float | None | Given = NOT_GIVEN,
+        b_2: float | None | Given = NOT_GIVEN,
         evolution: StateEvolution | Given = NOT_GIVEN,
         theta: float | None | Given = NOT_GIVEN,
+        theta_2: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__({"law": "rate_and_state", **_given({"f_0": f_0, "V_0": V_0, "a": a, "b": b, "D_c": D_c, "alpha_t": alpha_t, "evolution": evolution, "theta": theta})})
+        super().__init__({"law": "rate_and_state", **_given({"f_0": f_0, "V_0": V_0, "a": a, "b": b, "D_c": D_c, "D_c2": D_c2, "alpha_t": alpha_t, "b_2": b_2, "evolution": evolution, "theta": theta, "theta_2": theta_2})})
 
 
 class Prescribed(dict[str, Any]):
@@ -1124,6 +1138,8 @@ class Bond(dict[str, Any]):
     """Bond of a contact, beside its friction: strength without pressure, in shear and in tension.
 
     Args:
+        alpha_t: α_c: stiffness of the bond against slip. Default: α_t of the friction where it is a penalty
+            everywhere on the contact, otherwise the α_t that a penalty has by default [F/L³]
         bonded: Whether surfaces that do not touch at the start are bonded as well, within the opening and
             without stress over the gap that they have; otherwise they have c_r alone once they meet
         limit: τ_max: limit of the shear traction of friction and bond together, τ_max ≥ c; default: none [F/L²]
@@ -1143,6 +1159,7 @@ class Bond(dict[str, Any]):
     def __init__(
         self,
         *,
+        alpha_t: float | None | Given = NOT_GIVEN,
         bonded: bool | Given = NOT_GIVEN,
         limit: float | None | Given = NOT_GIVEN,
         opening: float | None | Given = NOT_GIVEN,
@@ -1151,7 +1168,7 @@ class Bond(dict[str, Any]):
         strength: float | None | Given = NOT_GIVEN,
         tension: float | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"bonded": bonded, "limit": limit, "opening": opening, "residual": residual, "slip": slip, "strength": strength, "tension": tension}))
+        super().__init__(_given({"alpha_t": alpha_t, "bonded": bonded, "limit": limit, "opening": opening, "residual": residual, "slip": slip, "strength": strength, "tension": tension}))
 
 
 class Dilatancy(dict[str, Any]):
@@ -1350,8 +1367,11 @@ class PlacedGroup(dict[str, Any]):
         box: Box around the nodes: its lower left and its upper right corner [L]
         circle: Circle on which the nodes lie
         nodes: Whether it is a group of nodes, also of those inside bodies, instead of free sides
+        of: A group of the mesh whose nodes are meant, instead of any
         tolerance: Distance within which a node lies at the place; a millionth of the size of the mesh unless
             given [L]
+        without: Groups of the mesh whose nodes are left out: {"of": "left", "without": ["bottom"], "nodes":
+            true} is a side without its lower end
         x: x of the nodes [L]
         y: y of the nodes [L]
     """
@@ -1364,11 +1384,13 @@ class PlacedGroup(dict[str, Any]):
         box: Pairs | None | Given = NOT_GIVEN,
         circle: PlacedCircle | None | Given = NOT_GIVEN,
         nodes: bool | Given = NOT_GIVEN,
+        of: str | None | Given = NOT_GIVEN,
         tolerance: float | None | Given = NOT_GIVEN,
+        without: Sequence[str] | None | Given = NOT_GIVEN,
         x: float | None | Given = NOT_GIVEN,
         y: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"angle": angle, "bodies": bodies, "box": box, "circle": circle, "nodes": nodes, "tolerance": tolerance, "x": x, "y": y}))
+        super().__init__(_given({"angle": angle, "bodies": bodies, "box": box, "circle": circle, "nodes": nodes, "of": of, "tolerance": tolerance, "without": without, "x": x, "y": y}))
 
 
 class PlacedCircle(dict[str, Any]):
@@ -2085,12 +2107,15 @@ class Rotation(dict[str, Any]):
 
 
 class Until(dict[str, Any]):
-    """A reaction that ends a step: displacement control up to a force. The increment in which the force passes its
-    value is shortened until it has the value. Supports that move to a value stay where the step has ended; tables
-    and expressions continue with the time of the run. Exactly one of `fx`, `fy` and `force` is given.
+    """What ends a step: a reaction, for displacement control up to a force, or a degree of consolidation. The
+    increment in which it passes its value is shortened until it has the value. Supports that move to a value stay
+    where the step has ended; tables and expressions continue with the time of the run. Exactly one of `fx`, `fy`,
+    `force` and `consolidation` is given.
 
     Args:
-        on: Place of the reaction: the forces of the supports on these nodes
+        on: Place of the reaction: the forces of the supports on these nodes; of consolidation a body
+        consolidation: Degree of consolidation of a body whose water flows, 1 less its mean excess pressure over
+            the largest one so far, above 0 and below 1 [-]
         force: Its magnitude [F]
         fx: Its x component [F]
         fy: Its y component [F]
@@ -2102,12 +2127,13 @@ class Until(dict[str, Any]):
         self,
         *,
         on: Place,
+        consolidation: float | None | Given = NOT_GIVEN,
         force: float | None | Given = NOT_GIVEN,
         fx: float | None | Given = NOT_GIVEN,
         fy: float | None | Given = NOT_GIVEN,
         tolerance: float | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"on": on, "force": force, "fx": fx, "fy": fy, "tolerance": tolerance}))
+        super().__init__(_given({"on": on, "consolidation": consolidation, "force": force, "fx": fx, "fy": fy, "tolerance": tolerance}))
 
 
 # A bulk material: its law and its constants.
