@@ -111,7 +111,7 @@ struct Question<'a, P> {
     laws: Cow<'a, [Arc<ContactLaw>]>,
     /// Increment of a point, and its predictions
     during: ContactIncrement,
-    is_predicted: P,
+    prediction_of: P,
     locating: Locating<'a>,
     before: &'a Configuration<'a>,
     x: &'a Configuration<'a>,
@@ -161,7 +161,7 @@ impl ContactPair {
         old: &[ContactState],
         [before, x]: [&Configuration; 2],
         during: ContactIncrement,
-        is_predicted: impl Fn(usize) -> Prediction + Sync,
+        prediction_of: impl Fn(usize) -> Prediction + Sync,
         request: Request,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
@@ -169,7 +169,7 @@ impl ContactPair {
         let PairResponse { states, answered: LastAnswers(answered), parts, kept } = response;
         let locating = Locating::of(self, [before, x], kept);
         let varied = request == Request::Tangent;
-        let question = Question { pair: self, laws, during, is_predicted, locating, before, x, varied };
+        let question = Question { pair: self, laws, during, prediction_of, locating, before, x, varied };
         states.clear();
         states.extend_from_slice(old);
         answered.resize_with(self.points.len().div_ceil(TOGETHER), Together::default);
@@ -246,7 +246,7 @@ impl Chunk {
             let mut sliding = [Sliding { slip: 0.0, pressure: 0.0, dt: 0.0 }; TOGETHER];
             for (i, kinematics) in kinematics.iter_mut().take(points.len()).enumerate() {
                 let (slave, old) = (&points[i], &old[i]);
-                let increment = PointIncrement { during, prediction: (question.is_predicted)(first + i) };
+                let increment = PointIncrement { during, prediction: (question.prediction_of)(first + i) };
                 kinematics.varied = question.varied;
                 kinematics.behind.clear();
                 kinematics.dpores.clear();

@@ -30,7 +30,7 @@ impl Assembler {
         &mut self,
         trial: Trial,
         u: &[f64],
-        is_predicted: impl Fn(usize, usize) -> Prediction + Sync,
+        prediction_of: impl Fn(usize, usize) -> Prediction + Sync,
         request: Request,
         responses: &mut Vec<PairResponse>,
     ) -> Result<(), TrialFailure> {
@@ -56,9 +56,9 @@ impl Assembler {
                 let contact = pair.name.clone();
                 return Err(TrialFailure::FluidPressure { contact, at: [at.x, at.y], pressure, time });
             }
-            let is_predicted = |point| is_predicted(number, point);
+            let prediction_of = |point| prediction_of(number, point);
             std::mem::swap(&mut response.answered, answered);
-            let answer = pair.respond(old, [&before, &x], during, is_predicted, request, response);
+            let answer = pair.respond(old, [&before, &x], during, prediction_of, request, response);
             std::mem::swap(&mut response.answered, answered);
             answer.map_err(|(point, cause)| TrialFailure::Friction { contact: pair.name.clone(), point, cause })?;
         }

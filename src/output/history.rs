@@ -187,8 +187,8 @@ impl HistoryRows {
         }
         row.extend(yields(model).then_some(state.energy.plastic_dissipation));
         row.extend(model.bars.iter().zip(&state.bars).flat_map(|(bar, state)| bar_row(bar, state)));
-        let with_water = model.contacts.iter().zip(&state.conduits).filter(|(pair, _)| pair.conduit.is_some());
-        row.extend(with_water.flat_map(|(_, water)| conduit_row(water)));
+        let with_water = model.contacts.iter().enumerate().filter(|(_, pair)| pair.conduit.is_some());
+        row.extend(with_water.flat_map(|(k, _)| conduit_row(&state.conduits[k], &state.contacts[k])));
         row.extend(water_row(model, state));
         row
     }
@@ -231,10 +231,13 @@ fn bar_row(bar: &Bar, state: &BarState) -> [f64; BAR.len()] {
     [ends[0], ends[1], axial[0], axial[1], moment, shear, slip, slipping]
 }
 
-/// Volumes of the water that flows along a contact, and its largest pressure.
-fn conduit_row(water: &ConduitState) -> [f64; CONDUIT.len()] {
-    let largest = water.pressure.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    [water.amounts.injected, water.amounts.leaked, water.mass_error, largest]
+/// Volumes of the water that flows along a contact, and its largest pressure, flow and aperture.
+fn conduit_row(water: &ConduitState, points: &[ContactState]) -> [f64; CONDUIT.len()] {
+    let pressure = water.pressure.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let water_points = || points.iter().filter_map(|point| point.water);
+    let flow = water_points().map(|at| at.flow.abs()).fold(0.0, f64::max);
+    let aperture = water_points().map(|at| at.aperture).fold(0.0, f64::max);
+    [water.amounts.injected, water.amounts.leaked, water.mass_error, pressure, flow, aperture]
 }
 
 /// Whether some body or bar yields, and the energies have a column for it.

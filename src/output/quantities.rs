@@ -165,11 +165,13 @@ pub const WATER_ERROR: Quantity = q(
 pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contacts in a fluid");
 
 /// Columns of contacts along which water flows.
-pub const CONDUIT: [Quantity; 4] = [
+pub const CONDUIT: [Quantity; 6] = [
     q("injected", VOLUME, "water that wells and sources have let in so far, of contacts along which it flows"),
     q("leaked", VOLUME, "water that has leaked through their walls"),
     q("mass_error", VOLUME, "what the water in them has changed by, less what has come in: 0 but for round-off"),
     q("largest_fluid_pressure", STRESS, "largest p_w"),
+    q("largest_flow", FLOW, "largest flow along it, in either direction"),
+    q("largest_aperture", LENGTH, "largest opening and dilatancy that hold water, with the hydraulic aperture"),
 ];
 
 /// Heat of a contact.

@@ -160,12 +160,12 @@ impl Flowing<'_> {
 
     /// Pressures from the surfaces at the end, with the rates that these began with on request.
     fn march(&self, trial: Trial, rates: Option<&[Wall]>) -> Result<Reached, IncrementFailure> {
-        let is_predicted = if self.pressure.is_empty() { &self.old.pressure } else { &self.pressure };
+        let predicted = if self.pressure.is_empty() { &self.old.pressure } else { &self.pressure };
         let course = Course {
             span: [trial.old.time, trial.time],
             walls: [&self.old.walls, &self.walls],
             rates,
-            gives_way: [&self.compliance, is_predicted],
+            gives_way: [&self.compliance, predicted],
             steps: self.steps,
         };
         self.conduit.march(&self.old.pressure, &course).map_err(|TooFast { time, step }| {

@@ -218,10 +218,10 @@ impl ContactIteration {
         loop {
             let points = &self.points;
             // Before the first residual nothing is known about any point.
-            let is_predicted = |pair: usize, point: usize| {
+            let prediction_of = |pair: usize, point: usize| {
                 points[pair].get(point).map_or_else(Prediction::default, |point| point.prediction(aids))
             };
-            assembler.interfaces(trial, u, is_predicted, request, &mut self.next)?;
+            assembler.interfaces(trial, u, prediction_of, request, &mut self.next)?;
             if !std::mem::take(&mut sticking) || !self.predict_sticking(assembler.model()) {
                 return Ok(&self.next);
             }

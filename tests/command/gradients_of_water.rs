@@ -46,6 +46,9 @@ fn of_a_rate_have_a_closed_form() {
     let last = |table: &std::collections::BTreeMap<String, Vec<f64>>, name: &str| *table[name].last().expect("rows");
     let p = last(&history, column);
     close("p", p / (rate * (4.0 * viscosity * 2.0 / (PI * storage * transmissivity)).sqrt()), 1.0, 2e-3);
+    // The flow q erfc(x/√(4 T t/(η S))) half an edge and an edge, of 0.25, from the well.
+    let flow = last(&history, "base.largest_flow") / rate;
+    assert!((0.9005..0.9502).contains(&flow), "{flow}");
     let values = [storage, transmissivity, viscosity, rate];
     let share = |k: usize| last(&found, &format!("d({column})/d({})", places[k])) * values[k] / p;
     let [by_s, by_t, by_eta, by_q] = [0, 1, 2, 3].map(share);

@@ -323,6 +323,8 @@ fn form(column: &str, header: &[&str]) -> Form {
         "injected" | "leaked" => Form::Scalar(Kind::Volume),
         "mass_error" => Form::Skip,
         "largest_fluid_pressure" => Form::Scalar(Kind::Stress),
+        "largest_flow" => Form::Scalar(Kind::Flow),
+        "largest_aperture" => Form::Scalar(Kind::Length),
         "normal_force" | "fluid_force" => Form::Scalar(Kind::Force),
         "tangential_force" => Form::Signed(Kind::Force),
         "slip_fraction" | "contact_length" => Form::Scalar(Kind::Share),

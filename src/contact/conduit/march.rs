@@ -239,10 +239,9 @@ impl Conduit {
         for (node, (length, holds)) in self.line.lengths().iter().zip(&self.holds).enumerate() {
             let [before, after] = shares.map(|share| course.wall(node, share));
             transmissivity.push(self.transmissivity.at(node, after));
-            let (softness, is_predicted) = (course.compliance(node), course.gives_way[1].get(node).copied());
-            let foreseen = softness
-                * is_predicted.map_or(0.0, |is_predicted| is_predicted - start[node])
-                * (shares[1] - shares[0]);
+            let (softness, predicted) = (course.compliance(node), course.gives_way[1].get(node).copied());
+            let foreseen =
+                softness * predicted.map_or(0.0, |predicted| predicted - start[node]) * (shares[1] - shares[0]);
             let source = self.source.as_ref().map_or(0.0, |source| h * source(self.line.nodes[node], t1));
             let leaks = self.leak.as_ref().map_or(0.0, |leak| h * coefficient * (leak.pressure[node] - from[node]));
             own_part.push(length * (self.storage + h * coefficient) + holds * softness);
