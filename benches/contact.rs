@@ -63,6 +63,7 @@ fn surfaces(n: usize) -> Surfaces {
         radiation: 0.0,
         fluid: None,
         pores: None,
+        seam: None,
         truncated: BTreeMap::new(),
     };
     (nodes, pair)
@@ -98,8 +99,15 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
             searched::<Exhaustive>(&mut group, "all segments", n, &pair, &x);
         }
         let old = pair.initial_states(&x);
-        let increment =
-            ContactIncrement { dt: 1.0, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
+        let increment = ContactIncrement {
+            dt: 1.0,
+            time: 0.0,
+            radiates: true,
+            fading: 0.0,
+            stiffening: 1.0,
+            settles: true,
+            seeps: 0.0,
+        };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
             let mut response = PairResponse::default();
             let mut respond =
@@ -228,7 +236,8 @@ fn update(pool: &rayon::ThreadPool, nodes: &[Vector2<f64>], pair: &ContactPair, 
     let (mut shortest, mut response) = (f64::INFINITY, PairResponse::default());
     for k in 1..=60 {
         let (now, time) = (u(f64::from(k)), f64::from(k));
-        let during = ContactIncrement { dt: 1.0, time, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
+        let during =
+            ContactIncrement { dt: 1.0, time, radiates: true, fading: 0.0, stiffening: 1.0, settles: true, seeps: 0.0 };
         let clock = std::time::Instant::now();
         let [was, is] = [&before, &now].map(|u| Configuration::new(nodes, u));
         pool.install(|| pair.respond(&old, [&was, &is], during, |_| Prediction::default(), request, &mut response))

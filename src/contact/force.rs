@@ -15,7 +15,8 @@
 //! p̄ − α_n (g − d(Δu_t, p → 0)) > 0
 //! ```
 //!
-//! A fluid adds its pressure p_w to p in the forces only, see `pair.rs`; it acts on open points too. One in the pores of a body takes its
+//! A fluid adds its pressure p_w to p in the forces only, see `pair.rs`; it acts on open points too. That of water which flows through bodies
+//! is an unknown, see `seam.rs`. One in the pores of a body takes its
 //! part of p from friction, see `pores.rs`.
 //!
 //! With radiation damping, q + η Δu_t/Δt replaces q in static increments: without inertia the slip rate is unbounded;
@@ -377,7 +378,7 @@ pub fn place(
     let closes = closes(pair, slave, gap, old, increment);
     let fluid = pair.acting_pressure(slave, old, x, increment.during.time);
     let bonded = pair.reaches(slave, gap, old, increment);
-    if closes || bonded || fluid != 0.0 {
+    if closes || bonded || fluid != 0.0 || pair.seam.is_some() {
         kinematics(slave, &pair.master, &projection, old.master_point, x, k);
         if old.master_point.is_none() {
             k.count_from(pair.master.rigid_body(), before, x);

@@ -32,6 +32,7 @@
 
 use nalgebra::Vector2;
 
+use super::between::Between;
 use super::master::{Master, Rigid};
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
 use super::surface::{MasterPoint, Path, PathPart, SlavePoint, Surface};
@@ -78,6 +79,8 @@ pub struct Kinematics {
     pub behind: Vec<usize>,
     /// δp_w of these, two entries per node [F/L³]
     pub dpores: Vec<f64>,
+    /// Water of the bodies of both sides, whose pressures then stand behind the point
+    pub water: Option<Between>,
     /// δξ of the projection
     dxi: Vec<f64>,
 }

@@ -73,9 +73,10 @@ impl ContactPair {
         x: &Configuration,
     ) -> Vec<Option<InitialTraction>> {
         let of = |(slave, met): (&SlavePoint, Met)| {
-            let Kinematics { normal, tangent, .. } = met?.1;
+            let kinematics = met?.1;
+            let Kinematics { normal, tangent, .. } = kinematics;
             let carried = stress(slave.at(x)) * normal;
-            let pressure = -normal.dot(&carried) - self.fluid_pressure(slave, x, 0.0);
+            let pressure = -normal.dot(&carried) - self.pressure_at(slave, &kinematics, x, 0.0);
             Some(InitialTraction { pressure, traction: tangent.dot(&carried) })
         };
         self.points.iter().zip(self.meetings(x, false)).map(of).collect()
@@ -121,6 +122,7 @@ impl ContactPair {
                 false => law.law.initial_state(pressure, traction - of_bond),
             };
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
+            let fluid = met.as_ref().map_or(0.0, |(_, kinematics)| self.pressure_at(slave, kinematics, x, 0.0));
             let (gap, master_point) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.master_point)).unzip();
             let multiplier = if self.penetration.is_some() { total } else { 0.0 };
             let touches = total > 0.0 || gap.is_some_and(|gap| gap <= self.touch);
@@ -136,7 +138,7 @@ impl ContactPair {
                 radiation: 0.0,
                 radiated: 0.0,
                 multiplier,
-                fluid: if master_point.is_some() { self.fluid_pressure(slave, x, 0.0) } else { 0.0 },
+                fluid,
                 pores: total - pressure,
                 water: None,
                 came: Came::default(),
@@ -167,7 +169,7 @@ impl ContactPair {
         let given = self.meetings(mesh, false);
         let state = |(((slave, met), given), apart): (((&SlavePoint, Met), Met), ContactState)| {
             let Some((Meeting { gap, master_point }, kinematics)) = met else { return apart };
-            let fluid = self.fluid_pressure(slave, x, time);
+            let fluid = self.pressure_at(slave, &kinematics, x, time);
             let ends = self.master.segments().get(master_point.segment).map(|segment| segment.ends);
             let [near, far] = ends.unwrap_or_default();
             let on_master = [(near, 1.0 - master_point.xi), (far, master_point.xi)];
@@ -227,8 +229,10 @@ impl ContactPair {
         let points = self.points.iter().zip(self.initial.iter().flatten());
         let met = self.meetings(x, false).into_iter().zip(points);
         let forces = |(met, (slave, initial)): (Met, (&SlavePoint, &InitialTraction))| {
-            let pressure = initial.pressure + self.fluid_pressure(slave, x, 0.0);
-            met.map_or_else(Vec::new, |(_, kinematics)| nodal_forces(&kinematics, pressure, initial.traction))
+            met.map_or_else(Vec::new, |(_, kinematics)| {
+                let pressure = initial.pressure + self.pressure_at(slave, &kinematics, x, 0.0);
+                nodal_forces(&kinematics, pressure, initial.traction)
+            })
         };
         met.flat_map(forces).collect()
     }
@@ -256,14 +260,14 @@ impl ContactPair {
     /// σ N = p n − q s   →   p = n·σ N,   q = −s·σ N        N: outward normal of the slave
     /// ```
     pub fn carry(&mut self, stress: impl Fn(&SlavePoint) -> Matrix2<f64>, x: &Configuration) {
-        let met = self.meetings(x, false);
+        let (met, seam) = (self.meetings(x, false), &self.seam);
         let mut initial = vec![InitialTraction::default(); met.len()];
         for ((slave, met), initial) in self.points.iter_mut().zip(met).zip(&mut initial) {
-            let (Some((_, Kinematics { normal, tangent, .. })), Some(outward)) = (met, slave.outward(x)) else {
-                continue;
-            };
+            let (Some((_, kinematics)), Some(outward)) = (met, slave.outward(x)) else { continue };
             let carried = stress(slave) * outward;
-            *initial = InitialTraction { pressure: normal.dot(&carried), traction: -tangent.dot(&carried) };
+            let pressure =
+                kinematics.normal.dot(&carried) - seam.as_ref().map_or(0.0, |seam| seam.pressure(&kinematics, x));
+            *initial = InitialTraction { pressure, traction: -kinematics.tangent.dot(&carried) };
             slave.touch += initial.pressure / self.alpha_n;
         }
         self.initial = Some(initial);

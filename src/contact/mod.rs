@@ -10,6 +10,7 @@
 //! right-handed. The gap g = (x_slave − x_m)·n is positive when open, the pressure p positive in compression, and
 //! the traction on the slave is t = p n − q s.
 
+mod between;
 mod bonded;
 pub mod conduit;
 pub mod depth;
@@ -29,6 +30,7 @@ pub mod pores;
 pub mod projection;
 pub mod response;
 pub mod scatter;
+pub mod seam;
 pub mod search;
 pub mod segment_search;
 pub mod segment_tree;

@@ -35,6 +35,8 @@ pub struct Closed<'a> {
     pub dtraction: &'a [f64],
     /// Fluid part of the force as a load, with the opposite sign of an internal force; empty without a fluid [F]
     pub fluid: &'a [f64],
+    /// Water between the surfaces that the balance of each pressure takes up; empty without a seam [L³]
+    pub taken: &'a [f64],
     /// p and q
     pub tractions: Tractions,
     /// Whether the point is open, and a fluid or a bond acts
@@ -78,6 +80,8 @@ pub struct ClosedPoints {
     dtraction: Vec<f64>,
     /// Forces of a fluid, for all points once any point has one
     fluid: Vec<f64>,
+    /// Water between the surfaces, for all points once any point has some
+    taken: Vec<f64>,
     /// δ(t ℓ) of the current point, its two components
     rows: [Vec<f64>; 2],
     /// δq_b of the current point; empty without a bond
@@ -99,10 +103,10 @@ struct Place {
 impl ClosedPoints {
     /// Removes all points.
     pub fn clear(&mut self) {
-        let Self { points, nodes, force, tangent, dpressure, dtraction, fluid, .. } = self;
+        let Self { points, nodes, force, tangent, dpressure, dtraction, fluid, taken, .. } = self;
         points.clear();
         nodes.clear();
-        [force, tangent, dpressure, dtraction, fluid].into_iter().for_each(Vec::clear);
+        [force, tangent, dpressure, dtraction, fluid, taken].into_iter().for_each(Vec::clear);
     }
 
     /// Returns the contribution of a point, if it is closed.
@@ -119,6 +123,7 @@ impl ClosedPoints {
             dpressure: &self.dpressure[varied(&self.dpressure)],
             dtraction: &self.dtraction[varied(&self.dtraction)],
             fluid: self.fluid.get(dofs.clone()).unwrap_or_default(),
+            taken: self.taken.get(dofs.clone()).unwrap_or_default(),
             tractions,
             is_open,
             is_bonded,
@@ -127,7 +132,7 @@ impl ClosedPoints {
 
     /// Adds an open point, with its fluid pressure; returns the length on which that acts.
     pub(super) fn push_open(&mut self, k: &Kinematics, fluid: f64) -> Option<f64> {
-        if fluid == 0.0 {
+        if fluid == 0.0 && k.water.is_none() {
             self.points.push(None);
             return None;
         }
@@ -183,7 +188,7 @@ impl ClosedPoints {
             let first = self.force.len() - 2 * k.nodes.len();
             self.force[first + 2 * at] -= arm.dot(&traction) * k.length;
         }
-        self.force.resize(self.force.len() + 2 * k.behind.len(), 0.0);
+        self.push_water(k);
         if k.varied {
             self.push_tangent(k, response, radiates[1], whole(predicted_tractions.unwrap_or(tractions)));
         }
@@ -200,6 +205,21 @@ impl ClosedPoints {
         self.fluid.extend(k.relative.iter().flat_map(|&w| [0, 1].map(|i| w * traction[i] * k.length)));
         if let Some(Lever { at, arm }) = k.lever {
             self.fluid[first + 2 * at] += arm.dot(&traction) * k.length;
+        }
+    }
+
+    /// Adds the rows of the nodes behind the current point: the balances of their water, nothing otherwise.
+    fn push_water(&mut self, k: &Kinematics) {
+        match &k.water {
+            Some(water) => {
+                self.taken.resize(self.force.len(), 0.0);
+                self.taken.extend(water.taken());
+                self.force.extend(water.forces());
+            }
+            None => self.force.resize(self.force.len() + 2 * k.behind.len(), 0.0),
+        }
+        if !self.fluid.is_empty() {
+            self.fluid.resize(self.force.len(), 0.0);
         }
     }
 
@@ -238,6 +258,9 @@ impl ClosedPoints {
                 (along_normal * k.normal[i] + along_tangent * k.tangent[i]) * k.length + k.dlength[c] * force[i]
             }));
             row.extend(dtraction[dofs..].iter().map(|dtraction| -dtraction * k.tangent[i] * k.length));
+            if let Some(water) = &k.water {
+                row[dofs..].iter_mut().zip(water.rates()).for_each(|(row, rate)| *row += rate * k.normal[i] * k.length);
+            }
         }
         let first = tangent.len();
         for c in 0..all {
@@ -257,6 +280,7 @@ impl ClosedPoints {
                 (0..2).for_each(|i| column[2 * a + i] += -force[i] * k.length * dw[c]);
             }
         }
+        k.water.iter().for_each(|water| water.vary(k.length, [&k.dgap, &k.dlength], &mut tangent[first..], all));
     }
 }
 

@@ -30,11 +30,13 @@ use rayon::prelude::*;
 
 use super::conduit::Conduit;
 pub use super::fluid::{BadPressure, Fluid};
+use super::kinematics::Kinematics;
 use super::master::Master;
 use super::mortar::Mortar;
 use super::point::ContactState;
 pub use super::point::{ContactIncrement, Prediction};
 use super::pores::Pores;
+use super::seam::Seam;
 use super::small_sliding::SmallSliding;
 use super::surface::SlavePoint;
 use crate::laws::friction::{Cohesion, ContactLaw, LawFailure, Regime, Sliding, observables};
@@ -77,6 +79,8 @@ pub struct ContactPair {
     pub conduit: Option<Conduit>,
     /// Pores behind every point, where friction goes by the effective stress of the slave's bodies
     pub pores: Option<Vec<Pores>>,
+    /// Water that flows through its bodies
+    pub seam: Option<Seam>,
     /// Friction laws, each with the parameters of some of the points at the start of the run. They also define the
     /// time-independent properties: α_t, the names of internal variables and observables, and whether they have friction and
     /// dilatancy
@@ -266,7 +270,7 @@ impl ContactPair {
 
     /// Whether a fluid bears a part of the pressure, between the surfaces or in the pores of a body.
     pub fn holds_fluid(&self) -> bool {
-        self.fluid.is_some() || self.pores.is_some()
+        self.fluid.is_some() || self.pores.is_some() || self.seam.is_some()
     }
 
     /// p_w in the pores behind a point; 0 where friction does not go by it [F/L²].
@@ -278,6 +282,14 @@ impl ContactPair {
     pub fn fluid_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
         let given = self.given_pressure(slave, x, time);
         if given < 0.0 { 0.0 } else { given }
+    }
+
+    /// p_w at a slave point with these kinematics at the start of a contact [F/L²].
+    pub(super) fn pressure_at(&self, slave: &SlavePoint, k: &Kinematics, x: &Configuration, time: f64) -> f64 {
+        match &self.seam {
+            Some(seam) => seam.pressure(k, x),
+            None => self.fluid_pressure(slave, x, time),
+        }
     }
 
     /// p_w at a slave point at the end of an increment from the state `old` [F/L²].

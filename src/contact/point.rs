@@ -343,6 +343,8 @@ pub struct ContactIncrement {
     pub stiffening: f64,
     /// Whether the bodies deform under the pressures that arise within the increment
     pub settles: bool,
+    /// Δt/β of water that flows [T]
+    pub seeps: f64,
 }
 
 impl ContactIncrement {

@@ -11,7 +11,8 @@ use super::master::{Master, Rigid};
 use super::mortar::{Committed, Facing, Mortar, Overlaps, Room};
 use super::nodal_forces::{Closed, ClosedPoints};
 use super::pair::ContactPair;
-use super::point::{ContactIncrement, ContactState, PointIncrement, Prediction};
+use super::point::{ContactIncrement, ContactState, MasterPoint, PointIncrement, Prediction, Weights};
+use super::seam::Seam;
 use super::search::{Index, KeptSearch};
 use super::small_sliding::SmallPoint;
 use super::surface::SlavePoint;
@@ -224,6 +225,34 @@ impl<P> Question<'_, P> {
         };
         averaged(pair, slave, meeting, old, increment, x)
     }
+
+    /// Adds the water of the bodies at a located point to its kinematics; returns its pressure.
+    fn add_water(&self, seam: &Seam, (k, old): (usize, &ContactState), gap: f64, kinematics: &mut Kinematics) -> f64 {
+        let (mut water, behind) = seam.meet(&self.weights(k, old), self.x, self.during.seeps * old.length);
+        water.count_from(old.master_point.map(|_| old.gap * old.length), gap, kinematics.length);
+        kinematics.dpores.resize(if self.varied { 2 * behind.len() } else { 0 }, 0.0);
+        kinematics.behind.extend(behind);
+        let pressure = water.pressure();
+        kinematics.water = Some(water);
+        pressure
+    }
+
+    /// Weights of x_s − x_m of a point at the start of the increment; those of x_s alone where it faced nothing, or a rigid body.
+    fn weights(&self, k: usize, old: &ContactState) -> Weights {
+        let own = &self.pair.points[k].position;
+        match (&self.locating, &self.pair.master, old.master_point) {
+            (Locating::Small(points), ..) => {
+                let weights = |point: &SmallPoint| point.nodes.iter().copied().zip(point.weights.clone()).collect();
+                points[k].as_ref().map_or_else(Weights::new, weights)
+            }
+            (Locating::Averaged(_, committed), ..) => committed.weights(k).unwrap_or(own).clone(),
+            (Locating::Projected(_), Master::Mesh(surface), Some(MasterPoint { segment, xi })) => {
+                let foot = surface.segments[segment].position(xi);
+                own.iter().copied().chain(foot.iter().map(|&(node, w)| (node, -w))).collect()
+            }
+            _ => own.clone(),
+        }
+    }
 }
 
 impl Chunk {
@@ -250,9 +279,13 @@ impl Chunk {
                 kinematics.varied = question.varied;
                 kinematics.behind.clear();
                 kinematics.dpores.clear();
+                kinematics.water = None;
                 let mut place = question.place(first + i, old, increment, kinematics, room);
                 if let Some(pores) = pair.pores.as_ref().filter(|_| place.closes) {
                     place.pore_pressure = Some(pores[first + i].vary(question.x, kinematics));
+                }
+                if let Some(seam) = pair.seam.as_ref().filter(|_| place.master_point.is_some()) {
+                    place.fluid = question.add_water(seam, (first + i, old), place.gap, kinematics);
                 }
                 match PointEvaluation::new(pair, slave, &laws[slave.law], old, increment, place, kinematics) {
                     Ok(loading) => {

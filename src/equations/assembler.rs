@@ -397,7 +397,10 @@ impl Assembler {
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
                 Term::PoreFlow => pore_flow::add(model, born, trial, u, water, &mut sums)?,
-                Term::Interfaces => contacts::add(responses, &mut sums),
+                Term::Interfaces => {
+                    contacts::add(responses, &mut sums);
+                    contacts::add_water(model, responses, water);
+                }
                 Term::Bars => {
                     let found = bars::add(model, trial, u, bar_states, &mut sums);
                     *strain_energy += found.stored;

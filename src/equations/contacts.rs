@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::Assembler;
+use super::pore_flow;
 use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
 use crate::contact::force::ContactState;
@@ -13,6 +14,7 @@ use crate::equations::sums::TrialFailure;
 use crate::laws::friction::Cohesion;
 use crate::linear::system::Request;
 use crate::model::Model;
+use crate::model::state::Water;
 
 /// The tangent of contact depends on the displacements, if there is any contact.
 pub(super) fn dependence(model: &Model) -> Dependence {
@@ -43,7 +45,8 @@ impl Assembler {
         let fading = 1.0 - model.steps[0].span.share(trial.time);
         let Trial { time, dt, stiffening, settles, .. } = trial;
         let radiates = !trial.step.scheme.is_dynamic();
-        let during = ContactIncrement { time, dt, radiates, fading, stiffening, settles };
+        let during =
+            ContactIncrement { time, dt, radiates, fading, stiffening, settles, seeps: pore_flow::span(trial) };
         responses.resize_with(model.contacts.len(), PairResponse::default);
         answered.resize_with(model.contacts.len(), LastAnswers::default);
         let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses.iter_mut().zip(answered)).enumerate();
@@ -85,9 +88,23 @@ pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
     }
 }
 
+/// Adds the water between surfaces to what came to the pores of each pressure.
+pub(super) fn add_water(model: &Model, responses: &[PairResponse], water: &mut Water) {
+    let Some(flow) = &model.flow else { return };
+    for (_, closed) in responses.iter().flat_map(PairResponse::all_acting) {
+        let dofs = closed.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        for (dof, taken) in dofs.zip(closed.taken).filter(|(dof, _)| *dof >= flow.dof(0)) {
+            if let Some(change) = water.change.get_mut(dof - flow.dof(0)) {
+                *change += taken;
+                water.between += taken;
+            }
+        }
+    }
+}
+
 /// Adds the nodal forces of fluids to the loads, whose work is audited; the forces include them already.
 pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut [f64]) {
-    let fluids = model.contacts.iter().zip(responses).filter(|(pair, _)| pair.fluid.is_some());
+    let fluids = model.contacts.iter().zip(responses).filter(|(pair, _)| pair.fluid.is_some() || pair.seam.is_some());
     for (_, closed) in fluids.flat_map(|(_, response)| response.all_acting()) {
         for (&node, force) in closed.nodes.iter().zip(closed.fluid.chunks_exact(2)) {
             (0..2).for_each(|i| loads[2 * node + i] += force[i]);

@@ -173,8 +173,10 @@ impl ConvergenceCriterion {
                 let stiffness = if closed.is_open && !closed.is_bonded { 0.0 } else { alpha_n };
                 let squared = (stiffness * state.length).powi(2);
                 for (a, &node) in closed.nodes.iter().enumerate() {
-                    // A node behind the surface has a part in friction, but bears no force of it.
-                    if closed.force[2 * a..2 * a + 2] == [0.0; 2] {
+                    // A node behind the surface has a part in friction, but bears no force of it; one that stands for pressures bears none at all.
+                    if model.flow.as_ref().is_some_and(|flow| node >= flow.first)
+                        || closed.force[2 * a..2 * a + 2] == [0.0; 2]
+                    {
                         continue;
                     }
                     let original = model.ties.original(node);

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::master::Master;
+use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
+use crate::contact::seam::Seam;
 use crate::contact::surface::Path;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::mesh::rigid::RigidBody;
@@ -144,7 +146,8 @@ impl Layout {
             .for_each(|&(copy, original)| (unsymmetric[copy], unsymmetric[original]) = (true, true));
         let mut slides = vec![false; pattern.nodes()];
         let unsymmetric_pairs = model.contacts.iter().filter(|pair| !pair.is_symmetric());
-        unsymmetric_pairs.flat_map(|pair| pair.nodes()).for_each(|node| slides[node] = true);
+        let of_water = |pair: &ContactPair| pair.seam.iter().flat_map(Seam::all_behind).collect::<Vec<_>>();
+        unsymmetric_pairs.flat_map(|pair| pair.nodes().chain(of_water(pair))).for_each(|node| slides[node] = true);
         let groups = self.coupling.groups.iter().flatten();
         groups.filter(|node| slides[**node]).for_each(|&node| unsymmetric[self.original(node)] = true);
         unsymmetric
@@ -241,8 +244,13 @@ impl Layout {
             for (k, ((slave, state), old)) in pair.points.iter().zip(&responses.states).zip(old).enumerate() {
                 let behind = pair.pores.iter().flat_map(|pores| pores[k].nodes.iter().copied());
                 if let Some(small) = &pair.small {
-                    let met = small.points[k].iter();
-                    groups.extend(met.map(|point| point.nodes.iter().copied().chain(behind.clone()).collect()));
+                    let of_water = |nodes: &[usize]| -> Vec<usize> {
+                        pair.seam.iter().flat_map(|seam| seam.behind(nodes.iter().copied())).collect()
+                    };
+                    let met = small.points[k].iter().map(|point| &point.nodes);
+                    groups.extend(
+                        met.map(|nodes| nodes.iter().copied().chain(of_water(nodes)).chain(behind.clone()).collect()),
+                    );
                     continue;
                 }
                 let Some(master_point) = state.master_point.or(old.master_point) else { continue };
@@ -258,6 +266,9 @@ impl Layout {
                     let around = back.take(1 + behind).chain(forth.take(1 + ahead));
                     nodes.extend(around.flat_map(|segment| surface.segments[segment].nodes()));
                 }
+                let of_water: Vec<usize> =
+                    pair.seam.iter().flat_map(|seam| seam.behind(nodes.iter().copied())).collect();
+                nodes.extend(of_water);
                 nodes.sort_unstable();
                 nodes.dedup();
                 groups.push(nodes);

@@ -44,6 +44,11 @@ impl Times {
     }
 }
 
+/// Δt/β of an increment [T].
+pub(super) fn span(trial: Trial) -> f64 {
+    Times::of(trial).span
+}
+
 /// Adds the equations of the pressures, and what the bodies' forces change by with them to the tangent; stores the water at the end of the trial.
 pub(super) fn add(
     model: &Model,
@@ -85,6 +90,7 @@ pub(super) fn add(
         *size += before.abs();
     }
     water.outlets.clone_from(&old.outlets);
+    water.between = old.between;
     // A case that goes on from the end of another may have further ones.
     water.outlets.resize(flow.outlets.len(), Outflow::default());
     water.outlets.iter_mut().for_each(|outlet| (outlet.rate, outlet.change) = (0.0, times.memory * outlet.change));

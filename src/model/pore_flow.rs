@@ -399,16 +399,22 @@ impl Model {
             peaks: vec![0.0; flow.bodies.len()],
             excess: vec![0.0; flow.bodies.len()],
             brought: vec![0.0; flow.bodies.len()],
+            between: 0.0,
         })
     }
 
-    /// Water that all bodies have taken up and that has left through outlets, which is none but for errors, and how much has come and gone;
+    /// Water that all bodies have taken up, that is between their surfaces and that has left through outlets, which is none but for errors, and how much has come and gone;
     /// `None` where none flows [L³].
     pub fn balance_of_water(&self, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref()?;
         let taken = flow.bodies.iter().filter_map(|&body| self.water_of(body, state)).map(|[taken, _]| taken);
         let left = state.water.outlets.iter().map(|outlet| outlet.volume);
-        Some(taken.chain(left).fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()]))
+        Some(
+            taken
+                .chain(left)
+                .chain([state.water.between])
+                .fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()]),
+        )
     }
 
     /// Mean seepage through an element, −k/γ_w (∇p − γ_w g) in the place where it is now [L/T].

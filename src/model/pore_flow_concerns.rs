@@ -24,6 +24,8 @@ fn moves(model: &Model, flow: &PoreFlow) -> Option<String> {
     let drains = model.steps.first().map_or(&[][..], |step| &step.drains);
     drains.iter().flat_map(|drain| &drain.corners).for_each(|(k, ..)| free[*k] = false);
     let first = |wet: &&WetElement| model.steps.first().is_none_or(|step| step.has(model.body_of_element[wet.element]));
+    let across = model.contacts.iter().filter_map(|pair| pair.seam.as_ref()).flat_map(|seam| seam.nodes.keys());
+    across.filter_map(|node| flow.of_node[*node]).for_each(|k| free[k] = false);
     for wet in flow.elements.iter().filter(first) {
         let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, None)).collect();
         for point in &wet.points {

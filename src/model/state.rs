@@ -157,6 +157,8 @@ pub struct Water {
     pub excess: Vec<f64>,
     /// What each body has brought with it of the water that it is found to have taken up, less what it took along when it left [L³]
     pub brought: Vec<f64>,
+    /// Water that has come between the surfaces of contacts since the start [L³]
+    pub between: f64,
 }
 
 #[doc(hidden)]

@@ -216,6 +216,7 @@ fn water_row(model: &Model, state: &State) -> Vec<f64> {
         row.extend([outlet.rate, outlet.volume]);
         balance += outlet.volume;
     }
+    balance += state.water.between;
     row.push(balance);
     row
 }

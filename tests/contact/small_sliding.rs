@@ -164,7 +164,7 @@ fn wavy(law: &str, method: &str, gap: f64) -> (ContactPair, Vec<Vector2<f64>>) {
 }
 
 const INCREMENT: ContactIncrement =
-    ContactIncrement { dt: 0.3, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
+    ContactIncrement { dt: 0.3, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true, seeps: 0.0 };
 
 /// Forces on all nodes, their derivative by the tangents of the points, and the states.
 pub fn answer(

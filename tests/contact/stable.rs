@@ -101,7 +101,15 @@ fn weakest(model: Model) -> Weakest {
     let slave = model.mesh.group("upper").expect("the slave's body");
     model.mesh.nodes_of(slave).into_iter().for_each(|node| u[2 * node + 1] = -1e-9);
     let [before, x] = [&state.displacement, &u].map(|u| model.configuration(u));
-    let during = ContactIncrement { dt: 1.0, time: 1.0, radiates: false, fading: 0.0, stiffening: 1.0, settles: true };
+    let during = ContactIncrement {
+        dt: 1.0,
+        time: 1.0,
+        radiates: false,
+        fading: 0.0,
+        stiffening: 1.0,
+        settles: true,
+        seeps: 0.0,
+    };
     let (mut response, nothing) = (PairResponse::default(), |_| Prediction::default());
     pair.respond(&state.contacts[0], [&before, &x], during, nothing, Request::Tangent, &mut response)
         .expect("an answer");

@@ -385,6 +385,7 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
                 fading: 0.0,
                 stiffening: 1.0,
                 settles: true,
+                seeps: 0.0,
             };
             let nothing = |_| Prediction::default();
             pair.respond(&states[0].contacts[0], [&before, &x], during, nothing, Request::Residual, &mut found)

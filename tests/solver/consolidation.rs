@@ -317,9 +317,9 @@ fn control_of_pressures_needs_water_that_flows() {
     assert!(message.contains("steps[1].dt.pore_pressure: is for water that flows"), "{message}");
 }
 
-/// Contacts beside flowing water: friction needs to know the pressure of the water, and without friction the total stress is enough.
+/// Contacts beside flowing water take its pressure from there.
 #[test]
-fn friction_beside_flowing_water_needs_its_pressure() {
+fn a_contact_beside_flowing_water_has_its_pressure() {
     let blocks = Blocks::default().rectangle("soil", [4, 4], [0.0, 0.0], [1.0, 1.0]).rectangle(
         "plate",
         [4, 1],
@@ -336,11 +336,6 @@ fn friction_beside_flowing_water_needs_its_pressure() {
         })
     };
     let coulomb = json!({"slave": "plate_bottom", "master": "soil_top", "friction": {"law": "coulomb", "mu": 0.3}});
-    let message = refusal(&case(coulomb.clone()));
-    assert!(
-        message.contains("contacts.top.friction: goes by the pressure, part of which the water bears"),
-        "{message}"
-    );
     let mut of_bodies = coulomb.clone();
     of_bodies["fluid_pressure"] = json!("of_bodies");
     let message = refusal(&case(of_bodies));

@@ -41,4 +41,5 @@ mod stressed;
 mod symmetry;
 mod terms;
 mod turning;
+mod wet_contacts;
 mod yielding;

@@ -110,6 +110,9 @@ pub struct Contact {
     /// {"measured": {"file": …}} takes it from a table of time and place [F/L²]
     #[schemars(with = "Option<FluidForms>")]
     pub fluid_pressure: Option<FluidPressure>,
+    /// κ: water flows from one body to the other across the contact, closed or open, by κ times the difference of its pressures, κ ≥ 0; default 1000 times
+    /// what passes through an element beside it, so that the pressure has no jump. Of two bodies whose water flows (`permeability`) [L³/(F T)]
+    pub seal: Option<f64>,
     /// Friction parameters that vary along the slave and in time
     #[serde(default)]
     pub along: Along,
@@ -274,6 +277,7 @@ impl Contact {
             wear: None,
             radiation_damping: Radiation::default(),
             fluid_pressure: None,
+            seal: None,
             along: Along::default(),
             initial: None,
         }
@@ -362,6 +366,9 @@ setters! { contact: Contact;
     fluid_pressure(pressure: impl Into<Profile>) {
         contact.fluid_pressure = Some(FluidPressure::Given(pressure.into()));
     }
+
+    /// Sets κ of a seal between two bodies whose water flows [L³/(F T)].
+    seal(conductance: f64) { contact.seal = Some(conductance); }
 
     /// Sets the pressure p_w of a fluid from a table of time and place.
     measured_pressure(measured: Measured) { contact.fluid_pressure = Some(FluidPressure::Measured(measured)); }

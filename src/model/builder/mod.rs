@@ -76,6 +76,7 @@ mod reduction;
 mod requests;
 mod rigid;
 pub(crate) mod schedule;
+mod seam;
 mod sections;
 mod stages;
 mod supports;

@@ -56,7 +56,7 @@ use super::groups::{edges, group, node_lists};
 use super::load_step::LoadStep;
 use super::schedule::regime;
 use super::thickness::Outline;
-use super::{conduit, contact, fluid, friction, initial, pore_pressure, pores, rigid, unseen};
+use super::{conduit, contact, fluid, friction, initial, pore_pressure, pores, rigid, seam, unseen};
 use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::mortar::{Hats, Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
@@ -141,6 +141,7 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         fluid: of_bodies.or(given).or_else(|| conduit.as_ref().map(|conduit| conduit::at_start(conduit, model))),
         conduit,
         pores,
+        seam: seam::seam(&place, contact, model)?,
         laws,
         in_time,
         truncated,

@@ -195,7 +195,7 @@ pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
     heated.map_or(Ok(()), |&body| Err(ModelError::new(format!("bodies.{}.thermal", name(body)), message)))
 }
 
-/// Friction goes by the effective pressure, of which a contact beside flowing water knows what it is told.
+/// Friction goes by the effective pressure: of flowing water a contact of a body with itself knows only what it is told.
 fn check_contact(pair: &ContactPair, contact: &Contact, model: &Model) -> Checked<()> {
     let nodes: Vec<usize> = pair.nodes().collect();
     let flows =
@@ -203,7 +203,7 @@ fn check_contact(pair: &ContactPair, contact: &Contact, model: &Model) -> Checke
     let Some(body) = model.bodies.iter().find(flows) else { return Ok(()) };
     let place = format!("contacts.{}", pair.name);
     let message = format!(
-        "of bodies is not for body `{}`, whose water flows: give the pressure at the contact by place and time",
+        "of bodies is not for body `{}`, whose water flows: leave it out, and the contact has the pressure of that water",
         body.name
     );
     let of_bodies = matches!(contact.fluid_pressure, Some(FluidPressure::OfBodies));

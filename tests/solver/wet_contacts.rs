@@ -1,0 +1,303 @@
+//! Contacts between bodies whose water flows: it bears a part of the load there, and flows across.
+
+use std::sync::Arc;
+
+use crate::common::{Blocks, Finished, close, finish, half_way, model, quadratic, refusal};
+use crate::terms::{arbitrary_displacement, tangent_error};
+use fecontact::equations::Trial;
+use fecontact::model::Model;
+use fecontact::model::state::{LastIncrement, State};
+use fecontact::run::{Saved, Simulation};
+use serde_json::{Value, json};
+
+/// Soil of stiffness M = 1 whose water is nearly incompressible and flows with c = 1.
+fn soil() -> Value {
+    json!({"material": {"model": "linear", "E": 0.9, "nu": 0.2},
+           "pore_fluid": {"bulk_modulus": 1e7, "porosity": 0.5, "permeability": 1, "unit_weight": 1}})
+}
+
+/// A mesh of quadratic elements, or of linear ones.
+fn mesh(blocks: &Blocks, kind: &str) -> Value {
+    if kind == "q8" { quadratic(&blocks.json(), half_way) } else { blocks.json() }
+}
+
+/// Terzaghi's column of height 1, drained at the top and loaded by 1 at once, in two bodies that meet at half of its height.
+fn cut_column(kind: &str, [low, high]: [usize; 2], contact: Value) -> Value {
+    let blocks = Blocks::default().rectangle("low", [2, low], [0.0, 0.0], [0.25, 0.5]).rectangle(
+        "high",
+        [if low == high { 2 } else { 3 }, high],
+        [0.0, 0.5],
+        [0.25, 1.0],
+    );
+    let roller = |side: &str| json!({"on": side, "ux": 0});
+    json!({
+        "mesh": mesh(&blocks, kind), "bodies": {"low": soil(), "high": soil()}, "contacts": {"cut": contact},
+        "steps": [{"name": "load", "duration": 0.5, "dt": {"initial": 0.005}, "supports": [
+            {"on": "low_bottom", "ux": 0, "uy": 0}, roller("low_left"), roller("low_right"), roller("high_left"), roller("high_right")],
+            "loads": [{"on": "high_top", "dead_pressure": "1"}], "drainage": [{"on": "high_top", "pressure": 0}]}],
+    })
+}
+
+fn smooth() -> Value {
+    json!({"slave": "high_bottom", "master": "low_top", "friction": {"law": "frictionless"}, "initial": {"pressure": 0.0}})
+}
+
+/// The pressure at the corner of a body nearest to a place.
+fn pressure(run: &Finished, state: &State, body: &str, at: [f64; 2]) -> f64 {
+    let flow = run.model.flow.as_ref().expect("water flows");
+    let away = |node: usize| (run.model.mesh.nodes[node] - nalgebra::Vector2::from(at)).norm();
+    let body = run.model.bodies.iter().find(|other| other.name == body).expect("a body");
+    let own = body.nodes.iter().filter(|&&node| flow.of_node[node].is_some());
+    let node = *own.min_by(|&&a, &&b| away(a).total_cmp(&away(b))).expect("a corner");
+    flow.pressure(flow.of_node[node].expect("a pressure"), Some(&state.displacement))
+}
+
+fn balance(run: &Finished) {
+    let mut throughput = 0.0f64;
+    for state in &run.states {
+        let [error, size] = run.model.balance_of_water(state).expect("water");
+        throughput = throughput.max(size);
+        close("balance", error, 0.0, 1e-8 * throughput.max(1e-6));
+    }
+}
+
+/// A cut that stays closed changes nothing: pressures are those of one body to 0.05 % of the load.
+#[test]
+fn a_closed_cut_does_not_disturb_a_column() {
+    for (kind, counts) in [("q4", [6, 6]), ("q8", [4, 4]), ("q4", [6, 5])] {
+        let run = finish(&cut_column(kind, counts, smooth()));
+        let blocks = Blocks::default().rectangle("low", [2, counts[0] + counts[1]], [0.0, 0.0], [0.25, 1.0]);
+        let mut whole = cut_column(kind, counts, smooth());
+        whole.as_object_mut().expect("a case").remove("contacts");
+        whole["mesh"] = mesh(&blocks, kind);
+        whole["bodies"].as_object_mut().expect("bodies").remove("high");
+        whole["steps"][0]["supports"] =
+            json!([{"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "low_left", "ux": 0}, {"on": "low_right", "ux": 0}]);
+        whole["steps"][0]["loads"] = json!([{"on": "low_top", "dead_pressure": "1"}]);
+        whole["steps"][0]["drainage"] = json!([{"on": "low_top", "pressure": 0}]);
+        let one = finish(&whole);
+        let mut worst = 0.0f64;
+        for (cut, one_state) in run.states.iter().zip(&one.states) {
+            for (body, y) in [("low", 0.0), ("low", 0.5), ("high", 0.5)] {
+                // Of unlike elements the middle of the whole column is no corner.
+                if counts[0] == counts[1] || y == 0.0 {
+                    worst = worst
+                        .max((pressure(&run, cut, body, [0.0, y]) - pressure(&one, one_state, "low", [0.0, y])).abs());
+                }
+            }
+        }
+        println!("{kind}, {counts:?}: largest difference of p {worst:.1e}");
+        assert!(worst < if counts[0] == counts[1] { 5e-4 } else { 2e-3 }, "{kind}, {counts:?}: {worst}");
+        balance(&run);
+        // What the surfaces carry is what the water leaves.
+        let last = run.last();
+        for state in &last.contacts[0] {
+            close("p + p_w", state.contact_pressure() + state.fluid, 1.0, 2e-3);
+        }
+        close("energy", last.energy.error(), 0.0, 1e-6 * last.energy.external_work);
+    }
+}
+
+/// Steady flow through a seal: q = Δp/(H/k + 1/κ); of κ = 0 none, and the pressures stay those of the sides.
+#[test]
+fn a_seal_holds_back_water_by_its_number() {
+    for conductance in [0.5, 4.0, 0.0] {
+        let mut contact = smooth();
+        contact["seal"] = json!(conductance);
+        let mut case = cut_column("q4", [3, 3], contact);
+        case["steps"][0]["duration"] = json!(100);
+        case["steps"][0]["dt"] = json!({"initial": 0.5, "max": 20, "pore_pressure": 0.01});
+        case["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "2"}]);
+        case["steps"][0]["drainage"] = json!([{"on": "high_top", "pressure": 0}, {"on": "low_bottom", "pressure": 1}]);
+        let run = finish(&case);
+        let q = if conductance > 0.0 { 1.0 / (1.0 + 1.0 / conductance) } else { 0.0 };
+        close("flow", run.last().water.outlets[0].rate, 0.25 * q, 1e-5);
+        close("flow in", run.last().water.outlets[1].rate, -0.25 * q, 1e-5);
+        let [below, above] = ["low", "high"].map(|body| pressure(&run, run.last(), body, [0.0, 0.5]));
+        close("p below", below, 1.0 - 0.5 * q, 1e-5);
+        close("p above", above, 0.5 * q, 1e-5);
+        balance(&run);
+    }
+}
+
+/// Mandel's specimen (a quarter of it, 1 × 1) cut along its middle between the axis and the plate, under a load so small that it keeps its shape.
+#[test]
+fn a_closed_cut_does_not_disturb_mandels_specimen() {
+    for sliding in ["finite", "small"] {
+        let mut contact = smooth();
+        contact["sliding"] = json!(sliding);
+        let blocks = Blocks::default().rectangle("low", [8, 4], [0.0, 0.0], [1.0, 0.5]).rectangle(
+            "high",
+            [8, 4],
+            [0.0, 0.5],
+            [1.0, 1.0],
+        );
+        let case = json!({
+            "mesh": mesh(&blocks, "q8"), "bodies": {"low": soil(), "high": soil()}, "plates": [{"on": "high_top", "moves": "uy_alike"}],
+            "contacts": {"cut": contact},
+            "steps": [{"name": "load", "duration": 0.5, "dt": {"initial": 0.0025}, "supports": [
+                {"on": "low_bottom", "uy": 0}, {"on": "low_left", "ux": 0}, {"on": "high_left", "ux": 0}],
+                "loads": [{"on": "high_top", "total_force": {"y": "-0.001"}}],
+                "drainage": [{"on": "low_right", "pressure": 0}, {"on": "high_right", "pressure": 0}]}],
+        });
+        let run = finish(&case);
+        for (time, expected) in [(0.05, 1.09888), (0.1, 1.09541), (0.5, 0.59279)] {
+            let state = run.states.iter().find(|state| (state.time - time).abs() < 1e-9).expect("a state");
+            for (body, y) in [("low", 0.0), ("low", 0.5), ("high", 0.5)] {
+                let found = pressure(&run, state, body, [0.0, y]) / 0.0005;
+                println!("{sliding}, T = {time}, y = {y}: p/p0 {found:.5} ({expected})");
+                close("p(0)/p0", found / expected, 1.0, 5e-3);
+            }
+        }
+        balance(&run);
+    }
+}
+
+/// Bodies of large strains pressed together, or apart, in the middle of a run.
+fn strained(contact: Value, kind: &str, section: &str, gap: f64) -> (Arc<Model>, State, Vec<f64>) {
+    let blocks = Blocks::default().rectangle("low", [3, 2], [1.0, 0.0], [2.0, 0.5]).rectangle(
+        "high",
+        [2, 2],
+        [1.1, 0.5],
+        [1.9, 1.0],
+    );
+    let body = json!({"material": {"model": "hencky", "E": 0.9, "nu": 0.2},
+        "pore_fluid": {"bulk_modulus": 20, "porosity": 0.5, "permeability": 0.3, "unit_weight": 1, "pressure": "1 - 0.3*y"}});
+    let case = json!({
+        "section": section, "mesh": mesh(&blocks, kind), "bodies": {"low": body, "high": body}, "contacts": {"cut": contact},
+        "steps": [{"name": "load", "duration": 1, "dt": {"initial": 0.1}, "supports": [{"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "high_top", "ux": 0}],
+            "loads": [{"on": "high_top", "dead_pressure": "1"}]}],
+    });
+    let model: Arc<Model> = model(&case).into();
+    let mut state = model.initial_state();
+    let old = arbitrary_displacement(&model, 0.01);
+    state.displacement.clone_from(&old);
+    state.last_increment =
+        Some(LastIncrement { dt: 0.3, displacement: arbitrary_displacement(&model, 0.01), ends_in_touch: false });
+    state.time = 0.1;
+    let mut u: Vec<f64> =
+        old.iter().zip(arbitrary_displacement(&model, 0.01).iter().rev()).map(|(a, b)| a + b).collect();
+    model.bodies[0].nodes.iter().for_each(|&node| u[2 * node + 1] += gap);
+    (model, state, u)
+}
+
+/// ∂r/∂u of all displacements and pressures, closed and open, by every method, with friction, and through a seal.
+#[test]
+fn the_tangent_is_that_of_the_residual() {
+    for section in ["plane_strain", "axisymmetric"] {
+        for kind in ["q4", "q8"] {
+            for (gap, friction) in [
+                (-0.05, json!({"law": "frictionless"})),
+                (-0.05, json!({"law": "coulomb", "mu": 0.3})),
+                (0.08, json!({"law": "frictionless"})),
+            ] {
+                for more in
+                    [json!({}), json!({"seal": 0.4}), json!({"sliding": "small"}), json!({"method": "node_to_segment"})]
+                {
+                    let mut contact = json!({"slave": "high_bottom", "master": "low_top", "friction": friction, "normal": {"alpha_n": 20}});
+                    more.as_object().expect("keys").iter().for_each(|(key, value)| contact[key] = value.clone());
+                    let (model, state, u) = strained(contact, kind, section, gap);
+                    let trial = Trial::new(&state, &model.steps[0], 0.3, 0.2);
+                    let error = tangent_error(&model, trial, &u, 1e-6);
+                    println!("{section}, {kind}, {gap}, {friction}, {more}: {error:.1e}");
+                    assert!(error < 5e-6, "{section}, {kind}, {gap}, {friction}, {more}: {error:.1e}");
+                }
+            }
+        }
+    }
+}
+
+/// Friction goes by what the water leaves: a slab on clay that is loaded at once slides under μ times what has been taken over so far.
+#[test]
+fn friction_grows_as_water_leaves() {
+    let coulomb = json!({"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.4}, "initial": {"pressure": 0.0}});
+    let mut case = cut_column("q4", [6, 6], coulomb);
+    let supports = json!([{"on": "low", "ux": 0}, {"on": "low_bottom", "uy": 0}, {"on": "high", "ux": {"rate": 0.01}}]);
+    case["steps"][0]["supports"] = supports;
+    case["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "0.1"}]);
+    let run = finish(&case);
+    for state in run.states.iter().skip(20) {
+        for point in &state.contacts[0] {
+            close("q", point.friction.traction.abs(), 0.4 * point.friction.pressure, 1e-4);
+        }
+        // The surfaces slide off each other at the ends, and what still touches bears the load of 0.1 on a length of 0.25, but for its tilt.
+        let borne: f64 =
+            state.contacts[0].iter().map(|point| point.length * (point.friction.pressure + point.fluid)).sum();
+        close("p + p_w", borne, 0.025, 1e-4);
+    }
+    let [early, late] = [run.states[20].contacts[0][0].fluid, run.last().contacts[0][0].fluid];
+    assert!(early > 0.05 && late < 0.035, "{early}, {late}");
+}
+
+/// A wet block slides onto another: no water is lost as points come to face it, and as edges slide past nodes.
+#[test]
+fn no_water_is_lost_in_sliding() {
+    let blocks = Blocks::default().rectangle("low", [8, 4], [0.0, 0.0], [1.0, 0.5]).rectangle(
+        "high",
+        [9, 4],
+        [0.7, 0.5],
+        [1.7, 1.0],
+    );
+    let body = json!({"material": {"model": "hencky", "E": 0.9, "nu": 0.2},
+        "pore_fluid": {"bulk_modulus": 20, "porosity": 0.5, "permeability": 1, "unit_weight": 1}});
+    for (kind, method) in [("q4", "mortar"), ("q8", "mortar"), ("q4", "node_to_segment")] {
+        let case = json!({
+            "mesh": mesh(&blocks, kind), "bodies": {"low": body, "high": body},
+            "contacts": {"cut": {"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.2}, "method": method}},
+            "steps": [{"name": "slide", "duration": 0.25, "dt": {"initial": 0.01},
+                "supports": [{"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "high_top", "ux": {"rate": -1}, "uy": {"rate": -0.02}}],
+                "drainage": [{"on": "low_right", "pressure": 0}]}],
+        });
+        let run = finish(&case);
+        balance(&run);
+        let closed = |state: &State| state.contacts[0].iter().filter(|point| point.is_closed()).count();
+        assert!(closed(run.last()) >= closed(&run.states[1]) + 2, "{kind}, {method}: no points have come");
+        assert!(run.last().water.outlets[0].volume > 1e-4, "{kind}, {method}: nothing is pressed out");
+        let most = run.iterations.iter().max().expect("increments");
+        println!("{kind}, {method}: {most} iterations at most");
+        assert!(*most < 12, "{kind}, {method}: {most} iterations");
+    }
+}
+
+/// A run that was stopped goes on to the same bits, and Newton's method converges with its square.
+#[test]
+fn a_stopped_run_goes_on_to_the_same_bits() {
+    let mut case = cut_column("q4", [4, 3], smooth());
+    for body in ["low", "high"] {
+        case["bodies"][body]["material"] = json!({"model": "hencky", "E": 0.9, "nu": 0.2});
+    }
+    case["steps"][0]["dt"] = json!({"initial": 0.05});
+    case["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "0.2"}]);
+    let whole = finish(&case);
+    let shared: Arc<Model> = model(&case).into();
+    let mut run = Simulation::new(shared.clone());
+    (0..4).for_each(|_| drop(run.next_increment().expect("it runs")));
+    let bytes = run.save().bytes().expect("it can be written");
+    let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
+    while run.next_increment().expect("it runs").is_some() {}
+    assert!(run.state() == whole.last(), "a resumed run has other bits");
+}
+
+/// Water flows through a tie; one side alone bears its water, and lets none pass; what makes no sense is refused.
+#[test]
+fn sides_of_every_kind() {
+    let run = finish(&cut_column("q4", [6, 6], json!({"slave": "high_bottom", "master": "low_top", "tied": true})));
+    for state in run.states.iter().filter(|state| state.time > 0.04) {
+        let [below, above] = ["low", "high"].map(|body| pressure(&run, state, body, [0.0, 0.5]));
+        close("no jump at a tie", below, above, 1e-3);
+    }
+    balance(&run);
+    let mut dry = cut_column("q4", [4, 4], smooth());
+    dry["bodies"]["low"].as_object_mut().expect("a body").remove("pore_fluid");
+    let run = finish(&dry);
+    let last = run.last();
+    close("p of the wet side", last.contacts[0][0].fluid, pressure(&run, last, "high", [0.0, 0.5]), 1e-12);
+    close("p + p_w", last.contacts[0][1].contact_pressure() + last.contacts[0][1].fluid, 1.0, 2e-3);
+    dry["contacts"]["cut"]["seal"] = json!(1);
+    let message = refusal(&dry);
+    assert!(message.contains("contacts.cut.seal: is for a contact of two bodies whose water flows"), "{message}");
+    let mut wrong = cut_column("q4", [2, 2], smooth());
+    wrong["contacts"]["cut"]["seal"] = json!(-1);
+    let message = refusal(&wrong);
+    assert!(message.contains("contacts.cut.seal: is -1"), "{message}");
+}
