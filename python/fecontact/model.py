@@ -808,6 +808,9 @@ class Contact(dict[str, Any]):
             steps have inertia, and omit it
         rigid_body: Moving rigid body to which a rigid master belongs: one of `rigid_bodies`; default: the
             master is fixed
+        seal: κ: water flows from one body to the other across the contact, closed or open, by κ times the
+            difference of its pressures, κ ≥ 0; default 1000 times what passes through an element beside it, so
+            that the pressure has no jump. Of two bodies whose water flows (`permeability`) [L³/(F T)]
         shrink_fit: Whether the initial overlap of the surfaces, or a negative `clearance`, is applied gradually
             over the first step (shrink fit) instead of at once
         sliding: Sliding range: finite, or small compared with the distance between nodes
@@ -846,6 +849,7 @@ class Contact(dict[str, Any]):
         points: int | None | Given = NOT_GIVEN,
         radiation_damping: Radiation | Given = NOT_GIVEN,
         rigid_body: str | None | Given = NOT_GIVEN,
+        seal: float | None | Given = NOT_GIVEN,
         shrink_fit: bool | Given = NOT_GIVEN,
         sliding: Sliding | Given = NOT_GIVEN,
         smooth: bool | Given = NOT_GIVEN,
@@ -853,7 +857,7 @@ class Contact(dict[str, Any]):
         tied: bool | Given = NOT_GIVEN,
         wear: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "clearance": clearance, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "interface": interface, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
+        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "clearance": clearance, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "interface": interface, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "seal": seal, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
 
 
 class Plane(dict[str, Any]):
