@@ -103,7 +103,11 @@ fn a_tool_inside_an_edge_is_told() {
     let wedge = json!({"polyline": {"points": [[0.5, 1], [0, 0.02], [-0.5, 1]]}});
     for (tool, what, found) in [
         (disk, Inside::Disk, "the rigid disk is inside the slave, between its points, by 8.000e-2, 8.0 % of its edge"),
-        (wedge, Inside::Corner, "a corner of the rigid master is inside the slave by 8.000e-2, 8.0 % of its edge"),
+        (
+            wedge,
+            Inside::Corner,
+            "a corner of the rigid master is inside the slave by 8.000e-2, 8.0 % of its edge; drawn along it drags too much",
+        ),
     ] {
         let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(&entered("Q4", &tool))));
         fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
