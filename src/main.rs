@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use fecontact::cli::{self, Failure, Input, Options, Reduced, Stability, Study, Template, defect};
+use fecontact::cli::{self, Failure, Input, Options, Reduced, Stability, Study, Template, internal_error};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
@@ -139,8 +139,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    defect::watch();
-    let result = defect::catch(run).unwrap_or_else(|defect| Err(Failure::Defect(defect)));
+    internal_error::watch();
+    let result = internal_error::catch(run).unwrap_or_else(|error| Err(Failure::Internal(error)));
     let Err(failure) = result else { return ExitCode::SUCCESS };
     let (code, message) = failure.code_and_message();
     cli::say(format_args!("{message}"));

@@ -166,7 +166,7 @@ pub fn safety(
         Unfound::Refused(why) => refused(py, &why),
         Unfound::Failed(Failed::Stopped(Error::Interrupted)) => stopped(py, "interrupted"),
         Unfound::Failed(Failed::Stopped(error)) => stopped(py, &error.to_string()),
-        Unfound::Failed(Failed::Defect(what)) => crate::errors::defect(py, &what),
+        Unfound::Failed(Failed::Internal(what)) => crate::errors::internal_error(py, &what),
     })
 }
 

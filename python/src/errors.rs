@@ -41,6 +41,6 @@ pub fn stopped(py: Python, message: &str) -> PyErr {
 }
 
 /// `Defect`: the program itself is wrong.
-pub fn defect(py: Python, message: &str) -> PyErr {
-    exception(py, "Defect", (fecontact::case::job::defect::message(message),))
+pub fn internal_error(py: Python, message: &str) -> PyErr {
+    exception(py, "Defect", (fecontact::case::job::internal_error::message(message),))
 }

@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _native(module: &Bound<PyModule>) -> PyResult<()> {
     // A panic becomes an exception that says where it came from, and nothing on stderr.
-    fecontact::case::job::defect::watch();
+    fecontact::case::job::internal_error::watch();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<case::Case>()?;
     module.add_class::<mesh::Mesh>()?;

@@ -122,7 +122,7 @@ impl Pool {
             match py.detach(wait) {
                 Ok(Ok(done)) => return Ok(done),
                 Ok(Err(_)) | Err(RecvTimeoutError::Disconnected) => {
-                    return Err(crate::errors::defect(py, "the threads of the run have ended"));
+                    return Err(crate::errors::internal_error(py, "the threads of the run have ended"));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }
@@ -153,7 +153,7 @@ impl Pool {
                 match py.detach(wait) {
                     Ok(Ok(done)) => return Ok(done),
                     Ok(Err(_)) | Err(RecvTimeoutError::Disconnected) => {
-                        return Err(crate::errors::defect(py, "the threads of the laws have ended"));
+                        return Err(crate::errors::internal_error(py, "the threads of the laws have ended"));
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                 }

@@ -93,7 +93,9 @@ pub fn run<'py>(
         (Ok(()), Some(why)) => ("stopped", Some(why), raised),
         (Err(Failed::Stopped(Error::Interrupted)), _) => ("interrupted", Some(Error::Interrupted.to_string()), raised),
         (Err(Failed::Stopped(error)), _) => ("stopped", Some(readable(&error.to_string())), raised),
-        (Err(Failed::Defect(what)), _) => ("defect", Some(fecontact::case::job::defect::message(&what)), raised),
+        (Err(Failed::Internal(what)), _) => {
+            ("defect", Some(fecontact::case::job::internal_error::message(&what)), raised)
+        }
     })
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use fecontact::case::job::{Ends, defect};
+use fecontact::case::job::{Ends, internal_error};
 use fecontact::case::loading::{self, LoadChanges};
 use fecontact::case::{CaseError, Opened};
 use fecontact::model::builder::ModelError;
@@ -88,7 +88,7 @@ impl Simulation {
             move || {
                 let asked = ends.clone();
                 under_way.run.pause_when(Arc::new(move || asked().is_some()));
-                let made = defect::catch(|| next(&mut under_way.run, &ends));
+                let made = internal_error::catch(|| next(&mut under_way.run, &ends));
                 (under_way, made)
             },
         )?;
@@ -100,7 +100,7 @@ impl Simulation {
         if let Some(raised) = self.pool.raised.take() {
             return Err(raised);
         }
-        let made = made.map_err(|what| crate::errors::defect(py, &what))?;
+        let made = made.map_err(|what| crate::errors::internal_error(py, &what))?;
         made.map_err(|error| stopped(py, &error.to_string()))
     }
 

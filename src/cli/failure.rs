@@ -1,7 +1,7 @@
 //! Failures of commands, and their messages.
 
 use crate::case::CaseError;
-use crate::case::job::{Failed, Refused, defect};
+use crate::case::job::{Failed, Refused, internal_error};
 use crate::model::text::readable;
 use crate::output::report::ReportError;
 use crate::run::error::Error;
@@ -13,8 +13,8 @@ pub enum Failure {
     Stopped(String),
     /// The input is invalid; nothing was written.
     BadInput(String),
-    /// The program has a defect.
-    Defect(String),
+    /// An internal error of the program.
+    Internal(String),
 }
 
 impl Failure {
@@ -23,7 +23,7 @@ impl Failure {
         match self {
             Self::Stopped(message) => (1, readable(&format!("stopped: {message}"))),
             Self::BadInput(message) => (2, readable(&format!("error: {message}"))),
-            Self::Defect(message) => (70, defect::message(message)),
+            Self::Internal(message) => (70, internal_error::message(message)),
         }
     }
 }
@@ -53,7 +53,7 @@ impl From<Failed> for Failure {
     fn from(failed: Failed) -> Self {
         match failed {
             Failed::Stopped(error) => error.into(),
-            Failed::Defect(defect) => Self::Defect(defect),
+            Failed::Internal(error) => Self::Internal(error),
         }
     }
 }

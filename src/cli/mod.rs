@@ -25,7 +25,7 @@ pub use self::safety::{Stability, safety};
 pub use self::say::{print, say};
 use self::threads::use_threads;
 pub use crate::case::convergence::WITHIN;
-pub use crate::case::job::defect;
+pub use crate::case::job::internal_error;
 pub use crate::case::safety::Reduced;
 use crate::case::{self, Opened, Written, law_test, units};
 use crate::mesh::section::Section;

@@ -76,9 +76,9 @@ impl Ending {
         Self { status, reason: stopped.map(|error| readable(&error.to_string())), ..Self::running(files) }
     }
 
-    /// Status of a run or test that ended in a defect of the program.
-    pub fn defect(what: &str, files: &[String]) -> Self {
-        Self { status: "stopped", reason: Some(format!("a defect of the program: {what}")), ..Self::running(files) }
+    /// Status of a run or test that ended in an internal error.
+    pub fn internal_error(what: &str, files: &[String]) -> Self {
+        Self { status: "stopped", reason: Some(format!("internal error: {what}")), ..Self::running(files) }
     }
 }
 

@@ -1129,14 +1129,14 @@ fn threads_that_cannot_be_had_are_told() {
 
 /// A panic is told as what it is, with another exit code than anything else.
 #[test]
-fn a_panic_is_told_as_a_defect() {
-    use fecontact::cli::{Failure, defect};
-    let caught = defect::catch(|| -> () { panic!("index {} is too large", 7) }).unwrap_err();
+fn a_panic_is_an_internal_error() {
+    use fecontact::cli::{Failure, internal_error};
+    let caught = internal_error::catch(|| -> () { panic!("index {} is too large", 7) }).unwrap_err();
     assert_eq!(caught, "index 7 is too large");
-    let (code, told) = Failure::Defect(caught).code_and_message();
+    let (code, told) = Failure::Internal(caught).code_and_message();
     assert_eq!(code, 70);
-    assert!(told.starts_with("defect: index 7 is too large\nThis is a defect of fecontact"), "{told}");
-    assert_eq!(defect::catch(|| 3), Ok(3));
+    assert!(told.starts_with("internal error: index 7 is too large\nThis is an error of fecontact"), "{told}");
+    assert_eq!(internal_error::catch(|| 3), Ok(3));
 }
 
 /// Nothing of a bad case is left behind.

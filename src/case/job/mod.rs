@@ -3,7 +3,7 @@
 //! [`Job::open`] and [`Job::resume`] read, check and lock the folder; [`Job::run`] solves, and writes results however the run
 //! ends. The caller receives warnings and progress, and may end the run ([`Callbacks`]).
 
-pub mod defect;
+pub mod internal_error;
 mod keeper;
 mod outputs;
 
@@ -62,8 +62,8 @@ pub enum Refused {
 pub enum Failed {
     /// The run stopped with an error.
     Stopped(Error),
-    /// The program has a defect.
-    Defect(String),
+    /// An internal error of the program.
+    Internal(String),
 }
 
 /// A checked case, with its results folder locked.
@@ -97,7 +97,7 @@ pub struct Outcome {
 impl Outcome {
     /// Whether the results are readable.
     pub fn is_readable(&self) -> bool {
-        let full = matches!(&self.ended, Err(Failed::Stopped(Error::Output { .. }) | Failed::Defect(_)));
+        let full = matches!(&self.ended, Err(Failed::Stopped(Error::Output { .. }) | Failed::Internal(_)));
         !full && self.written.is_ok()
     }
 }
@@ -172,7 +172,7 @@ impl Job {
         let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
         let first = summary(Ending::running(&folder.files), RunReport::default(), warnings(&opened.case, model));
         let mut work = Work::default();
-        let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, callbacks));
+        let result = internal_error::catch(|| work.go(opened, model, folder, saved.take(), &first, callbacks));
         let result = match (result, opened.resumes(), &work.simulation) {
             (Ok(Err(error)), true, None) => return Err(error.into()),
             (result, ..) => result,
@@ -180,7 +180,7 @@ impl Job {
         folder.forget_what_never_came();
         let ending = match &result {
             Ok(result) => Ending::new(result.as_ref().err(), &folder.files),
-            Err(defect) => Ending::defect(defect, &folder.files),
+            Err(error) => Ending::internal_error(error, &folder.files),
         };
         if let Ok(result) = &result {
             folder.make_room_after(result);
@@ -195,7 +195,7 @@ impl Job {
             ..summary(ending, report, work.warnings)
         };
         let written = summary::write(&last, &folder.path);
-        let ended = result.map_err(Failed::Defect).and_then(|ended| ended.map_err(Failed::Stopped));
+        let ended = result.map_err(Failed::Internal).and_then(|ended| ended.map_err(Failed::Stopped));
         Ok(Outcome { summary: last, supplied: work.supplied, ended, written })
     }
 }

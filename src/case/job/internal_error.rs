@@ -1,4 +1,4 @@
-//! Defects of the program: a panic is reported with the information to send, and the results are kept.
+//! Internal errors: a panic is reported with the information to send, and the results are kept.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
@@ -43,7 +43,7 @@ fn payload_text(payload: &(dyn std::any::Any + Send)) -> &str {
 /// Returns the text for the user.
 pub fn message(what: &str) -> String {
     format!(
-        "defect: {what}\nThis is a defect of fecontact {}, not of your input. Please report it with this text, the command, the \
+        "internal error: {what}\nThis is an error of fecontact {}, not of your input. Please report it with this text, the command, the \
          case file and its mesh; RUST_BACKTRACE=1 before the command adds where it came from. The results so far are kept.",
         env!("CARGO_PKG_VERSION")
     )
