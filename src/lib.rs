@@ -36,7 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Between two increments the caller can prescribe the motion of supports ([`run::Simulation::lead`]), change loads
+//! Between two increments the caller can prescribe the motion of supports ([`run::Simulation::prescribe`]), change loads
 //! ([`model::builder::LoadsInForce`]), drop a candidate ([`run::Simulation::try_increment`]), and save the run to resume it
 //! with bitwise identical results ([`run::Saved`], in memory or as bytes).
 //!

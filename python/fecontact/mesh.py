@@ -101,7 +101,7 @@ class Mesh:
         cls,
         blocks: Sequence[Mapping[str, Any]],
         parameters: Mapping[str, float | str] | None = None,
-        apart: Sequence[str] = (),
+        separated: Sequence[str] = (),
         joined: Sequence[Sequence[str]] = (),
     ) -> Mesh:
         """Create a mesh of quadrilaterals divided into elements, joined where two of one body share a side.
@@ -112,13 +112,13 @@ class Mesh:
         Args:
             blocks: objects of :class:`fecontact.model.Block`, or dicts.
             parameters: numbers by name, for expressions in corners, numbers of elements and gradings.
-            apart: names of sides that are not joined.
+            separated: names of sides that are not joined.
             joined: lists of bodies joined with each other, such as two bonded materials.
 
         Raises:
             CaseError: a block is invalid, with the reason.
         """
-        more = {"parameters": dict(parameters or {}), "apart": list(apart), "joined": [list(bodies) for bodies in joined]}
+        more = {"parameters": dict(parameters or {}), "separated": list(separated), "joined": [list(bodies) for bodies in joined]}
         given = plain({"blocks": list(blocks), **more}, file="mesh")
         return _again(json.dumps(given, allow_nan=False))
 

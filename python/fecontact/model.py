@@ -1421,22 +1421,22 @@ class Blocks(dict[str, Any]):
 
     Args:
         blocks: Blocks; nodes are numbered in their order, row by row
-        apart: Names of sides that are not joined to others, such as the two sides of a crack in one body
         joined: Lists of bodies that are joined with each other, like blocks of one body, where their blocks
             share a whole side, for example two materials that are bonded
         parameters: Numbers with names of your choice, for the expressions of the blocks; a number, or an
             expression in other parameters
+        separated: Names of sides that are not joined to others, such as the two sides of a crack in one body
     """
 
     def __init__(
         self,
         *,
         blocks: Sequence[Block],
-        apart: Sequence[str] | Given = NOT_GIVEN,
         joined: Sequence[Sequence[str]] | Given = NOT_GIVEN,
         parameters: Mapping[str, Amount] | Given = NOT_GIVEN,
+        separated: Sequence[str] | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"blocks": blocks, "apart": apart, "joined": joined, "parameters": parameters}))
+        super().__init__(_given({"blocks": blocks, "joined": joined, "parameters": parameters, "separated": separated}))
 
 
 class Block(dict[str, Any]):

@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,7 +158,7 @@ class Simulation:
         machine = fc.Simulation(case)
         for increment in machine:
             error = wanted - machine.reaction("piston")[0]
-            machine.lead("piston", ux=machine.displacement("piston")[0] + error / stiffness, by=increment.time + dt)
+            machine.prescribe("piston", ux=machine.displacement("piston")[0] + error / stiffness, by=increment.time + dt)
 
     Args:
         case: a case, or the arguments of one.
@@ -249,7 +249,7 @@ class Simulation:
         """Bars by name, with their current fields."""
         return {name: BarFields(self._native, name) for name in self._native.bars}
 
-    def lead(self, group: str, *, ux: float | None = None, uy: float | None = None, by: float) -> None:
+    def prescribe(self, group: str, *, ux: float | None = None, uy: float | None = None, by: float) -> None:
         """Move the supports of a group linearly from their current position to a displacement, and hold them there to the end of the
         step.
 
@@ -258,10 +258,16 @@ class Simulation:
             ux, uy: displacements [L].
             by: time at which they are reached [T].
         """
-        end = number(by, "by", "lead")
+        end = number(by, "by", "prescribe")
         for axis, (name, to) in enumerate((("ux", ux), ("uy", uy))):
             if to is not None:
-                self._native.lead(a_name(group, "group", "lead"), axis, number(to, name, "lead"), end)
+                self._native.prescribe(a_name(group, "group", "prescribe"), axis, number(to, name, "prescribe"), end)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            now = ": it is called `prescribe`" if name == "lead" else ""
+            raise AttributeError(f"`Simulation` has no `{name}`{now}", name=name, obj=self)
 
     def load(self, on: str, *, by: float | None = None, **load: Any) -> None:
         """Change a load until the end of the step.

@@ -92,7 +92,7 @@ pub fn sensitivities(py: Python, parameters: &str) -> PyResult<Vec<&'static str>
     let still = Array2::zeros((1, 2));
     let course = LawPath { time: &[0.0, 1.0], slip: &still, pressure: &still, opening: None };
     let test = course.test(0, &parameters, &json!({})).map_err(|error| case_error(py, &error))?;
-    if test.law.cohesion.is_some_and(|cohesion| matches!(cohesion, Cohesion::Beside(_))) {
+    if test.law.cohesion.is_some_and(|cohesion| matches!(cohesion, Cohesion::Parallel(_))) {
         return Ok(Vec::new());
     }
     Ok(test.law.law.sensitivities().map_or(Vec::new(), |law| law.parameters().to_vec()))
@@ -190,7 +190,7 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
     let law = &test.law;
     let further = observables::further([&law.description]);
     let gap = (!law.description.opening.is_empty()).then_some(OPENED.name);
-    let bonded = law.cohesion.is_some_and(|cohesion| matches!(cohesion, Cohesion::Beside(_)));
+    let bonded = law.cohesion.is_some_and(|cohesion| matches!(cohesion, Cohesion::Parallel(_)));
     let of_bond = names(&BONDED).filter(|_| bonded);
     let names: Vec<String> = further.iter().copied().chain(gap).map(String::from).chain(of_bond).collect();
     let mut answers =

@@ -196,18 +196,23 @@ impl Simulation {
     }
 
     /// Lead the supports of a group along an axis (0, 1) to a displacement by a time.
-    fn lead(&self, py: Python, group: &str, axis: usize, to: f64, by: f64) -> PyResult<()> {
+    fn prescribe(&self, py: Python, group: &str, axis: usize, to: f64, by: f64) -> PyResult<()> {
         self.with(|under_way| {
             let now = under_way.run.state().time;
             if !(by > now && by.is_finite()) {
-                return Err(complaint(py, "lead", "by", format!("is {by}: must be after the current time, {now}")));
+                return Err(complaint(
+                    py,
+                    "prescribe",
+                    "by",
+                    format!("is {by}: must be after the current time, {now}"),
+                ));
             }
             if !to.is_finite() {
                 let place = ["ux", "uy"][axis.min(1)];
-                return Err(complaint(py, "lead", place, format!("is {to}: must be a finite number")));
+                return Err(complaint(py, "prescribe", place, format!("is {to}: must be a finite number")));
             }
             let axis = if axis == 0 { Axis::X } else { Axis::Y };
-            under_way.run.lead(group, axis, to, by).map_err(unknown)
+            under_way.run.prescribe(group, axis, to, by).map_err(unknown)
         })
     }
 

@@ -81,7 +81,7 @@ def test_saved_runs_go_on_to_the_same_bits(document: dict[str, Any], result: fc.
         assert again.reaction("block_top")[0] == result.history["block_top.fx"].iloc[-1]
     simulation.write(tmp_path)
     assert (tmp_path / "checkpoint.bin").is_file()
-    simulation.lead("block_top", ux=0.0, by=3.0)
+    simulation.prescribe("block_top", ux=0.0, by=3.0)
     with pytest.raises(fc.Stopped, match="was changed by its caller"):
         simulation.write(tmp_path)
 
@@ -136,7 +136,7 @@ def test_what_is_to_come_may_have_changed(document: dict[str, Any]) -> None:
     assert again.reaction("block_top").tolist() == straight.reaction("block_top").tolist()
     assert again.displacement("block_top")[0] == pytest.approx(0.8, rel=1e-12)
     # Once it is led, what its caller has done to it holds, and so it is one that has begun.
-    simulation.lead("block_top", ux=0.1, by=2.0)
+    simulation.prescribe("block_top", ux=0.1, by=2.0)
     with pytest.raises(fc.CaseError, match="steps.1..supports.0..ux.rate` is 0.2, and was 0.1"):
         fc.Simulation.resume(changed, simulation.save())
     # A step that comes behind the last one goes on from its end.
@@ -258,15 +258,17 @@ def test_bad_loads(given: dict[str, Any], message: str) -> None:
     assert simulation.displacement("ball")[1] == pytest.approx(-0.04, rel=1e-12)
 
 
-def test_bad_leads(document: dict[str, Any]) -> None:
+def test_bad_motions(document: dict[str, Any]) -> None:
     simulation = fc.Simulation(document)
     next(simulation)
+    with pytest.raises(AttributeError, match="no `lead`: it is called `prescribe`"):
+        simulation.lead("block_top", ux=1.0, by=2.0)  # type: ignore[attr-defined]
     with pytest.raises(LookupError, match="`block_bottom` has no support along x"):
-        simulation.lead("block_bottom", ux=1.0, by=2.0)
+        simulation.prescribe("block_bottom", ux=1.0, by=2.0)
     with pytest.raises(fc.CaseError, match="by: is 0"):
-        simulation.lead("block_top", ux=1.0, by=0.0)
+        simulation.prescribe("block_top", ux=1.0, by=0.0)
     with pytest.raises(fc.CaseError, match="ux: is nan|ux: is NaN"):
-        simulation.lead("block_top", ux=float("nan"), by=2.0)
+        simulation.prescribe("block_top", ux=float("nan"), by=2.0)
 
 
 @pytest.mark.parametrize(

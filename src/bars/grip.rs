@@ -62,7 +62,7 @@ pub struct Gripped {
 
 impl Grip {
     /// State of one that comes without force at displacements.
-    pub fn born(&self, u: &[f64]) -> GripState {
+    pub fn activated(&self, u: &[f64]) -> GripState {
         let [d, edge] = self.vectors.ways(u);
         let t = (self.vectors.at[1] + edge).normalize();
         GripState { natural: [d.dot(&t), d.dot(&turned(t))], bond: self.bond.start(None, 0.0), ..GripState::default() }

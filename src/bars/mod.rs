@@ -172,19 +172,19 @@ impl Bar {
     }
 
     /// State of a bar without forces that comes at displacements.
-    pub fn born(&self, u: &[f64]) -> BarState {
+    pub fn activated(&self, u: &[f64]) -> BarState {
         BarState {
             is_there: true,
-            segments: self.segments.iter().map(|segment| segment.born(u)).collect(),
-            turns: self.turns.iter().map(|turn| turn.born(u)).collect(),
-            grips: self.grips.iter().map(|grip| grip.born(u)).collect(),
+            segments: self.segments.iter().map(|segment| segment.activated(u)).collect(),
+            turns: self.turns.iter().map(|turn| turn.activated(u)).collect(),
+            grips: self.grips.iter().map(|grip| grip.activated(u)).collect(),
             ..BarState::default()
         }
     }
 
     /// State of a bar that is not there.
     pub fn absent(&self, u: &[f64]) -> BarState {
-        BarState { is_there: false, ..self.born(u) }
+        BarState { is_there: false, ..self.activated(u) }
     }
 
     /// Viscous forces of its retardation at displacements and velocities: `add` takes those of each part, with the derivatives by the

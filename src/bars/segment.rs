@@ -54,7 +54,7 @@ impl Segment {
     }
 
     /// State of one that comes without force at displacements.
-    pub fn born(&self, u: &[f64]) -> SegmentState {
+    pub fn activated(&self, u: &[f64]) -> SegmentState {
         SegmentState { natural: self.elongation(u), ..SegmentState::default() }
     }
 

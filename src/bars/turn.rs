@@ -46,7 +46,7 @@ impl Turn {
     }
 
     /// State of one that comes without moment at displacements.
-    pub fn born(&self, u: &[f64]) -> TurnState {
+    pub fn activated(&self, u: &[f64]) -> TurnState {
         TurnState { natural: self.angle(u), moment: 0.0 }
     }
 

@@ -63,7 +63,7 @@ impl Opened {
     pub fn begin(Written { path, mut document, case }: Written) -> Result<Self, CaseError> {
         let path = path.as_path();
         let Some(source) = case.begin_with.as_ref() else { return Ok(Self::new(path, document, case, None)) };
-        let (source, own_steps) = (beside(path, source), case.steps.len());
+        let (source, own_steps) = (next_to(path, source), case.steps.len());
         let joined = begun(&mut document, &source).map_err(|complaint| complaint.in_file(path));
         let (file, checkpoint) = joined?;
         let case: Case = read::input(&document).map_err(|complaint| complaint.in_file(path))?;
@@ -98,7 +98,7 @@ impl Opened {
 
     fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Self {
         let files = document["mesh"].as_array().map_or(slice::from_ref(&document["mesh"]), Vec::as_slice);
-        let inputs = files.iter().filter_map(Value::as_str).map(|mesh| beside(path, mesh)).collect();
+        let inputs = files.iter().filter_map(Value::as_str).map(|mesh| next_to(path, mesh)).collect();
         let (path, mesh, neighbours) = (path.to_owned(), None, None);
         Self { case, path, document, taken_over: 0, inputs, mesh, neighbours, start, resumes: false }
     }
@@ -218,7 +218,7 @@ fn check_mesh(before: &MeshPrint, model: &Model) -> Result<(), String> {
 }
 
 /// A path relative to the folder of the case file.
-fn beside(path: &Path, file: &str) -> PathBuf {
+fn next_to(path: &Path, file: &str) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).join(file)
 }
 

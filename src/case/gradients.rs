@@ -21,7 +21,7 @@ use crate::model::builder::{Checked, ModelError, refuse_if};
 use crate::model::scheme::Scheme;
 use crate::model::{Model, Step};
 use crate::output::checkpoint::MeshPrint;
-use crate::output::gradients::{Beside, Parameter};
+use crate::output::gradients::{Parameter, Perturbed};
 use crate::solve::neighbour::TOLERANCE;
 use std::path::Path;
 use std::sync::Arc;
@@ -99,16 +99,17 @@ impl Differentiated<'_> {
         if theta == 0.0 {
             return Err("is 0, of which no small part can be taken: give the value about which it is to vary".into());
         }
-        let beside = |stencil: &[(f64, f64)]| {
+        let perturbed = |stencil: &[(f64, f64)]| {
             let one = |(k, weight): &(f64, f64)| {
                 let model = self.with(&keys, theta * (1.0 + k * STEP), mesh)?;
-                Ok(Beside { apart: *k, weight: weight / (STEP * theta), model })
+                Ok(Perturbed { apart: *k, weight: weight / (STEP * theta), model })
             };
             stencil.iter().map(one).collect::<Result<Vec<_>, String>>()
         };
         // At the end of its range a value has neighbours on one side only.
         let [both, above, below] = STENCILS;
-        let neighbours = beside(both).or_else(|why| beside(above).or_else(|_| beside(below)).map_err(|_| why))?;
+        let neighbours =
+            perturbed(both).or_else(|why| perturbed(above).or_else(|_| perturbed(below)).map_err(|_| why))?;
         let is_of_bodies = matches!(&keys[0], Key::Name(part) if OF_BODIES.contains(&part.as_str()));
         Ok(Parameter { place: place.into(), is_of_bodies, neighbours })
     }
@@ -269,13 +270,13 @@ fn check_place(keys: &[Key]) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that a value is not the place of a pressure that is held along a contact.
+/// Checks that a value is not the place of a pressure that is prescribed along a contact.
 fn check_well(document: &Value, keys: &[Key]) -> Result<(), String> {
     let is_place =
         matches!(keys, [.., Key::Name(wells), Key::Number(_), Key::Name(at), _] if wells == "wells" && at == "at");
     if is_place && !at(document, &keys[..keys.len() - 2])["pressure"].is_null() {
         return Err(
-            "is the place of a pressure, which is held at the nearest node: nothing changes until that is another one"
+            "is the place of a pressure, which is prescribed at the nearest node: nothing changes until that is another one"
                 .into(),
         );
     }

@@ -129,8 +129,8 @@ fn check_near(Written { path, document, .. }: &Written, own: &Mesh, finer: &Case
     let finer = mesh(finer, path)?;
     for (place, [x, y]) in places {
         let node = nodes_at(own, &Place::Near([x, y]), &place)?[0];
-        let beside = own.elements.iter().filter(|element| element.nodes.contains(&node));
-        let size = beside.map(|element| own.size_of(element.nodes.iter().copied())).fold(0.0, f64::max);
+        let adjacent = own.elements.iter().filter(|element| element.nodes.contains(&node));
+        let size = adjacent.map(|element| own.size_of(element.nodes.iter().copied())).fold(0.0, f64::max);
         let of_finer = nodes_at(&finer, &Place::Near([x, y]), &place).ok().map(|found| finer.nodes[found[0]]);
         let stays = of_finer.is_some_and(|at| (at - own.nodes[node]).norm() <= SAME * size);
         let message = format!(
@@ -193,9 +193,9 @@ fn with(written: &Written, mesh: MeshSource, model: &Model, halvings: Halvings) 
 }
 
 fn of_blocks(input: &BlocksInput, times: u32) -> Checked<MeshSource> {
-    let Blocks { blocks, apart, joined } = evaluated(input, "mesh")?;
+    let Blocks { blocks, separated, joined } = evaluated(input, "mesh")?;
     let blocks = blocks.iter().map(|block| halved(block, times)).collect();
-    Ok(MeshSource::Blocks(BlocksInput { parameters: [].into(), blocks, apart, joined }))
+    Ok(MeshSource::Blocks(BlocksInput { parameters: [].into(), blocks, separated, joined }))
 }
 
 /// A mesh that is not made of blocks, with elements that are halved so many times.

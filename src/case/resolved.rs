@@ -91,7 +91,7 @@ pub(super) fn keep_opening(contact: &mut Contact, pair: &ContactPair, model: &Mo
 fn keep_stiffness(contact: &mut Contact, pair: &ContactPair) {
     let of_friction = pair.laws.iter().all(|law| law.law.description().stiffness_is_penalty);
     let besides = pair.laws.iter().find_map(|law| match &law.cohesion {
-        Some(Cohesion::Beside(bond)) => Some(bond.stiffness()),
+        Some(Cohesion::Parallel(bond)) => Some(bond.stiffness()),
         _ => None,
     });
     if let (false, Some(stiffness), Some(bond)) = (of_friction, besides, &mut contact.bond) {

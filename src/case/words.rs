@@ -1,7 +1,7 @@
-//! Words that other programs use for keys of a case, and the keys that they are here.
+//! Words that other programs, or earlier versions, use for keys of a case, and the keys that they are here.
 
 /// Words without spaces, dashes and underscores in lower case; the keys, of which the first that an object knows is meant; where that key stands.
-const WORDS: [(&[&str], &[&str], &str); 27] = [
+const WORDS: [(&[&str], &[&str], &str); 28] = [
     (
         &["youngsmodulus", "young", "youngmodulus", "modulusofelasticity", "elasticmodulus", "eref"],
         &["E"],
@@ -56,6 +56,7 @@ const WORDS: [(&[&str], &[&str], &str); 27] = [
     (&["procedure", "analysis", "analysistype", "steptype"], &["scheme"], "of a step"),
     (&["nset", "nodeset", "elset", "set", "region"], &["on"], "of a support or load: the name of a group"),
     (&["monitor", "historyoutput", "outputrequests", "sensors"], &["watch"], "of a case"),
+    (&["apart"], &["separated"], "of a mesh of blocks"),
     (&["initialconditions"], &["initial_stress", "initial"], "of a body, and `initial` of a contact"),
 ];
 

@@ -16,7 +16,7 @@
 //! Radiation damping fades with φ as the surfaces open.
 
 use super::force::PointEvaluation;
-use super::nodal_forces::{Beside, ClosedPoints};
+use super::nodal_forces::{Additional, ClosedPoints};
 use super::pair::ContactPair;
 use super::point::{ContactState, PointIncrement, PredictedStatus};
 use super::surface::SlavePoint;
@@ -24,7 +24,7 @@ use crate::laws::friction::{BondResponse, BondState, Cohesion, FrictionResponse,
 
 /// A bond beside friction at a closed point.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Held {
+pub(super) struct BondAnswer {
     pub response: BondResponse,
     /// Share of the slip that counts for it, and Δu_b by y
     counted: [f64; 2],
@@ -50,7 +50,7 @@ impl ContactPair {
     /// State of a bond beside friction at the start, which has this part of the traction, of surfaces that touch or lie apart by a gap.
     pub fn bond_at_start(&self, slave: &SlavePoint, gap: Option<f64>, traction: f64) -> Option<BondState> {
         match &self.law(slave).cohesion {
-            Some(Cohesion::Beside(bond)) => Some(bond.start(gap, traction)),
+            Some(Cohesion::Parallel(bond)) => Some(bond.start(gap, traction)),
             _ => None,
         }
     }
@@ -58,7 +58,7 @@ impl ContactPair {
     /// How far a bond beside friction would be off if it had slipped by so much since it was out of reach [F/L²].
     pub(super) fn bond_off(&self, slave: &SlavePoint, [old, now]: [&ContactState; 2], slip: f64) -> f64 {
         match (&self.law(slave).cohesion, old.bond, now.bond) {
-            (Some(Cohesion::Beside(bond)), Some(before), Some(now)) if old.apart(self.touch + bond.opening()) => {
+            (Some(Cohesion::Parallel(bond)), Some(before), Some(now)) if old.apart(self.touch + bond.opening()) => {
                 bond.respond(&before, 0.0, slip, false).state.traction - now.traction
             }
             _ => 0.0,
@@ -68,7 +68,7 @@ impl ContactPair {
     /// An observable that a bond beside friction has: what is left of it and, where friction is none, q over its strength.
     pub(super) fn observed_of_bond(&self, slave: &SlavePoint, name: &str, state: &ContactState) -> Option<f64> {
         let law = self.law(slave);
-        let (Some(Cohesion::Beside(bond)), Some(own)) = (&law.cohesion, &state.bond) else { return None };
+        let (Some(Cohesion::Parallel(bond)), Some(own)) = (&law.cohesion, &state.bond) else { return None };
         match name {
             "bond" => Some(bond.intact(own)),
             "R" if law.stiffness == 0.0 => {
@@ -82,8 +82,8 @@ impl ContactPair {
     /// Elastic slip of a bond beside friction, or what of it multipliers leave; 0 without a bond [L].
     pub fn elastic_slip_of_bond(&self, slave: &SlavePoint, state: &ContactState) -> f64 {
         match (&self.law(slave).cohesion, state.bond) {
-            (Some(Cohesion::Beside(_)), Some(bond)) if self.stick.is_some() => bond.elastic_slip,
-            (Some(Cohesion::Beside(law)), Some(bond)) => bond.traction / law.stiffness(),
+            (Some(Cohesion::Parallel(_)), Some(bond)) if self.stick.is_some() => bond.elastic_slip,
+            (Some(Cohesion::Parallel(law)), Some(bond)) => bond.traction / law.stiffness(),
             _ => 0.0,
         }
     }
@@ -109,15 +109,15 @@ impl PointEvaluation<'_> {
     }
 
     /// Response of a bond beside friction at a closed point.
-    pub(super) fn held(&self) -> Option<Held> {
-        let Some(Cohesion::Beside(bond)) = &self.law.cohesion else { return None };
+    pub(super) fn bond_answer(&self) -> Option<BondAnswer> {
+        let Some(Cohesion::Parallel(bond)) = &self.law.cohesion else { return None };
         let before = self.old.bond.unwrap_or_default();
         let way = self.pair.compliance_after_touch(self.increment.during.settles) * self.asked;
         let counted = self.counted_by_bond(bond.opening(), way);
         let sticks = self.increment.prediction.predicted == PredictedStatus::Stick;
         let mut response = bond.respond(&before, 0.0, self.whole * counted[0], sticks);
         response.state.elastic_slip = self.left_of_bond(&before, response.state.traction, bond.stiffness());
-        Some(Held { response, counted })
+        Some(BondAnswer { response, counted })
     }
 
     /// State of a point that is open and within reach of its bond; its tractions are added to `closed`. `parted` is the state of friction.
@@ -148,8 +148,8 @@ impl PointEvaluation<'_> {
         }
         let acting = FrictionState { pressure: -state.tension, traction: state.traction, ..FrictionState::default() };
         let acting = FrictionResponse { state: acting, ..FrictionResponse::default() };
-        let beside = Beside { radiates: [radiation, 0.0], fluid: place.fluid, ..Beside::default() };
-        closed.push(k, &acting, beside, None);
+        let additional = Additional { radiates: [radiation, 0.0], fluid: place.fluid, ..Additional::default() };
+        closed.push(k, &acting, additional, None);
         closed.leave_open(true);
         let carries = state.traction != 0.0 || state.tension != 0.0;
         let regime = match (carries, plastic == 0.0) {
@@ -188,14 +188,14 @@ impl PointEvaluation<'_> {
 
     /// Memory of a bond beside friction at a point that is farther apart than it reaches, with what it dissipates.
     pub(super) fn torn(&self) -> Option<(BondState, f64)> {
-        let Some(Cohesion::Beside(bond)) = &self.law.cohesion else { return None };
+        let Some(Cohesion::Parallel(bond)) = &self.law.cohesion else { return None };
         let before = self.old.bond.unwrap_or_default();
         let answer = bond.respond(&before, bond.opening().max(before.opening), 0.0, false);
         Some((answer.state, answer.dissipation))
     }
 }
 
-impl Held {
+impl BondAnswer {
     /// Adds its slip and dissipation to a state of friction, whose slip is its own unless friction is rough.
     pub fn adds_to(&self, friction: &mut FrictionState, is_rough: bool) {
         let BondResponse { plastic, dissipation, strength, .. } = self.response;

@@ -46,7 +46,7 @@
 
 pub use super::kinematics::Meeting;
 use super::kinematics::{Kinematics, kinematics};
-use super::nodal_forces::Beside;
+use super::nodal_forces::Additional;
 pub use super::nodal_forces::{Closed, ClosedPoints, nodal_forces};
 use super::pair::ContactPair;
 pub use super::point::{ContactState, PointIncrement, PredictedStatus, Tractions};
@@ -224,7 +224,7 @@ impl<'a> PointEvaluation<'a> {
         let at_node = master_point.is_some_and(|master_point| master_point.xi == 1.0)
             && self.increment.prediction.alternating.is_some();
         let predicted_tractions = self.increment.prediction.predicted_tractions.filter(|_| !at_node);
-        let held = self.held();
+        let bond_answer = self.bond_answer();
         let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
         let stiffness = law.stiffness;
         if increment.prediction.predicted == PredictedStatus::Stick {
@@ -244,26 +244,26 @@ impl<'a> PointEvaluation<'a> {
         if touches(pair, clearance, old, increment.prediction.predicted) {
             response.dtraction_dslip = stiffness;
         }
-        let bond = held.map_or(0.0, |held| held.response.state.traction);
+        let bond = bond_answer.map_or(0.0, |answer| answer.response.state.traction);
         let limited = law.cohesion.is_some() && increment.prediction.predicted != PredictedStatus::Stick;
         let limited = limited && law.limit(&old.friction, &mut response, bond);
         kinematics.slip = sliding.slip;
         if kinematics.varied {
             let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
             let lift = alpha * response.dopening_dslip;
-            if let Some(held) = held.filter(|_| !limited) {
+            if let Some(answer) = bond_answer.filter(|_| !limited) {
                 let share = compliance.map_or(1.0, |_| counted.share);
-                closed.push_bond(kinematics, held.varies(compliance, [alpha, lift], share));
+                closed.push_bond(kinematics, answer.varies(compliance, [alpha, lift], share));
             }
             let counted = compliance.map(|_| counted);
             vary(kinematics, alpha, lift, counted, closed);
         }
         let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
         let pores = pressure - seen;
-        closed.push(kinematics, &response, Beside { radiates, fluid, pores, bond }, predicted_tractions);
+        closed.push(kinematics, &response, Additional { radiates, fluid, pores, bond }, predicted_tractions);
         let elastic_slip = pair.left_of_stick(law, old, response.state.traction);
-        if let Some(held) = held {
-            held.adds_to(&mut response.state, law.stiffness > 0.0);
+        if let Some(answer) = bond_answer {
+            answer.adds_to(&mut response.state, law.stiffness > 0.0);
         }
         Ok(ContactState {
             friction: response.state,
@@ -278,7 +278,7 @@ impl<'a> PointEvaluation<'a> {
             elastic_slip,
             fluid,
             pores,
-            bond: held.map(|held| held.response.state),
+            bond: bond_answer.map(|answer| answer.response.state),
             water: old.water,
             came: old.came,
         })

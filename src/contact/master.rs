@@ -274,8 +274,8 @@ impl Polyline {
         let mean = normal_of(s + self.direction(neighbour)).normalize();
         // Past the end of a line at a convex corner the solid ends, but for what is behind the other line too.
         let first_after = if past_start { k } else { neighbour };
-        let beside = self.is_convex(first_after) && arm.dot(&normal_of(self.direction(neighbour))) >= 0.0;
-        let gap = if arm.dot(&mean) < 0.0 && !beside { -distance } else { distance };
+        let adjacent = self.is_convex(first_after) && arm.dot(&normal_of(self.direction(neighbour))) >= 0.0;
+        let gap = if arm.dot(&mean) < 0.0 && !adjacent { -distance } else { distance };
         let (normal, turn) = if gap == 0.0 { (mean, 0.0) } else { (arm / gap, -1.0 / gap) };
         let master_point = MasterPoint { segment: k, xi: along - reference.dot(&s) };
         Some(Projection { master_point, gap, normal, bound: Bound::Rigid { advance: 0.0, turn } })

@@ -30,7 +30,7 @@ const REACH: f64 = 10.0;
 const OBLIQUE: f64 = 0.5;
 
 /// Distance beyond an end of an edge at which a segment with both ends projected there no longer overlaps it [half edge length]
-const BESIDE: f64 = 1e-3;
+const NEARLY: f64 = 1e-3;
 
 /// Part of a slave edge overlapped by one master segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +149,7 @@ fn facing(
     for &segment in &*around {
         let [a, b] = surface.segments[segment].ends;
         let [start, end] = [a, b].map(|node| chord(&levels(node)));
-        if start.min(end) > 1.0 + BESIDE || start.max(end) < -1.0 - BESIDE {
+        if start.min(end) > 1.0 + NEARLY || start.max(end) < -1.0 - NEARLY {
             continue;
         }
         if normal_of(x.between(a, b).normalize()).dot(&normal) >= FACING {

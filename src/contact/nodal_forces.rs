@@ -47,7 +47,7 @@ pub struct Closed<'a> {
 
 /// Actions at a point in addition to pressure and friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Beside {
+pub(super) struct Additional {
     /// Radiation damping η v and its derivative with respect to slip
     pub radiates: [f64; 2],
     /// p_w
@@ -139,7 +139,7 @@ impl ClosedPoints {
         if k.varied {
             self.push_dpressure(k, [0.0; 2]);
         }
-        self.push(k, &FrictionResponse::default(), Beside { fluid, ..Beside::default() }, None);
+        self.push(k, &FrictionResponse::default(), Additional { fluid, ..Additional::default() }, None);
         self.leave_open(false);
         Some(k.length)
     }
@@ -164,7 +164,7 @@ impl ClosedPoints {
         &mut self,
         k: &Kinematics,
         response: &FrictionResponse,
-        Beside { radiates, fluid, pores, bond }: Beside,
+        Additional { radiates, fluid, pores, bond }: Additional,
         predicted_tractions: Option<Tractions>,
     ) {
         let FrictionState { pressure, traction, .. } = response.state;

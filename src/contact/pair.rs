@@ -51,7 +51,7 @@ const PART: usize = 64;
 pub struct ContactPair {
     /// Name in the case file
     pub name: String,
-    /// Whether the surfaces are held together whatever the pressure
+    /// Whether the surfaces are tied whatever the pressure
     pub tied: bool,
     /// Points of the slave surface, in order along it
     pub points: Vec<SlavePoint>,
@@ -391,7 +391,8 @@ impl ContactPair {
             again.multiplier = if self.penetration.is_some() { new.contact_pressure() } else { 0.0 };
             let law = self.law(slave);
             again.friction.traction += law.stiffness * new.elastic_slip;
-            if let (Some(Cohesion::Beside(law)), Some(again), Some(new)) = (&law.cohesion, &mut again.bond, &new.bond) {
+            if let (Some(Cohesion::Parallel(law)), Some(again), Some(new)) = (&law.cohesion, &mut again.bond, &new.bond)
+            {
                 again.traction += law.stiffness() * new.elastic_slip;
             }
             again

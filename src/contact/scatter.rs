@@ -14,7 +14,7 @@ use super::surface::CORNER;
 use crate::mesh::configuration::Configuration;
 
 /// Number of points on either side of an inner one.
-const BESIDE: usize = 3;
+const ADJACENT: usize = 3;
 
 /// How the points of a slave surface follow each other.
 #[derive(Clone, Debug)]
@@ -47,9 +47,9 @@ impl Course {
     /// The larger of the scatters of p and q [-]
     pub fn scatter(&self, states: &[ContactState]) -> f64 {
         let inner = |k: usize| -> Option<[f64; 2]> {
-            let first = k.checked_sub(BESIDE)?;
-            let goes_on = self.next.get(first..k + BESIDE)?.iter().all(Option::is_some);
-            let closed = states.get(first..=k + BESIDE)?.iter().all(ContactState::is_closed);
+            let first = k.checked_sub(ADJACENT)?;
+            let goes_on = self.next.get(first..k + ADJACENT)?.iter().all(Option::is_some);
+            let closed = states.get(first..=k + ADJACENT)?.iter().all(ContactState::is_closed);
             Some([self.next[k - 1]?, self.next[k]?]).filter(|_| goes_on && closed)
         };
         let ways: Vec<Option<[f64; 2]>> = (0..states.len()).map(inner).collect();

@@ -118,7 +118,7 @@ impl<'a, S: SegmentSearch> Index<'a, S> {
                     let nearest = segments.nearest(slave, surface, x, near, may_meet)?;
                     // A point can lie behind the common node of two segments only if it may be in contact with both: points on
                     // the other side of a wall see the far side of a hole beyond its end, through the body.
-                    let beside = |at: &Projection| {
+                    let adjacent = |at: &Projection| {
                         if at.master_point.xi > 0.0 {
                             surface.next(at.master_point.segment)
                         } else {
@@ -128,7 +128,7 @@ impl<'a, S: SegmentSearch> Index<'a, S> {
                     return on_segment(slave, surface, nearest, x).filter(|at| {
                         at.gap >= 0.0
                             || at.bound == Bound::Segment
-                            || beside(at).is_some_and(|k| may_meet(Branch::of(k)))
+                            || adjacent(at).is_some_and(|k| may_meet(Branch::of(k)))
                     });
                 }
                 let outward = slave.outward(x);

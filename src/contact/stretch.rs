@@ -76,12 +76,12 @@ struct Seen<'a> {
 
 impl ContactPair {
     /// The closed stretch that bears most, if both its sides open as curved surfaces do, or one does and the slave ends at a line of
-    /// symmetry on the other: at a node that is held along the surface. None where gaps are not those of the surfaces.
+    /// symmetry on the other: at a node that is constrained along the surface. None where gaps are not those of the surfaces.
     pub fn stretch(
         &self,
         states: &[ContactState],
         x: &Configuration,
-        is_held: impl Fn(usize, Vector2<f64>) -> bool,
+        is_constrained: impl Fn(usize, Vector2<f64>) -> bool,
     ) -> Option<Stretch> {
         if self.tied || self.is_own() || self.initial.is_some() || self.modulus <= 0.0 || self.is_offset() {
             return None;
@@ -123,7 +123,7 @@ impl ContactPair {
                 if self.corner_between(end.min(other), end.max(other), states, x) {
                     return None;
                 }
-                let at = seen.held_end(end, other, is_held)?;
+                let at = seen.constrained_end(end, other, is_constrained)?;
                 // From the line of symmetry, and not from the middle of the half that is there.
                 let arm = if end == first { middle } else { span - middle } + (self.points[end].at(x) - at).norm();
                 (at, 2.0, opens.map(|open| Open { way: open.way + arm, ..open }))
@@ -219,19 +219,19 @@ impl Seen<'_> {
         None
     }
 
-    /// Place of the end of the surface at a closed point, on the side away from another one, if its node is held along the surface.
-    fn held_end(
+    /// Place of the end of the surface at a closed point, on the side away from another one, if its node is constrained along the surface.
+    fn constrained_end(
         &self,
         end: usize,
         other: usize,
-        is_held: impl Fn(usize, Vector2<f64>) -> bool,
+        is_constrained: impl Fn(usize, Vector2<f64>) -> bool,
     ) -> Option<Vector2<f64>> {
         let away = self.pair.points[other].at(self.x);
         let nodes = self.pair.points[end].length.iter().flat_map(|share| &share.tangent).map(|&(node, _)| node);
         let distance = |node: &usize| (self.x.at(*node) - away).norm();
         let node = nodes.max_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         let outward = self.pair.points[end].outward(self.x)?;
-        is_held(node, Vector2::new(-outward.y, outward.x)).then(|| self.x.at(node))
+        is_constrained(node, Vector2::new(-outward.y, outward.x)).then(|| self.x.at(node))
     }
 }
 

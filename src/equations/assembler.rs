@@ -27,7 +27,7 @@ use crate::equations::{bars, contacts, damping, links, loads, pore_flow, support
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
 use crate::model::state::State;
-use crate::model::{Born, Model, Step};
+use crate::model::{Activated, Model, Step};
 
 /// Assembles a model; owns the pattern and reused buffers.
 pub struct Assembler {
@@ -38,7 +38,7 @@ pub struct Assembler {
     /// Whether each bar is absent; empty if all are there
     bars_absent: Vec<bool>,
     /// Elements that came into a deformed model
-    born: Arc<Born>,
+    activated: Arc<Activated>,
     solids: Solids,
     linearization: Linearization,
     evolving: Evolving,
@@ -87,15 +87,15 @@ impl Assembler {
 
     /// Creates the assembler of a model.
     pub fn new(model: &Arc<Model>) -> Self {
-        let born = Arc::<Born>::default();
-        let solids = Solids::new(model, |_| true, &born);
+        let activated = Arc::<Activated>::default();
+        let solids = Solids::new(model, |_| true, &activated);
         Self {
             model: model.clone(),
             layout: Layout::new(model, term::unsymmetric(model)),
             absent: Vec::new(),
             bars_absent: Vec::new(),
-            evolving: Evolving::new(model, solids.constant(), |_| true, &born),
-            born,
+            evolving: Evolving::new(model, solids.constant(), |_| true, &activated),
+            activated,
             solids,
             linearization: Linearization::None,
             mass: None,
@@ -118,18 +118,18 @@ impl Assembler {
     /// Turns to the bodies that are there in a step, as they came.
     fn attend(&mut self, step: &Step, old: &State) {
         let births = &old.step_start.births;
-        if self.absent == step.absent && self.bars_absent == step.bars.absent && self.born.are_of(births) {
+        if self.absent == step.absent && self.bars_absent == step.bars.absent && self.activated.are_of(births) {
             return;
         }
         let model = &self.model;
-        let born = model.born_of(births);
+        let activated = model.activated_of(births);
         let are_there = |e: usize| step.has(model.body_of_element[e]);
-        self.solids = Solids::new(model, are_there, &born);
-        self.evolving = Evolving::new(model, self.solids.constant(), are_there, &born);
+        self.solids = Solids::new(model, are_there, &activated);
+        self.evolving = Evolving::new(model, self.solids.constant(), are_there, &activated);
         self.equilibrium = ConvergenceCriterion::new(model, |body| step.has(body), Some(step));
         (self.mass, self.damping_mass) = (None, None);
         self.evaluation.memory.clear();
-        (self.absent, self.born) = (step.absent.clone(), born);
+        (self.absent, self.activated) = (step.absent.clone(), activated);
         self.bars_absent.clone_from(&step.bars.absent);
     }
 
@@ -178,7 +178,7 @@ impl Assembler {
     ///
     /// # Errors
     /// The same as for [`Assembler::residual`].
-    pub fn residual_beside(
+    pub fn residual_of_neighbour(
         &mut self,
         trial: Trial,
         u: &[f64],
@@ -357,8 +357,18 @@ impl Assembler {
         scaled: bool,
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
-        let Self { model, layout, born, solids, linearization, evolving, damping_mass, magnitudes, evaluation, .. } =
-            self;
+        let Self {
+            model,
+            layout,
+            activated,
+            solids,
+            linearization,
+            evolving,
+            damping_mass,
+            magnitudes,
+            evaluation,
+            ..
+        } = self;
         let Evaluation {
             force,
             loads,
@@ -396,7 +406,7 @@ impl Assembler {
                     *strain_energy = elastic + evolved.stored;
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
-                Term::PoreFlow => pore_flow::add(model, born, trial, u, water, &mut sums)?,
+                Term::PoreFlow => pore_flow::add(model, activated, trial, u, water, &mut sums)?,
                 Term::Interfaces => {
                     contacts::add(responses, &mut sums);
                     contacts::add_water(model, responses, water);
@@ -432,9 +442,9 @@ impl Assembler {
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
         let Self { model, layout, mass, absent, bars_absent, evaluation, magnitudes, .. } = self;
         let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
-        let held = links::relieved(model, u, force);
+        let constrained = links::relieved(model, u, force);
         reactions.clear();
-        reactions.extend(trial.step.supports.iter().map(|support| support.at.of(&held)));
+        reactions.extend(trial.step.supports.iter().map(|support| support.at.of(&constrained)));
         let found = || inertia::mass(model, layout, [absent, bars_absent]);
         let mass = trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(found));
         let Some((mass, mut inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
@@ -448,10 +458,10 @@ impl Assembler {
             inertia.weigh(model, mass, &mut system.tangent);
         }
         magnitudes.iter_mut().zip(&inertia.force).for_each(|(magnitude, inertia)| *magnitude += inertia.abs());
-        let held = links::relieved(model, u, &inertia.force);
+        let constrained = links::relieved(model, u, &inertia.force);
         let supports = reactions.iter_mut().zip(&trial.step.supports);
-        supports.for_each(|(reaction, support)| *reaction += support.at.of(&held));
-        drop(held);
+        supports.for_each(|(reaction, support)| *reaction += support.at.of(&constrained));
+        drop(constrained);
         (*velocity, *acceleration) = (inertia.velocity, inertia.acceleration);
     }
 

@@ -140,17 +140,17 @@ impl Springs {
             let normal = |clearance: f64| 0.5 * pair.alpha_n * clearance.powi(2);
             let tangential = |slip: f64| 0.5 * stiffness * slip.powi(2);
             let slip = pair.elastic_slip(point, state);
-            let held_by_bond = of_bond(pair, point, state, 0.0);
-            springs.stored += length * (normal(clearance) + tangential(slip) + held_by_bond);
+            let stored_in_bond = of_bond(pair, point, state, 0.0);
+            springs.stored += length * (normal(clearance) + tangential(slip) + stored_in_bond);
             if !state.is_closed() {
-                springs.changed += length * (tangential(slip) + held_by_bond);
+                springs.changed += length * (tangential(slip) + stored_in_bond);
                 continue;
             }
-            let [given, held] = [pair.penetration, pair.stick].map(|allowed| allowed.is_none());
-            let bonded = if held { law.share_of_bond(start.pressure, start.traction) } else { 0.0 };
+            let [given, by_penalty] = [pair.penetration, pair.stick].map(|allowed| allowed.is_none());
+            let bonded = if by_penalty { law.share_of_bond(start.pressure, start.traction) } else { 0.0 };
             let [pressure, traction] = [start.pressure, start.traction - bonded];
             let clearance = clearance + if given { pressure / pair.alpha_n } else { 0.0 };
-            let slip = slip - if held && stiffness > 0.0 { traction / stiffness } else { 0.0 };
+            let slip = slip - if by_penalty && stiffness > 0.0 { traction / stiffness } else { 0.0 };
             let changed = [normal(clearance), tangential(slip)].map(|energy| length * energy);
             springs.changed += changed[0] + changed[1];
             springs.numerical[0] += changed[0];
@@ -171,7 +171,7 @@ impl Springs {
 /// Energy stored in a bond beside friction, q_b²/2α_c + T w/2, with the traction since some start [F/L].
 fn of_bond(pair: &ContactPair, point: &SlavePoint, state: &ContactState, start: f64) -> f64 {
     match (&pair.law(point).cohesion, state.bond) {
-        (Some(Cohesion::Beside(law)), Some(bond)) => {
+        (Some(Cohesion::Parallel(law)), Some(bond)) => {
             let slip = pair.elastic_slip_of_bond(point, state) - start / law.stiffness();
             0.5 * (law.stiffness() * slip * slip + bond.tension * (bond.opening - bond.rest))
         }

@@ -114,10 +114,10 @@ pub(super) fn add_damping(
     let damped = momentum.is_some() || is_viscous || has_viscous_bars(model, trial.step);
     let Some((velocity, dvelocity)) = motion(model, trial, u).filter(|_| damped) else { return };
     if let Some(momentum) = momentum {
-        let [pulls] = momentum.multiply_symmetric([&velocity]);
-        for (dof, pull) in pulls.into_iter().enumerate() {
-            sums.add(dof, pull);
-            damping[dof] -= pull;
+        let [forces] = momentum.multiply_symmetric([&velocity]);
+        for (dof, force) in forces.into_iter().enumerate() {
+            sums.add(dof, force);
+            damping[dof] -= force;
         }
         if let Some(tangent) = &mut sums.tangent {
             tangent.add_columns(momentum, &dvelocity);
@@ -160,21 +160,21 @@ pub(super) fn add_dampers(
         let dof = dashpot.dof;
         let driver = dashpot.driver_velocity(model.mesh.nodes[dof / 2], trial.moment());
         let (velocity, dvelocity) = velocity(dof);
-        let pull = dashpot.coefficient * (driver - velocity);
-        if !pull.is_finite() {
+        let force = dashpot.coefficient * (driver - velocity);
+        if !force.is_finite() {
             return Err(TrialFailure::Undefined { node: model.mesh.node_tags[dof / 2], time: trial.time });
         }
-        sums.add(dof, -pull);
-        damping[dof] += pull;
+        sums.add(dof, -force);
+        damping[dof] += force;
         sums.stiffen(dof, dof, dashpot.coefficient * dvelocity);
     }
     for Absorber { node, coefficients } in &trial.step.loads.absorbers {
         let rates = [0, 1].map(|i| velocity(2 * node + i));
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let (velocity, dvelocity) = rates[j];
-            let pull = -coefficients[(i, j)] * velocity;
-            sums.add(2 * node + i, -pull);
-            damping[2 * node + i] += pull;
+            let force = -coefficients[(i, j)] * velocity;
+            sums.add(2 * node + i, -force);
+            damping[2 * node + i] += force;
             sums.stiffen(2 * node + i, 2 * node + j, coefficients[(i, j)] * dvelocity);
         }
     }
@@ -221,22 +221,22 @@ pub fn by_node(model: &Model, step: &Step) -> Vec<Absorber> {
     total.into_iter().map(|(node, coefficients)| Absorber { node, coefficients }).collect()
 }
 
-/// Computes the force of every damper on its node in `pulls` [F].
-pub fn pull(
+/// Computes the force of every damper on its node in `forces` [F].
+pub fn damper_forces(
     model: &Model,
     step: &Step,
     dampers: &[Absorber],
     time: f64,
     velocity: &[f64],
-    pulls: &mut Vec<Vector2<f64>>,
+    forces: &mut Vec<Vector2<f64>>,
 ) {
-    pulls.clear();
-    pulls.extend(dampers.iter().map(|Absorber { node, coefficients }| -coefficients * vector(velocity, *node)));
+    forces.clear();
+    forces.extend(dampers.iter().map(|Absorber { node, coefficients }| -coefficients * vector(velocity, *node)));
     for dashpot in step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some()) {
         let node = model.ties.original(dashpot.dof / 2);
         if let Ok(k) = dampers.binary_search_by_key(&node, |damper| damper.node) {
             let driver = dashpot.driver_velocity(model.mesh.nodes[dashpot.dof / 2], time);
-            pulls[k][dashpot.dof % 2] += dashpot.coefficient * driver;
+            forces[k][dashpot.dof % 2] += dashpot.coefficient * driver;
         }
     }
 }
@@ -255,10 +255,10 @@ pub(super) fn add_stabilization(trial: Trial, u: &[f64], damping: &mut [f64], su
     let mut squares = 0.0;
     for (dof, start) in trial.step.stabilization.iter().enumerate() {
         let coefficient = left * start / trial.dt;
-        let pull = -coefficient * (u[dof] - trial.old.displacement[dof]);
-        sums.add(dof, -pull);
-        damping[dof] += pull;
-        squares += pull * pull;
+        let force = -coefficient * (u[dof] - trial.old.displacement[dof]);
+        sums.add(dof, -force);
+        damping[dof] += force;
+        squares += force * force;
         sums.stiffen(dof, dof, coefficient);
     }
     squares.sqrt()

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use super::sums::{Sums, TrialFailure};
 use super::trial::{Trial, nodal};
 use crate::model::element::Memory;
-use crate::model::{Born, Model};
+use crate::model::{Activated, Model};
 
-/// Number of elements whose contributions are held at once before they are added.
+/// Number of elements whose contributions are stored at once before they are added.
 const BATCH: usize = 1024;
 
 /// Elements of such bodies, evaluated each time.
@@ -23,7 +23,7 @@ pub(super) struct Evolving {
     forces: Vec<f64>,
     tangents: Vec<f64>,
     /// Elements that came into a deformed model
-    born: Arc<Born>,
+    activated: Arc<Activated>,
 }
 
 /// Memory for the force and the tangent of an element.
@@ -36,8 +36,13 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 }
 
 impl Evolving {
-    /// Finds the evolving elements that are there, except those that are `constant`; `born` came into a deformed model.
-    pub fn new(model: &Model, constant: &[bool], are_there: impl Fn(usize) -> bool, born: &Arc<Born>) -> Self {
+    /// Finds the evolving elements that are there, except those that are `constant`; `activated` came into a deformed model.
+    pub fn new(
+        model: &Model,
+        constant: &[bool],
+        are_there: impl Fn(usize) -> bool,
+        activated: &Arc<Activated>,
+    ) -> Self {
         let is_own = |e: usize| evolves(model, model.body_of_element[e]) && !constant[e] && are_there(e);
         let mut own: Vec<bool> = (0..constant.len()).map(is_own).collect();
         let elements = model.mesh.elements.iter().zip(&own);
@@ -45,8 +50,8 @@ impl Evolving {
         if dofs.is_none() {
             own.clear();
         }
-        let born = born.clone();
-        Self { own, dofs: dofs.unwrap_or_default(), forces: Vec::new(), tangents: Vec::new(), born }
+        let activated = activated.clone();
+        Self { own, dofs: dofs.unwrap_or_default(), forces: Vec::new(), tangents: Vec::new(), activated }
     }
 
     /// Adds the forces of these elements, and stores their internal variables at the end of the trial in `memory`.
@@ -66,7 +71,7 @@ impl Evolving {
         if self.own.is_empty() {
             return Ok(Evolved::default());
         }
-        let Self { own, dofs, forces, tangents, born } = self;
+        let Self { own, dofs, forces, tangents, activated } = self;
         let (dofs, size) = (*dofs, *dofs * *dofs);
         let count = BATCH.min(own.len());
         forces.resize(count * dofs, 0.0);
@@ -82,7 +87,7 @@ impl Evolving {
             let (n, memory) = (model.mesh.elements[e].nodes.len(), Memory { dt: trial.dt, old, new: &mut *new });
             let (u, dofs) = (&nodal(model, e, u)[..n], 2 * n);
             let tangent = wanted.then_some(&mut tangent[..dofs * dofs]);
-            let solid = model.as_born(born, e);
+            let solid = model.as_activated(activated, e);
             let found = solid.evolve(&*body.material, memory, u, &mut force[..dofs], tangent);
             let energies = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
             Ok((e, energies, model.heating(solid, e, [old, new]) + model.filling(solid, e, [old, new])))

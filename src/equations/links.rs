@@ -313,9 +313,9 @@ impl Turning {
         let arm = blended(scheme, self.e);
         let spun = perpendicular(arm) * angle * (m * scheme.dacceleration(dt));
         let turn = Matrix2::new(0.0, -angular, angular, 0.0);
-        let pulled =
+        let pulled_back =
             Matrix2::identity() * self.square(scheme) + arm * angle * (2.0 * self.spin[1] * scheme.dvelocity(dt));
-        spun + (turn - pulled) * f + (self.excess.1 - Matrix2::identity()) * rate
+        spun + (turn - pulled_back) * f + (self.excess.1 - Matrix2::identity()) * rate
     }
 
     /// Adds to the tangent the part of the platen's weighted accelerations beyond `factors`, those of the scheme node by node.
@@ -383,8 +383,8 @@ fn turning(model: &Model, leaders: [usize; 2], Trial { old, .. }: Trial) -> (f64
 
 /// G_R of a platen.
 fn reference(model: &Model, trial: Trial, k: usize) -> Matrix2<f64> {
-    let held = trial.step.supports.iter().any(|support| support.at.node() == model.linkage.rigid[k][0]);
-    if held { Matrix2::zeros() } else { model.linkage.centers[k] }
+    let constrained = trial.step.supports.iter().any(|support| support.at.node() == model.linkage.rigid[k][0]);
+    if constrained { Matrix2::zeros() } else { model.linkage.centers[k] }
 }
 
 /// Displacements of rigid platens at the end of an increment whose accelerations vary linearly up to those found at θ Δt, where

@@ -22,7 +22,7 @@ use crate::laws::bulk::{MaterialFailure, cofactor};
 use crate::mesh::configuration::vector;
 use crate::model::pore_flow::{PoreFlow, WetElement, WetPoint};
 use crate::model::state::{Outflow, State, Water};
-use crate::model::{Born, Model};
+use crate::model::{Activated, Model};
 
 /// The flow goes by the state at the start of the increment, and the volume by the displacement.
 pub(super) fn dependence(model: &Model) -> Dependence {
@@ -52,7 +52,7 @@ pub(super) fn span(trial: Trial) -> f64 {
 /// Adds the equations of the pressures, and what the bodies' forces change by with them to the tangent; stores the water at the end of the trial.
 pub(super) fn add(
     model: &Model,
-    born: &Born,
+    activated: &Activated,
     trial: Trial,
     u: &[f64],
     water: &mut Water,
@@ -62,7 +62,7 @@ pub(super) fn add(
     let (times, old) = (Times::of(trial), &trial.old.water);
     let wanted = sums.tangent.is_some();
     let of = |wet: &&WetElement| {
-        Increment { flow, wet: born.wet(wet), trial, u, times }
+        Increment { flow, wet: activated.wet(wet), trial, u, times }
             .evaluate(wanted)
             .map_err(|cause| TrialFailure::material(model, wet.element, cause))
     };

@@ -72,8 +72,8 @@ pub struct SlipOperator {
     /// S_mm
     middle: DenseLu,
     /// S_mm⁻¹ S_mj and S_jm, column by column
-    following: Vec<f64>,
-    pulling: Vec<f64>,
+    middle_by_jump: Vec<f64>,
+    middle_columns: Vec<f64>,
     /// ℓ + K/α
     series: DenseLu,
     /// y by s, row by row, of all contact points
@@ -141,8 +141,8 @@ impl SlipOperator {
         let mut system = bodies.system();
         let mut condensation = Condensation::new(system.tangent.pattern.clone(), &nodes.nodes)?;
         bodies.assemble(trial, &vec![0.0; model.dofs()], &[], Request::Tangent, &mut system)?;
-        let held = || LinearFailure::Singular("a body is constrained only by contact, or not at all".into());
-        let condensed = condensation.condense(&system.tangent).ok_or_else(held)?;
+        let unconstrained = || LinearFailure::Singular("a body is constrained only by contact, or not at all".into());
+        let condensed = condensation.condense(&system.tangent).ok_or_else(unconstrained)?;
         let (sites, points) = gathered(model.contacts.iter().flat_map(|pair| facing(model, pair, &nodes, slips)));
         let mut moving: Vec<Option<usize>> = vec![None; nodes.nodes.len()];
         let slaves: Vec<usize> = sites.iter().map(|site| site.slave).collect();
@@ -159,8 +159,8 @@ impl SlipOperator {
             moving,
             middles: others.len(),
             middle: DenseLu::default(),
-            following: Vec::new(),
-            pulling: Vec::new(),
+            middle_by_jump: Vec::new(),
+            middle_columns: Vec::new(),
             series: DenseLu::default(),
             by_slip: Vec::new(),
             by_fluid: Vec::new(),
@@ -193,16 +193,16 @@ impl SlipOperator {
         let jumping: Vec<Vec<f64>> = (0..n).into_par_iter().map(|j| self.gather(&self.column_of_jump(j))).collect();
         let middle: Vec<Vec<f64>> = (0..m).into_par_iter().map(|c| self.gather(&self.column_of_middle(c))).collect();
         self.middle.factorize_columns(m, middle.iter().flat_map(|column| &column[..m]).copied().collect())?;
-        self.pulling = middle.iter().flat_map(|column| &column[m..]).copied().collect();
+        self.middle_columns = middle.iter().flat_map(|column| &column[m..]).copied().collect();
         drop(middle);
-        self.following = jumping.iter().flat_map(|column| &column[..m]).copied().collect();
-        self.middle.solve_columns(&mut self.following);
-        let (following, pulling) = (&self.following, &self.pulling);
+        self.middle_by_jump = jumping.iter().flat_map(|column| &column[..m]).copied().collect();
+        self.middle.solve_columns(&mut self.middle_by_jump);
+        let (middle_by_jump, middle_columns) = (&self.middle_by_jump, &self.middle_columns);
         let condense = |(j, mut column): (usize, Vec<f64>)| {
             let mut own = column.split_off(m);
-            let follows = following.get(j * m..(j + 1) * m).unwrap_or_default();
-            for (x, pull) in follows.iter().zip(pulling.chunks_exact(n.max(1))) {
-                own.iter_mut().zip(pull).for_each(|(k, pull)| *k -= x * pull);
+            let follows = middle_by_jump.get(j * m..(j + 1) * m).unwrap_or_default();
+            for (x, column) in follows.iter().zip(middle_columns.chunks_exact(n.max(1))) {
+                own.iter_mut().zip(column).for_each(|(k, middle)| *k -= x * middle);
             }
             own
         };
@@ -293,8 +293,8 @@ impl SlipOperator {
         let mut middles = self.gather(&forwarded.right);
         let mut tractions = middles.split_off(2 * self.middles);
         self.middle.solve_columns(&mut middles);
-        for (w, pull) in middles.iter().zip(self.pulling.chunks_exact(tractions.len().max(1))) {
-            tractions.iter_mut().zip(pull).for_each(|(rho, pull)| *rho -= w * pull);
+        for (w, column) in middles.iter().zip(self.middle_columns.chunks_exact(tractions.len().max(1))) {
+            tractions.iter_mut().zip(column).for_each(|(rho, middle)| *rho -= w * middle);
         }
         self.series.solve_columns(&mut tractions);
         let jumps: Vec<f64> = tractions.iter().enumerate().map(|(j, y)| -y * self.compliance(j)).collect();
@@ -331,7 +331,7 @@ impl SlipOperator {
 
     /// m −= S_mm⁻¹ S_mj j.
     fn follow(&self, jumps: &[f64], middles: &mut [f64]) {
-        for (j, column) in jumps.iter().zip(self.following.chunks_exact(middles.len().max(1))) {
+        for (j, column) in jumps.iter().zip(self.middle_by_jump.chunks_exact(middles.len().max(1))) {
             middles.iter_mut().zip(column).for_each(|(m, x)| *m -= j * x);
         }
     }

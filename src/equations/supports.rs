@@ -33,7 +33,7 @@ pub fn fixed(model: &Model, step: &Step) -> Vec<bool> {
     fixed
 }
 
-/// Nodes held along an inclined direction: their equations are turned, and their columns are not.
+/// Nodes constrained along an inclined direction: their equations are turned, and their columns are not.
 pub(super) fn unsymmetric(step: &Step) -> Vec<usize> {
     step.supports.iter().filter(|support| support.at.inclined.is_some()).map(|support| support.at.node()).collect()
 }
@@ -76,7 +76,7 @@ pub(super) fn prescribe(
         }
         turn(support.at, weight * (support.at.of(u) - target), &mut system.residual);
         if tangent {
-            hold(support.at, weight, &mut system.tangent);
+            constrain(support.at, weight, &mut system.tangent);
         }
     }
     for &(copy, original) in model.ties.pairs() {
@@ -100,9 +100,9 @@ pub fn turn(at: Direction, own: f64, values: &mut [f64]) {
 }
 
 /// Replaces the equation of a supported direction by w d·u, and the other of an inclined one by the projection across it.
-pub fn hold(at: Direction, weight: f64, matrix: &mut SparseMatrix) {
+pub fn constrain(at: Direction, weight: f64, matrix: &mut SparseMatrix) {
     match at.across() {
-        None => matrix.hold(at.dof, weight),
+        None => matrix.constrain(at.dof, weight),
         Some(across) => matrix.turn_rows(at.dof, (at.vector() * weight).into(), across.vector().into()),
     }
 }

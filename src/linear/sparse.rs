@@ -3,7 +3,7 @@
 //! # Symmetry of the values
 //!
 //! A pattern knows which nodes' values may be unsymmetric, as those say who add them: A_ij = A_ji wherever one of i and j is not
-//! among them. Values are never compared. A held dof has an equation of its own, A_dd x_d = b_d; what its column has elsewhere counts
+//! among them. Values are never compared. A constrained dof has an equation of its own, A_dd x_d = b_d; what its column has elsewhere counts
 //! as on the right-hand side, and spoils no symmetry.
 
 use std::sync::Arc;
@@ -136,8 +136,8 @@ pub struct SparseMatrix {
     pub pattern: Arc<Pattern>,
     /// Values, column by column
     pub values: Vec<f64>,
-    /// Whether each dof is held: see [`SparseMatrix::hold`]
-    pub held: Vec<bool>,
+    /// Whether each dof is constrained: see [`SparseMatrix::constrain`]
+    pub constrained: Vec<bool>,
     /// Whether an odd number of nodes have their two equations in reverse order ([`SparseMatrix::turn_rows`])
     pub reversed: bool,
 }
@@ -146,8 +146,8 @@ impl SparseMatrix {
     /// Creates the zero matrix on a pattern.
     pub fn zero(pattern: Arc<Pattern>) -> Self {
         let values = vec![0.0; pattern.values()];
-        let held = vec![false; 2 * pattern.nodes()];
-        Self { pattern, values, held, reversed: false }
+        let constrained = vec![false; 2 * pattern.nodes()];
+        Self { pattern, values, constrained, reversed: false }
     }
 
     /// Number of rows and columns.
@@ -155,17 +155,17 @@ impl SparseMatrix {
         2 * self.pattern.nodes()
     }
 
-    /// Set every value to zero; nothing is held.
+    /// Set every value to zero; nothing is constrained.
     pub fn clear(&mut self) {
         self.values.fill(0.0);
-        self.held.fill(false);
+        self.constrained.fill(false);
         self.reversed = false;
     }
 
-    /// Take the values of a matrix on the same pattern; nothing is held.
+    /// Take the values of a matrix on the same pattern; nothing is constrained.
     pub fn copy_values(&mut self, other: &SparseMatrix) {
         self.values.copy_from_slice(&other.values);
-        self.held.fill(false);
+        self.constrained.fill(false);
         self.reversed = false;
     }
 
@@ -222,16 +222,16 @@ impl SparseMatrix {
     }
 
     /// Hold a dof: its equation becomes `diagonal` x = b, and stays so.
-    pub fn hold(&mut self, dof: usize, diagonal: f64) {
+    pub fn constrain(&mut self, dof: usize, diagonal: f64) {
         self.replace_row(dof, diagonal);
-        self.held[dof] = true;
+        self.constrained[dof] = true;
     }
 
     /// Replace the row of `dof` by `diagonal` on the diagonal and zeros elsewhere, to which others may be added: what its column
     /// has is unsymmetric then.
     pub fn replace_row(&mut self, dof: usize, diagonal: f64) {
         let (node, d) = (dof / 2, dof % 2);
-        self.held[dof] = false;
+        self.constrained[dof] = false;
         // The pattern is symmetric: the columns with an entry in this row are the neighbours of its node.
         for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
             let column = self.pattern.rows[k];
@@ -262,7 +262,7 @@ impl SparseMatrix {
     /// both original ones.
     pub fn turn_rows(&mut self, dof: usize, own: [f64; 2], across: [f64; 2]) {
         let (node, d) = (dof / 2, dof % 2);
-        self.held[2 * node..2 * node + 2].fill(false);
+        self.constrained[2 * node..2 * node + 2].fill(false);
         let unit =
             if d == 0 { own[0] * across[1] - own[1] * across[0] } else { across[0] * own[1] - across[1] * own[0] };
         self.reversed ^= unit < 0.0;

@@ -153,11 +153,11 @@ impl Mesh {
 
     /// Refuses a group of nodes that stands for a side.
     fn check_single(&self, name: &str, group: &[usize]) -> Result<(), MeshError> {
-        let held = |node: usize| group.binary_search(&node).is_ok();
+        let constrained = |node: usize| group.binary_search(&node).is_ok();
         let sides = self.elements.iter().flat_map(|Element { kind, nodes }| {
             (0..kind.corners()).map(|side| kind.edge(side).0.map(|local| nodes[local]))
         });
-        match sides.into_iter().find(|ends| ends.iter().all(|&end| held(end))) {
+        match sides.into_iter().find(|ends| ends.iter().all(|&end| constrained(end))) {
             None => Ok(()),
             Some(ends) => {
                 Err(MeshError::SideOfNodes { group: name.into(), nodes: ends.map(|end| self.node_tags[end]) })

@@ -41,8 +41,8 @@ pub fn nearest<'e>(
     }
     let distance = |node: usize| (nodes[node] - Vector2::from(point)).norm();
     let node = (0..nodes.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))).ok_or(NotOne::NoNodes)?;
-    let beside = elements.filter(|element| element.contains(&node));
-    let sides = beside.flat_map(|element| element.iter().map(|other| (nodes[*other] - nodes[node]).norm()));
+    let adjacent = elements.filter(|element| element.contains(&node));
+    let sides = adjacent.flat_map(|element| element.iter().map(|other| (nodes[*other] - nodes[node]).norm()));
     let (near, size) = (distance(node), sides.fold(0.0, f64::max));
     // A node beside no element is found where it is, to the round-off of its position.
     let round_off = (EQUALLY_NEAR * size).max(OF_POSITION * nodes[node].amax());

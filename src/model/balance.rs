@@ -176,8 +176,8 @@ fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbala
             all += forces.magnitude[dof].powi(2);
             loads += forces.loads[dof];
             if let Ok(k) = step.supports.binary_search_by_key(&dof, |support| support.at.dof) {
-                let held = step.supports[k].at.vector();
-                free -= held * held.dot(&free);
+                let constrained = step.supports[k].at.vector();
+                free -= constrained * constrained.dot(&free);
             }
         }
         resultant += free;

@@ -36,7 +36,7 @@ impl Model {
     pub fn first_bars(&self) -> Vec<BarState> {
         let zero = vec![0.0; self.dofs()];
         let is_there = |bar: usize| self.steps.first().is_none_or(|step| step.bars.has(bar));
-        let of = |(k, bar): (usize, &Bar)| if is_there(k) { bar.born(&zero) } else { bar.absent(&zero) };
+        let of = |(k, bar): (usize, &Bar)| if is_there(k) { bar.activated(&zero) } else { bar.absent(&zero) };
         self.bars.iter().enumerate().map(of).collect()
     }
 
@@ -49,7 +49,7 @@ impl Model {
     pub fn change_bars(&self, step: &Step, state: &mut State) {
         for &k in &step.bars.changed {
             let (bar, u) = (&self.bars[k], &state.displacement);
-            state.bars[k] = if step.bars.has(k) { bar.born(u) } else { bar.absent(u) };
+            state.bars[k] = if step.bars.has(k) { bar.activated(u) } else { bar.absent(u) };
         }
     }
 

@@ -145,7 +145,7 @@ pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vecto
 impl Model {
     /// The given nodes (sorted) whose reactions along x (0) or y (1) belong to them; the reaction of a platen is included
     /// only if all of its nodes are given.
-    pub fn held(&self, nodes: &[usize], component: usize) -> Vec<usize> {
+    pub fn constrained(&self, nodes: &[usize], component: usize) -> Vec<usize> {
         let linked = self.linkage.plates.iter().filter(|(_, components)| components[component]).map(|(plate, _)| plate);
         let plates: Vec<&Vec<usize>> = self.plates.iter().chain(linked).collect();
         let all = |plate: &Vec<usize>| plate.iter().all(|node| nodes.binary_search(node).is_ok());

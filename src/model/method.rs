@@ -3,7 +3,7 @@
 //! Pointwise contact of meshes is exact only while nodes face nodes. Elsewhere two points per edge, and on quadratic edges anywhere, leave
 //! the pressure to alternate, the more so the stiffer the penalty. Whatever faces what at the start, surfaces slide; so meshes are met by
 //! mortar, which averages. It costs about a third more per evaluation of the contact: explicit increments, which do little else, stay with
-//! points on straight linear edges, and quasi-dynamic ones need nodes. A corner of the slave is held where it has a contact point of its
+//! points on straight linear edges, and quasi-dynamic ones need nodes. A corner of the slave is constrained where it has a contact point of its
 //! own.
 //!
 //! A rigid master is met by nodes where it is bent, and there by Gauss points where it has corners or ends: of the points between two nodes

@@ -76,7 +76,7 @@ use pore_flow::PoreFlow;
 pub use requests::{Axis, OutputRequests, Probe, Station, WatchedSet};
 pub use scheme::Scheme;
 #[doc(hidden)]
-pub use stages::Born;
+pub use stages::Activated;
 use state::StepStart;
 pub use state::{Energy, State};
 pub use step::{ForceComponent, Increments, Rupture, Step};

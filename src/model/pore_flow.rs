@@ -131,12 +131,12 @@ impl Drain {
     /// Flow q out of the body at a place, and ∂q/∂p [L/T], [L³/(F T)].
     pub fn flow(&self, pressure: f64, at: Vector2<f64>, time: f64) -> [f64; 2] {
         let value = self.value.value_at(at, time);
-        let held = self.head.map_or(value, |weight| weight * (value - at.y));
+        let prescribed = self.head.map_or(value, |weight| weight * (value - at.y));
         match self.kind {
             DrainKind::Flux => [value, 0.0],
-            DrainKind::Seeps(_) if pressure <= held => [0.0; 2],
+            DrainKind::Seeps(_) if pressure <= prescribed => [0.0; 2],
             DrainKind::Conducts(conductance) | DrainKind::Seeps(conductance) => {
-                [conductance * (pressure - held), conductance]
+                [conductance * (pressure - prescribed), conductance]
             }
         }
     }
@@ -238,18 +238,18 @@ impl PoreFlow {
 
 /// Pairs of neighbouring corners of some elements, the last one alone if they are odd.
 fn paired(elements: impl Iterator<Item = usize>, mesh: &Mesh) -> Vec<[Option<usize>; 2]> {
-    let mut beside: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
+    let mut adjacent: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
     for e in elements {
         let element = &mesh.elements[e];
         for edge in 0..element.kind.corners() {
             let [a, b] = element.kind.edge(edge).0.map(|local| element.nodes[local]);
-            beside.entry(a).or_default().push(b);
-            beside.entry(b).or_default().push(a);
+            adjacent.entry(a).or_default().push(b);
+            adjacent.entry(b).or_default().push(a);
         }
     }
     let mut taken = std::collections::BTreeSet::new();
     let (mut pairs, mut alone) = (Vec::new(), Vec::new());
-    for (&node, others) in &beside {
+    for (&node, others) in &adjacent {
         if !taken.insert(node) {
             continue;
         }
@@ -284,7 +284,7 @@ impl WetElement {
     }
 
     /// The element as it comes at displacements of its nodes.
-    pub fn born(&self, birth: Vec<Vector2<f64>>, body: &Body, solid: &SolidElement, mesh: &Mesh) -> Option<Self> {
+    pub fn activated(&self, birth: Vec<Vector2<f64>>, body: &Body, solid: &SolidElement, mesh: &Mesh) -> Option<Self> {
         let numbers = [&self.nodes, &self.pressures, &self.places].map(Clone::clone);
         Self::shaped(numbers, self.element, birth, body, solid, mesh)
     }
@@ -443,7 +443,7 @@ impl Model {
     /// Notes the mean pressure of each body that is there in excess of that at the start, and the largest so far.
     pub fn note_water(&self, state: &mut State) {
         for (k, &body) in self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate()) {
-            if let Some([_, excess]) = self.held_water(body, state).filter(|_| state.has(body)) {
+            if let Some([_, excess]) = self.stored_water(body, state).filter(|_| state.has(body)) {
                 let Water { peaks, excess: now, .. } = &mut state.water;
                 peaks[k] = if excess.abs() > peaks[k].abs() { excess } else { peaks[k] };
                 now[k] = excess;
@@ -455,12 +455,12 @@ impl Model {
     /// excess of that at the start; `None` of any other [L³], [F/L²].
     pub fn water_of(&self, body: usize, state: &State) -> Option<[f64; 2]> {
         let number = self.flow.as_ref()?.bodies.iter().position(|other| *other == body)?;
-        let [held, excess] = if state.has(body) { self.held_water(body, state)? } else { [0.0, f64::NAN] };
-        Some([held - state.water.brought[number], excess])
+        let [prescribed, excess] = if state.has(body) { self.stored_water(body, state)? } else { [0.0, f64::NAN] };
+        Some([prescribed - state.water.brought[number], excess])
     }
 
     /// The same, but for what it brought.
-    pub(super) fn held_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
+    pub(super) fn stored_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref().filter(|flow| flow.bodies.contains(&body))?;
         let law = self.bodies[body].material.description();
         let slot = law.slot(&GIVEN_PRESSURE)?;

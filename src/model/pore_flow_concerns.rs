@@ -75,14 +75,14 @@ fn overshoots(model: &Model, flow: &PoreFlow) -> Option<String> {
         let mut drained = vec![false; flow.count()];
         let corners = step.drains.iter().filter(holds).flat_map(|drain| &drain.corners);
         corners.for_each(|(k, ..)| drained[*k] = true);
-        let beside = |wet: &&WetElement| {
+        let adjacent = |wet: &&WetElement| {
             step.has(model.body_of_element[wet.element]) && wet.pressures.iter().any(|&k| drained[k])
         };
         let of = |wet: &WetElement| {
             least(model.mesh.elements[wet.element].kind) * wet.size * wet.size / (6.0 * wet.diffusivity)
         };
         // The elements that follow the jump first.
-        let shortest = flow.elements.iter().filter(beside).map(of).fold(f64::INFINITY, f64::min);
+        let shortest = flow.elements.iter().filter(adjacent).map(of).fold(f64::INFINITY, f64::min);
         let dt = step.increments.initial;
         (shortest.is_finite() && dt < OVERSHOOTS * shortest).then(|| {
             format!(

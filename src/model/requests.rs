@@ -32,7 +32,7 @@ pub struct WatchedSet {
     /// its edges, where it is a group of edges
     pub edges: Vec<Edge>,
     /// nodes whose reactions along x and y are its own
-    pub held: [Vec<usize>; 2],
+    pub constrained: [Vec<usize>; 2],
 }
 
 /// A point that moves with a body, at which motion, strain and stress are recorded, as a gauge there would read them.

@@ -8,7 +8,7 @@
 //! A step that adds or removes bodies begins in the equilibrium of the one before, whatever the bodies exerted on the rest: internal
 //! forces, contact, weight and other loads. The difference fades linearly to zero.
 //!
-//! Nodes that only absent bodies have are held where they are.
+//! Nodes that only absent bodies have are constrained where they are.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -32,14 +32,14 @@ const LEAST_SHARE: f64 = 0.5;
 /// Elements that came into a deformed model, by number.
 #[derive(Clone, Debug, Default)]
 #[doc(hidden)]
-pub struct Born {
+pub struct Activated {
     births: Arc<Births>,
     solids: BTreeMap<usize, SolidElement>,
     wet: BTreeMap<usize, WetElement>,
 }
 
 #[doc(hidden)]
-impl Born {
+impl Activated {
     /// Whether these are the ones that came at some displacements.
     pub fn are_of(&self, births: &Arc<Births>) -> bool {
         Arc::ptr_eq(&self.births, births) || self.births == *births
@@ -93,47 +93,46 @@ impl Model {
         let given = &self.solids[element];
         let births = state.step_start.births.get(&element);
         // Elements are checked when they come.
-        births.and_then(|birth| self.born(element, birth).ok()).map_or(Cow::Borrowed(given), Cow::Owned)
+        births.and_then(|birth| self.activated(element, birth).ok()).map_or(Cow::Borrowed(given), Cow::Owned)
     }
 
     /// An element that comes at displacements of its nodes.
     ///
     /// # Errors
     /// [`ElementError::Degenerate`] when it is inverted there.
-    pub fn born(&self, element: usize, birth: &[[f64; 2]]) -> Result<SolidElement, ElementError> {
+    pub fn activated(&self, element: usize, birth: &[[f64; 2]]) -> Result<SolidElement, ElementError> {
         let birth = birth.iter().map(|u| Vector2::from(*u)).collect();
-        self.solids[element].born(self.mesh.section, &self.mesh.places(element), birth)
+        self.solids[element].activated(self.mesh.section, &self.mesh.places(element), birth)
     }
 
     /// An element, as it came.
-    pub fn as_born<'m>(&'m self, born: &'m Born, element: usize) -> &'m SolidElement {
-        born.solids.get(&element).unwrap_or(&self.solids[element])
+    pub fn as_activated<'m>(&'m self, activated: &'m Activated, element: usize) -> &'m SolidElement {
+        activated.solids.get(&element).unwrap_or(&self.solids[element])
     }
 
     /// The elements that came into a deformed model, by number.
-    pub fn born_of(&self, births: &Arc<Births>) -> Arc<Born> {
-        let mut all = Born { births: births.clone(), ..Born::default() };
+    pub fn activated_of(&self, births: &Arc<Births>) -> Arc<Activated> {
+        let mut all = Activated { births: births.clone(), ..Activated::default() };
         for (&e, birth) in births.iter() {
-            let Ok(born) = self.born(e, birth) else { continue };
-            all.wet.extend(self.born_wet(e, birth, &born).map(|wet| (e, wet)));
-            all.solids.insert(e, born);
+            let Ok(activated) = self.activated(e, birth) else { continue };
+            all.wet.extend(self.activated_wet(e, birth, &activated).map(|wet| (e, wet)));
+            all.solids.insert(e, activated);
         }
         Arc::new(all)
     }
 
-    fn born_wet(&self, element: usize, birth: &[[f64; 2]], born: &SolidElement) -> Option<WetElement> {
+    fn activated_wet(&self, element: usize, birth: &[[f64; 2]], activated: &SolidElement) -> Option<WetElement> {
         let birth = birth.iter().map(|u| Vector2::from(*u)).collect();
-        self.flow.as_ref()?.wet(element)?.born(birth, self.body_of(element), born, &self.mesh)
+        self.flow.as_ref()?.wet(element)?.activated(birth, self.body_of(element), activated, &self.mesh)
     }
 
     /// An element that water flows through as it is in a state: by its shape where it came.
     pub fn wet<'m>(&self, state: &State, given: &'m WetElement) -> Cow<'m, WetElement> {
-        let born = state
-            .step_start
-            .births
-            .get(&given.element)
-            .and_then(|birth| self.born_wet(given.element, birth, &self.born(given.element, birth).ok()?));
-        born.map_or(Cow::Borrowed(given), Cow::Owned)
+        let activated =
+            state.step_start.births.get(&given.element).and_then(|birth| {
+                self.activated_wet(given.element, birth, &self.activated(given.element, birth).ok()?)
+            });
+        activated.map_or(Cow::Borrowed(given), Cow::Owned)
     }
 
     /// Lets the water of bodies that a step removes leave with them, while they are still what they were: pressures that no body has afterwards that
@@ -141,8 +140,8 @@ impl Model {
     pub fn let_water_go(&self, step: &Step, state: &mut State) {
         let Some(flow) = &self.flow else { return };
         for (k, body) in flow.bodies.iter().enumerate().filter(|(_, body)| step.changed.contains(body)) {
-            let held = self.held_water(*body, state).filter(|_| !step.has(*body));
-            state.water.brought[k] -= held.map_or(0.0, |[taken, _]| taken);
+            let stored = self.stored_water(*body, state).filter(|_| !step.has(*body));
+            state.water.brought[k] -= stored.map_or(0.0, |[taken, _]| taken);
         }
         let mut stays = vec![false; flow.count()];
         for wet in &flow.elements {
@@ -158,7 +157,7 @@ impl Model {
     pub fn let_water_come(&self, step: &Step, state: &mut State) {
         let bodies = self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate());
         for (k, &body) in bodies.filter(|(_, body)| step.changed.contains(body) && step.has(**body)) {
-            let [taken, excess] = self.held_water(body, state).unwrap_or_default();
+            let [taken, excess] = self.stored_water(body, state).unwrap_or_default();
             state.water.brought[k] += taken;
             (state.water.excess[k], state.water.peaks[k]) = (excess, 0.0);
         }
@@ -178,8 +177,8 @@ impl Model {
                 continue;
             }
             let volumes = self.solids[element].point_volumes();
-            let least = self.born(element, &birth).map_or(0.0, |born| {
-                let shares = born.point_volumes().iter().zip(volumes).map(|(now, mesh)| now / mesh);
+            let least = self.activated(element, &birth).map_or(0.0, |activated| {
+                let shares = activated.point_volumes().iter().zip(volumes).map(|(now, mesh)| now / mesh);
                 shares.fold(f64::INFINITY, f64::min)
             });
             if least < LEAST_SHARE {

@@ -321,8 +321,8 @@ impl Until {
     /// Its value, of reactions of a state or of the start of its step, or of its water [F], [-].
     fn of(&self, reaction: &[f64], water: &Water) -> f64 {
         match &self.goal {
-            Goal::Reaction(held, part) => {
-                let force = vector(held, reaction);
+            Goal::Reaction(constrained, part) => {
+                let force = vector(constrained, reaction);
                 match part {
                     ForceComponent::X => force.x,
                     ForceComponent::Y => force.y,
@@ -342,11 +342,11 @@ impl Until {
     /// force reverses.
     fn share(&self, [old, new]: [&State; 2]) -> Option<f64> {
         let straight = |before: f64, way: f64| [(self.value - before) / way; 2];
-        let Goal::Reaction(held, part) = &self.goal else {
+        let Goal::Reaction(constrained, part) = &self.goal else {
             let [before, after] = [old, new].map(|state| self.value_in(state));
             return (after > before).then(|| straight(before, after - before)[0]).filter(|share| *share > 0.0);
         };
-        let [before, after] = [old, new].map(|state| vector(held, &state.reaction));
+        let [before, after] = [old, new].map(|state| vector(constrained, &state.reaction));
         let way = after - before;
         let shares = match part {
             ForceComponent::X => straight(before.x, way.x),
@@ -395,7 +395,7 @@ impl Until {
 }
 
 /// Sum of the reactions of the nodes that belong to it along x and y [F].
-fn vector(held: &[Vec<usize>; 2], reaction: &[f64]) -> Vector2<f64> {
-    let sum = |i: usize| held[i].iter().map(|node| reaction[2 * node + i]).sum();
+fn vector(constrained: &[Vec<usize>; 2], reaction: &[f64]) -> Vector2<f64> {
+    let sum = |i: usize| constrained[i].iter().map(|node| reaction[2 * node + i]).sum();
     Vector2::new(sum(0), sum(1))
 }

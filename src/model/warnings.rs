@@ -52,7 +52,7 @@ impl Model {
         let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self)).chain(many_increments(self));
         let of_model = of_model.chain(idle_radiation(self)).chain(uncertain_times(self)).chain(balance::concerns(self));
         let of_model = of_model
-            .chain(sheared_beside_faults(self))
+            .chain(sheared_at_faults(self))
             .chain(unfit::concerns(self))
             .chain(pore_flow_concerns::concerns(self));
         let of_model = of_model.chain(self.bodies.iter().filter_map(concern_of_law));
@@ -161,14 +161,14 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
     if pair.tied || pair.holds_fluid() || !pair.laws.iter().any(goes_by_pressure) {
         return None;
     }
-    let beside = |nodes: BTreeSet<usize>| {
+    let adjacent = |nodes: BTreeSet<usize>| {
         let holds_water = |body: &Body| body.pore_fluid.is_some() || body.pore_pressure.is_some();
-        let is_beside = |body: &&Body| holds_water(body) && body.nodes.iter().any(|node| nodes.contains(node));
-        model.bodies.iter().find(is_beside).map(|body| &body.name)
+        let is_adjacent = |body: &&Body| holds_water(body) && body.nodes.iter().any(|node| nodes.contains(node));
+        model.bodies.iter().find(is_adjacent).map(|body| &body.name)
     };
-    let (body, swap) = match beside(pair.slave_nodes().collect()) {
+    let (body, swap) = match adjacent(pair.slave_nodes().collect()) {
         Some(body) => (body, ""),
-        None => (beside(pair.nodes().collect())?, "make it the slave and "),
+        None => (adjacent(pair.nodes().collect())?, "make it the slave and "),
     };
     Some(format!(
         "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: {swap}take that part \
@@ -177,7 +177,7 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
 }
 
 /// Fluid pressure that is none beside the one at a neighbour [-]
-const NONE_BESIDE: f64 = 1e-6;
+const NO_PRESSURE: f64 = 1e-6;
 
 /// Part of the largest fluid pressure at the start where it ends abruptly, as a source does [-]
 const ABRUPT: f64 = 0.5;
@@ -196,12 +196,12 @@ fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
         |time: f64| pair.points.iter().map(|point| pair.fluid_pressure(point, &x, time)).collect::<Vec<_>>();
     let [first, last] = [0.0, end].map(pressures);
     let highest = first.iter().copied().fold(0.0, f64::max);
-    let is_none = |pressure: f64| pressure <= NONE_BESIDE * highest;
+    let is_none = |pressure: f64| pressure <= NO_PRESSURE * highest;
     let nearest = |k: usize| {
         let way = |other: usize| (pair.points[other].at(&x) - pair.points[k].at(&x)).norm();
         let nodes = pair.points[k].length.iter().flat_map(|share| &share.tangent);
-        let beside = nodes.filter_map(|(node, _)| at_node.get(node)).flatten().copied();
-        beside.filter(|&other| !is_none(first[other])).min_by(|&a, &b| way(a).total_cmp(&way(b)))
+        let adjacent = nodes.filter_map(|(node, _)| at_node.get(node)).flatten().copied();
+        adjacent.filter(|&other| !is_none(first[other])).min_by(|&a, &b| way(a).total_cmp(&way(b)))
     };
     let mut reached = (0..first.len()).filter(|&k| is_none(first[k]) && !is_none(last[k])).filter_map(nearest);
     let edge = reached.find(|&edge| first[edge] > ABRUPT * highest)?;
@@ -294,9 +294,9 @@ fn facets_of_a_fit(model: &Model, pair: &ContactPair) -> Option<String> {
 const SHARP: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Bilinear elements that are sheared resist the shear of a slipping fault too much, at every size: cycles come too early.
-fn sheared_beside_faults(model: &Model) -> Option<String> {
+fn sheared_at_faults(model: &Model) -> Option<String> {
     model.steps.iter().find(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }))?;
-    let beside: BTreeMap<usize, &ContactPair> =
+    let adjacent: BTreeMap<usize, &ContactPair> =
         model.contacts.iter().flat_map(|pair| pair.nodes().map(move |node| (node, pair))).collect();
     let sharpest = |element: &&Element| {
         let at = |k: usize| model.mesh.nodes[element.nodes[k % 4]];
@@ -307,7 +307,7 @@ fn sheared_beside_faults(model: &Model) -> Option<String> {
     // A margin for what rounds the angle.
     let mut sharp = sharp.filter(|element| sharpest(element) < SHARP * (1.0 - 1e-6));
     let (element, pair) =
-        sharp.find_map(|element| Some((element, element.nodes.iter().find_map(|node| beside.get(node))?)))?;
+        sharp.find_map(|element| Some((element, element.nodes.iter().find_map(|node| adjacent.get(node))?)))?;
     let degrees = sharpest(&element).to_degrees();
     Some(format!(
         "contact `{}`: bilinear elements beside it have corners of {degrees:.0}°, and are too stiff against its slip at every \
@@ -502,10 +502,14 @@ impl Gaps {
 
     /// Points that face nothing, if there are any.
     fn without(&self) -> String {
-        if self.facing < self.points { format!(", {} without a projection", self.beside()) } else { String::new() }
+        if self.facing < self.points {
+            format!(", {} without a projection", self.without_projection())
+        } else {
+            String::new()
+        }
     }
 
-    fn beside(&self) -> String {
+    fn without_projection(&self) -> String {
         count(self.points - self.facing, "contact point")
     }
 
@@ -522,7 +526,7 @@ impl Gaps {
         if facing < points && self.small {
             let never = "without a projection on the master, and never come into contact in small sliding: if they may, take finite \
                          sliding, else leave them out of the slave";
-            warnings.push(format!("{} of the slave {never}", self.beside()));
+            warnings.push(format!("{} of the slave {never}", self.without_projection()));
         }
         if low < 0.0 {
             // What is deep in an edge is no inaccuracy of the mesh.
@@ -548,7 +552,7 @@ impl Gaps {
     fn message(&self) -> String {
         let Self { facing, low: (low, ..), high, .. } = *self;
         match facing {
-            0 => format!("initial gap: {}, none with a projection on the master", self.beside()),
+            0 => format!("initial gap: {}, none with a projection on the master", self.without_projection()),
             _ if low == high => format!("initial gap {} everywhere{}", number(low), self.without()),
             _ => format!("initial gap from {} to {}{}", number(low), number(high), self.without()),
         }

@@ -60,13 +60,14 @@ impl FewEdges {
 }
 
 fn told(pair: &ContactPair, step: &Step, states: &[ContactState], time: f64, x: &Configuration) -> Option<String> {
-    let is_held = |node: usize, along: Vector2<f64>| {
+    let is_constrained = |node: usize, along: Vector2<f64>| {
         step.supports
             .iter()
             .any(|support| support.at.node() == node && support.at.vector().dot(&along).abs() > ALONG * along.norm())
     };
-    let Stretch { at, closed, length, edge, per_edge } =
-        pair.stretch(states, x, is_held).filter(|stretch| stretch.length * stretch.per_edge < FEW * stretch.edge)?;
+    let Stretch { at, closed, length, edge, per_edge } = pair
+        .stretch(states, x, is_constrained)
+        .filter(|stretch| stretch.length * stretch.per_edge < FEW * stretch.edge)?;
     let both = if matches!(pair.master, Master::Mesh(_)) { " on both sides" } else { "" };
     Some(format!(
         "contact `{}` at {}, t = {}: closed on {} of edges of {edge:.2e}, where it is about {length:.2e} long: its resultant may be right, its \

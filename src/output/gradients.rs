@@ -45,12 +45,12 @@ pub struct Parameter {
     /// whether it is one of the bodies
     pub is_of_bodies: bool,
     /// its neighbours
-    pub neighbours: Vec<Beside>,
+    pub neighbours: Vec<Perturbed>,
 }
 
 /// A model with another value of a parameter, θ + k ε.
 #[derive(Clone, Debug)]
-pub struct Beside {
+pub struct Perturbed {
     /// k
     pub apart: f64,
     /// w_k/ε
@@ -165,7 +165,7 @@ impl Gradients {
         let path = folder.join(FILE);
         let table = if goes_on { Table::reopen(&path, columns) } else { Table::create(&path, columns) }?;
         let derivative = |parameter: &Parameter| {
-            let side = |Beside { apart, weight, model }: &Beside| Side {
+            let side = |Perturbed { apart, weight, model }: &Perturbed| Side {
                 weight: *weight,
                 neighbour: Neighbour::new(model.clone(), *apart, !parameter.is_of_bodies),
                 quantities: if parameter.is_of_bodies { Quantities::of(model) } else { own.clone() },

@@ -305,7 +305,7 @@ fn mean(pair: &ContactPair, states: &[ContactState], time: f64, name: &str) -> f
 fn watched_row(set: &WatchedSet, state: &State) -> [f64; WATCHED.len()] {
     let total = |nodes: &[usize], values: &[f64], i: usize| nodes.iter().map(|&node| values[2 * node + i]).sum::<f64>();
     let mean = |i| total(&set.nodes, &state.displacement, i) / set.nodes.len() as f64;
-    [mean(0), mean(1), total(&set.held[0], &state.reaction, 0), total(&set.held[1], &state.reaction, 1)]
+    [mean(0), mean(1), total(&set.constrained[0], &state.reaction, 0), total(&set.constrained[1], &state.reaction, 1)]
 }
 
 /// Tributary fractions of a watched edge set; `None` where it has no length of its own.

@@ -67,7 +67,7 @@ impl<'a> LawTable<'a> {
 
 /// Whether a bond beside friction has columns of its own.
 fn is_bonded(law: &ContactLaw) -> bool {
-    matches!(law.cohesion, Some(Cohesion::Beside(_)))
+    matches!(law.cohesion, Some(Cohesion::Parallel(_)))
 }
 
 /// Further observables of a law that are not columns of its bond.

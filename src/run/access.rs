@@ -94,8 +94,9 @@ impl Simulation {
     /// Returns [`Unknown::Group`] if the mesh has no such group.
     pub fn reaction(&self, group: &str) -> Result<Vector2<f64>, Unknown> {
         let nodes = self.nodes(group)?;
-        let sum =
-            |i: usize| self.model().held(&nodes, i).into_iter().map(|node| self.state().reaction[2 * node + i]).sum();
+        let sum = |i: usize| {
+            self.model().constrained(&nodes, i).into_iter().map(|node| self.state().reaction[2 * node + i]).sum()
+        };
         Ok(Vector2::new(sum(0), sum(1)))
     }
 
@@ -201,21 +202,21 @@ impl Simulation {
     /// # Errors
     /// Returns [`Unknown::Group`] if the mesh has no such group, [`Unknown::Support`] if a node is not supported in this
     /// direction.
-    pub fn lead(&mut self, group: &str, axis: Axis, to: f64, by: f64) -> Result<(), Unknown> {
+    pub fn prescribe(&mut self, group: &str, axis: Axis, to: f64, by: f64) -> Result<(), Unknown> {
         let model = self.model();
         let dofs: Vec<usize> = self
             .nodes(group)?
             .iter()
             .map(|&node| model.linkage.leading(2 * model.ties.original(node) + axis as usize))
             .collect();
-        let held = |dof: &usize| {
+        let constrained = |dof: &usize| {
             let of_node = |support: &&Prescribed| support.at.node() == dof / 2;
             let mut all = self.step().supports.iter().filter(of_node);
             let straight = all.clone().any(|support| support.at == Direction::from(*dof));
             // The condition of an inclined support couples both components and cannot follow one of them.
             straight && !all.any(|support| matches!(support.motion, Motion::Inclined(_)))
         };
-        if !dofs.iter().all(held) {
+        if !dofs.iter().all(constrained) {
             let axis = if axis == Axis::X { 'x' } else { 'y' };
             return Err(Unknown::Support { group: group.into(), axis, step: self.step().name.clone() });
         }

@@ -96,7 +96,7 @@ impl LawTest {
             let sliding = Sliding { slip: phase.slip(to) - slip, pressure: confined.pressure, dt: to - time };
             let response = self.law.respond_confined(&state, sliding, confined);
             let mut response = response.map_err(|cause| Error::Law { time, cause })?;
-            if let (Some(Cohesion::Beside(law)), Some((before, lost))) = (&self.law.cohesion, &mut bond) {
+            if let (Some(Cohesion::Parallel(law)), Some((before, lost))) = (&self.law.cohesion, &mut bond) {
                 let answer = law.respond(before, opening, sliding.slip, false);
                 if opening == 0.0 {
                     self.law.limit(&state, &mut response, answer.state.traction);
@@ -112,7 +112,7 @@ impl LawTest {
 
     /// State of a bond beside friction, which has its part of the traction at the start, and what it has dissipated.
     fn bond_at_start(&self, first: &Phase) -> Option<(BondState, f64)> {
-        let Some(Cohesion::Beside(bond)) = &self.law.cohesion else { return None };
+        let Some(Cohesion::Parallel(bond)) = &self.law.cohesion else { return None };
         let opening = first.opening(first.start());
         Some((bond.start((opening > 0.0).then_some(opening), self.of_bond), 0.0))
     }
@@ -121,7 +121,7 @@ impl LawTest {
         let state = &response.state;
         let (gap, mu) = (self.confinement.gap(state, self.start.pressure), self.law.observe("mu", state));
         let bond = match (&self.law.cohesion, bond) {
-            (Some(Cohesion::Beside(law)), Some((own, lost))) => Some(LawBond {
+            (Some(Cohesion::Parallel(law)), Some((own, lost))) => Some(LawBond {
                 opening: own.opening,
                 pressure: state.pressure - own.tension,
                 traction: state.traction + own.traction,

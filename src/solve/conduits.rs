@@ -339,14 +339,14 @@ fn arrive(flowing: &[Flowing], model: &Model, trial: Trial) -> Result<Arrived, I
 
 /// Water of a run in an increment, beside which that of its neighbours flows.
 #[derive(Clone, Copy)]
-pub struct Beside<'a> {
+pub struct RunWater<'a> {
     /// How it has gone through the increment
     pub courses: &'a [Option<WaterCourse>],
     /// The states at its start and at its end
     pub states: [&'a State; 2],
 }
 
-impl Beside<'_> {
+impl RunWater<'_> {
     /// The state at the start under the pressures of the last pass.
     pub fn pressed(&self, model: &Model) -> State {
         pressed(model, self.states[0], self.courses.iter().map(|course| course.as_ref().map(|course| &course.pressure)))
@@ -355,16 +355,16 @@ impl Beside<'_> {
 
 /// Water of a neighbour of a run in an increment: it flows in the steps of the run's, and what that has left of (1) is left here.
 #[derive(Default)]
-pub struct WaterBeside {
+pub struct NeighbourWater {
     /// p_k of every contact
     pressure: Vec<Option<Vec<f64>>>,
     history: History,
     passes: usize,
 }
 
-impl WaterBeside {
+impl NeighbourWater {
     /// Begins as far from the pressures of the run as at the start of the increment.
-    pub fn new(run: &Beside, old: &State) -> Self {
+    pub fn new(run: &RunWater, old: &State) -> Self {
         let ahead = |((course, run), own): ((&Option<WaterCourse>, &ConduitState), &ConduitState)| {
             let before = own.pressure.iter().zip(&run.pressure);
             let ahead = |course: &WaterCourse| {
@@ -389,7 +389,7 @@ impl WaterBeside {
         &mut self,
         model: &Model,
         trial: Trial,
-        run: &Beside,
+        run: &RunWater,
         contacts: &[Vec<ContactState>],
     ) -> Result<Option<Arrived>, IncrementFailure> {
         let mut all = flowing(model, trial.step, trial.old);

@@ -225,7 +225,7 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, state: &State, ca
         )
     });
     let thin =
-        unbalanced.map(|node| contacts().filter_map(|pair| beside_bending(model, pair, node)).collect::<Vec<_>>());
+        unbalanced.map(|node| contacts().filter_map(|pair| softer_in_bending(model, pair, node)).collect::<Vec<_>>());
     let causes = place.into_iter().chain(contacts().filter_map(penalty)).chain(thin.into_iter().flatten());
     let causes = causes.chain(bodies().filter_map(|body| locking(model, body)));
     causes.map(|cause| format!("; {cause}")).collect()
@@ -299,7 +299,7 @@ fn locking(model: &Model, body: &Body) -> Option<String> {
 /// ```text
 /// α_t ℓ (t/2)² / (E′ t³/12ℓ) = 3 α_t ℓ²/(E′ t),   E′ = E/(1 − ν²)
 /// ```
-fn beside_bending(model: &Model, pair: &ContactPair, node: usize) -> Option<String> {
+fn softer_in_bending(model: &Model, pair: &ContactPair, node: usize) -> Option<String> {
     let alpha_t = pair.laws.iter().map(|law| law.description.stiffness).fold(0.0, f64::max);
     let [slave, master] = &pair.bodies;
     let is_of = |bodies: &[usize]| bodies.iter().any(|&body| model.bodies[body].nodes.binary_search(&node).is_ok());

@@ -113,7 +113,7 @@ fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[Conta
 /// (c − c_r)/D of a point whose bond slip has not used up; 0 without one [F/L³]
 fn softening(pair: &ContactPair, slave: &SlavePoint, point: &ContactState) -> f64 {
     match (&pair.law(slave).cohesion, &point.bond) {
-        (Some(Cohesion::Beside(bond)), Some(state)) if bond.intact(state) > 0.0 => {
+        (Some(Cohesion::Parallel(bond)), Some(state)) if bond.intact(state) > 0.0 => {
             (bond.strength() - bond.residual()) / bond.slip()
         }
         _ => 0.0,
@@ -126,7 +126,7 @@ const NEARLY: f64 = 0.9;
 /// A bond that pulls with nearly all of its strength, or is partly torn, under forces that grow: once it tears it bears less.
 fn tears(step: &Step, state: &State, pair: &ContactPair, states: &[ContactState]) -> String {
     let pulls = |(slave, point): (&SlavePoint, &ContactState)| match (&pair.law(slave).cohesion, &point.bond) {
-        (Some(Cohesion::Beside(bond)), Some(state)) => {
+        (Some(Cohesion::Parallel(bond)), Some(state)) => {
             let intact = bond.intact(state);
             intact > 0.0 && state.tension > 0.0 && (intact < 1.0 || state.tension > NEARLY * bond.tension())
         }
@@ -149,7 +149,7 @@ fn tears(step: &Step, state: &State, pair: &ContactPair, states: &[ContactState]
 fn snaps(pair: &ContactPair, states: &[ContactState]) -> String {
     let opens = |point: &ContactState| point.carries_open() || point.regime() == Regime::Slip;
     let slips = |(slave, point): (&SlavePoint, &ContactState)| match (&pair.law(slave).cohesion, &point.bond) {
-        (Some(Cohesion::Beside(bond)), Some(state)) => {
+        (Some(Cohesion::Parallel(bond)), Some(state)) => {
             bond.intact(state) > 0.0 && state.traction.abs() > NEARLY * bond.strength_left(state)
         }
         _ => false,

@@ -189,7 +189,7 @@ impl Part {
 impl Seeker<'_> {
     fn evaluate(&mut self, solids: Option<SolidForces>) -> Result<(), TrialFailure> {
         let Workspace { assembler, system, .. } = &mut *self.work;
-        assembler.residual_beside(self.trial, &self.u, solids, system)
+        assembler.residual_of_neighbour(self.trial, &self.u, solids, system)
     }
 }
 
@@ -306,7 +306,10 @@ impl<'a> Group<'a> {
 
 /// Equilibrium of groups of neighbours, each group for one derivative, beside the run whose tangent is given; or why a group has none near
 /// the run. Groups are evaluated in parallel, and corrected together: the factors are read once for all of them.
-pub fn beside(groups: Vec<Vec<Seeker>>, tangent: &mut Tangent) -> Vec<Result<Vec<Vec<f64>>, IncrementFailure>> {
+pub fn solve_neighbours(
+    groups: Vec<Vec<Seeker>>,
+    tangent: &mut Tangent,
+) -> Vec<Result<Vec<Vec<f64>>, IncrementFailure>> {
     let Tangent { assembler, system, solver, solids, measures, serves } = tangent;
     let statuses = regimes(&assembler.model().contacts, &assembler.evaluation.contacts);
     let run = Run { residual: &system.residual, solids: solids.as_ref(), measures, assembler, statuses };

@@ -13,7 +13,7 @@ use super::accept::{heat, take_stock};
 use super::increment::kinetic;
 use crate::equations::Trial;
 use crate::equations::sums::TrialFailure;
-use crate::equations::supports::{hold, tie, turn};
+use crate::equations::supports::{constrain, tie, turn};
 use crate::equations::{bars, contacts, links};
 use crate::linear;
 use crate::model::scheme::{Scheme, start_acceleration, start_velocity};
@@ -185,9 +185,9 @@ pub fn keep_to_supports(model: &Model, step: &Step, dt: f64, state: &mut State) 
         let (given, own) = (support.at.of(&state.velocity), start_velocity(first.thirds(support, model), dt));
         (given != 0.0 && (own - given).abs() > ROUNDED * given.abs()).then_some((support.at, own))
     };
-    let held: Vec<(Direction, f64)> = step.supports.iter().filter_map(own).collect();
-    if !held.is_empty() {
-        held.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
+    let constrained: Vec<(Direction, f64)> = step.supports.iter().filter_map(own).collect();
+    if !constrained.is_empty() {
+        constrained.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
         model.ties.spread(2, &mut state.velocity);
         links::stiffen_velocities(model, &state.displacement, &mut state.velocity);
     }
@@ -196,13 +196,13 @@ pub fn keep_to_supports(model: &Model, step: &Step, dt: f64, state: &mut State) 
 /// Sets the prescribed initial velocities of nodes at the start of a step, except where a support prescribes the motion.
 pub fn launch(model: &Model, step: &Step, state: &mut State) {
     let inclined = step.supports.iter().map(|support| support.at).filter(|at| at.inclined.is_some());
-    let held: Vec<(Direction, f64)> = inclined.map(|at| (at, at.of(&state.velocity))).collect();
+    let constrained: Vec<(Direction, f64)> = inclined.map(|at| (at, at.of(&state.velocity))).collect();
     for (dof, velocity) in step.launch.iter().flat_map(|&(node, [x, y])| [(2 * node, x), (2 * node + 1, y)]) {
         if step.support_at(dof).is_none_or(|support| support.at.inclined.is_some()) {
             state.velocity[dof] = velocity;
         }
     }
-    held.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
+    constrained.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
     if !step.launch.is_empty() {
         model.ties.spread(2, &mut state.velocity);
         links::stiffen_velocities(model, &state.displacement, &mut state.velocity);
@@ -254,9 +254,9 @@ fn jumps(step: &Step, old: &State, state: &State, work: &mut Workspace) -> Resul
     Ok(anew)
 }
 
-/// Whether a value jumps by more than its round-off, that of the value `beside` it and that of the largest of its kind.
-fn differ([before, after]: [f64; 2], beside: f64, largest: f64) -> bool {
-    let size = before.abs().max(after.abs()).max(beside.abs());
+/// Whether a value jumps by more than its round-off, that of the value `adjacent` it and that of the largest of its kind.
+fn differ([before, after]: [f64; 2], adjacent: f64, largest: f64) -> bool {
+    let size = before.abs().max(after.abs()).max(adjacent.abs());
     (after - before).abs() > ROUNDED * size + ROUND_OFF * largest
 }
 
@@ -267,12 +267,12 @@ fn largest(values: &[f64]) -> f64 {
 /// Nodes whose reaction is released; without it, accelerations jump.
 fn freed(step: &Step, old: &State) -> impl Iterator<Item = usize> {
     let reaction = |at: Direction| at.of(&old.reaction).abs();
-    let held = move |dof: usize| {
+    let constrained = move |dof: usize| {
         let at = step.support_at(dof)?.at;
         // Along an inclined direction the components are rounded.
         Some(at.across().is_none_or(|across| reaction(across) <= ROUNDED * reaction(at)))
     };
-    let free = move |dof: &usize| old.reaction[*dof] != 0.0 && !held(*dof).unwrap_or(false);
+    let free = move |dof: &usize| old.reaction[*dof] != 0.0 && !constrained(*dof).unwrap_or(false);
     (0..old.reaction.len()).filter(free).map(|dof| dof / 2)
 }
 
@@ -316,11 +316,11 @@ fn start_dynamics(
     // Nodes without mass are in equilibrium from the first increment on.
     let without = |dof: &usize| model.massless[dof / 2] && mass.diagonal()[*dof] == 0.0;
     for dof in (0..model.dofs()).filter(without).collect::<Vec<_>>() {
-        mass.hold(dof, scale);
+        mass.constrain(dof, scale);
         right[dof] = 0.0;
     }
     for support in &step.supports {
-        hold(support.at, scale, &mut mass);
+        constrain(support.at, scale, &mut mass);
         turn(support.at, scale * start_acceleration(first.thirds(support, model), dt), &mut right);
     }
     tie(model, &mut mass, scale);

@@ -22,10 +22,10 @@ use crate::equations::Trial;
 use crate::linear::Multifrontal;
 use crate::model::state::State;
 use crate::model::{Model, Step};
-use crate::solve::conduits::{Arrived, Beside, WaterBeside};
+use crate::solve::conduits::{Arrived, NeighbourWater, RunWater};
 use crate::solve::equilibrium::Found;
 use crate::solve::failure::IncrementFailure;
-use crate::solve::neighbour::{Seeker, Tangent, beside};
+use crate::solve::neighbour::{Seeker, Tangent, solve_neighbours};
 use crate::solve::passes::multiply;
 use crate::solve::{Pass, Workspace};
 
@@ -57,9 +57,9 @@ impl Lead<'_> {
     }
 
     /// Its water along contacts.
-    fn water(&self) -> Beside<'_> {
+    fn water(&self) -> RunWater<'_> {
         let courses = self.passes.last().map_or(&[][..], |pass| &pass.water);
-        Beside { courses, states: [self.old, self.new] }
+        RunWater { courses, states: [self.old, self.new] }
     }
 }
 
@@ -88,8 +88,8 @@ struct OnItsWay {
     old: Option<State>,
     /// u at the last pass, or as expected, and that of the run [L]
     u: Vec<f64>,
-    beside: Vec<f64>,
-    water: WaterBeside,
+    of_run: Vec<f64>,
+    water: NeighbourWater,
     /// Water along contacts at the end of the increment, once it agrees with the equilibrium
     arrived: Option<Arrived>,
 }
@@ -129,14 +129,14 @@ impl Neighbour {
         if let (true, Some(step)) = (new, step) {
             *state = begin(model, step, state, work)?;
         }
-        let (u, beside) = (state.displacement.clone(), lead.old.displacement.clone());
-        let water = WaterBeside::new(&lead.water(), state);
-        let mut way = OnItsWay { u, beside, old: None, water, arrived: None };
+        let (u, of_run) = (state.displacement.clone(), lead.old.displacement.clone());
+        let water = NeighbourWater::new(&lead.water(), state);
+        let mut way = OnItsWay { u, of_run, old: None, water, arrived: None };
         if let (Some(own), Some(run)) = (&state.last_increment, &lead.old.last_increment) {
             let share = (lead.new.time - lead.old.time) / own.dt;
             let ahead = |u: &mut [f64], way: &[f64]| u.iter_mut().zip(way).for_each(|(u, way)| *u += share * way);
             ahead(&mut way.u, &own.displacement);
-            ahead(&mut way.beside, &run.displacement);
+            ahead(&mut way.of_run, &run.displacement);
         }
         Ok(way)
     }
@@ -146,7 +146,7 @@ impl Neighbour {
         let has_same_bodies = self.has_same_bodies(lead);
         let Self { model, apart, step, work, .. } = self;
         tangent.couple(work);
-        let u = pass.displacement.iter().zip(&way.u).zip(&way.beside).map(|((run, own), beside)| run + (own - beside));
+        let u = pass.displacement.iter().zip(&way.u).zip(&way.of_run).map(|((run, own), of_run)| run + (own - of_run));
         let u = u.collect();
         Some(Seeker {
             model,
@@ -250,12 +250,12 @@ fn solve(
             seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, tangent, way)).collect());
         }
     }
-    let found = beside(seekers, tangent);
+    let found = solve_neighbours(seekers, tangent);
     for (ways, found) in all.iter_mut().filter(|ways| are_under_way(ways)).zip(found) {
         match (ways.as_mut(), found) {
             (Ok(ways), Ok(found)) => {
                 for (way, u) in ways.iter_mut().zip(found) {
-                    (way.u, way.beside) = (u, pass.displacement.clone());
+                    (way.u, way.of_run) = (u, pass.displacement.clone());
                 }
             }
             (_, Err(failure)) => *ways = Err(failure),

@@ -339,7 +339,7 @@ impl Directions {
 }
 
 /// 2^(k/4), k = 0 … 3.
-const RUNGS: [f64; 4] = [1.0, 1.189_207_115_002_721, std::f64::consts::SQRT_2, 1.681_792_830_507_429];
+const FRACTIONS: [f64; 4] = [1.0, 1.189_207_115_002_721, std::f64::consts::SQRT_2, 1.681_792_830_507_429];
 
 /// Relative round-off allowed in comparing with a rung.
 const LADDER_ROUND_OFF: f64 = 1e-12;
@@ -348,11 +348,11 @@ const LADDER_ROUND_OFF: f64 = 1e-12;
 pub fn on_ladder(step: &Step, dt: f64) -> f64 {
     let Increments { initial, min, .. } = step.increments;
     let climbs = step.scheme.is_dynamic() && step.increments.are_controlled();
-    if climbs { rung(initial, dt).max(min) } else { dt }
+    if climbs { standard_length(initial, dt).max(min) } else { dt }
 }
 
 /// Longest length of the ladder starting at `first` that does not exceed `dt`.
-fn rung(first: f64, dt: f64) -> f64 {
+fn standard_length(first: f64, dt: f64) -> f64 {
     let reached = dt * (1.0 + LADDER_ROUND_OFF);
     if !(first.is_normal() && dt.is_normal() && first > 0.0 && dt > 0.0) {
         return dt;
@@ -364,5 +364,9 @@ fn rung(first: f64, dt: f64) -> f64 {
     while 2.0 * octave <= reached {
         octave *= 2.0;
     }
-    RUNGS.iter().map(|rung| rung * octave).rfind(|rung| *rung <= reached).unwrap_or(octave)
+    FRACTIONS
+        .iter()
+        .map(|standard_length| standard_length * octave)
+        .rfind(|standard_length| *standard_length <= reached)
+        .unwrap_or(octave)
 }

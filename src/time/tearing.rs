@@ -27,7 +27,7 @@ pub fn torn(model: &Model, step: &Step, old: &State, new: &State) -> Option<Incr
         let (mut whole, mut torn, mut count) = (0.0, 0.0, 0);
         for (slave, (before, after)) in pair.points.iter().zip(before.iter().zip(after)) {
             whole += after.length;
-            let (Some(Cohesion::Beside(bond)), Some(was), Some(is)) =
+            let (Some(Cohesion::Parallel(bond)), Some(was), Some(is)) =
                 (&pair.law(slave).cohesion, &before.bond, &after.bond)
             else {
                 continue;

@@ -115,6 +115,7 @@ fn words_of_other_programs_are_translated() {
         ("/contacts/base/secondary", "here that is `slave`"),
         ("/contacts/base/cohesion", "of an interface it is the `strength` of its contact's `bond`"),
         ("/boundary", "that is `supports` of a step"),
+        ("/mesh/apart", "here that is `separated`"),
         ("/steps/0/boundary_conditions", "here that is `supports`"),
     ] {
         let mut case = good();

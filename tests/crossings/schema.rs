@@ -32,7 +32,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "what is written, not what is computed: tests/command",
     ),
     (
-        &["blocks", "apart", "joined", "arcs", "corners", "grading", "kind", "middle", "sides", "body"],
+        &["blocks", "separated", "joined", "arcs", "corners", "grading", "kind", "middle", "sides", "body"],
         "another way to write a mesh: tests/solver/blocks.rs",
     ),
     (&["groups", "box", "center"], "another way to name sides and nodes: tests/solver/groups.rs"),

@@ -17,7 +17,7 @@ def servo(wanted: float = 1.5, dt: float = 0.1) -> list[tuple[float, float]]:
     for increment in machine:
         if machine.step == "drag" and not machine.is_complete:
             force, at = machine.reaction("block_top")[0], machine.displacement("block_top")[0]
-            machine.lead("block_top", ux=at + (wanted - force) / machine_stiffness, by=increment.time + dt)
+            machine.prescribe("block_top", ux=at + (wanted - force) / machine_stiffness, by=increment.time + dt)
             felt.append((increment.time, float(force)))
     return felt
 

@@ -25,7 +25,7 @@ pub struct BlocksInput {
     pub blocks: Vec<BlockInput>,
     /// Names of sides that are not joined to others, such as the two sides of a crack in one body
     #[serde(default)]
-    pub apart: Vec<String>,
+    pub separated: Vec<String>,
     /// Lists of bodies that are joined with each other, like blocks of one body, where their blocks share a whole side, for
     /// example two materials that are bonded
     #[serde(default)]
@@ -116,14 +116,14 @@ pub(super) struct MeshKeys {
     points: Option<BTreeMap<String, Vec<usize>>>,
     blocks: Option<Vec<BlockInput>>,
     parameters: Option<BTreeMap<String, Amount>>,
-    apart: Option<Vec<String>>,
+    separated: Option<Vec<String>>,
     joined: Option<Vec<Vec<String>>>,
 }
 
 impl MeshKeys {
     /// Returns the mesh, given in one of the two ways.
     pub fn source<E: Error>(self) -> Result<MeshSource, E> {
-        let Self { nodes, elements, edges, points, blocks, parameters, apart, joined } = self;
+        let Self { nodes, elements, edges, points, blocks, parameters, separated, joined } = self;
         let given = |pairs: &[(&'static str, bool)]| pairs.iter().find(|(_, given)| *given).map(|(key, _)| *key);
         let of_nodes = [
             ("nodes", nodes.is_some()),
@@ -132,11 +132,16 @@ impl MeshKeys {
             ("points", points.is_some()),
         ];
         let of_blocks =
-            [("parameters", parameters.is_some()), ("apart", apart.is_some()), ("joined", joined.is_some())];
+            [("parameters", parameters.is_some()), ("separated", separated.is_some()), ("joined", joined.is_some())];
         match (blocks, given(&of_nodes), given(&of_blocks)) {
             (Some(blocks), None, _) => {
                 let (parameters, joined) = (parameters.unwrap_or_default(), joined.unwrap_or_default());
-                Ok(MeshSource::Blocks(BlocksInput { parameters, blocks, apart: apart.unwrap_or_default(), joined }))
+                Ok(MeshSource::Blocks(BlocksInput {
+                    parameters,
+                    blocks,
+                    separated: separated.unwrap_or_default(),
+                    joined,
+                }))
             }
             (Some(_), Some(key), _) => Err(E::custom(format_args!(
                 "has both `blocks` and `{key}`: give blocks, or nodes with their elements and edges"
@@ -175,7 +180,7 @@ pub fn evaluated(input: &BlocksInput, place: &str) -> Checked<Blocks> {
         let message = "is not used in any expression of the mesh: use it, or leave it out";
         return Err(ModelError::new(at(&format!("parameters.{name}")), message));
     }
-    Ok(Blocks { blocks, apart: input.apart.clone(), joined: input.joined.clone() })
+    Ok(Blocks { blocks, separated: input.separated.clone(), joined: input.joined.clone() })
 }
 
 /// Values of parameters by name.

@@ -143,8 +143,8 @@ impl Outputs {
     pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionHistory> {
         let courses = self.history.iter().flat_map(History::courses);
         let named = model.contacts.iter().zip(courses);
-        let borne = named.filter(|(_, course)| course.is_friction());
-        borne.map(|(pair, course)| (pair.name.clone(), course.clone())).collect()
+        let of_friction = named.filter(|(_, course)| course.is_friction());
+        of_friction.map(|(pair, course)| (pair.name.clone(), course.clone())).collect()
     }
 
     /// Returns all observers.

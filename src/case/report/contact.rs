@@ -132,8 +132,8 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         lines.push(format!("alpha_t {alpha_t} ({chosen}): {what}"));
     }
     if pair.tied {
-        let held = pair.points.iter().zip(pair.small.iter().flat_map(|small| &small.points));
-        let free = held.filter(|(_, point)| point.is_none()).count();
+        let facing = pair.points.iter().zip(pair.small.iter().flat_map(|small| &small.points));
+        let free = facing.filter(|(_, point)| point.is_none()).count();
         let free =
             if free > 0 { format!("; {} without a projection stay free", count(free, "point")) } else { String::new() };
         lines.push(format!("tied: the surfaces neither part nor slide{free}"));
@@ -205,14 +205,14 @@ fn strength(pair: &ContactPair) -> Option<String> {
     } else {
         "given".into()
     };
-    let besides = pair.laws.iter().any(|law| matches!(law.cohesion, Some(Cohesion::Beside(_))));
+    let has_bond = pair.laws.iter().any(|law| matches!(law.cohesion, Some(Cohesion::Parallel(_))));
     let softens = || bonds().all(|bond| bond.slip().is_finite());
     let further = [
         (bonds().any(|bond| bond.residual() < bond.strength()), format!(", residual {}", of(Bond::residual))),
         (softens(), format!(", softens within the slip {}", of(Bond::slip))),
         (bonds().any(|bond| bond.tension() > 0.0), format!(", tension {}", of(Bond::tension))),
         (bonds().all(|bond| bond.limit().is_finite()), format!(", shear of at most {}", of(Bond::limit))),
-        (besides, format!(", alpha_t {} of the bond", of(Bond::stiffness))),
+        (has_bond, format!(", alpha_t {} of the bond", of(Bond::stiffness))),
     ];
     let further: String = further.into_iter().filter(|(is, _)| *is).map(|(_, what)| what).collect();
     let (strength, opening) = (of(Bond::strength), of(Bond::opening));
@@ -252,7 +252,7 @@ fn water(conduit: &Conduit, model: &Model) -> String {
     let place = |node: usize| vector(model.mesh.nodes[conduit.line.nodes[node]]);
     let wells = conduit.wells.iter().map(|well| {
         let at = well.at.iter().map(|&(node, _)| place(node)).collect::<Vec<_>>().join(" and ");
-        let what = if matches!(well.gives, Gives::Pressure(_)) { "a pressure held" } else { "a rate given" };
+        let what = if matches!(well.gives, Gives::Pressure(_)) { "a prescribed pressure" } else { "a rate given" };
         format!("{what} at {at}")
     });
     let wells: Vec<String> = wells.collect();

@@ -117,7 +117,7 @@ pub enum Gives {
 
 /// A well.
 pub struct Well {
-    /// Nodes of the conduit, and their shares; one node where a pressure is held
+    /// Nodes of the conduit, and their shares; one node where a pressure is prescribed
     pub at: Vec<(usize, f64)>,
     /// What it does
     pub gives: Gives,

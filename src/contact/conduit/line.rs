@@ -119,7 +119,7 @@ impl Line {
         flows.into_iter().map(|[sum, count]| if count > 0.0 { sum / count } else { 0.0 }).collect()
     }
 
-    /// Solves (diagonal, −joint between neighbours) x = right, where `held` nodes have their value; in place of the right side.
+    /// Solves (diagonal, −joint between neighbours) x = right, where `prescribed` nodes have their value; in place of the right side.
     ///
     /// ```text
     /// ring: (A + u uᵀ) x = b   by two solutions of the open chain (Sherman & Morrison)
@@ -128,23 +128,23 @@ impl Line {
         &self,
         diagonal: &[f64],
         joints: &[f64],
-        held: &[Option<f64>],
+        prescribed: &[Option<f64>],
         right: &mut [f64],
         room: &mut Room,
     ) {
         let Room { diagonal: d, rest, .. } = room;
         d.clear();
         d.extend_from_slice(diagonal);
-        for (node, held) in held.iter().enumerate() {
-            if let Some(value) = held {
+        for (node, prescribed) in prescribed.iter().enumerate() {
+            if let Some(value) = prescribed {
                 (d[node], right[node]) = (1.0, *value);
             }
         }
-        // What a held neighbour gives stands on the right; `free` is the joint of two free nodes.
+        // What a prescribed neighbour gives stands on the right; `free` is the joint of two free nodes.
         rest.clear();
         rest.resize(self.count(), 0.0);
         for (a, b, _) in self.joints() {
-            match (held[a], held[b]) {
+            match (prescribed[a], prescribed[b]) {
                 (None, None) => rest[a] = joints[a],
                 (Some(value), None) => right[b] += joints[a] * value,
                 (None, Some(value)) => right[a] += joints[a] * value,

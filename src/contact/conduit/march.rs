@@ -201,19 +201,19 @@ impl Conduit {
         room: &mut Steps,
     ) -> (Vec<f64>, Amounts) {
         let mut amounts = self.set_up(from, start, span, course, room);
-        let Steps { joints, own_part, diagonal, right, held, way, left, room } = room;
+        let Steps { joints, own_part, diagonal, right, prescribed, way, left, room } = room;
         way.clone_from(right);
-        self.line.solve(diagonal, joints, held, way, room);
+        self.line.solve(diagonal, joints, prescribed, way, room);
         self.left_over(way, joints, own_part, right, left);
-        for (held, left) in held.iter_mut().zip(&mut *left) {
-            // What is left at a held node is what its well gives.
-            if held.is_some() {
+        for (prescribed, left) in prescribed.iter_mut().zip(&mut *left) {
+            // What is left at a prescribed node is what its well gives.
+            if prescribed.is_some() {
                 amounts.injected -= *left;
                 amounts.throughput += left.abs();
-                *held = Some(0.0);
+                *prescribed = Some(0.0);
             }
         }
-        self.line.solve(diagonal, joints, held, left, room);
+        self.line.solve(diagonal, joints, prescribed, left, room);
         let pressure: Vec<f64> = (0..from.len()).map(|node| from[node] + (way[node] + left[node])).collect();
         if let Some(leak) = &self.leak {
             let h = span[1] - span[0];
@@ -230,7 +230,7 @@ impl Conduit {
     fn set_up(&self, from: &[f64], start: &[f64], [t0, t1]: [f64; 2], course: &Course, room: &mut Steps) -> Amounts {
         let (h, n) = (t1 - t0, self.line.count());
         let shares = [t0, t1].map(|time| course.share(time));
-        let Steps { joints, own_part, diagonal, right, held, .. } = room;
+        let Steps { joints, own_part, diagonal, right, prescribed, .. } = room;
         [&mut *joints, &mut *own_part, &mut *right].into_iter().for_each(Vec::clear);
         joints.resize(n, 0.0);
         let mut amounts = Amounts::default();
@@ -258,12 +258,12 @@ impl Conduit {
             right[a] -= flows;
             right[b] += flows;
         }
-        held.clear();
-        held.resize(n, None);
+        prescribed.clear();
+        prescribed.resize(n, None);
         let middle = 0.5 * (t0 + t1);
         for well in self.wells.iter().filter(|well| well.is_open(middle)) {
             match &well.gives {
-                Gives::Pressure(pressure) => held[well.at[0].0] = Some(pressure(t1) - from[well.at[0].0]),
+                Gives::Pressure(pressure) => prescribed[well.at[0].0] = Some(pressure(t1) - from[well.at[0].0]),
                 Gives::Rate(rate) => {
                     let volume = h * rate(t1);
                     well.at.iter().for_each(|&(node, share)| right[node] += share * volume);
@@ -275,7 +275,7 @@ impl Conduit {
         amounts
     }
 
-    /// What (4) leaves after a change of the pressure: at the held nodes less what their wells give.
+    /// What (4) leaves after a change of the pressure: at the prescribed nodes less what their wells give.
     fn left_over(&self, way: &[f64], joints: &[f64], own_part: &[f64], right: &[f64], left: &mut Vec<f64>) {
         left.clear();
         left.extend(right.iter().zip(own_part).zip(way).map(|((right, own), way)| right - own * way));
@@ -308,7 +308,7 @@ struct Steps {
     own_part: Vec<f64>,
     diagonal: Vec<f64>,
     right: Vec<f64>,
-    held: Vec<Option<f64>>,
+    prescribed: Vec<Option<f64>>,
     /// Change of the pressure, and what it leaves
     way: Vec<f64>,
     left: Vec<f64>,

@@ -14,7 +14,7 @@ use super::sums::{Dependence, Sums};
 use crate::equations::sums::TrialFailure;
 use crate::linear::SparseMatrix;
 use crate::model::element::SolidElement;
-use crate::model::{Born, Model, Step};
+use crate::model::{Activated, Model, Step};
 pub(super) use constant::damps_by_stiffness;
 pub use constant::is_constant;
 use constant::{Constant, Pass, is_linear_elastic};
@@ -105,10 +105,10 @@ pub(super) struct Solids {
 }
 
 impl Solids {
-    /// The elements that are there; `born` came into a deformed model.
-    pub fn new(model: &Arc<Model>, are_there: impl Fn(usize) -> bool + Clone, born: &Arc<Born>) -> Self {
-        let constant = Constant::new(model, |e| are_there(e) && !born.contains(e));
-        let others = Runs::new(model, |e| !constant.is[e] && are_there(e), born);
+    /// The elements that are there; `activated` came into a deformed model.
+    pub fn new(model: &Arc<Model>, are_there: impl Fn(usize) -> bool + Clone, activated: &Arc<Activated>) -> Self {
+        let constant = Constant::new(model, |e| are_there(e) && !activated.contains(e));
+        let others = Runs::new(model, |e| !constant.is[e] && are_there(e), activated);
         let retardation = model.bodies.iter().map(|body| body.damping.retardation).collect();
         Self { model: model.clone(), constant, others, retardation }
     }

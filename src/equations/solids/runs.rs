@@ -16,7 +16,7 @@ use crate::equations::sums::{TrialFailure, add_blocks};
 use crate::equations::trial::nodal;
 use crate::laws::bulk::MaterialFailure;
 use crate::linear::SparseMatrix;
-use crate::model::{Born, Model};
+use crate::model::{Activated, Model};
 
 /// Number of elements below which evaluation takes less time than starting another thread.
 const FEW: usize = 64;
@@ -33,7 +33,7 @@ pub(super) struct Runs {
     /// Tangents of a batch, column by column
     tangents: Vec<f64>,
     /// Elements that came into a deformed model
-    born: Arc<Born>,
+    activated: Arc<Activated>,
 }
 
 /// Consecutive elements of one kind and body.
@@ -60,7 +60,7 @@ impl Run {
 
 impl Runs {
     /// Finds the runs of equal elements among those that are `wanted`.
-    pub fn new(model: &Model, wanted: impl Fn(usize) -> bool + Clone, born: &Arc<Born>) -> Self {
+    pub fn new(model: &Model, wanted: impl Fn(usize) -> bool + Clone, activated: &Arc<Activated>) -> Self {
         let elements = &model.mesh.elements;
         let mut runs: Vec<Run> = Vec::new();
         let mut count = 0;
@@ -87,13 +87,13 @@ impl Runs {
             forces: vec![Vector2::zeros(); count],
             energies: vec![Ok(0.0); if count > 0 { elements.len() } else { 0 }],
             tangents: Vec::new(),
-            born: born.clone(),
+            activated: activated.clone(),
         }
     }
 
     /// Computes the forces of all elements.
     pub fn evaluate(&mut self, model: &Model, u: &[f64]) {
-        let born = &*self.born;
+        let activated = &*self.activated;
         for run in &self.runs {
             if run.evolves {
                 self.forces[run.places()].fill(Vector2::zeros());
@@ -103,7 +103,8 @@ impl Runs {
             let forces = self.forces[run.places()].par_chunks_exact_mut(run.nodes);
             let elements = run.elements.clone().into_par_iter().zip(forces);
             let one = |((e, forces), energy): ((usize, &mut [Vector2<f64>]), &mut _)| {
-                *energy = model.as_born(born, e).nodal_forces(material, &nodal(model, e, u)[..run.nodes], forces);
+                *energy =
+                    model.as_activated(activated, e).nodal_forces(material, &nodal(model, e, u)[..run.nodes], forces);
             };
             elements.zip(&mut self.energies[run.elements.clone()]).with_min_len(FEW).for_each(one);
         }
@@ -111,7 +112,7 @@ impl Runs {
 
     /// Computes the forces and tangents, the tangents batch by batch.
     pub fn evaluate_with_tangents(&mut self, model: &Model, u: &[f64], layout: &Layout, total: &mut SparseMatrix) {
-        let born = &*self.born;
+        let activated = &*self.activated;
         for run in &self.runs {
             if run.evolves {
                 self.forces[run.places()].fill(Vector2::zeros());
@@ -127,7 +128,7 @@ impl Runs {
                 let one = |(((e, forces), tangent), energy): (Slot, &mut _)| {
                     let mut force = [0.0; 18];
                     let (u, own) = (&nodal(model, e, u)[..n], &mut force[..2 * n]);
-                    *energy = model.as_born(born, e).force_and_tangent(material, u, own, tangent);
+                    *energy = model.as_activated(activated, e).force_and_tangent(material, u, own, tangent);
                     forces
                         .iter_mut()
                         .zip(force.chunks_exact(2))
@@ -154,12 +155,17 @@ impl Runs {
 
     /// Computes the viscous forces of all elements.
     pub fn evaluate_viscous(&mut self, model: &Model, retardation: &[f64], [u, v]: [&[f64]; 2]) {
-        let born = &*self.born;
+        let activated = &*self.activated;
         for run in &self.runs {
             let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
             let one = |(e, forces): (usize, &mut [Vector2<f64>])| {
                 let [u, v] = [u, v].map(|all| nodal(model, e, all));
-                model.as_born(born, e).viscous_forces(material, tau, [&u[..run.nodes], &v[..run.nodes]], forces);
+                model.as_activated(activated, e).viscous_forces(
+                    material,
+                    tau,
+                    [&u[..run.nodes], &v[..run.nodes]],
+                    forces,
+                );
             };
             let places = &mut self.forces[run.places()];
             match retardation[run.body] > 0.0 {
@@ -186,7 +192,7 @@ impl Runs {
         layout: &Layout,
         total: &mut SparseMatrix,
     ) {
-        let born = &*self.born;
+        let activated = &*self.activated;
         for run in self.runs.iter().filter(|run| retardation[run.body] > 0.0) {
             let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
@@ -197,7 +203,13 @@ impl Runs {
                     let [u, v, rates] = [u, v, dvelocity].map(|all| nodal(model, e, all));
                     let mut own = [0.0; 18];
                     own.chunks_exact_mut(2).zip(&rates).for_each(|(own, rate)| own.copy_from_slice(rate.as_slice()));
-                    model.as_born(born, e).viscous_tangent(material, tau, [&u[..n], &v[..n]], &own[..2 * n], tangent);
+                    model.as_activated(activated, e).viscous_tangent(
+                        material,
+                        tau,
+                        [&u[..n], &v[..n]],
+                        &own[..2 * n],
+                        tangent,
+                    );
                 };
                 let all = elements.clone().into_par_iter().zip(self.tangents.par_chunks_exact_mut(size));
                 all.with_min_len(FEW).for_each(one);
@@ -209,7 +221,7 @@ impl Runs {
     }
 }
 
-/// Number of elements whose tangents are held at once before they are added.
+/// Number of elements whose tangents are stored at once before they are added.
 pub const BATCH: usize = 1024;
 
 /// Number of nodes below which summation takes less time than starting another thread.

@@ -343,16 +343,16 @@ impl Bond {
     }
 
     /// Response to an increment of slip that ends at the opening w: 0 where the surfaces are closed, with no derivative by it.
-    /// `held` predicts that it sticks.
+    /// `sticks` predicts that it sticks.
     #[must_use]
-    pub fn respond(&self, old: &BondState, opening: f64, slip: f64, held: bool) -> BondResponse {
+    pub fn respond(&self, old: &BondState, opening: f64, slip: f64, sticks: bool) -> BondResponse {
         let Self { slip: softening, stiffness, .. } = *self;
         let w = Dual { value: opening, by: [f64::from(u8::from(opening > 0.0)), 0.0] };
         let left = self.left(old, w);
         let trial = Dual { value: old.traction + stiffness * slip, by: [0.0, stiffness] };
         let sign = trial.value.signum();
         let size = trial * sign;
-        if held || size.value <= left.strength.value {
+        if sticks || size.value <= left.strength.value {
             return self.ended(old, opening, [left.tension, trial], left.strength.value, 0.0);
         }
         // S, by which the strength falls per slip

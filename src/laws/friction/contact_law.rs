@@ -193,14 +193,14 @@ pub enum Cohesion {
     /// That of the friction law itself: where the surfaces are open it goes on, and fades
     Own(Bond),
     /// A bond beside friction, with a traction of its own
-    Beside(Bond),
+    Parallel(Bond),
 }
 
 impl Cohesion {
     /// The bond, of either kind.
     pub fn bond(&self) -> &Bond {
         match self {
-            Self::Own(bond) | Self::Beside(bond) => bond,
+            Self::Own(bond) | Self::Parallel(bond) => bond,
         }
     }
 }
@@ -295,13 +295,13 @@ impl ContactLaw {
             description.released_above = Some([bond.strength(), 0.0]);
             description.least_coefficient = Some(0.0);
         }
-        self.cohesion = Some(Cohesion::Beside(bond));
+        self.cohesion = Some(Cohesion::Parallel(bond));
         Ok(self)
     }
 
     /// Part of an initial traction under a pressure that a bond beside friction has, in proportion to the strengths [F/L²].
     pub fn share_of_bond(&self, pressure: f64, traction: f64) -> f64 {
-        let Some(Cohesion::Beside(bond)) = &self.cohesion else { return 0.0 };
+        let Some(Cohesion::Parallel(bond)) = &self.cohesion else { return 0.0 };
         let Description { starting_coefficient, released_above, .. } = self.law.description();
         let mu = starting_coefficient.or(released_above.map(|[_, mu]| mu)).or(self.description.least_coefficient);
         bond.share(traction, mu.unwrap_or(0.0) * pressure)

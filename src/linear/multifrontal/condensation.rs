@@ -32,7 +32,7 @@ impl Condensation {
     /// # Errors
     /// [`LinearFailure`] when the pattern is too large for an order of elimination.
     pub fn new(pattern: Arc<Pattern>, kept: &[usize]) -> Result<Self, LinearFailure> {
-        // Once a matrix, whatever it takes: what is held stays among the equations, and L and U are those of all.
+        // Once a matrix, whatever it takes: what is constrained stays among the equations, and L and U are those of all.
         let unsymmetric = vec![true; pattern.nodes()];
         let symbolic = Arc::new(Symbolic::new(Arc::new(Pattern::clone(&pattern).symmetric_but(unsymmetric)), kept)?);
         Ok(Self { symbolic, scaling: Scaling::default(), kept: 2 * kept.len() })

@@ -142,7 +142,7 @@ fn take_values(entries: &[Entry], values: &mut [f64], matrix: &SparseMatrix, sca
             *pair = [column[0] * rows[0] * scale, column[1] * rows[1] * scale];
         }
         if row == column {
-            // What is held is solved by itself.
+            // What is constrained is solved by itself.
             (0..2).filter(|&i| rows[i] == 0.0).for_each(|i| new[3 * i] = 1.0);
         }
         differ |= new.map(f64::to_bits) != values.map(f64::to_bits);

@@ -41,7 +41,7 @@ pub struct Multifrontal {
     scaling: Scaling,
     factors: Factors,
     /// Dofs with an equation of their own
-    held: Vec<Held>,
+    constrained: Vec<Constrained>,
     /// Whether the equations of the matrix reverse the sign of its determinant
     reversed: bool,
     /// Right-hand sides in the order of elimination
@@ -49,13 +49,13 @@ pub struct Multifrontal {
 }
 
 /// A dof with an equation of its own, A_dd x_d = b_d, and its column in the others.
-struct Held {
+struct Constrained {
     dof: usize,
     diagonal: f64,
     column: Vec<f64>,
 }
 
-impl Held {
+impl Constrained {
     /// All of a matrix.
     fn of(matrix: &SparseMatrix) -> Vec<Self> {
         let one = |dof: usize| {
@@ -65,7 +65,7 @@ impl Held {
             let diagonal = own.map_or(0.0, |own| matrix.values[own.value(dof % 2, dof % 2)]);
             Self { dof, diagonal, column }
         };
-        (0..matrix.size()).filter(|&dof| matrix.held[dof]).map(one).collect()
+        (0..matrix.size()).filter(|&dof| matrix.constrained[dof]).map(one).collect()
     }
 
     /// Solves for the dof by itself and moves its effect to the right-hand side; returns its value.
@@ -105,10 +105,10 @@ impl Multifrontal {
 
     /// Refuse what does not fit, and make room for what does.
     fn make_room(&mut self, size: usize) -> Result<(), LinearFailure> {
-        let held = size_of::<f64>() * self.factors.values.capacity();
+        let constrained = size_of::<f64>() * self.factors.values.capacity();
         let (needed, symbolic) = (self.memory(), self.symbolic.as_ref());
         let too_large = |NoRoom { needed, available }| LinearFailure::TooLarge { size, needed, available };
-        room_for(needed, held).map_err(too_large)?;
+        room_for(needed, constrained).map_err(too_large)?;
         let reserved = symbolic.map_or(Ok(()), |symbolic| self.factors.reserve(symbolic));
         reserved.map_err(|_| {
             too_large(NoRoom { needed: gibibytes(needed), available: gibibytes(available_memory().unwrap_or(0)) })
@@ -119,8 +119,10 @@ impl Multifrontal {
     pub fn solve_all(&mut self, columns: &mut [&mut [f64]]) {
         let Some(symbolic) = &self.symbolic else { return columns.iter_mut().for_each(|b| b.fill(f64::NAN)) };
         let Scaling { rows, columns: scales } = &self.scaling;
-        let own = |b: &mut &mut [f64]| self.held.iter().map(|held| held.solve(&symbolic.pattern, b)).collect();
-        let held: Vec<Vec<f64>> = columns.iter_mut().map(own).collect();
+        let own = |b: &mut &mut [f64]| {
+            self.constrained.iter().map(|constrained| constrained.solve(&symbolic.pattern, b)).collect()
+        };
+        let constrained: Vec<Vec<f64>> = columns.iter_mut().map(own).collect();
         let count = columns.len();
         let dof = |row: usize| 2 * symbolic.nodes[row / 2] + row % 2;
         self.ordered.clear();
@@ -140,8 +142,8 @@ impl Multifrontal {
                 pivots.zip(values).for_each(|(dof, x)| b[dof] = scales[dof] * x);
             }
         }
-        for (b, held) in columns.iter_mut().zip(held) {
-            self.held.iter().zip(held).for_each(|(held, x)| b[held.dof] = x);
+        for (b, constrained) in columns.iter_mut().zip(constrained) {
+            self.constrained.iter().zip(constrained).for_each(|(constrained, x)| b[constrained.dof] = x);
         }
     }
 
@@ -163,7 +165,7 @@ impl LinearSolver for Multifrontal {
         if let Some(symbolic) = &self.symbolic {
             self.scaling.compute(matrix);
             self.factors.compute(symbolic, matrix, &self.scaling);
-            self.held = Held::of(matrix);
+            self.constrained = Constrained::of(matrix);
             self.reversed = matrix.reversed;
         }
         Ok(())

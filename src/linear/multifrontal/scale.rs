@@ -13,7 +13,7 @@ use super::dense::largest;
 /// ```
 ///
 /// The row of a prescribed displacement has its own scale, and a penalty is far stiffer than a solid. Without scaling
-/// neither the choice of a pivot among rows nor the size of a vanished one would mean anything. A held dof has the scale 0: its equation is
+/// neither the choice of a pivot among rows nor the size of a vanished one would mean anything. A constrained dof has the scale 0: its equation is
 /// solved by itself.
 ///
 /// The rows of a point that begins to slip get other scales, and with them fronts change that would stay otherwise.
@@ -28,7 +28,7 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// Scales of a matrix as the fronts of its pattern need them, 0 for what is held.
+    /// Scales of a matrix as the fronts of its pattern need them, 0 for what is constrained.
     pub fn compute(&mut self, matrix: &SparseMatrix) {
         if matrix.pattern.is_all_unsymmetric() {
             self.compute_two_sided(matrix);
@@ -37,7 +37,7 @@ impl Scaling {
             Arch::new().dispatch(|| symmetric(matrix, &mut self.rows));
             self.columns.copy_from_slice(&self.rows);
         }
-        for dof in (0..matrix.size()).filter(|&dof| matrix.held[dof]) {
+        for dof in (0..matrix.size()).filter(|&dof| matrix.constrained[dof]) {
             (self.rows[dof], self.columns[dof]) = (0.0, 0.0);
         }
     }
@@ -60,7 +60,7 @@ impl Scaling {
 fn symmetric(matrix: &SparseMatrix, scales: &mut [f64]) {
     let unsymmetric = matrix.pattern.unsymmetric();
     each_column(matrix, |column, nodes, values| {
-        if matrix.held[column] {
+        if matrix.constrained[column] {
             return;
         }
         scales[column] = largest(values).max(scales[column]);

@@ -150,15 +150,15 @@ impl SymmetricPanel<'_> {
         let (own, most) = (candidates[j].abs(), candidates[row].abs());
         let to_the_left = (j..row).map(|column| at(self.lower, row, column));
         let beneath = (row + 1..pivots).map(|i| at(self.lower, i, row));
-        let beside = to_the_left.chain(beneath).fold(0.0, f64::max);
+        let adjacent = to_the_left.chain(beneath).fold(0.0, f64::max);
         // What is no number stays where it is.
-        let moves = row != j && own * beside < ALPHA * most * most;
+        let moves = row != j && own * adjacent < ALPHA * most * most;
         if !moves {
             self.exchanges[j] = j as u32;
             self.eliminate_one(j);
             return j + 1;
         }
-        if at(self.lower, row, row) >= ALPHA * beside {
+        if at(self.lower, row, row) >= ALPHA * adjacent {
             self.exchange(j, row);
             self.exchanges[j] = row as u32;
             self.eliminate_one(j);

@@ -21,12 +21,16 @@ type Side = (usize, usize);
 /// Returns the number of the node in each slot.
 pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError> {
     let slots = grids.iter().map(|grid| grid.nodes.len()).sum();
-    let apart: BTreeSet<&String> = blocks.apart.iter().collect();
-    let is_apart = |name: &Option<String>| name.as_ref().is_some_and(|name| apart.contains(name));
+    let separated: BTreeSet<&String> = blocks.separated.iter().collect();
+    let is_separated = |name: &Option<String>| name.as_ref().is_some_and(|name| separated.contains(name));
     let mut join = Join {
         blocks,
         grids,
-        apart: blocks.blocks.iter().map(|block| [0, 1, 2, 3].map(|side| is_apart(&block.sides[side]))).collect(),
+        separated: blocks
+            .blocks
+            .iter()
+            .map(|block| [0, 1, 2, 3].map(|side| is_separated(&block.sides[side])))
+            .collect(),
         same: Joined::new(slots),
         partner: vec![[None; 4]; grids.len()],
     };
@@ -71,7 +75,7 @@ struct Join<'b> {
     blocks: &'b Blocks,
     grids: &'b [Grid],
     /// sides excluded from joining
-    apart: Vec<[bool; 4]>,
+    separated: Vec<[bool; 4]>,
     /// slots of the same node
     same: Joined,
     /// partner of each side
@@ -81,7 +85,7 @@ struct Join<'b> {
 impl Join<'_> {
     /// Joins two sides if they coincide.
     fn sides(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
-        if self.apart[one.0][one.1] || self.apart[other.0][other.1] {
+        if self.separated[one.0][one.1] || self.separated[other.0][other.1] {
             return Ok(());
         }
         let [a, mut b] = [one, other].map(|(block, side)| self.grids[block].side(side));
@@ -100,7 +104,7 @@ impl Join<'_> {
         if a.len() != b.len() {
             let message = format!(
                 "and has {} nodes there to {}: give both the same number and kind of elements, or list a name of one of the \
-                 sides in `apart`",
+                 sides in `separated`",
                 b.len(),
                 a.len()
             );
@@ -134,7 +138,7 @@ impl Join<'_> {
                     continue;
                 }
                 let message = format!(
-                    "is joined to side {} of blocks[{}], so `{name}` lies inside the body: leave the name out, or list it in `apart` if \
+                    "is joined to side {} of blocks[{}], so `{name}` lies inside the body: leave the name out, or list it in `separated` if \
                      the two sides can part",
                     partner.1, partner.0
                 );
@@ -157,21 +161,21 @@ impl Join<'_> {
         (SAME * sides.fold(f64::INFINITY, f64::min)).max(8.0 * f64::EPSILON * farthest)
     }
 
-    /// Refuses a corner of `a` on a side of `b` that is none of its nodes; sides in `apart` may meet there.
+    /// Refuses a corner of `a` on a side of `b` that is none of its nodes; sides in `separated` may meet there.
     fn refuse_touching(&self, a: usize, b: usize) -> Result<(), BlockError> {
         let near = self.near(a, b);
         for corner in 0..4 {
             let (slot, at) = (self.same.lowest(self.grids[a].side(corner)[0]), self.grids[a].corner(corner));
             let touched: Vec<usize> = (0..4).filter(|side| self.grids[b].distance(*side, at) <= near).collect();
-            let apart = |block: usize, sides: &[usize]| sides.iter().any(|side| self.apart[block][*side]);
+            let separated = |block: usize, sides: &[usize]| sides.iter().any(|side| self.separated[block][*side]);
             let Some(side) = touched.first() else { continue };
             let joined =
                 touched.iter().any(|side| self.grids[b].side(*side).iter().any(|&node| self.same.lowest(node) == slot));
-            if !(joined || apart(a, &[corner, (corner + 3) % 4]) || apart(b, &touched)) {
+            if !(joined || separated(a, &[corner, (corner + 3) % 4]) || separated(b, &touched)) {
                 let message = format!(
                     "its corner {corner} lies on side {side} of blocks[{b}] and is not joined to it: blocks of a body are joined \
                      along whole sides, and so are those of bodies that are joined. Divide blocks[{b}] there, or list a name \
-                     of one of the sides in `apart`"
+                     of one of the sides in `separated`"
                 );
                 return Err(BlockError::new(format!("blocks[{a}]"), message));
             }

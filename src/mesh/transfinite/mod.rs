@@ -143,7 +143,7 @@ pub struct Blocks {
     /// blocks; nodes are numbered in their order, row by row, starting at side 0
     pub blocks: Vec<Block>,
     /// names of sides that are not joined, such as the two faces of a crack
-    pub apart: Vec<String>,
+    pub separated: Vec<String>,
     /// lists of bodies joined with each other, such as two materials bonded along a side
     pub joined: Vec<Vec<String>>,
 }
@@ -232,10 +232,10 @@ impl Blocks {
         }
         let sides: BTreeSet<&str> =
             self.blocks.iter().flat_map(|block| &block.sides).flatten().map(String::as_str).collect();
-        if let Some((k, name)) = self.apart.iter().enumerate().find(|(_, name)| !sides.contains(name.as_str())) {
+        if let Some((k, name)) = self.separated.iter().enumerate().find(|(_, name)| !sides.contains(name.as_str())) {
             let message =
                 format!("no side is named `{name}`{}: name the sides that are not joined", meant(name, &sides));
-            return Err(BlockError::new(format!("apart[{k}]"), message));
+            return Err(BlockError::new(format!("separated[{k}]"), message));
         }
         let bodies: BTreeSet<&str> = self.blocks.iter().map(|block| block.body.as_str()).collect();
         for (k, list) in self.joined.iter().enumerate() {

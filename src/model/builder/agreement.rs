@@ -60,17 +60,17 @@ pub fn clash(
         Vector2::zeros()
     } else {
         // What comes to its value has come to it in an earlier step.
-        let held = two.map(|of| match of.drive {
+        let constrained = two.map(|of| match of.drive {
             Drive::Constant(end) => end,
             _ => value(of, span.start, Vector2::zeros()),
         });
-        inverse * Vector2::from(held)
+        inverse * Vector2::from(constrained)
     };
     let compared = |time: f64| {
-        let held = two.map(|of| value(of, time, start));
-        let moved = third.direction.dot(&(inverse * Vector2::from(held)));
+        let constrained = two.map(|of| value(of, time, start));
+        let moved = third.direction.dot(&(inverse * Vector2::from(constrained)));
         let said = value(third, time, start);
-        let size = held.into_iter().chain([said]).map(f64::abs).fold(0.0, f64::max);
+        let size = constrained.into_iter().chain([said]).map(f64::abs).fold(0.0, f64::max);
         (Clash { time, moved, said }, size)
     };
     let all: Vec<(Clash, f64)> = times(span, &all.map(|of| &of.drive)).map(compared).collect();

@@ -266,9 +266,9 @@ fn check_imposed(law: &dyn Material, stressed: bool, thermal: Option<Thermal>, p
         check_finite(&format!("{place}.thermal.reference"), [reference])?;
     }
     let own = law.description();
-    let beside = stressed && !own.holds_initial_stress;
-    let key = if beside { "initial_stress" } else { "thermal" };
-    let alone = !own.sections.any_stretch() && (beside || thermal.is_some());
+    let adjacent = stressed && !own.holds_initial_stress;
+    let key = if adjacent { "initial_stress" } else { "thermal" };
+    let alone = !own.sections.any_stretch() && (adjacent || thermal.is_some());
     refuse_if(alone, format!("{place}.{key}"), NEEDS_STRETCH)
 }
 

@@ -171,10 +171,10 @@ fn check_implicit(model: &Model) -> Checked<()> {
     for pair in &model.contacts {
         let refuse_if =
             |fails: bool, key: &str, why: &str| refuse_if(fails, format!("contacts.{}.{key}", pair.name), why);
-        let beside = pair.laws.iter().any(|law| matches!(law.cohesion, Some(Cohesion::Beside(_))));
+        let adjacent = pair.laws.iter().any(|law| matches!(law.cohesion, Some(Cohesion::Parallel(_))));
         let why = "beside friction is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): leave it out, \
                    or take static steps with radiation_damping";
-        refuse_if(beside, "bond", why)?;
+        refuse_if(adjacent, "bond", why)?;
         let why = "of water that flows is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): give it by \
                    place and time, or take static steps with radiation_damping";
         refuse_if(pair.conduit.is_some(), "fluid_pressure", why)?;

@@ -115,7 +115,7 @@ fn line(place: &str, contact: &Contact, model: &Model) -> Checked<Line> {
 }
 
 /// Farthest that a well may be from the slave, over the length of an edge [-]
-const BESIDE: f64 = 1e-3;
+const NEARLY: f64 = 1e-3;
 
 /// Share of a rate that is round-off of its place [-]
 const ROUND_OFF: f64 = 1e-12;
@@ -134,7 +134,7 @@ fn well(place: &str, given: &FlowWell, line: &Line, model: &Model) -> Checked<We
         let [from, to] = [a, b].map(|k| model.mesh.nodes[nodes[k]]);
         let (way, length) = (to - from, (to - from).norm());
         let share = ((at - from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
-        ((from + way * share - at).norm() <= BESIDE * length).then_some((a, b, share))
+        ((from + way * share - at).norm() <= NEARLY * length).then_some((a, b, share))
     });
     let here = on_piece.ok_or_else(|| {
         let near = vector(model.mesh.nodes[nodes[nearest]]);
@@ -166,17 +166,21 @@ fn well(place: &str, given: &FlowWell, line: &Line, model: &Model) -> Checked<We
     Ok(Well { at, gives, span, corners: schedule.corners() })
 }
 
-/// No two pressures are held at a node at the same time.
+/// No two pressures are prescribed at a node at the same time.
 fn check_apart(place: &str, wells: &[Well]) -> Checked<()> {
-    let held = |well: &&Well| matches!(well.gives, Gives::Pressure(_));
-    for (k, one) in wells.iter().enumerate().filter(|(_, well)| held(well)) {
+    let prescribed = |well: &&Well| matches!(well.gives, Gives::Pressure(_));
+    for (k, one) in wells.iter().enumerate().filter(|(_, well)| prescribed(well)) {
         let clashes = |other: &&Well| {
             let together = one.span[0].max(other.span[0]) < one.span[1].min(other.span[1]);
             other.at[0].0 == one.at[0].0 && together
         };
         let message =
             "holds a pressure at the same node as another one before it, at the same time: take one well with a table";
-        refuse_if(wells[..k].iter().filter(held).any(|other| clashes(&other)), format!("{place}.wells[{k}]"), message)?;
+        refuse_if(
+            wells[..k].iter().filter(prescribed).any(|other| clashes(&other)),
+            format!("{place}.wells[{k}]"),
+            message,
+        )?;
     }
     Ok(())
 }

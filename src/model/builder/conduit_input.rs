@@ -49,9 +49,9 @@ pub struct Flow {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct FlowWell {
-    /// Reference position [x, y] on the slave: a pressure is held at the nearest node, a rate is shared by the two beside it [L]
+    /// Reference position [x, y] on the slave: a pressure is prescribed at the nearest node, a rate is shared by the two beside it [L]
     pub at: [f64; 2],
-    /// Pressure that is held, from its start on [F/L²]
+    /// Pressure that is prescribed, from its start on [F/L²]
     pub pressure: Option<Schedule>,
     /// Volume that flows in, out if negative; over the thickness of the section, 1 unless given [L³/T]
     pub rate: Option<Schedule>,

@@ -471,7 +471,7 @@ pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
     let fails = contact.master_group().is_none() || contact.is_own();
     let message = "is no other group of edges, to which a surface can be tied: constrain it by supports instead";
     refuse_if(fails, format!("{place}.master"), message)?;
-    let beside = [
+    let adjacent = [
         ("area", contact.area.is_some()),
         ("smooth", contact.smooth),
         ("normal.penetration", contact.normal.penetration.is_some()),
@@ -488,5 +488,5 @@ pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
         ("initial", contact.initial.is_some()),
     ];
     let message = "has no meaning for surfaces that are tied: leave it out";
-    beside.into_iter().try_for_each(|(key, given)| refuse_if(given, format!("{place}.{key}"), message))
+    adjacent.into_iter().try_for_each(|(key, given)| refuse_if(given, format!("{place}.{key}"), message))
 }

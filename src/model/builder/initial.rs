@@ -150,9 +150,9 @@ fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, model: &
         if traction.abs() > limit * (1.0 + WRITTEN) {
             let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
             let [is, limit] = apart([traction.abs(), limit]);
-            let beside = if law.description.bond > 0.0 { "bond.strength + " } else { "" };
+            let adjacent = if law.description.bond > 0.0 { "bond.strength + " } else { "" };
             let message = format!(
-                "is {}{is} at {}: it exceeds the initial strength, {beside}mu p = {limit} with mu = {mu} and p = {}",
+                "is {}{is} at {}: it exceeds the initial strength, {adjacent}mu p = {limit} with mu = {mu} and p = {}",
                 sign(*traction),
                 vector(position(point, &model.mesh)),
                 number(pressure)

@@ -559,9 +559,9 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
 /// What to give as α_n of a slave group of points: the default of sides with elements of that size, if there are any at the points.
 fn needs_stiffness(contact: &Contact, model: &Model) -> String {
     let nodes = model.mesh.group(&contact.slave).map(|group| model.mesh.nodes_of(group)).unwrap_or_default();
-    let is_beside = |k: &usize| model.mesh.elements[*k].nodes.iter().any(|node| nodes.binary_search(node).is_ok());
+    let is_adjacent = |k: &usize| model.mesh.elements[*k].nodes.iter().any(|node| nodes.binary_search(node).is_ok());
     let stiffness = |k: usize| model.body_of(k).material.description().p_wave_modulus / model.solids[k].area().sqrt();
-    let softest = (0..model.solids.len()).filter(is_beside).map(stiffness).fold(f64::INFINITY, f64::min);
+    let softest = (0..model.solids.len()).filter(is_adjacent).map(stiffness).fold(f64::INFINITY, f64::min);
     let [stiff, soft] = [STATIC, SOFTER].map(|over| number(over * softest));
     let advice = match softest.is_finite() {
         true => format!("sides of elements like those there take {stiff} in static steps, {soft} in dynamics"),

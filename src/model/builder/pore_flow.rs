@@ -33,7 +33,7 @@ use crate::model::{Body, Model};
 pub struct DrainageInput {
     /// Group of edges or nodes, or a single node, of bodies whose water flows
     pub on: Place,
-    /// p_w that is held there, by the reference position x, y and in expressions the run time t; 0 where water drains freely [F/L²]
+    /// p_w that is prescribed there, by the reference position x, y and in expressions the run time t; 0 where water drains freely [F/L²]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<Profile>,
     /// Level of free water that stands there: p_w = γ_w (head − y) of the reference position, of water that `weighs` [L]
@@ -86,9 +86,9 @@ impl DrainageInput {
     }
 }
 
-/// Flow through what holds a pressure, in multiples of that through an element beside it under the same difference: the pressure is held to the
+/// Flow through what prescribes a pressure, in multiples of that through an element beside it under the same difference: the pressure is held to the
 /// inverse of this [-]
-const HELD: f64 = 1e6;
+const PRESCRIBED: f64 = 1e6;
 
 /// The water of the bodies in which it flows.
 pub fn flow(bodies: &[Body], solids: &[SolidElement], mesh: &mut Mesh) -> Checked<Option<PoreFlow>> {
@@ -346,16 +346,16 @@ fn drain(
         conductance = flows.fold(0.0, f64::max);
     }
     let weight = |k: usize| {
-        let mut beside = flow.elements.iter().filter(|wet| wet.pressures.contains(&k));
-        beside.find(|wet| wet.weight > 0.0).map(|wet| wet.weight)
+        let mut adjacent = flow.elements.iter().filter(|wet| wet.pressures.contains(&k));
+        adjacent.find(|wet| wet.weight > 0.0).map(|wet| wet.weight)
     };
     let first = areas.keys().next().copied().unwrap_or_default();
     let message = "is for water that weighs: give \"weighs\": true in pore_fluid, or the `pressure`";
     refuse_if(entry.head.is_some() && !areas.is_empty() && weight(first).is_none(), format!("{place}.head"), message)?;
     let kind = match entry {
         DrainageInput { flux: Some(_), .. } => DrainKind::Flux,
-        DrainageInput { seepage: Some(_), .. } => DrainKind::Seeps(HELD * conductance),
-        _ => DrainKind::Conducts(entry.filter.unwrap_or(HELD * conductance)),
+        DrainageInput { seepage: Some(_), .. } => DrainKind::Seeps(PRESCRIBED * conductance),
+        _ => DrainKind::Conducts(entry.filter.unwrap_or(PRESCRIBED * conductance)),
     };
     let value = entry.pressure.clone().or(entry.head.clone()).or(entry.flux.clone()).unwrap_or_default();
     let at = |k: usize| flow.corners[k].map_or_else(Vector2::zeros, |node| model.mesh.nodes[node]);

@@ -78,12 +78,12 @@ fn strength(place: &str, interface: &Interface, contact: &Contact, model: &Model
     }
     let message = format!("is {reduction}: it must lie between 0 and 1");
     refuse_if(!(0.0..=1.0).contains(&reduction), at("reduction"), message)?;
-    let soil = beside(place, of.as_deref(), contact, model)?;
+    let soil = adjacent_strength(place, of.as_deref(), contact, model)?;
     Ok(soil.values().map(|value| reduction * value))
 }
 
 /// The body beside a contact whose strength counts.
-fn beside<'a>(place: &str, of: Option<&str>, contact: &Contact, model: &'a Model) -> Checked<Strength<'a>> {
+fn adjacent_strength<'a>(place: &str, of: Option<&str>, contact: &Contact, model: &'a Model) -> Checked<Strength<'a>> {
     let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}.{key}"), message));
     if contact.area.is_some() {
         let message = "takes the strength of bodies beside edges, and the slave is a group of points: give `cohesion` and `friction_angle`";

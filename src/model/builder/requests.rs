@@ -152,9 +152,9 @@ fn watched_set(model: &Model, on: &Place, place: &str) -> Checked<WatchedSet> {
         },
         _ => Vec::new(),
     };
-    let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
+    let constrained = [0, 1].map(|i| model.ties.originals(model.constrained(&nodes, i)));
     let nodes = if model.plates.is_empty() { model.ties.originals(nodes) } else { nodes };
-    Ok(WatchedSet { name: on.column(), nodes, edges, held })
+    Ok(WatchedSet { name: on.column(), nodes, edges, constrained })
 }
 
 /// Checks the interval of the results of explicit steps.

@@ -99,7 +99,7 @@ impl Schedule<'_> {
         let fades = !scheme.is_dynamic();
         self.supports_in_force.step(&given.supports, place, span, fades, self.model)?;
         self.stages.check_supports(&given.supports, place)?;
-        let supports = self.stages.held(self.supports_in_force.all(place, self.model)?, span);
+        let supports = self.stages.constrained(self.supports_in_force.all(place, self.model)?, span);
         let before = std::mem::replace(&mut self.supports, supports);
         let released = if fades { freed(&before, &self.supports) } else { Vec::new() };
         let bars = self.stages.bars(given, scheme, place)?;
@@ -325,9 +325,9 @@ fn reaction(place: &str, on: &Place, part: ForceComponent, value: f64, step: &St
     let fails = !value.is_finite() || is_size && value < 0.0;
     refuse_if(fails, format!("{place}.{}", part.name()), format_args!("is {value}: must be {kind}"))?;
     let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
-    let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
+    let constrained = [0, 1].map(|i| model.ties.originals(model.constrained(&nodes, i)));
     let along = |i: usize| {
-        let of = |node: &usize| held[i].binary_search(node).is_ok();
+        let of = |node: &usize| constrained[i].binary_search(node).is_ok();
         step.supports.iter().any(|support| of(&support.at.node()) && support.at.vector()[i] != 0.0)
     };
     let (has, axis) = match part {
@@ -338,7 +338,7 @@ fn reaction(place: &str, on: &Place, part: ForceComponent, value: f64, step: &St
     let message =
         format!("{on} has no support{axis} in this step, and no reaction: name the side that is moved or supported");
     refuse_if(!has, format!("{place}.on"), message)?;
-    Ok(Goal::Reaction(held, part))
+    Ok(Goal::Reaction(constrained, part))
 }
 
 /// A degree of consolidation that ends a step.

@@ -157,8 +157,8 @@ impl<'m> Stages<'m> {
         if self.absent.contains(&true) { self.absent.clone() } else { Vec::new() }
     }
 
-    /// The supports of a step, with the nodes held that only absent bodies have.
-    pub fn held(&self, supports: Vec<Prescribed>, span: Span) -> Vec<Prescribed> {
+    /// The supports of a step, with the nodes constrained that only absent bodies have.
+    pub fn constrained(&self, supports: Vec<Prescribed>, span: Span) -> Vec<Prescribed> {
         let idle = self.idle();
         let mut all: Vec<Prescribed> =
             supports.into_iter().filter(|support| idle.binary_search(&support.at.node()).is_err()).collect();

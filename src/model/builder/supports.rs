@@ -104,8 +104,8 @@ impl SupportsInForce {
             self.enter(support, fades, model);
         }
         for dof in rigid::still(model) {
-            let held = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
-            self.dofs.entry(dof).or_insert_with(held);
+            let constrained = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
+            self.dofs.entry(dof).or_insert_with(constrained);
         }
         self.constrain_axis(place, span, model)
     }
@@ -117,8 +117,8 @@ impl SupportsInForce {
                 *own = span;
             }
         }
-        for held in self.inclined.values_mut().flatten() {
-            (held.support.span, held.given) = (span, None);
+        for constrained in self.inclined.values_mut().flatten() {
+            (constrained.support.span, constrained.given) = (span, None);
         }
         self.entries.values_mut().for_each(|entry| entry.kept = true);
     }
@@ -155,7 +155,7 @@ impl SupportsInForce {
                 keeps(drive);
             }
         }
-        self.inclined.values_mut().flatten().for_each(|held| keeps(&mut held.support.drive));
+        self.inclined.values_mut().flatten().for_each(|constrained| keeps(&mut constrained.support.drive));
     }
 
     /// Prescribes or releases a dof.
@@ -169,10 +169,10 @@ impl SupportsInForce {
     /// All supports of a step, `place`, ascending by dof.
     pub fn all(&self, place: &str, model: &Model) -> Checked<Vec<Prescribed>> {
         let mut all = self.dofs.clone();
-        for (&node, held) in &self.inclined {
+        for (&node, constrained) in &self.inclined {
             let given: Vec<Prescribed> = dofs_of(&[node]).filter_map(|dof| all.remove(&dof)).collect();
             let tag = model.mesh.node_tags[node];
-            let resolved = resolved(node, model.mesh.nodes[node], given, held)
+            let resolved = resolved(node, model.mesh.nodes[node], given, constrained)
                 .map_err(|why| ModelError::new(format!("{place}.supports"), format!("node {tag} {why}")))?;
             all.extend(resolved.into_iter().map(|support| (support.at.dof, support)));
         }
@@ -193,8 +193,8 @@ impl SupportsInForce {
         let on_axis = (0..axis.len()).filter(|&node| on_axis(&model.mesh, &axis, node));
         for node in on_axis.chain(model.plates.iter().flatten().copied()).chain(rigid) {
             let dof = 2 * model.ties.original(node);
-            let held = Prescribed::displacement(dof, Drive::Constant(0.0), span);
-            let given = self.dofs.entry(dof).or_insert(held);
+            let constrained = Prescribed::displacement(dof, Drive::Constant(0.0), span);
+            let given = self.dofs.entry(dof).or_insert(constrained);
             let rests = |drive: &Drive, own: Span| rests(drive, model.mesh.nodes[node], own, axis[node]);
             if matches!(&given.motion, Motion::Displacement(drive, own) if rests(drive, *own)) {
                 continue;
@@ -352,7 +352,8 @@ pub fn freed(before: &[Prescribed], now: &[Prescribed]) -> Vec<Direction> {
     let mut freed = Vec::new();
     for first in before.iter().map(|support| support.at.dof & !1).collect::<std::collections::BTreeSet<_>>() {
         let [was, is] = [before, now].map(|all| [find(all, first), find(all, first + 1)]);
-        let inclined = |held: [Option<Direction>; 2]| held.into_iter().flatten().find(|at| at.inclined.is_some());
+        let inclined =
+            |constrained: [Option<Direction>; 2]| constrained.into_iter().flatten().find(|at| at.inclined.is_some());
         match (inclined(was), inclined(is)) {
             (was, Some(is)) if was == Some(is) => {}
             (_, Some(is)) => freed.extend(is.across()),
@@ -380,7 +381,7 @@ impl Along<'_> {
             return Ok(());
         }
         let all = in_force.inclined.entry(self.node).or_default();
-        let same = all.iter().position(|held| held.support.direction.perp(&self.d).abs() <= PARALLEL);
+        let same = all.iter().position(|constrained| constrained.support.direction.perp(&self.d).abs() <= PARALLEL);
         let Some(drive) = drive else {
             let Some(same) = same else { return Err(self.nothing_to_end(model)) };
             all.remove(same);
@@ -388,14 +389,14 @@ impl Along<'_> {
             return Ok(());
         };
         let toward = |other: &Vector2<f64>| if other.dot(&self.d) < 0.0 { drive.reversed() } else { drive.clone() };
-        let held = |direction, drive| InclinedSupport {
+        let constrained = |direction, drive| InclinedSupport {
             support: Inclined { share: 1.0, direction, drive, span },
             is_normal: self.is_normal,
             given: Some(self.key.clone()),
         };
         match same {
             Some(k) => {
-                let new = held(all[k].support.direction, toward(&all[k].support.direction));
+                let new = constrained(all[k].support.direction, toward(&all[k].support.direction));
                 let other = all[k].given.as_ref().is_some_and(|given| *given != self.key);
                 let at = model.mesh.nodes[self.node];
                 if other && !agreement::is_same(at, [&all[k].support, &new.support]) {
@@ -407,7 +408,7 @@ impl Along<'_> {
                 }
                 all[k] = new;
             }
-            None => all.push(held(self.d, drive.clone())),
+            None => all.push(constrained(self.d, drive.clone())),
         }
         Ok(())
     }
@@ -452,7 +453,7 @@ fn resolved(
     node: usize,
     position: Vector2<f64>,
     given: Vec<Prescribed>,
-    held: &[InclinedSupport],
+    constrained: &[InclinedSupport],
 ) -> Result<Vec<Prescribed>, Contradiction> {
     let mut all: Vec<Inclined> = Vec::new();
     for support in &given {
@@ -463,13 +464,13 @@ fn resolved(
         all.push(Inclined { share: 1.0, direction, drive: drive.clone(), span: *span });
     }
     let straight = all.len();
-    all.extend(held.iter().map(|held| held.support.clone()));
+    all.extend(constrained.iter().map(|constrained| constrained.support.clone()));
     if let [only] = &all[..] {
         let at = Direction::along(node, only.direction);
         return Ok(vec![Prescribed { at, motion: Motion::Inclined(vec![only.clone()]) }]);
     }
     if straight < 2 {
-        check_angles(straight, held, &all)?;
+        check_angles(straight, constrained, &all)?;
     }
     let d = [&all[0], &all[1]].map(|of| of.direction.transpose());
     let inverse = Matrix2::from_rows(&d).try_inverse().ok_or(Contradiction::Twice)?;
@@ -486,11 +487,11 @@ fn resolved(
 }
 
 /// Checks that inclined directions differ sufficiently from each other and from the supported coordinates.
-fn check_angles(straight: usize, held: &[InclinedSupport], all: &[Inclined]) -> Result<(), Contradiction> {
+fn check_angles(straight: usize, constrained: &[InclinedSupport], all: &[Inclined]) -> Result<(), Contradiction> {
     for a in 0..all.len() {
         for b in (a + 1).max(straight)..all.len() {
             let angle = all[a].direction.perp(&all[b].direction).abs().min(1.0).asin().to_degrees();
-            let normals = [a, b].iter().all(|k| k.checked_sub(straight).is_some_and(|k| held[k].is_normal));
+            let normals = [a, b].iter().all(|k| k.checked_sub(straight).is_some_and(|k| constrained[k].is_normal));
             let least = if normals { CORNER } else { LEAST_ANGLE };
             if angle < least {
                 return Err(Contradiction::Close(angle));

@@ -73,7 +73,7 @@ pub struct Explicit {
     /// Dashpots, absorbing sides and mass-proportional damping, one entry per node
     dampers: Arc<[Absorber]>,
     /// Their forces [F]
-    pulls: Vec<Vector2<f64>>,
+    forces: Vec<Vector2<f64>>,
     stability: Stability,
     /// Fraction of the stable increment that is used; less after a collapse
     care: f64,
@@ -152,7 +152,7 @@ impl Explicit {
             plates: Plates::new(model, step, &mass),
             mass: mass.into(),
             dampers: damping::by_node(model, step).into(),
-            pulls: Vec::new(),
+            forces: Vec::new(),
             stability,
             care,
             stable: 0.0,

@@ -3,7 +3,7 @@
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 
-use super::plates::Pulled;
+use super::plates::DamperForces;
 use super::{CHUNK, Explicit};
 use crate::equations::damping;
 use crate::equations::{Assembler, Evaluation, Trial};
@@ -60,7 +60,7 @@ impl Explicit {
         assembler.forces(still, &state.displacement, velocity).map_err(IncrementFailure::Start)?;
         let found = &mut assembler.evaluation;
         heat(step, found, state);
-        self.add_pulls(state.time, &state.velocity, found);
+        self.add_damper_forces(state.time, &state.velocity, found);
         let accelerations = found.force.iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);
         state.acceleration = accelerations.collect();
         state.force.clone_from(&found.force);
@@ -135,7 +135,7 @@ impl Explicit {
         model.ties.spread(2, &mut state.velocity);
         model.ties.spread(2, &mut state.acceleration);
         self.plates.spread(model, &self.displacement, state);
-        self.add_pulls(time, &state.velocity, found);
+        self.add_damper_forces(time, &state.velocity, found);
         let reaction = |at: Direction| {
             let of_plate = self.plates.reaction(at, &found.force, &state.acceleration);
             of_plate.unwrap_or_else(|| at.of(&found.force) + self.mass[at.node()] * at.of(&state.acceleration))
@@ -167,28 +167,28 @@ impl Explicit {
     /// (8) for dofs with dashpots, which [`Explicit::accelerate`] ignores: (M + ½ Δt C) (a − a_free) = C (v_driver − v_free)
     /// with its result a_free.
     fn damp(&mut self, time: f64, dt: f64, state: &mut State) {
-        damping::pull(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
-        let alone = self.dampers.iter().zip(&self.pulls).filter(|(damper, _)| !self.plates.has(damper.node));
-        for (Absorber { node, coefficients }, pull) in alone {
+        damping::damper_forces(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.forces);
+        let alone = self.dampers.iter().zip(&self.forces).filter(|(damper, _)| !self.plates.has(damper.node));
+        for (Absorber { node, coefficients }, force) in alone {
             let inertia = Matrix2::identity() * self.mass[*node] + coefficients * (0.5 * dt);
             let Some(inverse) = inertia.try_inverse() else { continue };
-            let change = inverse * pull;
+            let change = inverse * force;
             for i in 0..2 {
                 state.acceleration[2 * node + i] += change[i];
                 state.velocity[2 * node + i] += 0.5 * dt * change[i];
             }
         }
-        let pulled = Pulled { dampers: &self.dampers, pulls: &self.pulls };
-        self.plates.damp(&self.model, dt, pulled, &self.displacement, &self.mass, state);
+        let damping = DamperForces { dampers: &self.dampers, forces: &self.forces };
+        self.plates.damp(&self.model, dt, damping, &self.displacement, &self.mass, state);
     }
 
     /// Subtracts the damper forces at a velocity from the forces found, and books their work as damping.
-    pub(super) fn add_pulls(&mut self, time: f64, velocity: &[f64], found: &mut Evaluation) {
-        damping::pull(&self.model, &self.step, &self.dampers, time, velocity, &mut self.pulls);
-        for (damper, pull) in self.dampers.iter().zip(&self.pulls) {
+    pub(super) fn add_damper_forces(&mut self, time: f64, velocity: &[f64], found: &mut Evaluation) {
+        damping::damper_forces(&self.model, &self.step, &self.dampers, time, velocity, &mut self.forces);
+        for (damper, force) in self.dampers.iter().zip(&self.forces) {
             for i in 0..2 {
-                found.force[2 * damper.node + i] -= pull[i];
-                found.damping[2 * damper.node + i] += pull[i];
+                found.force[2 * damper.node + i] -= force[i];
+                found.damping[2 * damper.node + i] += force[i];
             }
         }
         [&mut found.force, &mut found.damping].into_iter().for_each(|forces| self.model.linkage.gather(forces));

@@ -37,11 +37,11 @@ pub(super) struct Plates {
 
 /// Dampers and their forces.
 #[derive(Clone, Copy)]
-pub(super) struct Pulled<'a> {
+pub(super) struct DamperForces<'a> {
     /// Sorted by node
     pub dampers: &'a [Absorber],
     /// Force of each [F]
-    pub pulls: &'a [Vector2<f64>],
+    pub forces: &'a [Vector2<f64>],
 }
 
 /// A platen with one equal component.
@@ -111,31 +111,31 @@ impl Plates {
     }
 
     /// (8) for dampers on platens; see [`super::Explicit::damp`].
-    pub fn damp(&mut self, model: &Model, dt: f64, pulled: Pulled, u: &[f64], mass: &[f64], state: &mut State) {
-        let Pulled { dampers, pulls } = pulled;
+    pub fn damp(&mut self, model: &Model, dt: f64, damping: DamperForces, u: &[f64], mass: &[f64], state: &mut State) {
+        let DamperForces { dampers, forces } = damping;
         if dampers.is_empty() || self.members.is_empty() {
             return;
         }
         let mut own: Vec<(f64, f64)> = self.alike.iter().map(|plate| (plate.mass, 0.0)).collect();
-        for (Absorber { node, coefficients }, pull) in dampers.iter().zip(pulls).filter(|(at, _)| self.has(at.node)) {
+        for (Absorber { node, coefficients }, force) in dampers.iter().zip(forces).filter(|(at, _)| self.has(at.node)) {
             let plates = [0, 1].map(|i| self.alike.iter().position(|plate| plate.leads(*node, i)));
             // The coupling of the two components by an absorbing side is contained in its force only.
             for i in (0..2).filter(|_| plates != [None; 2]) {
                 let resisting = 0.5 * dt * coefficients[(i, i)];
                 match plates[i] {
-                    Some(k) => own[k] = (own[k].0 + resisting, own[k].1 + pull[i]),
+                    Some(k) => own[k] = (own[k].0 + resisting, own[k].1 + force[i]),
                     None => {
-                        let acceleration = pull[i] / (mass[*node] + resisting);
+                        let acceleration = force[i] / (mass[*node] + resisting);
                         state.acceleration[2 * node + i] += acceleration;
                         state.velocity[2 * node + i] += 0.5 * dt * acceleration;
                     }
                 }
             }
         }
-        for (plate, (inertia, pull)) in self.alike.iter_mut().zip(own) {
-            plate.rates = [plate.rates[0] + 0.5 * dt * pull / inertia, plate.rates[1] + pull / inertia];
+        for (plate, (inertia, force)) in self.alike.iter_mut().zip(own) {
+            plate.rates = [plate.rates[0] + 0.5 * dt * force / inertia, plate.rates[1] + force / inertia];
         }
-        self.rigid.iter_mut().for_each(|plate| plate.damp(dt, pulled, u));
+        self.rigid.iter_mut().for_each(|plate| plate.damp(dt, damping, u));
         self.tell(model, u, state);
     }
 
@@ -194,7 +194,7 @@ struct Rigid {
     /// G_R
     reference: Matrix2<f64>,
     /// Supports of A, with their numbers
-    held: Vec<(usize, Direction)>,
+    constrained: Vec<(usize, Direction)>,
     /// m [M]
     mass: f64,
     /// c = shift e
@@ -213,15 +213,15 @@ impl Rigid {
         let mut nodes: Vec<(usize, Matrix2<f64>)> =
             followers.chain([(a, Matrix2::zeros()), (b, Matrix2::identity())]).collect();
         let supports = step.supports.iter().map(|support| support.at).enumerate();
-        let held: Vec<(usize, Direction)> = supports.filter(|(_, at)| at.node() == a).collect();
+        let constrained: Vec<(usize, Direction)> = supports.filter(|(_, at)| at.node() == a).collect();
         let total: f64 = nodes.iter().map(|(node, _)| mass[*node]).sum();
         let center = nodes.iter().fold(Matrix2::zeros(), |sum, (node, share)| sum + share * mass[*node]) / total;
-        let reference = if held.is_empty() { center } else { Matrix2::zeros() };
+        let reference = if constrained.is_empty() { center } else { Matrix2::zeros() };
         let arm = model.mesh.nodes[b] - model.mesh.nodes[a];
         nodes.iter_mut().for_each(|(_, share)| *share -= reference);
         let inertia = nodes.iter().map(|(node, share)| mass[*node] * (share * arm).norm_squared()).sum();
         let (shift, rates) = (center - reference, [Vector3::zeros(); 2]);
-        Self { leaders: [a, b], arm, nodes, reference, held, mass: total, shift, inertia, rates }
+        Self { leaders: [a, b], arm, nodes, reference, constrained, mass: total, shift, inertia, rates }
     }
 
     /// (7): rotates the platen over `dt`; R has been moved already.
@@ -301,24 +301,24 @@ impl Rigid {
         let total = of_a + of_b;
         let moment = e.perp(&of_b) - (self.reference * e).perp(&total);
         let spin = self.rates[0].z + 0.5 * dt * self.rates[1].z;
-        let pulled = self.shift * e * (spin * spin * self.mass) - total;
-        let found = self.solve(e, Matrix3::zeros(), Vector3::new(pulled.x, pulled.y, -moment), supported);
+        let force = self.shift * e * (spin * spin * self.mass) - total;
+        let found = self.solve(e, Matrix3::zeros(), Vector3::new(force.x, force.y, -moment), supported);
         self.rates = [self.rates[0] + found * (0.5 * dt), found];
     }
 
     /// (8) for dampers on the platen.
-    pub fn damp(&mut self, dt: f64, pulled: Pulled, u: &[f64]) {
-        let Pulled { dampers, pulls } = pulled;
+    pub fn damp(&mut self, dt: f64, damping: DamperForces, u: &[f64]) {
+        let DamperForces { dampers, forces } = damping;
         let e = self.arm + relative(self.leaders, u);
-        let (mut resisting, mut pull) = (Matrix3::zeros(), Vector3::zeros());
+        let (mut resisting, mut force) = (Matrix3::zeros(), Vector3::zeros());
         for (node, share) in &self.nodes {
             let Ok(k) = dampers.binary_search_by_key(node, |damper| damper.node) else { continue };
             let turned = perpendicular(share * e);
             let motion = Matrix2x3::new(1.0, 0.0, turned.x, 0.0, 1.0, turned.y);
             resisting += motion.transpose() * dampers[k].coefficients * motion;
-            pull += motion.transpose() * pulls[k];
+            force += motion.transpose() * forces[k];
         }
-        let found = self.solve(e, resisting * (0.5 * dt), pull, &|_| 0.0);
+        let found = self.solve(e, resisting * (0.5 * dt), force, &|_| 0.0);
         self.rates = [self.rates[0] + found * (0.5 * dt), self.rates[1] + found];
     }
 
@@ -333,7 +333,7 @@ impl Rigid {
         let turned = perpendicular(self.shift * e) * self.mass;
         let m = self.mass;
         let mut matrix = Matrix3::new(m, 0.0, turned.x, 0.0, m, turned.y, turned.x, turned.y, self.inertia) + resisting;
-        for &(k, at) in &self.held {
+        for &(k, at) in &self.constrained {
             let (row, d) = (at.dof % 2, at.vector());
             if at.inclined.is_some() {
                 let across = Vector2::new(-d.y, d.x);

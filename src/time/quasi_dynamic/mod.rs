@@ -268,7 +268,7 @@ impl QuasiDynamic {
         let SlipOperator { bodies, system, .. } = bodies;
         bodies.assemble(trial, &u, &[], Request::Residual, system).map_err(IncrementFailure::Start)?;
         let found = &mut bodies.evaluation;
-        pull(model, &contacts, found);
+        add_contact_forces(model, &contacts, found);
         found.contacts = contacts;
         accept(model, step, time, &mut u, found, state);
         take_stock(model, 0.0, state);
@@ -380,7 +380,7 @@ impl Stops {
 }
 
 /// Adds the contact forces on the nodes, and those of fluids to the loads.
-fn pull(model: &Model, contacts: &[Vec<ContactState>], found: &mut Evaluation) {
+fn add_contact_forces(model: &Model, contacts: &[Vec<ContactState>], found: &mut Evaluation) {
     for (pair, states) in model.contacts.iter().zip(contacts) {
         for (point, state) in pair.small.iter().flat_map(|small| small.points.iter().flatten()).zip(states) {
             let ContactState { friction, radiation, fluid, length, .. } = state;

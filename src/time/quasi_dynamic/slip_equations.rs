@@ -105,7 +105,7 @@ impl SlipEquations<'_> {
         let traction = start.shear() + start.radiation - change(n + k);
         let free = match strength(pair, slave, start, z[k]) {
             0.0 => traction,
-            strength => traction.signum() * (traction.abs() - strength).max(HELD * traction.abs()),
+            strength => traction.signum() * (traction.abs() - strength).max(LEAST_FRICTION * traction.abs()),
         };
         let loading = PointLoad { traction: free, pressure, damping: pair.radiation };
         let answer = with_rates(pair, slave, now, |law| {
@@ -126,12 +126,12 @@ impl SlipEquations<'_> {
 }
 
 /// Share of the traction that friction sees while a bond holds: laws have no slip rate without traction [-]
-const HELD: f64 = 1e-12;
+const LEAST_FRICTION: f64 = 1e-12;
 
 /// s of a bond beside friction after a slip since t₀; 0 without one [F/L²]
 fn strength(pair: &ContactPair, slave: &SlavePoint, start: &ContactState, slip: f64) -> f64 {
     match (&pair.law(slave).cohesion, &start.bond) {
-        (Some(Cohesion::Beside(bond)), Some(state)) => {
+        (Some(Cohesion::Parallel(bond)), Some(state)) => {
             bond.strength_left(&BondState { slip: state.slip + slip.abs(), ..*state })
         }
         _ => 0.0,

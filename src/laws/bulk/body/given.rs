@@ -44,26 +44,26 @@ impl Given {
     /// Adds the fluid to the answer of the law.
     pub fn add(&self, answer: &mut BulkResponse, straining: &Straining, new: &mut [f64]) {
         let [pressure, opening] = self.slot.of_mut(new);
-        let borne = self.biot * *pressure;
+        let pore_stress = self.biot * *pressure;
         let Straining { deformation: f, stretch: h, .. } = *straining;
         if self.linear {
             *opening = self.biot * (f.trace() - 2.0 + (h - 1.0));
             answer.energy -= *pressure * *opening;
-            answer.stress -= borne * Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0);
+            answer.stress -= pore_stress * Vector5::new(1.0, 0.0, 0.0, 1.0, 1.0);
             return;
         }
         let (area, jacobian) = (cofactor(&f), f.determinant());
         *opening = self.biot * (jacobian * h - 1.0);
         answer.energy -= *pressure * *opening;
-        answer.stress -= borne * components(&(area * h), jacobian);
+        answer.stress -= pore_stress * components(&(area * h), jacobian);
         // ∂cof/∂F of the components (11, 21, 12, 22)
         for (row, column, sign) in [(0, 3, 1.0), (3, 0, 1.0), (1, 2, -1.0), (2, 1, -1.0)] {
-            answer.tangent[(row, column)] -= sign * borne * h;
+            answer.tangent[(row, column)] -= sign * pore_stress * h;
         }
         let across = components(&area, 0.0);
         for k in 0..4 {
-            answer.tangent[(k, 4)] -= borne * across[k];
-            answer.tangent[(4, k)] -= borne * across[k];
+            answer.tangent[(k, 4)] -= pore_stress * across[k];
+            answer.tangent[(4, k)] -= pore_stress * across[k];
         }
     }
 }

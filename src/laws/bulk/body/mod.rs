@@ -111,8 +111,8 @@ impl BodyLaw {
         let pores = fluid.map(|fluid| Pores::new(fluid, linear, &mut names));
         shown.extend(fluid.map(|_| pores::SHOWN).or(biot.map(|_| pores::SHOWN)));
         let places = names.all(own.variables);
-        let beside = stressed && !own.holds_initial_stress;
-        let initial = beside.then(|| Imposed::new(linear, &mut names));
+        let adjacent = stressed && !own.holds_initial_stress;
+        let initial = adjacent.then(|| Imposed::new(linear, &mut names));
         let heat = expansion.map(|expansion| Heat::new(expansion, linear, &mut names));
         let given = biot.map(|biot| Given::new(biot, linear, &mut names));
         let any = pores.is_some() || initial.is_some() || heat.is_some() || given.is_some();

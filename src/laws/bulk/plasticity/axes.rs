@@ -17,7 +17,7 @@ pub(super) struct Axes {
     /// Q: the axes in plane, in columns
     turn: Matrix2<f64>,
     /// F⁻¹ Q
-    pulled: Matrix2<f64>,
+    pulled_back: Matrix2<f64>,
     /// Rᵀ Q: the axes before the rotation R of F = R U
     unrotated: Matrix2<f64>,
     /// b₁, b₂, b₃, b₁ being the greater
@@ -45,7 +45,7 @@ impl Axes {
         let inverse = Matrix2::new(f.m22, -f.m12, -f.m21, f.m11) * (1.0 / f.determinant());
         let strains = 0.5 * Vector3::from(series::ln_1p(less_one.into()));
         let unrotated = rotation(f).transpose() * turn;
-        Ok(Self { deformation: *f, stretch, inverse, turn, pulled: inverse * turn, unrotated, squares, strains })
+        Ok(Self { deformation: *f, stretch, inverse, turn, pulled_back: inverse * turn, unrotated, squares, strains })
     }
 
     /// An unrotated tensor (xx, yy, zz, xy) in the axes.
@@ -81,7 +81,7 @@ impl Axes {
                 Matrix2::new(xx - (b.x - 1.0), xy, xy, yy - (b.y - 1.0))
             }
         };
-        let change = self.pulled * less * self.pulled.transpose();
+        let change = self.pulled_back * less * self.pulled_back.transpose();
         state[0] += change.m11;
         state[1] += change.m22;
         state[2] += 0.5 * (change.m12 + change.m21);
@@ -91,7 +91,7 @@ impl Axes {
     /// q_a ⊗ F⁻¹q_b of two axes, as components 11, 21, 12, 22.
     #[inline(always)]
     fn dyad(&self, a: usize, b: usize) -> Vector4<f64> {
-        let (q, g) = (self.turn.column(a), self.pulled.column(b));
+        let (q, g) = (self.turn.column(a), self.pulled_back.column(b));
         Vector4::new(q[0] * g[0], q[1] * g[0], q[0] * g[1], q[1] * g[1])
     }
 

@@ -17,7 +17,7 @@ impl SolidElement {
     ///
     /// # Errors
     /// [`ElementError::Degenerate`] when it is inverted there.
-    pub fn born(
+    pub fn activated(
         &self,
         section: Section,
         positions: &[Vector2<f64>],
