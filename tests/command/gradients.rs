@@ -128,11 +128,10 @@ fn is_close([main, others]: &[(f64, String); 2]) -> bool {
 
 /// A block on ground, dragged until it slides; every increment has the same length.
 fn dragged(friction: Value, contact: Value) -> Value {
-    let mut base =
-        json!({"slave": "block_bottom", "master": "ground_top", "normal": {"alpha_n": 4e5}, "friction": friction});
-    for (key, value) in contact.as_object().expect("keys") {
-        base[key] = value.clone();
-    }
+    let base = common::with(
+        json!({"slave": "block_bottom", "master": "ground_top", "normal": {"alpha_n": 4e5}, "friction": friction}),
+        &contact,
+    );
     json!({
         "mesh": Blocks::default()
             .rectangle("ground", [14, 3], [-2.0, -1.0], [5.0, 0.0])
@@ -254,12 +253,10 @@ fn staged(scheme: &Value, model: &str) -> Value {
     let block = |body: &str, low: [f64; 2], high: [f64; 2], sides: [Option<&str>; 4]| json!({"body": body, "corners": [low, [high[0], low[1]], high, [low[0], high[1]]], "elements": [3, 2], "sides": sides});
     let material = json!({"model": model, "E": 1000, "nu": 0.3, "density": 100});
     let step = |name: &str, more: Value| {
-        let mut step =
-            json!({"name": name, "duration": 0.2, "scheme": scheme, "dt": {"initial": 0.05, "min": 0.05, "max": 0.05}});
-        for (key, value) in more.as_object().expect("keys") {
-            step[key] = value.clone();
-        }
-        step
+        common::with(
+            json!({"name": name, "duration": 0.2, "scheme": scheme, "dt": {"initial": 0.05, "min": 0.05, "max": 0.05}}),
+            &more,
+        )
     };
     let weight = json!([{"on": "fill", "gravity": {"y": -0.05}}]);
     json!({

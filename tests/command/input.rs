@@ -515,7 +515,7 @@ fn a_crack_whose_sides_share_a_node_runs_with_every_method() {
     for method in ["node_to_segment", "gauss_to_segment", "mortar"] {
         for sliding in ["small", "finite"] {
             let case = json!({
-                "mesh": {"apart": ["low", "up"], "blocks": [
+                "mesh": {"separated": ["low", "up"], "blocks": [
                     block(json!([[0, -1], [1, -1], [1, 0], [0, 0]]), json!(["bottom", null, "low", null])),
                     block(json!([[1, -1], [2, -1], [2, 0], [1, 0]]), json!(["bottom", null, null, null])),
                     block(json!([[0, 0], [1, 0], [1, 1], [0, 1]]), json!(["up", null, "top", null])),

@@ -125,6 +125,17 @@ pub fn floor() -> MasterSide {
     MasterSide::Plane { point: [0.0, 0.0], normal: [0.0, 1.0] }
 }
 
+/// An object with the keys of another as well, which replace its own.
+pub fn with(mut object: Value, more: &Value) -> Value {
+    object.as_object_mut().expect("an object").extend(more.as_object().expect("keys").clone());
+    object
+}
+
+/// What is made on so many threads.
+pub fn on_threads<T: Send>(threads: usize, make: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads").install(make)
+}
+
 /// A drive by an expression.
 pub fn expression(text: &str) -> Drive {
     Drive::Expression(Expression::parse(text).expect("an expression"))

@@ -3,20 +3,15 @@
 use std::f64::consts::PI;
 
 use fecontact::model::state::State;
-use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
 
-use crate::common::{Finished, close, finish};
+use crate::common::{close, finish, with};
 
 /// A point of mass 10 on a plane, of area 1, on which a force acts from the start on, or which swings on a spring.
 fn mass(contact: &Value, step: &Value) -> Value {
-    let mut base = json!({"slave": "mass", "area": 1, "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "normal": {"alpha_n": 1e7}});
-    let mut only = json!({"name": "move", "duration": 0.15, "dt": {"initial": 1e-4}});
-    for (into, from) in [(&mut base, contact), (&mut only, step)] {
-        for (key, value) in from.as_object().expect("keys") {
-            into[key] = value.clone();
-        }
-    }
+    let base = json!({"slave": "mass", "area": 1, "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "normal": {"alpha_n": 1e7}});
+    let only = json!({"name": "move", "duration": 0.15, "dt": {"initial": 1e-4}});
+    let (base, only) = (with(base, contact), with(only, step));
     json!({
         "mesh": {"nodes": [[0, 0]], "points": {"mass": [0]}},
         "point_masses": {"mass": {"mass": 10}},
@@ -202,44 +197,5 @@ fn a_round_shaft_bears_its_adhesion() {
         let shear: f64 = run.last().contacts[0].iter().map(|point| point.length * point.shear()).sum();
         close(method, shear.abs(), 32.0 * PI * 8.0, 1e-3 * 804.25);
         close(method, run.reaction("far", run.last())[1], 32.0 * PI * 8.0, 1e-3 * 804.25);
-    }
-}
-
-/// A block of the crossings' kind, pressed, lifted and pushed in motion.
-fn lifted(scheme: &Value) -> Value {
-    json!({
-        "mesh": {"blocks": [{
-            "body": "b", "corners": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]], "elements": [6, 3], "sides": ["bottom", null, "top", "left"]
-        }]},
-        "bodies": {"b": {"material": {"model": "linear", "E": 2000, "nu": 0.3, "density": 1}}},
-        "contacts": {"c": {
-            "slave": "bottom", "master": {"plane": {"point": [0, -5e-4], "normal": [0, 1]}}, "friction": {"law": "coulomb", "mu": 0.3},
-            "bond": {"strength": 10, "residual": 2, "slip": 0.02, "tension": 6, "opening": 0.01, "limit": 12, "bonded": true}
-        }},
-        "steps": [{"name": "move", "duration": 0.1, "dt": {"initial": 2e-3, "max": 2e-3}, "scheme": scheme, "loads": [
-            {"on": "top", "traction": {"x": "8*sin(60*t)", "y": "7*sin(80*t)"}}]}],
-        "output": {"interval": 2e-3}
-    })
-}
-
-/// Stopped in the middle, where some points are open and carry, it goes on to the same bits.
-#[test]
-fn bonds_in_motion_go_on_to_the_same_bits() {
-    for scheme in schemes() {
-        let run: Finished = finish(&lifted(&scheme));
-        let carries = |state: &State| state.contacts[0].iter().any(|point| point.carries_open());
-        let middle = run.states.len() / 2;
-        assert!(run.states[middle - 8..middle + 8].iter().any(carries), "{scheme}: none is open");
-        let mut first = Simulation::new(run.model.clone());
-        let stop = (middle - 8..middle + 8).find(|k| carries(&run.states[*k])).expect("one");
-        for _ in 0..stop {
-            first.next_increment().expect("it is solved").expect("an increment");
-        }
-        let saved = Saved::from_bytes(&first.save().bytes().expect("bytes"), &run.model).expect("it can be read");
-        let mut second = Simulation::resume(run.model.clone(), saved);
-        for straight in &run.states[stop..] {
-            let increment = second.next_increment().expect("it is solved").expect("an increment");
-            assert!(*increment.state == *straight, "{scheme}: other bits at {}", straight.time);
-        }
     }
 }

@@ -33,7 +33,7 @@ const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r"
         "integration": "backward_euler"}"#;
 const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
-const INCREMENT: ContactIncrement =
+pub const INCREMENT: ContactIncrement =
     ContactIncrement { dt: 0.3, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true, seeps: 0.0 };
 
 /// A wavy master of five segments, nodes 0 to 5 from left to right, and slave nodes 6, 7, 8 below it.

@@ -9,7 +9,7 @@ use fecontact::model::state::State;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
-use crate::common::{Finished, close, finish, turned};
+use crate::common::{Finished, close, finish, turned, with};
 
 const KINDS: [&str; 3] = ["Q4", "Q8", "T6"];
 
@@ -95,8 +95,7 @@ fn bent(kind: &str, n: usize, contact: &Value) -> Finished {
     let mut blocks = [layer("lower", -1.0, [5 * n, n]), layer("upper", 1.0, [7 * n, n])];
     blocks[0]["points"] = json!({"origin": [0, 0], "tip": [LONG, 0]});
     let body = json!({"material": {"model": "linear", "E": 1000, "nu": 0.3}});
-    let mut base = json!({"slave": "upper_inner", "master": "lower_inner"});
-    base.as_object_mut().expect("a contact").extend(contact.as_object().expect("keys").clone());
+    let base = with(json!({"slave": "upper_inner", "master": "lower_inner"}), contact);
     let steepness = -CURVATURE * 1000.0 / 0.91;
     finish(&json!({
         "mesh": {"blocks": blocks}, "bodies": {"lower": body, "upper": body}, "contacts": {"base": base},

@@ -9,7 +9,7 @@ use fecontact::model::Model;
 use fecontact::model::builder::{Contact, Interface, LoadStep};
 use serde_json::{Value, json};
 
-use crate::common::{self, Blocks, close};
+use crate::common::{self, Blocks, close, with};
 
 fn sand() -> Value {
     json!({"model": "mohr_coulomb", "E": 2000, "nu": 0, "c": 6, "phi": 30, "psi": 0})
@@ -22,10 +22,7 @@ fn steel() -> Value {
 /// A column pressed by 10 on another one, which yields or not, and slid.
 fn columns(upper: &Value, lower: &Value, contact: &Value) -> Value {
     let block = |body: &str, low: f64, sides: [Option<&str>; 4]| json!({"body": body, "corners": [[0, low], [1, low], [1, low + 1.0], [0, low + 1.0]], "elements": [2, 2], "sides": sides});
-    let mut base = json!({"slave": "bottom", "master": "top", "sliding": "small"});
-    for (key, value) in contact.as_object().expect("keys") {
-        base[key] = value.clone();
-    }
+    let base = with(json!({"slave": "bottom", "master": "top", "sliding": "small"}), contact);
     json!({
         "mesh": {"blocks": [block("wall", 0.0, [Some("bottom"), None, Some("head"), None]), block("soil", -1.0, [Some("foot"), None, Some("top"), None])]},
         "bodies": {"wall": {"material": upper}, "soil": {"material": lower}},
@@ -42,7 +39,7 @@ fn columns(upper: &Value, lower: &Value, contact: &Value) -> Value {
 fn strength(model: &Model) -> [f64; 2] {
     let law = &model.contacts[0].laws[0];
     let cohesion = match &law.cohesion {
-        Some(Cohesion::Beside(bond)) => bond.strength(),
+        Some(Cohesion::Parallel(bond)) => bond.strength(),
         _ => 0.0,
     };
     [cohesion, law.law.description().starting_coefficient.unwrap_or(0.0)]

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, finish, model};
+use crate::common::{Blocks, Finished, close, finish, model, with};
 use fecontact::contact::force::ContactState;
 use fecontact::laws::friction::Regime;
 use fecontact::model::state::State;
@@ -21,12 +21,14 @@ const LOAD: f64 = 20.0;
 
 /// A rigid box: a point on a plane, pressed by LOAD in the first step, dragged along x in the second.
 fn sheared(contact: &Value, drag: Value) -> Finished {
-    let mut base = json!({
-        "slave": "block", "area": AREA, "normal": {"alpha_n": ALPHA_N},
-        "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
-        "friction": {"law": "coulomb", "mu": MU, "alpha_t": ALPHA_T}
-    });
-    base.as_object_mut().expect("a contact").extend(contact.as_object().expect("keys").clone());
+    let base = with(
+        json!({
+            "slave": "block", "area": AREA, "normal": {"alpha_n": ALPHA_N},
+            "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "friction": {"law": "coulomb", "mu": MU, "alpha_t": ALPHA_T}
+        }),
+        contact,
+    );
     finish(&json!({
         "mesh": {"nodes": [[0, 0]], "points": {"block": [0]}},
         "point_masses": {"block": {"mass": 1}},
@@ -45,10 +47,11 @@ fn sheared(contact: &Value, drag: Value) -> Finished {
 const WAY: &str = "0.3*(t - 1) - 0.6*max(t - 2, 0) + 0.75*max(t - 3, 0)";
 
 fn drag(dt: f64, more: Value) -> Value {
-    let mut step = json!({"name": "drag", "duration": 3, "dt": {"initial": dt},
-        "supports": [{"on": "block", "ux": WAY}]});
-    step.as_object_mut().expect("a step").extend(more.as_object().expect("keys").clone());
-    step
+    with(
+        json!({"name": "drag", "duration": 3, "dt": {"initial": dt},
+        "supports": [{"on": "block", "ux": WAY}]}),
+        &more,
+    )
 }
 
 /// Plastic slip so far, whichever way, of a run's states.
@@ -225,9 +228,11 @@ fn sliding_that_yields_work_is_told() {
         let contact = json!({
             "friction": {"law": "rate_and_state", "f_0": 0.3, "V_0": 1e-3, "a": 0.01, "b": 0.05, "D_c": 1e-3, "alpha_t": ALPHA_T},
             "dilatancy": {"rate": rate}});
-        let mut base = json!({"slave": "block", "area": AREA, "normal": {"alpha_n": ALPHA_N},
-            "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}});
-        base.as_object_mut().expect("a contact").extend(contact.as_object().expect("keys").clone());
+        let base = with(
+            json!({"slave": "block", "area": AREA, "normal": {"alpha_n": ALPHA_N},
+            "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}}),
+            &contact,
+        );
         let mut warnings = Warnings::default();
         let model = model(&json!({
             "mesh": {"nodes": [[0, 0]], "points": {"block": [0]}},

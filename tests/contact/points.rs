@@ -337,40 +337,6 @@ fn a_block_on_a_slope_holds_up_to_the_angle_of_friction() {
     }
 }
 
-/// Pulled along by a spring, sticking and slipping and weakening: the same numbers at any angle of the plane.
-#[test]
-fn a_stick_slip_run_turns_with_its_plane() {
-    let pulled = |angle: f64| {
-        let [dx, dy] = turned([0.1, 0.0], angle);
-        let driver = json!({"x": {"rate": dx}, "y": {"rate": dy}});
-        let slider = Slider {
-            angle,
-            friction: super_subloading(),
-            initial: json!({"pressure": 80, "traction": 4, "structure": 1.7}),
-            times: [0.02, 6.0],
-            loads: json!([force(angle, [2.0, -40.0]), {"on": "block", "spring": {"kx": K, "ky": K, "driver": driver}}]),
-            ..Default::default()
-        };
-        let run = slider.run();
-        run.states
-            .iter()
-            .map(|state| (slider.displacement(state), state.contacts[0][0].friction.clone()))
-            .collect::<Vec<_>>()
-    };
-    let level = pulled(0.0);
-    let slipped = level.last().unwrap().1.plastic_slip;
-    assert!(slipped > 0.05, "it slips: {slipped}");
-    close("held at first, while the driver moves by 0.1", level[49].0[0], 0.0, 0.01);
-    for angle in [0.3, -1.0, 2.0] {
-        for ((u, one), (v, other)) in level.iter().zip(pulled(angle)) {
-            close("displacement", distance(u, &v), 0.0, 1e-10);
-            close("pressure", one.pressure, other.pressure, 1e-8);
-            close("traction", one.traction, other.traction, 1e-8);
-            close("mu", mu_of(one), mu_of(&other), 1e-10);
-        }
-    }
-}
-
 /// A mass that sticks rings on the contact spring: along the plane beside a spring with ω = √((K + α A)/M), across it with
 /// √(α A/M). The trapezoidal rule turns by φ a step, tan(φ/2) = ω Δt/2: u = v/ω sin nφ.
 #[test]

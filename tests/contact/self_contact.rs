@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::common::{Blocks, Finished, close, distance, finish, finish_at};
+use crate::contact::INCREMENT;
 use fecontact::contact::master::Master;
 use fecontact::contact::pair::{ContactIncrement, Prediction};
 use fecontact::contact::response::PairResponse;
@@ -129,15 +130,7 @@ fn tangent_of_self_contact_equals_differences() {
         let [old, new] = [&run.states[run.states.len() - 2], run.last()];
         let before = run.model.configuration(&old.displacement);
         let respond = |u: &[f64]| {
-            let during = ContactIncrement {
-                dt: 0.1,
-                time: 0.0,
-                radiates: true,
-                fading: 0.0,
-                stiffening: 1.0,
-                settles: true,
-                seeps: 0.0,
-            };
+            let during = ContactIncrement { dt: 0.1, ..INCREMENT };
             let is_predicted = |_| Prediction::default();
             let (x, mut response) = (run.model.configuration(u), PairResponse::default());
             pair.respond(&old.contacts[0], [&before, &x], during, is_predicted, Request::Tangent, &mut response)
@@ -208,15 +201,7 @@ fn a_tube_pressed_flat_touches_itself() {
     let number = run.model.contacts.iter().position(|pair| pair.name == "bar").expect("a contact of the case");
     let [old, new] = [&run.states[run.states.len() - 2], run.last()];
     let [before, x] = [old, new].map(|state| run.model.configuration(&state.displacement));
-    let during = ContactIncrement {
-        dt: new.dt,
-        time: 0.0,
-        radiates: true,
-        fading: 0.0,
-        stiffening: 1.0,
-        settles: true,
-        seeps: 0.0,
-    };
+    let during = ContactIncrement { dt: new.dt, ..INCREMENT };
     let nothing = |_| Prediction::default();
     let (states, mut answer) = (&old.contacts[number], PairResponse::default());
     run.model.contacts[number]

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::contact::pair as pair_under;
 use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, quadratic};
+use crate::contact::INCREMENT;
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::{Circle, Master, Shape};
 use fecontact::contact::mortar::{Hats, mortar_points};
-use fecontact::contact::pair::{ContactIncrement, ContactPair, Prediction};
+use fecontact::contact::pair::{ContactPair, Prediction};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::small_sliding::{LITTLE_SLIP, LITTLE_TURN};
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
@@ -162,9 +163,6 @@ fn wavy(law: &str, method: &str, gap: f64) -> (ContactPair, Vec<Vector2<f64>>) {
     pair.slide_little(&Configuration::undeformed(&x));
     (pair, x)
 }
-
-const INCREMENT: ContactIncrement =
-    ContactIncrement { dt: 0.3, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true, seeps: 0.0 };
 
 /// Forces on all nodes, their derivative by the tangents of the points, and the states.
 pub fn answer(

@@ -13,7 +13,7 @@ use fecontact::model::Model;
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 
-use crate::common::{self, close};
+use crate::common::{self, close, with};
 
 const POISSON: f64 = 0.33;
 
@@ -39,8 +39,10 @@ fn squares(kind: &str, [slave, master]: [usize; 2], depth: f64, contact: &Value)
                "sides": [format!("{body}_bottom"), null, format!("{body}_top"), null]})
     };
     let body = json!({"material": {"model": "linear", "E": 1, "nu": POISSON}});
-    let mut base = json!({"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "coulomb", "mu": 0.3}});
-    base.as_object_mut().expect("a contact").extend(contact.as_object().expect("keys").clone());
+    let base = with(
+        json!({"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "coulomb", "mu": 0.3}}),
+        contact,
+    );
     let mut blocks = vec![square("upper", 1.0, slave)];
     let mut bodies = json!({"upper": body});
     let mut supports = json!([{"on": "upper_top", "ux": 0, "uy": 0}]);

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::common::{
     self, Blocks, Finished, close, distance, finish, half_way, half_way_round, model, quadratic, turned,
 };
+use crate::contact::INCREMENT;
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
 use fecontact::contact::pair::{ContactIncrement, Prediction};
@@ -378,15 +379,7 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
         let (pair, mut found) = (&run.model.contacts[0], PairResponse::default());
         for states in run.states.windows(2) {
             let [before, x] = [&states[0], &states[1]].map(|state| run.model.configuration(&state.displacement));
-            let during = ContactIncrement {
-                dt: states[1].dt,
-                time: 0.0,
-                radiates: true,
-                fading: 0.0,
-                stiffening: 1.0,
-                settles: true,
-                seeps: 0.0,
-            };
+            let during = ContactIncrement { dt: states[1].dt, ..INCREMENT };
             let nothing = |_| Prediction::default();
             pair.respond(&states[0].contacts[0], [&before, &x], during, nothing, Request::Residual, &mut found)
                 .expect("an answer");

@@ -198,10 +198,10 @@ fn patch([lower, upper]: [usize; 2], contact: &Value) -> Value {
         json!({"body": body, "corners": [[0, y], [1, y], [1, y + 0.5], [0, y + 0.5]], "elements": [n, 4], "sides": sides})
     };
     let body = json!({"material": {"model": "linear", "E": E, "nu": 0.3}});
-    let mut base = json!({"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "frictionless"}});
-    for (key, value) in contact.as_object().expect("keys") {
-        base[key] = value.clone();
-    }
+    let base = common::with(
+        json!({"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "frictionless"}}),
+        contact,
+    );
     json!({
         "mesh": {"blocks": [block("lower", 0.0, lower), block("upper", 0.5, upper)]},
         "bodies": {"lower": body, "upper": body},
@@ -642,8 +642,10 @@ fn a_ridge_between_means_is_told() {
 #[test]
 fn what_locks_is_told_by_how_it_flows() {
     let told = |elements: [usize; 2], start: Value| {
-        let mut clay = json!({"model": "cam_clay", "lambda": 0.1, "kappa": 0.02, "M": 1.0, "nu": 0.3, "p_min": 1.0});
-        clay.as_object_mut().expect("keys").extend(start.as_object().expect("keys").clone());
+        let clay = common::with(
+            json!({"model": "cam_clay", "lambda": 0.1, "kappa": 0.02, "M": 1.0, "nu": 0.3, "p_min": 1.0}),
+            &start,
+        );
         let model = common::model(&json!({
             "mesh": {"blocks": [{"body": "soil", "corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "elements": elements,
                                  "sides": ["bottom", "right", "top", "left"]}]},

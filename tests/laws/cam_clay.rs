@@ -1,7 +1,7 @@
 //! Modified Cam-clay against closed forms and against its rate equations, which SciPy integrated.
 
 use crate::bulk::{admits, cauchy};
-use crate::common::close;
+use crate::common::{close, with};
 use crate::random::Random;
 use fecontact::laws::bulk::{BulkResponse, CauchyStress, LogarithmicBulk, Material, MaterialParameters, Straining};
 use nalgebra::{Matrix2, Vector2, Vector5};
@@ -310,8 +310,7 @@ fn what_cannot_be_is_refused() {
         ("p_min", json!({"p_min": 0.0})),
         ("density", json!({"density": -1.0})),
     ] {
-        let mut json = given(P_0);
-        change.as_object().expect("keys").iter().for_each(|(key, value)| json[key] = value.clone());
+        let json = with(given(P_0), &change);
         let refused = serde_json::from_value::<MaterialParameters>(json).expect("well formed").build();
         assert_eq!(refused.map(drop).expect_err(&change.to_string()).name, key, "{change}");
     }

@@ -8,7 +8,7 @@
 use std::backtrace::Backtrace;
 use std::sync::Mutex;
 
-use crate::common::finished;
+use crate::common::{finished, on_threads};
 use fecontact::laws::bulk::{
     BulkLaw, BulkResponse, CauchyStress, ElasticConstants, InadmissibleStress, Linear, MaterialDescription,
     MaterialFailure, NeoHookean, Straining, Viscoelastic, ViscoelasticConstants,
@@ -91,8 +91,7 @@ fn model(law: impl BulkLaw + 'static, step: LoadStep, contact: fn(Contact) -> Co
 /// The lengths of the chains from both kinds of laws in a run.
 fn depth(what: &str, model: Builder) -> [usize; 2] {
     // On one thread everything has one stack.
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    alone.install(|| finished(model.build().expect("a model")));
+    on_threads(1, || finished(model.build().expect("a model")));
     let chains = std::mem::take(&mut *LONGEST.lock().expect("no thread panics"));
     chains.map(|chain| {
         println!("{what}: {}", chain.len());

@@ -2,7 +2,7 @@
 //! again, steps of an increment, energies, and closed forms.
 
 use crate::bulk::{admits, cauchy, in_plane, in_plate};
-use crate::common::close;
+use crate::common::{close, with};
 use crate::random::Random;
 use fecontact::laws::bulk::{
     BodyLaw, BulkLaw, BulkResponse, CauchyStress, Flow, Material, MaterialFailure, MaterialParameters,
@@ -59,8 +59,7 @@ fn laws() -> Vec<(&'static str, Box<dyn Material>)> {
         ),
     ];
     let clay = |more: Value| {
-        let mut given = json!({"model": "cam_clay", "lambda": 0.15, "kappa": 0.04, "M": 1.1, "p_min": 0.01});
-        more.as_object().expect("keys").iter().for_each(|(key, value)| given[key] = value.clone());
+        let given = with(json!({"model": "cam_clay", "lambda": 0.15, "kappa": 0.04, "M": 1.1, "p_min": 0.01}), &more);
         build(given)
     };
     let clays = [
@@ -70,8 +69,8 @@ fn laws() -> Vec<(&'static str, Box<dyn Material>)> {
         ("viscous clay", clay(json!({"G": 8.0, "p_c": 0.4, "viscosity": 0.3}))),
     ];
     let skeleton = |more: Value| {
-        let mut given = json!({"model": "sys_cam_clay", "lambda": 0.15, "kappa": 0.04, "M": 1.1, "p_min": 0.01});
-        more.as_object().expect("keys").iter().for_each(|(key, value)| given[key] = value.clone());
+        let given =
+            with(json!({"model": "sys_cam_clay", "lambda": 0.15, "kappa": 0.04, "M": 1.1, "p_min": 0.01}), &more);
         build(given)
     };
     let skeletons = [

@@ -1,7 +1,7 @@
 //! SYS Cam-clay against modified Cam-clay, against its rate equations and a closed form.
 
 use crate::bulk::admits;
-use crate::common::close;
+use crate::common::{close, with};
 use crate::random::Random;
 use fecontact::laws::bulk::{BulkResponse, CauchyStress, Material, MaterialParameters, Straining};
 use nalgebra::{Matrix2, Vector2, Vector5};
@@ -23,9 +23,7 @@ fn build(given: &Value) -> Box<dyn Material> {
 /// λ̂ and κ̂ of the Kirchhoff stress are those above.
 fn given(model: &str, more: &Value) -> Value {
     let [lambda, kappa] = [LAMBDA, KAPPA].map(|slope| slope / (1.0 + slope));
-    let mut given = json!({"model": model, "lambda": lambda, "kappa": kappa, "M": M, "G": G, "p_min": 1.0});
-    more.as_object().expect("keys").iter().for_each(|(key, value)| given[key] = value.clone());
-    given
+    with(json!({"model": model, "lambda": lambda, "kappa": kappa, "M": M, "G": G, "p_min": 1.0}), more)
 }
 
 fn isotropic() -> CauchyStress {
@@ -528,8 +526,7 @@ fn what_cannot_be_is_refused() {
         ("p_c", json!({"p_c": 0.5, "OCR": null})),
         ("lambda", json!({"lambda": 0.01})),
     ] {
-        let mut more = json!({"OCR": 1.0});
-        change.as_object().expect("keys").iter().for_each(|(key, value)| more[key] = value.clone());
+        let more = with(json!({"OCR": 1.0}), &change);
         assert_eq!(refused(more), key, "{change}");
     }
     let law = build(&given("sys_cam_clay", &json!({"p_c": 50.0, "structure": 1.5})));

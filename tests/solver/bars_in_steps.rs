@@ -1,17 +1,17 @@
 //! Bars in steps: stressed by jacks, coming and going, in motion, resumed; an anchored wall; input that is refused.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::common::{Blocks, Finished, close, distance, finish, refusal};
-use crate::simulation::check;
+use crate::common::{self, Blocks, Finished, close, distance, finish, refusal};
 
 /// A rod of length 2 between two points, the right one of which moves as the steps say.
 fn rod(bar: Value, steps: Value) -> Value {
-    let mut all = json!({"points": [[0, 0], [2, 0]], "ea": 100, "start": {"on": "left"}, "end": {"on": "right"}});
-    all.as_object_mut().expect("a bar").extend(bar.as_object().expect("keys").clone());
+    let all = common::with(
+        json!({"points": [[0, 0], [2, 0]], "ea": 100, "start": {"on": "left"}, "end": {"on": "right"}}),
+        &bar,
+    );
     json!({"mesh": {"nodes": [[0, 0], [2, 0]], "points": {"left": [0], "right": [1]}}, "bars": {"rod": all}, "steps": steps})
 }
 
@@ -136,19 +136,6 @@ fn anchored(scheme: Value) -> Value {
     ]})
 }
 
-/// Increments that are dropped and repeated, and runs that resume from saved states, have the same bits; so have other numbers of threads.
-#[test]
-fn bars_are_resumed_bit_by_bit() {
-    for scheme in [json!("static"), json!({"newmark": {}})] {
-        check(&anchored(scheme), Path::new("test.json"));
-    }
-    let runs = [1, 3].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| finish(&anchored(json!("static"))))
-    });
-    assert!(runs[0].last() == runs[1].last());
-}
-
 /// The forces of a grouted anchor in the steps above: the tendon has its force, the grout takes it up by bond, and energies balance.
 #[test]
 fn an_anchor_holds_a_wall() {
@@ -180,8 +167,7 @@ fn bad_bars_are_refused_by_name() {
         case
     };
     let bar = |more: Value| {
-        let mut bar = json!({"points": [[1, 1], [3, 1]], "ea": 1});
-        bar.as_object_mut().expect("a bar").extend(more.as_object().expect("keys").clone());
+        let bar = common::with(json!({"points": [[1, 1], [3, 1]], "ea": 1}), &more);
         with(json!({"/bars/bar": bar}))
     };
     let bond = |bond: Value| bar(json!({"embedded": {"in": ["soil"], "bond": bond}}));

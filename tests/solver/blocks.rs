@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 
 use crate::common::{close, finish, model, refusal};
 
-fn mesh(blocks: &[Block], apart: &[&str]) -> Result<Mesh, String> {
-    let apart = apart.iter().map(|name| name.to_string()).collect();
-    let mesh = Blocks { apart, ..Blocks::new(blocks) }.mesh().map_err(|error| error.to_string())?;
+fn mesh(blocks: &[Block], separated: &[&str]) -> Result<Mesh, String> {
+    let separated = separated.iter().map(|name| name.to_string()).collect();
+    let mesh = Blocks { separated, ..Blocks::new(blocks) }.mesh().map_err(|error| error.to_string())?;
     mesh.build().map_err(|error| error.to_string())
 }
 
@@ -265,7 +265,7 @@ fn blocks_that_cannot_be_joined_are_refused() {
         fragments.iter().for_each(|fragment| assert!(message.contains(fragment), "`{fragment}` is not in: {message}"));
     }
     let message = mesh(&[Block::rectangle("b", [1, 1], [0.0; 2], [1.0; 2])], &["b_botom"]).unwrap_err();
-    assert!(message.contains("apart[0]: no side is named `b_botom` (did you mean `b_bottom`?)"), "{message}");
+    assert!(message.contains("separated[0]: no side is named `b_botom` (did you mean `b_bottom`?)"), "{message}");
 }
 
 /// A bar under uniaxial stress, of two blocks on either side of a dipping line.
@@ -338,7 +338,7 @@ fn bonded_materials_stretch_in_series() {
         close("the joint", run.last().displacement[2 * sets[0].nodes[0]], stress * 1.5 / e1, 1e-14);
         // The reaction of a corner: σ over half an edge, or a sixth of a quadratic one; the edges are 1/8, 3/8, 3/8 and 1/8 high.
         let share = 0.125 * if kind == "Q4" { 0.5 } else { 1.0 / 6.0 };
-        let held = &sets[2].held[0];
+        let held = &sets[2].constrained[0];
         close("a corner", held.iter().map(|&node| run.last().reaction[2 * node]).sum(), -stress * share, 1e-12);
     }
 }

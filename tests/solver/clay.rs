@@ -1,14 +1,12 @@
 //! Clay: whole models of Cam-clay, drained and with a fluid in its pores.
 
-use crate::common::{Blocks, close, finish, model, refusal};
+use crate::common::{self, Blocks, close, finish, model, refusal};
 use serde_json::{Value, json};
 
 /// λ̂ = 0.10 and κ̂ = 0.02 of the Kirchhoff stress.
 fn clay(more: Value) -> Value {
     let [lambda, kappa] = [0.10, 0.02].map(|slope: f64| slope / (1.0 + slope));
-    let mut given = json!({"model": "cam_clay", "lambda": lambda, "kappa": kappa, "M": 1.2, "p_min": 1});
-    more.as_object().expect("keys").iter().for_each(|(key, value)| given[key] = value.clone());
-    given
+    common::with(json!({"model": "cam_clay", "lambda": lambda, "kappa": kappa, "M": 1.2, "p_min": 1}), &more)
 }
 
 fn isotropic(pressure: f64) -> Value {

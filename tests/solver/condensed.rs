@@ -165,18 +165,14 @@ fn dragged(contact: Value, step: Value) -> Value {
         [1.4, 0.501],
     );
     let material = json!({"model": "linear", "E": 100, "nu": 0.3, "density": 1e-2});
-    let mut base = json!({
+    let base = json!({
         "slave": "block_bottom", "master": "ground_top", "method": "gauss_to_segment", "normal": {"alpha_n": 13462},
         "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e3, "r": 100, "kappa": 10, "xi": 0.002,
             "m": 1, "n": 1, "structure": 2.0},
     });
-    let mut drag = json!({"name": "drag", "duration": 4, "dt": {"initial": 0.2, "max": 0.2, "min": 1e-4},
+    let drag = json!({"name": "drag", "duration": 4, "dt": {"initial": 0.2, "max": 0.2, "min": 1e-4},
         "supports": [{"on": "block_top", "ux": {"rate": 0.1}}]});
-    for (target, given) in [(&mut base, contact), (&mut drag, step)] {
-        for (key, value) in given.as_object().expect("an object") {
-            target[key] = value.clone();
-        }
-    }
+    let (base, drag) = (common::with(base, &contact), common::with(drag, &step));
     json!({
         "mesh": mesh.json(),
         "bodies": {"ground": {"material": material}, "block": {"material": material}},
@@ -323,16 +319,6 @@ fn periodic_bodies_give_the_same_condensed() {
     agree(&small, 1e-8);
 }
 
-/// Whatever was condensed before is gone in a resumed run; dropped attempts are found again.
-#[test]
-fn condensed_increments_can_be_redone_and_resumed() {
-    let error = json!({"scheme": {"generalized_alpha": {"rho_infinity": 0.8}},
-        "dt": {"initial": 0.01, "min": 1e-5, "max": 0.3, "error": 1e-4}});
-    for step in [json!({}), error] {
-        check(&dragged(json!({}), step), std::path::Path::new("test.json"));
-    }
-}
-
 /// Δt/Δt₀ is a power of the fourth root of 2 in a dynamic step but for its end.
 #[test]
 fn increments_of_dynamics_are_on_a_ladder() {
@@ -357,23 +343,19 @@ fn faulted([length, force, time]: [f64; 3], contact: Value, step: Value) -> Valu
     };
     let mesh = rectangle(rectangle(Blocks::default(), "ground", -0.75), "block", 0.0);
     let material = json!({"model": "linear", "E": 128.0 * stress, "nu": 0.25, "density": 0.0625 * stress * (time / length).powi(2)});
-    let mut fault = json!({
+    let fault = json!({
         "slave": "block_bottom", "master": "ground_top", "method": "node_to_segment", "sliding": "small",
         "initial": {"pressure": 0.5 * stress},
         "normal": {"alpha_n": 1024.0 * stress / length},
         "friction": {"law": "coulomb", "mu": 0.375, "alpha_t": 1024.0 * stress / length},
     });
-    let mut shear = json!({"name": "shear", "duration": time, "dt": {"initial": 0.125 * time, "max": 0.125 * time, "min": 1e-4 * time},
+    let shear = json!({"name": "shear", "duration": time, "dt": {"initial": 0.125 * time, "max": 0.125 * time, "min": 1e-4 * time},
     "supports": [
         {"on": "ground_left", "ux": 0, "uy": 0}, {"on": "ground_bottom", "ux": 0, "uy": 0},
         {"on": "block_left", "ux": {"rate": 0.03125 * length / time}, "uy": 0},
         {"on": "block_top", "uy": {"rate": -0.0078125 * length / time}},
     ]});
-    for (target, given) in [(&mut fault, contact), (&mut shear, step)] {
-        for (key, value) in given.as_object().expect("an object") {
-            target[key] = value.clone();
-        }
-    }
+    let (fault, shear) = (common::with(fault, &contact), common::with(shear, &step));
     json!({
         "mesh": mesh.json(),
         "bodies": {"ground": {"material": material}, "block": {"material": material}},
@@ -509,35 +491,6 @@ fn every_section_gives_the_same_condensed() {
     }
 }
 
-/// On the jumps as on all nodes: dropped, resumed and in other units.
-#[test]
-fn jumps_give_the_same_bits_redone_resumed_on_two_threads_and_in_other_units() {
-    let dynamic = json!({"scheme": {"newmark": {}}});
-    let kinds =
-        [json!({}), dynamic].into_iter().flat_map(|step| [("plane_strain", step.clone()), ("axisymmetric", step)]);
-    for (section, step) in kinds {
-        let case = |units| {
-            let case = faulted(units, json!({}), step.clone());
-            if section == "axisymmetric" { beside_the_axis(case, units[0]) } else { case }
-        };
-        check(&case([1.0; 3]), std::path::Path::new("test.json"));
-        let of = |case: &Value, threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-            pool.install(|| run(common::model(case), true).0)
-        };
-        let states = of(&case([1.0; 3]), 1);
-        assert!(of(&case([1.0; 3]), 2) == states);
-        let length = 2f64.powi(10);
-        let other = of(&case([length, 2f64.powi(-20), 2f64.powi(6)]), 1);
-        assert_eq!(states.len(), other.len());
-        for (one, other) in states.iter().zip(&other) {
-            assert!(
-                one.displacement.iter().zip(&other.displacement).all(|(a, b)| (a * length).to_bits() == b.to_bits())
-            );
-        }
-    }
-}
-
 /// A fluid, dilatancy and wear: dropped, resumed, on two threads and in other units.
 #[test]
 fn interfaces_that_move_or_hold_water_give_the_same_bits_redone_resumed_on_two_threads_and_in_other_units() {
@@ -554,8 +507,7 @@ fn interfaces_that_move_or_hold_water_give_the_same_bits_redone_resumed_on_two_t
     for sliding in ["small", "finite"] {
         check(&case([1.0; 3], sliding), std::path::Path::new("test.json"));
         let of = |(units, threads): ([f64; 3], usize)| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-            pool.install(|| run(common::model(&case(units, sliding)), true).0)
+            common::on_threads(threads, || run(common::model(&case(units, sliding)), true).0)
         };
         let [states, both, other] = [([1.0; 3], 1), ([1.0; 3], 2), (units, 1)].map(of);
         assert!(both == states);

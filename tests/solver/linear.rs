@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::on_threads;
 use crate::grids::{Grids, add, noise};
 use fecontact::linear::{
     LinearFailure, LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve, solve_again,
@@ -278,10 +279,7 @@ fn pattern_changes() {
 fn same_bits_on_any_number_of_threads() {
     let matrix = Grids::new(150, 60, 1e3).matrix(1.0);
     let b = noise(matrix.size());
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
-        pool.install(|| solved(&matrix, &b).x)
-    };
+    let on = |threads: usize| on_threads(threads, || solved(&matrix, &b).x);
     let one = on(1);
     for threads in [2, 3, 2] {
         assert!(on(threads) == one, "{threads} threads differ");

@@ -1,12 +1,10 @@
 //! Loading as machines do it: supports along inclined directions and normals, steps that end by a reaction, damping by step.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{
     self, Blocks, Finished, close, distance, expression, finish, floor, linear, neo_hookean, run_through, turned,
 };
-use crate::simulation;
 use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::laws::bulk::Material;
@@ -19,7 +17,7 @@ use fecontact::model::state::State;
 use fecontact::model::step::ForceComponent;
 use fecontact::model::{Damping, Model, NewtonSettings};
 use fecontact::run::run;
-use serde_json::{Value, json};
+use serde_json::json;
 
 const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };
 const SCHEMES: [Scheme; 6] = [
@@ -69,53 +67,6 @@ fn turned_alike(what: &str, straight: &Finished, inclined: &Finished) {
 /// A direction that turns with the model, of another length and sense.
 fn along(direction: [f64; 2]) -> [f64; 2] {
     turned(direction, ANGLE).map(|d| 2.5 * d)
-}
-
-/// The same block held and moved along x and y, and turned with its supports along inclined directions and normals: all
-/// answers turn with it, in every scheme, with corners held twice, supports freed and moved on a curve, damping and absorbing
-/// sides.
-#[test]
-fn a_turned_problem_has_turned_answers() {
-    for (scheme, soft) in SCHEMES.into_iter().flat_map(|scheme| [(scheme, false), (scheme, true)]) {
-        let [duration, dt] = if scheme == Scheme::Static { [1.0, 0.25] } else { [0.2, 0.01] };
-        let side = |state: bool| if state { Drive::Constant(0.02) } else { expression("0.3*t^2") };
-        let step = |name: &str| LoadStep::new(name, duration).scheme(scheme).dt(dt);
-        let damped = |builder: Builder| match scheme {
-            Scheme::Static => builder,
-            _ => builder.damping("block", Damping { mass: 0.4, retardation: 1e-3 }),
-        };
-        let loaded = |step: LoadStep| match scheme {
-            Scheme::Static => step,
-            _ => step.load(Load::absorbing("block_left")),
-        };
-        let straight = damped(block(0.0, soft))
-            .step(
-                step("press")
-                    .support(Support::on("block_bottom").uy(0.0))
-                    .support(Support::on("block_left").ux(0.0))
-                    .support(Support::on("block_top").uy(-0.05)),
-            )
-            .step(loaded(
-                step("go")
-                    .support(Support::on("block_top").uy(Drive::Rate(0.1)))
-                    .support(Support::on("block_left").ux(Change::End))
-                    .support(Support::on("block_right").ux(side(scheme == Scheme::Static))),
-            ));
-        let inclined = damped(block(ANGLE, soft))
-            .step(
-                step("press")
-                    .support(Support::on("block_bottom").un(0.0))
-                    .support(Support::on("block_left").along(along([-1.0, 0.0]), 0.0))
-                    .support(Support::on("block_top").un(-0.05)),
-            )
-            .step(loaded(
-                step("go")
-                    .support(Support::on("block_top").along(along([0.0, 1.0]), Drive::Rate(0.1)))
-                    .support(Support::on("block_left").along(along([1.0, 0.0]), Change::End))
-                    .support(Support::on("block_right").un(side(scheme == Scheme::Static))),
-            ));
-        turned_alike(&format!("{scheme:?}, soft {soft}"), &run_through(straight), &run_through(inclined));
-    }
 }
 
 /// The same with contact: the nodes of the side that slides on a turned plane are held along it themselves, so that linear
@@ -387,48 +338,6 @@ fn what_inclined_supports_cannot_say_is_refused() {
         let told = told(block(0.0, false).step(model));
         assert!(told.starts_with(words), "`{words}` is not in `{told}`");
     }
-}
-
-/// Supports along inclined directions that are freed, a step that ends by a reaction, and damping that changes: every
-/// increment can be redone and resumed.
-fn machine(scheme: Value) -> Value {
-    json!({
-        "mesh": Blocks::default().rectangle("block", [4, 3], [0.0, 0.0], [2.0, 1.0]).turned(ANGLE).json(),
-        "bodies": {"block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 1}}},
-        "steps": [
-            {"name": "press", "duration": 1, "scheme": scheme, "dt": {"initial": 0.05},
-             "damping": {"block": {"mass": 5}},
-             "until": {"on": "block_top", "force": 4},
-             "supports": [{"on": "block_bottom", "un": 0}, {"on": "block_left", "along": turned([1.0, 0.0], ANGLE), "u": 0},
-                          {"on": "block_top", "un": -0.2}]},
-            {"name": "back", "duration": 0.5, "damping": {"block": {"stiffness": 0.01}},
-             "until": {"on": "block_top", "fy": -1, "tolerance": 1e-9},
-             "supports": [{"on": "block_top", "un": {"rate": 0.1}}]},
-            {"name": "free", "duration": 0.2, "supports": [{"on": "block_top", "un": null}]}
-        ]
-    })
-}
-
-#[test]
-fn a_machine_can_be_stopped_and_resumed() {
-    for scheme in [json!("static"), json!({"hht": {"alpha": -0.1}})] {
-        simulation::check(&machine(scheme), Path::new("test.json"));
-    }
-}
-
-#[test]
-fn a_machine_has_the_same_bits_on_any_number_of_threads() {
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| finish(&machine(json!("static"))))
-    };
-    let run = on(1);
-    assert!(run.states == on(2).states);
-    let size = |state: &State| {
-        let [x, y] = run.reaction("block_top", state);
-        x.hypot(y)
-    };
-    assert!(run.states.iter().any(|state| (size(state) - 4.0).abs() <= 4e-6), "the first step ends by a force of 4");
 }
 
 /// A linear block of the stiffness k pressed at the rate v: the step ends at t = F/(k v) with F, and the next one, which draws

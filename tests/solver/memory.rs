@@ -1,9 +1,6 @@
 //! What elements remember, beside others: two bodies ten apart, which do not know of each other.
 
-use std::path::Path;
-
 use crate::common::{self, Blocks, Finished, close, distance, finish};
-use crate::simulation;
 use fecontact::laws::bulk::CauchyStress;
 use fecontact::output::probes::Reading;
 use nalgebra::Vector2;
@@ -129,14 +126,6 @@ fn a_probe_reads_the_stress_of_a_body_that_remembers() {
         let force = run.reaction("soft_right", run.last())[0];
         assert!(force > 1.0 && height < 0.99, "{force} over {height}");
         close("stress", read(&run, "in_soft").xx * height, force, 1e-9 * force);
-    }
-}
-
-/// A run that goes on from a checkpoint.
-#[test]
-fn bodies_beside_others_can_be_resumed() {
-    for scheme in [json!("static"), json!({"newmark": {}}), json!({"explicit": {}})] {
-        simulation::check(&apart("viscoelastic", &scheme, ["soft", "aaa"], true), Path::new("test.json"));
     }
 }
 

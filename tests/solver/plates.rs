@@ -77,8 +77,9 @@ fn a_plate_is_watched_as_a_whole() {
     let run = run_through(block(0.0).step(step).watch("block_top").watch("block_left").watch("block"));
     let state = run.last();
     let [top, left, all] = [0, 1, 2].map(|k| &run.model.requests.watch[k]);
-    let reaction =
-        |set: &fecontact::model::WatchedSet| set.held[1].iter().map(|node| state.reaction[2 * node + 1]).sum::<f64>();
+    let reaction = |set: &fecontact::model::WatchedSet| {
+        set.constrained[1].iter().map(|node| state.reaction[2 * node + 1]).sum::<f64>()
+    };
     let pressed = -run.reaction("block_bottom", state)[1];
     close("plate", reaction(top), pressed, 1e-10);
     close("corner at the bottom", reaction(left), state.reaction[1], 0.0);

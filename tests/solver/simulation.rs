@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, close, finish_at, linear};
+use crate::common::{self, Blocks, close, finish_at, linear, with};
 use fecontact::model::Model;
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
@@ -18,12 +18,6 @@ use fecontact::run::control::RunReport;
 use fecontact::run::observer::Observer;
 use fecontact::run::{Axis, Saved, SavedRun, Simulation, watch};
 use serde_json::{Value, json};
-
-fn repository(file: &str) -> (Value, std::path::PathBuf) {
-    let path = crate::common::repository(file);
-    let case = std::fs::read_to_string(&path).expect("a committed case");
-    (serde_json::from_str(&case).expect("JSON"), path)
-}
 
 /// Every increment is tried and dropped, the run stopped, resumed with nothing but the bytes of a checkpoint, and the increment
 /// made.
@@ -62,14 +56,14 @@ fn dragged(contact: Value, scheme: Value) -> Value {
         [1.4, 0.51],
     );
     let material = json!({"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 1e-4});
-    let mut base = json!({
-        "slave": "block_bottom", "master": "ground_top",
-        "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e3, "r": 100, "kappa": 10, "xi": 0.002,
-            "m": 1, "n": 1, "structure": 2.0},
-    });
-    for (key, value) in contact.as_object().expect("an object") {
-        base[key] = value.clone();
-    }
+    let base = with(
+        json!({
+            "slave": "block_bottom", "master": "ground_top",
+            "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e3, "r": 100, "kappa": 10, "xi": 0.002,
+                "m": 1, "n": 1, "structure": 2.0},
+        }),
+        &contact,
+    );
     json!({
         "mesh": mesh.json(),
         "bodies": {"ground": {"material": material}, "block": {"material": material}},
@@ -132,80 +126,6 @@ fn a_dropped_attempt_leaves_the_iterations_as_they_are() {
     }
 }
 
-/// Plates and rings whose left side lies on the axis, static, implicit and explicit.
-#[test]
-fn every_increment_of_plates_and_rings_can_be_redone_and_resumed() {
-    for section in [json!({"plane_stress": {"thickness": 0.25}}), json!("axisymmetric")] {
-        let explicit = json!({"explicit": {}});
-        for (contact, scheme, law) in [
-            (json!({"method": "mortar"}), json!("static"), "neo_hookean"),
-            (json!({"method": "node_to_segment"}), json!({"hht": {"alpha": -0.1}}), "viscoelastic"),
-            (json!({}), explicit.clone(), "hencky"),
-            (json!({}), explicit.clone(), "linear"),
-            (json!({}), explicit, "viscoelastic"),
-        ] {
-            let mut case = dragged(contact, scheme.clone());
-            case["section"] = section.clone();
-            for body in ["ground", "block"] {
-                let material = &mut case["bodies"][body]["material"];
-                material["model"] = json!(law);
-                if law == "viscoelastic" {
-                    (material["E_1"], material["tau"]) = (json!(50), json!(0.5));
-                }
-            }
-            if scheme != "static" && scheme.get("explicit").is_some() {
-                case["steps"][1]["duration"] = json!(0.02);
-                case["output"] = json!({"interval": 5e-4});
-            }
-            check(&case, Path::new("test.json"));
-        }
-    }
-}
-
-/// Bodies with an initial stress that are heated, static, implicit and explicit.
-#[test]
-fn every_increment_of_stressed_and_heated_bodies_can_be_redone_and_resumed() {
-    for (scheme, law) in [
-        (json!("static"), "viscoelastic"),
-        (json!({"hht": {"alpha": -0.1}}), "linear"),
-        (json!({"explicit": {}}), "hencky"),
-    ] {
-        let mut case = dragged(json!({}), scheme.clone());
-        for (body, stress) in [("ground", 0.5), ("block", -0.25)] {
-            case["bodies"][body]["initial_stress"] = json!({"components": {"xx": stress, "yy": "0.1*y", "zz": stress}});
-            case["bodies"][body]["thermal"] = json!({"expansion": 1e-3});
-            let material = &mut case["bodies"][body]["material"];
-            material["model"] = json!(law);
-            if law == "viscoelastic" {
-                (material["E_1"], material["tau"]) = (json!(50), json!(0.5));
-            }
-        }
-        case["steps"][0]["temperature"] = json!({"block": 4});
-        case["steps"][1]["temperature"] = json!({"block": "4 + x*t", "ground": {"rate": 0.5}});
-        if scheme.get("explicit").is_some() {
-            case["steps"][1]["duration"] = json!(0.02);
-            case["output"] = json!({"interval": 5e-4});
-        }
-        check(&case, Path::new("test.json"));
-    }
-}
-
-/// Linear bodies, whose constant parts are kept from one increment to the next: what is kept decides no bit.
-#[test]
-fn every_increment_of_linear_bodies_can_be_redone_and_resumed() {
-    for (scheme, duration) in
-        [(json!("static"), 4.0), (json!({"hht": {"alpha": -0.1}}), 4.0), (json!({"explicit": {}}), 0.02)]
-    {
-        let mut case = dragged(json!({}), scheme);
-        for body in ["ground", "block"] {
-            case["bodies"][body]["material"]["model"] = json!("linear");
-        }
-        case["steps"][1]["duration"] = json!(duration);
-        case["output"] = json!({"interval": 5e-4});
-        check(&case, Path::new("test.json"));
-    }
-}
-
 /// From output to output in explicit increments; and where a static step turns to them because a contact slips fast.
 #[test]
 fn every_stretch_of_explicit_increments_can_be_redone_and_resumed() {
@@ -222,21 +142,6 @@ fn every_stretch_of_explicit_increments_can_be_redone_and_resumed() {
     let run = finish_at(&breaks, Path::new("test.json"));
     assert!(run.report.ruptures > 0, "it breaks");
     check(&breaks, Path::new("test.json"));
-}
-
-#[test]
-fn every_increment_of_committed_cases_can_be_redone_and_resumed() {
-    // A second step in fewer increments does for the first two.
-    for (file, duration) in
-        [("cases/coulomb_drag_5k.json", Some(2)), ("cases/block_on_ground.json", Some(1)), ("cases/tube.json", None)]
-    {
-        let (mut case, path) = repository(file);
-        if let Some(duration) = duration {
-            case["steps"][1]["duration"] = json!(duration);
-            case["steps"].as_array_mut().expect("steps").truncate(2);
-        }
-        check(&case, &path);
-    }
 }
 
 /// Stopped half way, taken up from the bytes of a checkpoint and run to its end: every increment has the same bits.
@@ -257,20 +162,6 @@ fn half_way(case: &Value, path: &Path) {
     let [one, other] = [run.report, second.report()];
     let counts = |report: &RunReport| [report.increments, report.cutbacks, report.rejected, report.newton_iterations];
     assert_eq!(counts(&one), counts(&other));
-}
-
-#[test]
-fn quick_committed_cases_stopped_half_way_go_on_to_the_same_bits() {
-    for file in [
-        "paper/slope",
-        "paper/slope_wilson",
-        "paper/forced_oscillation",
-        "validation/greco",
-        "validation/hertz_q8_friction",
-    ] {
-        let (case, path) = repository(&format!("cases/{file}.json"));
-        half_way(&case, &path);
-    }
 }
 
 /// What a point and its foot remember where a surface touches itself, and where sides are periodic.
@@ -303,7 +194,7 @@ fn contact_of_a_surface_with_itself_and_periodic_sides_go_on_to_the_same_bits() 
 fn a_step_that_was_led_is_saved_in_the_process_alone() {
     let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
     assert!(simulation.save().bytes().is_ok());
-    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    simulation.prescribe("square_top", Axis::Y, 0.01, 10.0).expect("a support");
     let told = simulation.save().bytes().unwrap_err().to_string();
     assert!(told.contains("step `pull` was changed by its caller"), "{told}");
     let model = simulation.model().clone();
@@ -345,14 +236,14 @@ const NU: f64 = 0.3;
 fn a_caller_controls_the_force_by_leading_a_support() {
     let (force, compliance) = (2.0, (1.0 - NU * NU) / E);
     let mut machine = Simulation::new(pulled_square().build().expect("a good model"));
-    machine.lead("square_top", Axis::Y, 0.001, 1.0).expect("a support");
+    machine.prescribe("square_top", Axis::Y, 0.001, 1.0).expect("a support");
     while let Some(increment) = machine.next_increment().expect("it is solved") {
         let now = increment.state.time;
         let [measured, place] =
             [machine.reaction("square_top"), machine.displacement("square_top")].map(|v| v.unwrap().y);
         // Only half as stiff as it is: the error halves with every increment.
         machine
-            .lead("square_top", Axis::Y, place + 0.5 * compliance * (force - measured), now + 1.0)
+            .prescribe("square_top", Axis::Y, place + 0.5 * compliance * (force - measured), now + 1.0)
             .expect("a support");
     }
     let first = force - 0.001 / compliance;
@@ -364,7 +255,7 @@ fn a_caller_controls_the_force_by_leading_a_support() {
 #[test]
 fn an_increment_is_rejected_by_its_caller_and_a_run_stopped() {
     let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
-    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    simulation.prescribe("square_top", Axis::Y, 0.01, 10.0).expect("a support");
     let candidate = simulation.try_increment().expect("it begins").expect("an increment");
     assert!(
         candidate.is_accepted() && candidate.state().is_some_and(|state| state.displacement.iter().any(|u| *u != 0.0))
@@ -372,7 +263,7 @@ fn an_increment_is_rejected_by_its_caller_and_a_run_stopped() {
     drop(candidate);
     assert_eq!((simulation.state().time, simulation.report().increments), (0.0, 0));
     // Led elsewhere, the same increment ends elsewhere.
-    simulation.lead("square_top", Axis::Y, 0.002, 1.0).expect("a support");
+    simulation.prescribe("square_top", Axis::Y, 0.002, 1.0).expect("a support");
     let taken = simulation.by_ref().take(3).map(|increment| increment.expect("it is solved").state.time);
     assert_eq!(taken.collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
     close("held", simulation.displacement("square_top").unwrap().y, 0.002, 1e-12);
@@ -390,7 +281,7 @@ fn an_increment_is_rejected_by_its_caller_and_a_run_stopped() {
 #[test]
 fn a_run_that_was_led_to_its_end_is_saved_in_a_file() {
     let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
-    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    simulation.prescribe("square_top", Axis::Y, 0.01, 10.0).expect("a support");
     assert_eq!(simulation.save().begun(), 1, "a step that is led has begun");
     while simulation.next_increment().expect("it is solved").is_some() {}
     let bytes = simulation.save().bytes().expect("it can be written");
@@ -403,7 +294,7 @@ fn a_run_goes_on_with_steps_that_have_changed_since() {
     let longer = |y: f64| pulled_square().step(LoadStep::new("further", 1.0).support(Support::on("square_top").uy(y)));
     let [first, second] = [0.02, 0.03].map(|y| Arc::new(longer(y).build().expect("a good model")));
     let mut simulation = Simulation::new(first);
-    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    simulation.prescribe("square_top", Axis::Y, 0.01, 10.0).expect("a support");
     simulation.next_increment().expect("it is solved");
     let saved = simulation.save().on(&second).expect("a run of this model");
     let mut again = Simulation::resume(second, saved);
@@ -447,7 +338,7 @@ fn names_that_a_run_does_not_know_are_told() {
     let told = [
         simulation.reaction("square_tip").unwrap_err().to_string(),
         simulation.contact_field("base", "pressure").unwrap_err().to_string(),
-        simulation.lead("square_left", Axis::X, 0.0, 1.0).unwrap_err().to_string(),
+        simulation.prescribe("square_left", Axis::X, 0.0, 1.0).unwrap_err().to_string(),
     ];
     assert!(told[0].contains("square_tip") && told[0].contains("square_top"), "{told:?}");
     assert!(told[1].contains("no contact `base`"), "{told:?}");

@@ -1,10 +1,8 @@
 //! Plates that turn, and those of which one component is alike, in motion: all schemes against the mechanics of rigid bodies.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, close, distance, expression, neo_hookean, run_through, turned};
-use crate::simulation;
 use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::builder::{Builder, Load, LoadStep, Place, Plate, Support};
@@ -12,7 +10,6 @@ use fecontact::model::scheme::Scheme;
 use fecontact::model::state::State;
 use fecontact::model::{Damping, Model, NewtonSettings};
 use nalgebra::{Rotation2, Vector2};
-use serde_json::json;
 
 const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };
 const HHT: Scheme = Scheme::Hht { alpha: -0.1 };
@@ -333,21 +330,5 @@ fn rigid_plates_are_launched() {
         for (dof, u) in state.displacement.iter().enumerate() {
             close(&format!("{scheme:?}"), *u, 0.5 * [0.3, -0.2][dof % 2], 1e-10);
         }
-    }
-}
-
-#[test]
-fn what_turns_can_be_resumed() {
-    for (scheme, dt) in
-        [(json!({"explicit": {}}), 0.1), (json!({"hht": {"alpha": -0.1}}), 0.05), (json!({"wilson": {}}), 0.05)]
-    {
-        let case = json!({
-            "mesh": Blocks::default().rectangle("block", [4, 3], [0.0, 0.0], [2.0, 1.0]).json(),
-            "bodies": {"block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 2}}},
-            "plates": [{"on": "block_top", "moves": "rigid"}, {"on": "block_bottom", "moves": "uy_alike"}],
-            "steps": [{"name": "turn", "duration": 0.5, "scheme": scheme, "dt": {"initial": dt, "max": dt},
-                       "loads": [{"on": "block_top", "moment": 3}]}]
-        });
-        simulation::check(&case, Path::new("test.json"));
     }
 }

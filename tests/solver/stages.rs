@@ -1,10 +1,8 @@
 //! Bodies that come and go: excavations, fills and walls.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{Blocks, close, distance, finish, model, refusal};
-use crate::simulation::check;
 use crate::terms::tangent_error;
 use fecontact::equations::Trial;
 use fecontact::model::Model;
@@ -336,13 +334,6 @@ fn contacts_come_and_go_with_their_bodies() {
     close("energy error", energy.error(), 0.0, 1e-3 * energy.external_work);
 }
 
-#[test]
-fn every_increment_can_be_redone_and_resumed() {
-    check(&visitor(), Path::new("test.json"));
-    check(&strained_wall(), Path::new("test.json"));
-    check(&unloading(2, "linear", json!({"hht": {"alpha": -0.05}})), Path::new("test.json"));
-}
-
 /// Bodies that have come, gone or stayed, in the residual of a step that changes them.
 #[test]
 fn the_tangent_is_that_of_the_residual() {
@@ -359,18 +350,6 @@ fn the_tangent_is_that_of_the_residual() {
         let error =
             tangent_error(&run.model, Trial::new(old, step, span.end, span.end - old.time), &new.displacement, 1e-6);
         assert!(error < 1e-6, "{}: {error:e}", step.name);
-    }
-}
-
-#[test]
-fn threads_do_not_matter() {
-    for case in [visitor(), strained_wall()] {
-        let model = Arc::new(model(&case));
-        let on = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-            pool.install(|| fecontact::run::run(&model, &mut []).1.expect("a run"))
-        };
-        assert!(on(1) == on(2));
     }
 }
 

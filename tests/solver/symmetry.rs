@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, close, linear, neo_hookean, saint_venant_kirchhoff};
+use crate::common::{self, Blocks, close, linear, neo_hookean, on_threads, saint_venant_kirchhoff};
 use crate::grids::{Grids, add, noise};
 use crate::terms::{arbitrary_displacement, moving};
 use fecontact::equations::term::Term;
@@ -218,8 +218,8 @@ fn held_grids(nx: usize, ny: usize, friction: f64, unsymmetric: impl Fn(&Grids) 
     let pattern = Pattern::clone(&plain.pattern).symmetric_but(flags);
     let mut matrix = SparseMatrix { pattern: Arc::new(pattern), ..plain };
     for i in 0..=nx {
-        (0..2).for_each(|d| matrix.hold(2 * grids.node(0, i, 0) + d, 7.0));
-        matrix.hold(2 * grids.node(1, i, ny), 1e-9);
+        (0..2).for_each(|d| matrix.constrain(2 * grids.node(0, i, 0) + d, 7.0));
+        matrix.constrain(2 * grids.node(1, i, ny), 1e-9);
     }
     matrix
 }
@@ -319,10 +319,7 @@ fn pairs_of_pivots_in_one_front() {
 fn the_bits_do_not_depend_on_threads_or_on_what_was_factorized_before() {
     let matrix = held_grids(150, 60, 0.3, at_contact);
     let b = noise(matrix.size());
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
-        pool.install(|| solved(&matrix, &b).x)
-    };
+    let on = |threads: usize| on_threads(threads, || solved(&matrix, &b).x);
     let one = on(1);
     assert!(on(2) == one && on(3) == one);
     let mut solver = Multifrontal::default();

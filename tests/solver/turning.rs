@@ -1,10 +1,8 @@
 //! Loading plates that turn, and those of which one component is alike.
 
-use std::path::Path;
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, distance, expression, finish, linear, neo_hookean, run_through};
-use crate::simulation;
+use crate::common::{Blocks, Finished, close, distance, expression, linear, neo_hookean, run_through};
 use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::boundary::Drive;
@@ -12,7 +10,6 @@ use fecontact::model::builder::{Builder, Load, LoadStep, Place, Plate, Support};
 use fecontact::model::scheme::Scheme;
 use fecontact::model::state::State;
 use fecontact::model::{Model, NewtonSettings};
-use serde_json::json;
 
 const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };
 
@@ -199,9 +196,9 @@ fn reactions_of_a_plate_alike_in_one_component_count_by_component() {
     let run = run_through(model);
     let state = run.last();
     let sum = |set: usize, i: usize| -> f64 {
-        run.model.requests.watch[set].held[i].iter().map(|node| state.reaction[2 * node + i]).sum()
+        run.model.requests.watch[set].constrained[i].iter().map(|node| state.reaction[2 * node + i]).sum()
     };
-    assert_eq!(run.model.requests.watch[1].held.clone().map(|held| held.len()), [4, 3]);
+    assert_eq!(run.model.requests.watch[1].constrained.clone().map(|held| held.len()), [4, 3]);
     let plain = run_through(
         block(false).step(
             LoadStep::new("load", 1.0)
@@ -213,28 +210,6 @@ fn reactions_of_a_plate_alike_in_one_component_count_by_component() {
     );
     close("top", sum(0, 1), plain.reaction("block_top", plain.last())[1], 1e-10);
     close("left", sum(1, 0), plain.reaction("block_left", plain.last())[0], 1e-10);
-}
-
-#[test]
-fn plates_that_turn_can_be_resumed_on_any_number_of_threads() {
-    let case = json!({
-        "mesh": Blocks::default().rectangle("block", [4, 3], [0.0, 0.0], [2.0, 1.0]).json(),
-        "bodies": {"block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
-        "plates": [{"on": "block_top", "moves": "rigid"}],
-        "steps": [
-            {"name": "turn", "duration": 1, "dt": {"initial": 0.25}, "supports": [{"on": "block_bottom", "ux": 0, "uy": 0}],
-             "loads": [{"on": "block_top", "moment": 3}]},
-            {"name": "back", "duration": 1, "loads": [{"on": "block_top", "moment": null}]}
-        ]
-    });
-    simulation::check(&case, Path::new("test.json"));
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| finish(&case)).states
-    };
-    let states = on(1);
-    assert!(states == on(2));
-    close("back", states.last().map_or(1.0, |state| distance(&state.displacement, &[0.0; 40])), 0.0, 1e-12);
 }
 
 #[test]

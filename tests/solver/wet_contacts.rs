@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, finish, half_way, model, quadratic, refusal};
+use crate::common::{Blocks, Finished, close, finish, half_way, model, quadratic, refusal, with};
 use crate::terms::{arbitrary_displacement, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::Model;
@@ -194,8 +194,10 @@ fn the_tangent_is_that_of_the_residual() {
                 for more in
                     [json!({}), json!({"seal": 0.4}), json!({"sliding": "small"}), json!({"method": "node_to_segment"})]
                 {
-                    let mut contact = json!({"slave": "high_bottom", "master": "low_top", "friction": friction, "normal": {"alpha_n": 20}});
-                    more.as_object().expect("keys").iter().for_each(|(key, value)| contact[key] = value.clone());
+                    let contact = with(
+                        json!({"slave": "high_bottom", "master": "low_top", "friction": friction, "normal": {"alpha_n": 20}}),
+                        &more,
+                    );
                     let (model, state, u) = strained(contact, kind, section, gap);
                     let trial = Trial::new(&state, &model.steps[0], 0.3, 0.2);
                     let error = tangent_error(&model, trial, &u, 1e-6);

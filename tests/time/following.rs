@@ -360,42 +360,6 @@ fn a_step_cut_in_two_changes_nothing() {
     }
 }
 
-/// The same motion and the same force by numbers, tables that end with the step or go on, rates and expressions.
-#[test]
-fn the_same_motion_written_otherwise_is_the_same() {
-    for scheme in schemes() {
-        let run = |motion: Value, force: Value, cut: bool| {
-            let half = |value: &Value| value.as_f64().map_or(value.clone(), |end| json!(0.5 * end));
-            let step = |motion: &Value, force: &Value, duration: f64| {
-                json!({"name": "move", "duration": duration, "dt": {"initial": 0.05, "max": 0.05}, "scheme": scheme,
-                    "supports": [{"on": "body_bottom", "ux": motion, "uy": 0}],
-                    "loads": [{"on": "body_top", "force": {"y": force}}]})
-            };
-            let steps = match cut {
-                true => json!([step(&half(&motion), &half(&force), 0.5), step(&motion, &force, 0.5)]),
-                false => json!([step(&motion, &force, 1.0)]),
-            };
-            finish(&square(2, steps)).last().clone()
-        };
-        let number = run(json!(0.1), json!(2), false);
-        for (motion, force, cut) in [
-            (json!(0.1), json!(2), true),
-            (json!({"table": [[0, 0], [1, 0.1]]}), json!({"table": [[0, 0], [1, 2]]}), false),
-            (json!({"table": [[0, 0], [3, 0.3]]}), json!({"table": [[0, 0], [1, 2], [2, -5]]}), true),
-            (json!({"rate": 0.1}), json!({"rate": 2}), false),
-            (json!("0.1*t"), json!("2*t"), true),
-            // What comes after the step has no say in it, however the motion is written.
-            (json!("0.1*min(t,1)"), json!("2*min(t,1)"), false),
-        ] {
-            let what = format!("{scheme} {motion} {force}");
-            let other = run(motion, force, cut);
-            close(&what, distance(&number.displacement, &other.displacement), 0.0, 1e-11);
-            close(&what, distance(&number.velocity, &other.velocity), 0.0, 1e-10);
-            close(&what, distance(&number.reaction, &other.reaction), 0.0, 1e-9);
-        }
-    }
-}
-
 /// Wilson's scheme is of second order where loads and supports bend: u at the end against the finest, and its error falls fourfold.
 #[test]
 fn wilson_keeps_its_order_under_varied_loads() {

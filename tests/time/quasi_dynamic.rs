@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::{Blocks, Finished, close, finish, finish_at, goes_on, model, refusal, turned};
+use crate::common::{Finished, close, finish, finish_at, model, refusal};
 use crate::slabs::{differences, slabs};
 use fecontact::laws::friction::FrictionState;
 use fecontact::run::Simulation;
@@ -230,104 +230,6 @@ fn motion_before_comes_to_rest() {
     let out = (0..last.force.len()).filter(free).fold(0.0f64, |most, dof| most.max(last.force[dof].abs()));
     assert!(out < 1e-9, "{out:e} is out of balance");
     close("energy", last.energy.error(), 0.0, 0.01 * last.energy.external_work);
-}
-
-/// The slabs on rollers, turned by an angle, moved first with inertia and then without it: supports along coordinates and along
-/// inclined directions, which leave free what is across, come to the same.
-#[test]
-fn what_is_turned_slips_alike() {
-    let run = |angle: f64| {
-        let mut case = weak_slabs(&json!({"newmark": {}}), 1e-3);
-        let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
-            "upper",
-            [12, 4],
-            [0.0, 0.0],
-            [6.0, 1.0],
-        );
-        case["mesh"] = mesh.turned(angle).json();
-        let own = format!("(x*{:.17} + y*{:.17})", angle.cos(), angle.sin());
-        let fault = &mut case["contacts"]["fault"];
-        for key in ["/along/a", "/along/law/0/where", "/initial/pressure"] {
-            let place = fault.pointer_mut(key).expect("an expression");
-            *place = json!(place.as_str().expect("a text").replace('x', &own));
-        }
-        let along = |on: Value, [sx, sy]: [f64; 2], u: Value| match angle == 0.0 {
-            true if sy == 0.0 => json!({"on": on, "ux": u}),
-            true => json!({"on": on, "uy": u}),
-            false => json!({"on": on, "along": turned([sx, sy], angle), "u": u}),
-        };
-        let supports = |rate: f64| {
-            json!([
-                along(json!("lower_bottom"), [0.0, 1.0], json!(0)),
-                along(json!({"near": turned([3.0, -1.5], angle)}), [1.0, 0.0], json!(0)),
-                along(json!("upper_top"), [1.0, 0.0], json!({"rate": rate})),
-            ])
-        };
-        case["steps"][0]["dt"] = json!({"initial": 5e-5});
-        case["steps"][0]["supports"] = supports(1.0);
-        let go_on = json!({"name": "go on", "duration": 10, "scheme": quasi_dynamic(1e-6, 10), "dt": {"initial": 1e-3},
-            "supports": [supports(1e-3)[2]]});
-        case["steps"] = json!([case["steps"][0], go_on]);
-        finish(&case)
-    };
-    let [plain, other] = [0.0, 0.5].map(run);
-    let apart = differences(&fault(&plain), &fault(&other));
-    assert!(apart.iter().all(|apart| *apart < 1e-6), "{apart:?}");
-    let largest = plain.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
-    for (u, v) in plain.last().displacement.chunks(2).zip(other.last().displacement.chunks(2)) {
-        let u = turned([u[0], u[1]], 0.5);
-        (0..2).for_each(|i| close("u", v[i], u[i], 1e-6 * largest));
-    }
-    close("energy", other.last().energy.error(), 0.0, 0.01 * other.last().energy.external_work);
-}
-
-/// A run that was stopped goes on to the same bits; so does one on another number of threads, and one in other units.
-#[test]
-fn bits() {
-    let case = weak_slabs(&quasi_dynamic(1e-5, 7), 20.0);
-    let whole = finish(&case);
-    goes_on(&case, &whole, whole.states.len() / 2);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a pool of threads");
-    assert!(pool.install(|| finish(&case)).last() == whole.last(), "three threads have other bits");
-    let scaled = |units: [f64; 3]| {
-        let [l, f, t] = units;
-        let (stress, time) = (f / (l * l), t);
-        let mut case = weak_slabs(&quasi_dynamic(1e-5, 7), 20.0 * time);
-        let scale = |value: &mut Value, by: f64| *value = json!(value.as_f64().expect("a number") * by);
-        for node in case["mesh"]["nodes"].as_array_mut().expect("nodes") {
-            (0..2).for_each(|i| scale(&mut node[i], l));
-        }
-        for body in ["lower", "upper"] {
-            scale(&mut case["bodies"][body]["material"]["E"], stress);
-            scale(&mut case["bodies"][body]["material"]["density"], f * t * t / l.powi(4));
-        }
-        let fault = &mut case["contacts"]["fault"];
-        scale(&mut fault["normal"]["alpha_n"], stress / l);
-        scale(&mut fault["radiation_damping"], stress * t / l);
-        for (name, by) in [("V_0", l / t), ("D_c", l), ("theta", t), ("alpha_t", stress / l)] {
-            scale(&mut fault["friction"][name], by);
-        }
-        fault["along"] = json!({"a": {"x": [[0.0, 0.03], [3.0 * l, 0.01], [6.0 * l, 0.03]]}});
-        fault["initial"]["pressure"] = json!({"x": [[0.0, 2.0 * stress], [6.0 * l, 2.5 * stress]]});
-        scale(&mut fault["initial"]["traction"], stress);
-        scale(&mut case["steps"][0]["dt"]["initial"], t);
-        scale(&mut case["steps"][0]["supports"][1]["ux"]["rate"], l / t);
-        scale(&mut case["steps"][0]["supports"][1]["uy"]["rate"], l / t);
-        let run = finish(&case);
-        let of = |state: &fecontact::model::state::State| -> Vec<f64> {
-            let point = |contact: &fecontact::contact::force::ContactState| {
-                [
-                    contact.friction.plastic_slip / l,
-                    contact.friction.traction / stress,
-                    contact.friction.variables[0] / t,
-                ]
-            };
-            std::iter::once(state.time / t).chain(state.contacts[0].iter().flat_map(point)).collect()
-        };
-        run.states.iter().map(of).collect::<Vec<_>>()
-    };
-    let other = [2f64.powi(-10), 2f64.powi(20), 2f64.powi(-6)];
-    assert!(scaled([1.0; 3]) == scaled(other), "a number with a unit of its own is in the program");
 }
 
 /// What such a step cannot do is refused with its place, before anything is solved.

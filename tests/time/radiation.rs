@@ -1,7 +1,6 @@
 //! Radiation damping in static steps: q + η v stands for q.
 
-use crate::common::{Blocks, Finished, close, finish, model, refusal};
-use fecontact::contact::force::ContactState;
+use crate::common::{Blocks, close, finish, model, refusal};
 use serde_json::{Value, json};
 
 /// η A of the slider
@@ -124,20 +123,6 @@ fn the_default_is_that_of_the_bodies() {
     let mut rigid = slabs([1.0; 3], [1.0, 3.0]);
     rigid["contacts"]["fault"]["master"] = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
     close("rigid master", eta(&rigid), 60.0, 1e-12);
-}
-
-/// Bit by bit in units that are powers of four.
-#[test]
-fn units_do_not_matter() {
-    let [l, f, t] = [2f64.powi(-10), 2f64.powi(20), 2f64.powi(-6)];
-    let [one, other] = [[1.0; 3], [l, f, t]].map(|units| finish(&slabs(units, [1.0, 3.0])));
-    let tractions = |run: &Finished, unit: f64| -> Vec<[f64; 2]> {
-        let of = |state: &ContactState| [state.friction.traction / unit, state.radiation / unit];
-        run.last().contacts[0].iter().map(of).collect()
-    };
-    assert_eq!(tractions(&one, 1.0), tractions(&other, f / (l * l)));
-    assert_eq!(one.last().energy.radiated, other.last().energy.radiated / f);
-    assert!(one.last().energy.radiated > 0.0 && tractions(&one, 1.0).iter().all(|[_, r]| *r > 0.1));
 }
 
 /// What is wrong with a damping is told with its place.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::Blocks;
+use crate::common::{Blocks, with};
 
 /// Two unequal slabs with a fault between them, node facing node, the upper one twice as fine in height and pulled to the right; `more` is added
 /// to the contact.
@@ -14,13 +14,15 @@ pub fn slabs(scheme: &Value, duration: f64, more: &Value) -> Value {
         [6.0, 1.0],
     );
     let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.25, "density": 1e-6}});
-    let mut fault = json!({
-        "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small",
-        "normal": {"alpha_n": 4000}, "radiation_damping": 0.02,
-        "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.012, "b": 0.010, "D_c": 2e-3, "theta": 20, "alpha_t": 4000},
-        "initial": {"pressure": "2 + 0.1*x", "traction": 1.1, "balanced": true},
-    });
-    fault.as_object_mut().expect("an object").extend(more.as_object().expect("an object").clone());
+    let fault = with(
+        json!({
+            "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small",
+            "normal": {"alpha_n": 4000}, "radiation_damping": 0.02,
+            "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.012, "b": 0.010, "D_c": 2e-3, "theta": 20, "alpha_t": 4000},
+            "initial": {"pressure": "2 + 0.1*x", "traction": 1.1, "balanced": true},
+        }),
+        more,
+    );
     json!({
         "mesh": mesh.json(),
         "bodies": {"lower": body(200.0), "upper": body(120.0)},

@@ -1,6 +1,6 @@
 //! Quasi-dynamic steps of laws without a slip rate that follows from traction and state: implicit, against differential equations.
 
-use crate::common::{Finished, close, finish, goes_on, refusal};
+use crate::common::{Finished, close, finish, refusal};
 use serde_json::{Value, json};
 
 const DAMPING: f64 = 10.0;
@@ -113,14 +113,6 @@ fn a_direct_effect_makes_sliding_steady() {
     let last = &run.last().contacts[0][0];
     close("rate", last.radiation / DAMPING, 1e-3, 1e-7);
     close("traction", last.friction.traction / 98.1, 0.4 * (1.0 + 0.02 * f64::ln(101.0)), 1e-5);
-}
-
-/// What was saved goes on to the same bits.
-#[test]
-fn a_run_that_is_resumed_is_the_same() {
-    let case = slider(&paper(), &quasi_dynamic(1e-5), 3095.0);
-    let whole = finish(&case);
-    goes_on(&case, &whole, 40);
 }
 
 /// What implicit steps do not have is refused with its place.
