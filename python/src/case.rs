@@ -142,26 +142,26 @@ pub fn safety(
     let [bodies, contacts] = reduced;
     let (written, reduced) = (case.get().written.clone(), Reduced { bodies, contacts });
     let news = Arc::new(Mutex::new((Vec::<String>::new(), Vec::<Tried>::new())));
-    let tell = |py: Python| {
+    let report = |py: Python| {
         let news = std::mem::take(&mut *news.lock().unwrap_or_else(PoisonError::into_inner));
         poll.call1(news).map(drop)?;
         py.check_signals()
     };
-    let (ends, told) = (pool.raised.ends(), news.clone());
-    let found = pool.long(py, tell, move || {
-        let noted = told.clone();
+    let (ends, shared) = (pool.raised.ends(), news.clone());
+    let found = pool.long(py, report, move || {
+        let noted = shared.clone();
         let warn = move |text: &str| noted.lock().unwrap_or_else(PoisonError::into_inner).0.push(text.into());
         let mut trials = Trials::begin(written, reduced, range, &out, &warn, ends)?;
         while let Some(Trial { factor, stands, reached, displacement, growth }) = trials.next_trial()? {
             let tried = (factor, stands, reached, displacement, growth);
-            told.lock().unwrap_or_else(PoisonError::into_inner).1.push(tried);
+            shared.lock().unwrap_or_else(PoisonError::into_inner).1.push(tried);
         }
         Ok((trials.search.stands, trials.search.fails))
     })?;
     if let Some(raised) = pool.raised.take() {
         return Err(raised);
     }
-    tell(py)?;
+    report(py)?;
     found.map_err(|unfound| match unfound {
         Unfound::Refused(why) => refused(py, &why),
         Unfound::Failed(Failed::Stopped(Error::Interrupted)) => stopped(py, "interrupted"),

@@ -77,27 +77,27 @@ impl Mesh {
 
     /// Kind and members of every group: numbers of elements or nodes, or the nodes of edges.
     fn groups(&self) -> BTreeMap<String, (&'static str, Vec<Vec<usize>>)> {
-        let told = |group: &Group| match group {
+        let described = |group: &Group| match group {
             Group::Elements(numbers) => ("elements", vec![numbers.clone()]),
             Group::Edges(edges) => ("edges", edges.iter().map(|edge| edge.nodes.clone()).collect()),
             Group::Nodes(nodes) => ("points", vec![nodes.clone()]),
             Group::Lines(_) => ("lines", Vec::new()),
         };
-        self.mesh.groups.iter().map(|(name, group)| (name.clone(), told(group))).collect()
+        self.mesh.groups.iter().map(|(name, group)| (name.clone(), described(group))).collect()
     }
 
     /// Positions of the nodes of every line that is side of no element, end, end and perhaps middle, by group.
     fn lines(&self) -> BTreeMap<String, Vec<Vec<[f64; 2]>>> {
-        let mut told = BTreeMap::new();
+        let mut described = BTreeMap::new();
         for (name, group) in &self.mesh.groups {
             let Group::Lines(lines) = group else { continue };
             let places = lines.iter().map(|line| {
                 let ends = [0, line.len() - 1].into_iter().chain((line.len() == 3).then_some(1));
                 ends.map(|k| [line[k].1.x, line[k].1.y]).collect()
             });
-            told.insert(name.clone(), places.collect());
+            described.insert(name.clone(), places.collect());
         }
-        told
+        described
     }
 }
 

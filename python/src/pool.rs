@@ -100,12 +100,12 @@ impl Pool {
         Ok(py.detach(|| self.threads.install(work)))
     }
 
-    /// Do something in it, while signals are looked for and `tell` is called now and then. Whatever that raises, [`Raised`] has,
+    /// Do something in it, while signals are looked for and `report` is called now and then. Whatever that raises, [`Raised`] has,
     /// and the work is waited for; a second exception is not waited for.
     pub fn long<T: Send + 'static>(
         &self,
         py: Python,
-        mut tell: impl FnMut(Python) -> PyResult<()>,
+        mut report: impl FnMut(Python) -> PyResult<()>,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> PyResult<T> {
         self.check_process()?;
@@ -117,7 +117,7 @@ impl Pool {
         });
         let receiver = Mutex::new(receiver);
         let wait = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
-        let mut told = false;
+        let mut raised_before = false;
         loop {
             match py.detach(wait) {
                 Ok(Ok(done)) => return Ok(done),
@@ -126,11 +126,11 @@ impl Pool {
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }
-            match py.check_signals().and_then(|()| if told { Ok(()) } else { tell(py) }) {
+            match py.check_signals().and_then(|()| if raised_before { Ok(()) } else { report(py) }) {
                 Ok(()) => {}
-                Err(error) if told => return Err(error),
+                Err(error) if raised_before => return Err(error),
                 Err(error) => {
-                    told = true;
+                    raised_before = true;
                     self.raised.set(error, Error::Interrupted);
                 }
             }

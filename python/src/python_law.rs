@@ -171,9 +171,9 @@ fn not_an_end(py: Python, error: PyErr, why: &str) -> PyErr {
     if !error.is_instance_of::<PyStopIteration>(py) {
         return error;
     }
-    let told = PyRuntimeError::new_err(why.to_owned());
-    told.set_cause(py, Some(error));
-    told
+    let error_of_law = PyRuntimeError::new_err(why.to_owned());
+    error_of_law.set_cause(py, Some(error));
+    error_of_law
 }
 
 /// What was returned under a name: an array of finite numbers, one a point, or one number for all.

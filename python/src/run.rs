@@ -68,13 +68,13 @@ pub fn run<'py>(
     let (mut job, warnings) = opened.map_err(|error| refused(py, &error))?;
     warnings.iter().for_each(|warning| warn(warning));
     let page_of = report.then_some(out);
-    let tell = |py: Python| {
+    let report = |py: Python| {
         let News { warnings, place } = std::mem::take(&mut *news.lock().unwrap_or_else(PoisonError::into_inner));
         poll.call1((warnings, place)).map(drop)?;
         py.check_signals()
     };
     let (ends, raised, progress) = (pool.raised.ends(), pool.raised.clone(), Progress(news.clone()));
-    let outcome = pool.long(py, tell, move || {
+    let outcome = pool.long(py, report, move || {
         let outcome = job.run(Callbacks { warn, ends, progress: Some(Box::new(progress)) })?;
         let page = page_of.filter(|_| outcome.is_readable());
         let page = page.map(|out| {
@@ -84,7 +84,7 @@ pub fn run<'py>(
     })?;
     let (Outcome { ended, written, .. }, page) = outcome.map_err(|error| refused(py, &error))?;
     let mut raised = raised.take();
-    if let Err(error) = tell(py) {
+    if let Err(error) = report(py) {
         raised.get_or_insert(error);
     }
     let written = written.err().map(|error| error.to_string()).or(page);

@@ -54,7 +54,7 @@ impl Linear {
     }
 
     /// From a point of a body to a vertex at the same place.
-    pub fn apart(from: &Vertex, to: &Vertex) -> Self {
+    pub fn bonded(from: &Vertex, to: &Vertex) -> Self {
         Self { at: Vector2::zeros(), ..Self::between(from, to) }
     }
 

@@ -111,13 +111,13 @@ impl Measure {
         let table = read(&path)?;
         let path_of_probes = folder.join("probes.csv");
         let probes = if path_of_probes.exists() { Some(read(&path_of_probes)?) } else { None };
-        let told = |message: String| format!("{}: {message}", path.display());
+        let error = |message: String| format!("{}: {message}", path.display());
         // Both tables have the same rows.
         let of_probes = |name: &str| probes.as_ref().filter(|probes| probes.rows() == table.rows())?.get(name).ok();
         let has = |name: &str| table.get(name).is_ok() || of_probes(name).is_some();
         let (column, over) = self.columns(has).unwrap_or((&self.value, None));
         if let Some(words) = [Some(column), over].into_iter().flatten().find(|name| table.words(name).is_some()) {
-            return Err(told(format!("the column `{words}` is not of numbers")));
+            return Err(error(format!("the column `{words}` is not of numbers")));
         }
         let numbers = |name: &str| table.get(name).or_else(|fault| of_probes(name).ok_or(fault.to_string()));
         let (values, times, steps) = (numbers(column)?, numbers("time")?, numbers("step")?);
@@ -135,7 +135,7 @@ impl Measure {
         };
         let value = value.filter(|value| value.is_finite());
         let place = self.step.as_ref().map_or(String::new(), |step| format!(" in the step `{step}`"));
-        value.ok_or_else(|| told(format!("`{}` is no number{place}", self.value)))
+        value.ok_or_else(|| error(format!("`{}` is no number{place}", self.value)))
     }
 }
 

@@ -102,7 +102,7 @@ impl Differentiated<'_> {
         let perturbed = |stencil: &[(f64, f64)]| {
             let one = |(k, weight): &(f64, f64)| {
                 let model = self.with(&keys, theta * (1.0 + k * STEP), mesh)?;
-                Ok(Perturbed { apart: *k, weight: weight / (STEP * theta), model })
+                Ok(Perturbed { offset: *k, weight: weight / (STEP * theta), model })
             };
             stencil.iter().map(one).collect::<Result<Vec<_>, String>>()
         };

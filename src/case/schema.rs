@@ -36,10 +36,10 @@ pub fn of_case() -> Value {
 /// Lets a name stand where objects have a law at a key; the law there is stored in `law`.
 fn take_names(schema: &mut Value, place: &str, given: &str, law: &mut Value) {
     if let Some(found) = schema.get_mut("properties").and_then(|properties| properties.get_mut(place)) {
-        let [reference, told] = ["$ref", "description"].map(|key| found.get(key).cloned().unwrap_or_default());
+        let [reference, description] = ["$ref", "description"].map(|key| found.get(key).cloned().unwrap_or_default());
         *law = json!({"$ref": reference});
-        let told = told.as_str().unwrap_or_default();
-        *found = json!({"anyOf": [law, {"type": "string"}], "description": format!("{told}{given}")});
+        let description = description.as_str().unwrap_or_default();
+        *found = json!({"anyOf": [law, {"type": "string"}], "description": format!("{description}{given}")});
     }
     match schema {
         Value::Object(object) => object.values_mut().for_each(|inner| take_names(inner, place, given, law)),

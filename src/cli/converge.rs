@@ -78,14 +78,14 @@ pub fn converge(path: &Path, study: Study) -> Result<(), Failure> {
     let judged = values.iter().map(|values| judge(values, within).map_err(Failure::Stopped));
     let judged = judged.collect::<Result<Vec<_>, _>>()?;
     for ((measure, judged), fraction) in measures.iter().zip(&judged).zip(fractions) {
-        print(&format!("{measure}: {}\n", told(judged, fraction)))?;
+        print(&format!("{measure}: {}\n", verdict_text(judged, fraction)))?;
     }
     let fails = measures.iter().zip(&judged).find(|(_, judged)| judged.bar.is_none() && !judged.settled);
     fails.map_or(Ok(()), |(measure, judged)| Err(Failure::Stopped(format!("{measure} {}", judged.verdict))))
 }
 
 /// Values of all levels, the judgement, and the fraction of the last difference that is due to the increments.
-fn told(Convergence { values, extrapolated, bar, verdict, .. }: &Convergence, fraction: Option<f64>) -> String {
+fn verdict_text(Convergence { values, extrapolated, bar, verdict, .. }: &Convergence, fraction: Option<f64>) -> String {
     let values: Vec<String> = values.iter().map(f64::to_string).collect();
     let sure = extrapolated.zip(*bar).map_or(String::new(), |(extrapolated, bar)| {
         format!("\n  extrapolated {extrapolated}, error bar of the last {}", number(bar))

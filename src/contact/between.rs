@@ -51,8 +51,8 @@ impl Between {
     pub(super) fn forces(&self) -> impl Iterator<Item = f64> + '_ {
         let flows = self.passes * (self.pressures[0] - self.pressures[1]);
         (0..self.scales.len()).map(move |j| {
-            let [mean, apart] = self.of_dof(j);
-            -self.scales[j] * (mean * self.taken + apart * flows)
+            let [mean, difference] = self.of_dof(j);
+            -self.scales[j] * (mean * self.taken + difference * flows)
         })
     }
 
@@ -65,13 +65,13 @@ impl Between {
     pub(super) fn vary(&self, length: f64, [dgap, dlength]: [&[f64]; 2], tangent: &mut [f64], all: usize) {
         let (dofs, count) = (dgap.len(), self.scales.len());
         for j in 0..count {
-            let ([mean, apart], scale) = (self.of_dof(j), self.scales[j]);
+            let ([mean, difference], scale) = (self.of_dof(j), self.scales[j]);
             for c in (0..dofs).filter(|_| self.counts) {
                 tangent[c * all + dofs + j] -= scale * mean * (length * dgap[c] + self.gap * dlength[c]);
             }
             for i in 0..count {
                 tangent[(dofs + i) * all + dofs + j] -=
-                    scale * self.passes * apart * self.of_dof(i)[1] * self.scales[i];
+                    scale * self.passes * difference * self.of_dof(i)[1] * self.scales[i];
             }
         }
     }

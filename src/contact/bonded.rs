@@ -58,7 +58,9 @@ impl ContactPair {
     /// How far a bond beside friction would be off if it had slipped by so much since it was out of reach [F/L²].
     pub(super) fn bond_off(&self, slave: &SlavePoint, [old, now]: [&ContactState; 2], slip: f64) -> f64 {
         match (&self.law(slave).cohesion, old.bond, now.bond) {
-            (Some(Cohesion::Parallel(bond)), Some(before), Some(now)) if old.apart(self.touch + bond.opening()) => {
+            (Some(Cohesion::Parallel(bond)), Some(before), Some(now))
+                if old.is_separated(self.touch + bond.opening()) =>
+            {
                 bond.respond(&before, 0.0, slip, false).state.traction - now.traction
             }
             _ => 0.0,
@@ -93,7 +95,7 @@ impl PointEvaluation<'_> {
     /// Share of the slip that counts for a bond, and the derivative of that slip by y.
     fn counted_by_bond(&self, opening: f64, y: f64) -> [f64; 2] {
         let (old, from) = (self.old, self.old.clearance());
-        if !old.apart(self.pair.touch + opening) || old.master_point.is_none() {
+        if !old.is_separated(self.pair.touch + opening) || old.master_point.is_none() {
             return [1.0, 0.0];
         }
         let share = ((opening + y) / (from + y)).max(0.0);

@@ -160,7 +160,7 @@ fn nearest(surface: &Surface, at: Vector2<f64>, x: &Configuration) -> Option<Nea
 fn chords(segment: &Segment, x: &Configuration) -> Vec<Vector2<f64>> {
     let place = |xi: f64| -> Vector2<f64> {
         let weights: Vec<(usize, f64)> = segment.position(xi).iter().copied().collect();
-        let [reference, displacement] = x.apart(&weights, Vector2::zeros());
+        let [reference, displacement] = x.split(&weights, Vector2::zeros());
         reference + displacement
     };
     let count = if segment.is_straight() { 1 } else { CHORDS };

@@ -102,8 +102,8 @@ impl<'a> PointEvaluation<'a> {
         let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
         let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
         let fading = pair.fading(slave);
-        let apart = place.closes && !pair.tied && old.apart(pair.touch + fading);
-        let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
+        let separation = place.closes && !pair.tied && old.is_separated(pair.touch + fading);
+        let compliance = separation.then(|| pair.compliance_after_touch(increment.during.settles));
         let whole = kinematics.slip;
         let mut loading = Self {
             pair,
@@ -402,7 +402,7 @@ pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactSta
 
 /// Whether slip may keep a point closed or open it, whatever its gap; this is known once its slip is.
 fn may_alternate(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
-    old.master_point.is_some() && !pair.law(slave).description.opening.is_empty() && !old.apart(pair.touch)
+    old.master_point.is_some() && !pair.law(slave).description.opening.is_empty() && !old.is_separated(pair.touch)
 }
 
 /// Whether a zero gap is predicted closed and sticking.

@@ -282,9 +282,9 @@ impl Kinematics {
         let mut whole: Vector2<f64> = self.nodes.iter().zip(&self.relative).map(|(&node, &w)| w * motion(node)).sum();
         if let Some(body) = body {
             let offset = |(&node, &w): (&usize, &f64)| before.between(body.reference, node) * w;
-            let apart =
+            let separation =
                 self.nodes.iter().zip(&self.relative).filter(|(node, _)| **node != body.turning).map(offset).sum();
-            whole -= turned(apart, body.angle(x) - body.angle(before));
+            whole -= turned(separation, body.angle(x) - body.angle(before));
         }
         let (n, s) = (self.normal, self.tangent);
         self.slip = s.dot(&whole);
@@ -337,8 +337,8 @@ impl Kinematics {
     fn take_rigid(&mut self, slave: &SlavePoint, body: &RigidBody, x: &Configuration) {
         let [reference, at] = [body.reference, body.turning].map(|node| self.local(node));
         self.relative[reference] = -1.0;
-        let [apart, moved] = x.apart(&slave.position, x.reference(body.reference));
-        let arm = -normal_of(apart + moved - x.displacement(body.reference)) / body.radius;
+        let [separation, moved] = x.split(&slave.position, x.reference(body.reference));
+        let arm = -normal_of(separation + moved - x.displacement(body.reference)) / body.radius;
         self.lever = Some(Lever { at, arm });
         if !self.varied {
             return;

@@ -102,7 +102,7 @@ impl Rigid {
     /// lies.
     pub fn project(&self, slave: &SlavePoint, x: &Configuration) -> Option<Projection> {
         let Some(body) = &self.body else {
-            return self.shape.project(|origin| x.apart(&slave.position, origin), || slave.outward(x));
+            return self.shape.project(|origin| x.split(&slave.position, origin), || slave.outward(x));
         };
         let rotation = body.rotation(x);
         let outward = || slave.outward(x).map(|outward| rotation.inverse() * outward);
@@ -119,13 +119,13 @@ impl Rigid {
             Shape::Circle(circle) => round_trip(way, 2.0 * std::f64::consts::PI * circle.radius),
             Shape::Polyline(polyline) => {
                 let start = |line: usize| {
-                    let [reference, _] = x.apart(&slave.position, polyline.corners[line]);
+                    let [reference, _] = x.split(&slave.position, polyline.corners[line]);
                     polyline.arcs[line] + reference.dot(&polyline.direction(line))
                 };
-                let apart = if from.segment == to.segment { 0.0 } else { start(to.segment) - start(from.segment) };
+                let separation = if from.segment == to.segment { 0.0 } else { start(to.segment) - start(from.segment) };
                 match polyline.is_closed() {
-                    true => round_trip(way + apart, polyline.arcs[polyline.arcs.len() - 1]),
-                    false => way + apart,
+                    true => round_trip(way + separation, polyline.arcs[polyline.arcs.len() - 1]),
+                    false => way + separation,
                 }
             }
         }

@@ -75,15 +75,15 @@ impl ContactPair {
         let of = |(slave, met): (&SlavePoint, Met)| {
             let kinematics = met?.1;
             let Kinematics { normal, tangent, .. } = kinematics;
-            let carried = stress(slave.at(x)) * normal;
-            let pressure = -normal.dot(&carried) - self.pressure_at(slave, &kinematics, x, 0.0);
-            Some(InitialTraction { pressure, traction: tangent.dot(&carried) })
+            let stress_vector = stress(slave.at(x)) * normal;
+            let pressure = -normal.dot(&stress_vector) - self.pressure_at(slave, &kinematics, x, 0.0);
+            Some(InitialTraction { pressure, traction: tangent.dot(&stress_vector) })
         };
         self.points.iter().zip(self.meetings(x, false)).map(of).collect()
     }
 
     /// Lets every point that faces the master in the configuration `x` begin with this gap, whatever its surfaces have there [L].
-    pub fn start_apart(&mut self, gap: f64, x: &Configuration) {
+    pub fn start_at_gap(&mut self, gap: f64, x: &Configuration) {
         let met = self.meetings(x, false);
         for (slave, met) in self.points.iter_mut().zip(met) {
             slave.touch = met.map_or(0.0, |(met, _)| met.gap - gap);
@@ -126,9 +126,9 @@ impl ContactPair {
             let (gap, master_point) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.master_point)).unzip();
             let multiplier = if self.penetration.is_some() { total } else { 0.0 };
             let touches = total > 0.0 || gap.is_some_and(|gap| gap <= self.touch);
-            let apart = (!touches).then(|| gap.unwrap_or(f64::INFINITY));
+            let separated = (!touches).then(|| gap.unwrap_or(f64::INFINITY));
             ContactState {
-                bond: self.bond_at_start(slave, apart, of_bond),
+                bond: self.bond_at_start(slave, separated, of_bond),
                 elastic_slip: 0.0,
                 friction,
                 master_point,
@@ -167,8 +167,8 @@ impl ContactPair {
         time: f64,
     ) -> Vec<ContactState> {
         let given = self.meetings(mesh, false);
-        let state = |(((slave, met), given), apart): (((&SlavePoint, Met), Met), ContactState)| {
-            let Some((Meeting { gap, master_point }, kinematics)) = met else { return apart };
+        let state = |(((slave, met), given), separated): (((&SlavePoint, Met), Met), ContactState)| {
+            let Some((Meeting { gap, master_point }, kinematics)) = met else { return separated };
             let fluid = self.pressure_at(slave, &kinematics, x, time);
             let ends = self.master.segments().get(master_point.segment).map(|segment| segment.ends);
             let [near, far] = ends.unwrap_or_default();
@@ -177,12 +177,13 @@ impl ContactPair {
                 weights.iter().map(|(node, w)| Some(stress.get(node)? * *w)).sum()
             };
             let own = sum(&slave.position).or_else(|| sum(&on_master)).unwrap_or_default();
-            let carried = own * kinematics.normal;
-            let pressure = (-kinematics.normal.dot(&carried) - fluid).max(0.0);
+            let stress_vector = own * kinematics.normal;
+            let pressure = (-kinematics.normal.dot(&stress_vector) - fluid).max(0.0);
             let law = self.law(slave);
             let released = law.description.released_above.map_or(f64::INFINITY, |[c, mu]| c + mu * pressure);
             let limit = law.starting_limit(pressure).min(released);
-            let traction = if pressure > 0.0 { kinematics.tangent.dot(&carried).clamp(-limit, limit) } else { 0.0 };
+            let traction =
+                if pressure > 0.0 { kinematics.tangent.dot(&stress_vector).clamp(-limit, limit) } else { 0.0 };
             let of_bond = law.share_of_bond(pressure, traction);
             let give = if self.penetration.is_some() { 0.0 } else { pressure / self.alpha_n };
             let of_mesh = given.map_or(0.0, |(met, _)| slave.gap(met.gap, 1.0).max(0.0));
@@ -196,15 +197,15 @@ impl ContactPair {
                 multiplier: if self.penetration.is_some() { pressure } else { 0.0 },
                 fluid,
                 came: Came { gap: slave.gap(gap, 0.0) - own, pressure, traction },
-                ..apart
+                ..separated
             }
         };
-        let points = self.points.iter().zip(self.meetings(x, false)).zip(given).zip(self.apart());
+        let points = self.points.iter().zip(self.meetings(x, false)).zip(given).zip(self.separated_states());
         points.map(state).collect()
     }
 
     /// The states of all points while one of the sides is not there.
-    pub fn apart(&self) -> Vec<ContactState> {
+    pub fn separated_states(&self) -> Vec<ContactState> {
         let state = |slave: &SlavePoint| ContactState {
             bond: self.bond_at_start(slave, Some(f64::INFINITY), 0.0),
             elastic_slip: 0.0,
@@ -264,10 +265,10 @@ impl ContactPair {
         let mut initial = vec![InitialTraction::default(); met.len()];
         for ((slave, met), initial) in self.points.iter_mut().zip(met).zip(&mut initial) {
             let (Some((_, kinematics)), Some(outward)) = (met, slave.outward(x)) else { continue };
-            let carried = stress(slave) * outward;
+            let stress_vector = stress(slave) * outward;
             let pressure =
-                kinematics.normal.dot(&carried) - seam.as_ref().map_or(0.0, |seam| seam.pressure(&kinematics, x));
-            *initial = InitialTraction { pressure, traction: -kinematics.tangent.dot(&carried) };
+                kinematics.normal.dot(&stress_vector) - seam.as_ref().map_or(0.0, |seam| seam.pressure(&kinematics, x));
+            *initial = InitialTraction { pressure, traction: -kinematics.tangent.dot(&stress_vector) };
             slave.touch += initial.pressure / self.alpha_n;
         }
         self.initial = Some(initial);

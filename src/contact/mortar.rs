@@ -104,7 +104,7 @@ impl Mortar {
     pub fn commit(&self, master: &Master, surface: &Surface, x: &Configuration, committed: &mut Committed) {
         let segments = || surface.segments.iter().flat_map(Segment::nodes);
         let nodes = || self.edges.iter().flatten().copied().chain(segments());
-        let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
+        let places = || nodes().map(|node| (node, x.split(&[(node, 1.0)], Vector2::zeros())));
         let Committed { section, places: kept, search, overlaps, rooms, weights } = committed;
         if *section == x.section() && weights.len() == self.at.len() && places().eq(kept.iter().copied()) {
             return;

@@ -60,8 +60,8 @@ impl Overlap {
         };
         let [start, end] = segment.ends.map(|node| offset(node, x).dot(&along));
         let eta = start / (start - end);
-        let apart: Vector2<f64> = segment.position(eta).iter().map(|&(node, w)| w * offset(node, before)).sum();
-        apart.dot(&normal_of(before.between(edge[0], edge[1]).normalize()))
+        let separation: Vector2<f64> = segment.position(eta).iter().map(|&(node, w)| w * offset(node, before)).sum();
+        separation.dot(&normal_of(before.between(edge[0], edge[1]).normalize()))
     }
 }
 

@@ -347,7 +347,7 @@ impl ContactPair {
         for Acting { point, place, kinematics: k } in self.acting(states, x) {
             let [pressure, traction] = states[point].tractions();
             let force = (k.normal * pressure - k.tangent * traction) * k.length;
-            let [reference, displacement] = x.apart(&place, about);
+            let [reference, displacement] = x.split(&place, about);
             sum.force += force;
             sum.moment += (reference + displacement).perp(&force);
         }

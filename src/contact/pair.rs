@@ -299,7 +299,7 @@ impl ContactPair {
 
     /// p_w at a slave point as its expression gives it [F/L²].
     fn given_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
-        let at = || x.apart(&slave.position, Vector2::zeros())[0];
+        let at = || x.split(&slave.position, Vector2::zeros())[0];
         self.fluid.as_ref().map_or(0.0, |fluid| fluid.pressure(slave, at, time))
     }
 
@@ -313,7 +313,7 @@ impl ContactPair {
         let largest = pressures().map(|(_, pressure)| pressure.abs()).chain(initial).fold(0.0, f64::max);
         let least = -(ROUND_OFF * largest).max(f64::EPSILON * self.modulus);
         let bad = pressures().find(|(_, pressure)| !(pressure.is_finite() && *pressure >= least));
-        bad.map(|(slave, pressure)| BadPressure { at: x.apart(&slave.position, Vector2::zeros())[0], pressure })
+        bad.map(|(slave, pressure)| BadPressure { at: x.split(&slave.position, Vector2::zeros())[0], pressure })
     }
 
     /// The larger of α_n and α_t. Dilatant slip, δp = α_n tan ψ δu and δq = μ δp, has the stiffness α_n (1 + μ tan ψ), which is
@@ -353,7 +353,7 @@ impl ContactPair {
         dt: f64,
     ) -> Result<Option<Arrival>, LawFailure> {
         let pressure = now.friction.pressure;
-        if pressure <= 0.0 || !old.apart(self.touch + self.fading(slave)) {
+        if pressure <= 0.0 || !old.is_separated(self.touch + self.fading(slave)) {
             return Ok(None);
         }
         let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;

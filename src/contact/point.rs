@@ -57,7 +57,7 @@ pub struct SlavePoint {
 impl SlavePoint {
     /// Current position of the point.
     pub fn at(&self, x: &Configuration) -> Vector2<f64> {
-        let [reference, displacement] = x.apart(&self.position, Vector2::zeros());
+        let [reference, displacement] = x.split(&self.position, Vector2::zeros());
         reference + displacement
     }
 
@@ -313,7 +313,7 @@ impl ContactState {
     }
 
     /// Whether a point is open by more than [`ContactPair::touch`](super::pair::ContactPair::touch).
-    pub fn apart(&self, touch: f64) -> bool {
+    pub fn is_separated(&self, touch: f64) -> bool {
         !self.is_closed() && self.clearance() > touch
     }
 

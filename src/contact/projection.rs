@@ -118,15 +118,15 @@ pub fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> Neares
     xi = within(xi);
     let mut steps = 0;
     while steps < MOST_STEPS {
-        let (apart, slope) = (offset(xi), slope(xi));
+        let (separation, slope) = (offset(xi), slope(xi));
         let square = slope.norm_squared();
         // Beyond the centre of curvature the second derivative of the distance would change its sign.
-        let stiffness = (square - apart.dot(&bend(xi))).max(0.5 * square);
+        let stiffness = (square - separation.dot(&bend(xi))).max(0.5 * square);
         let before = xi;
-        xi = within(xi + apart.dot(&slope) / stiffness);
+        xi = within(xi + separation.dot(&slope) / stiffness);
         steps += 1;
         // A step below the round-off of the offset ends the iteration, as does one against the end of the range.
-        if (xi - before).abs() <= 4.0 * f64::EPSILON * (1.0 + (apart.norm_squared() / square).sqrt()) {
+        if (xi - before).abs() <= 4.0 * f64::EPSILON * (1.0 + (separation.norm_squared() / square).sqrt()) {
             break;
         }
     }

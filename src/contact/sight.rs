@@ -82,7 +82,7 @@ impl NormalTree {
     /// Rebuilds the tree unless it is that of a surface in the configuration `x`, O(N).
     pub(super) fn update(&mut self, surface: &Surface, x: &Configuration) {
         let nodes = || surface.segments.iter().flat_map(Segment::nodes);
-        let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
+        let places = || nodes().map(|node| (node, x.split(&[(node, 1.0)], Vector2::zeros())));
         if places().eq(self.places.iter().copied()) {
             return;
         }

@@ -225,11 +225,11 @@ impl SmallPoint {
     /// δg = n·δr − s·r δθ,   δΔu_t = s·δr + n·r δθ,   δθ = n·δ(J s)/J
     /// ```
     fn meet_turning(&self, along: &Weights, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Meeting {
-        let apart = |x: &Configuration| self.relative(|node| x.between(self.nodes[0], node));
+        let separation = |x: &Configuration| self.relative(|node| x.between(self.nodes[0], node));
         let ([s, n], length) = axes(along, x);
-        let (r, [was_s, _]) = (apart(x), axes(along, before).0);
+        let (r, [was_s, _]) = (separation(x), axes(along, before).0);
         (k.normal, k.tangent) = (n, s);
-        k.slip = s.dot(&r) - was_s.dot(&apart(before));
+        k.slip = s.dot(&r) - was_s.dot(&separation(before));
         if k.varied {
             let Kinematics { drotation, dgap, dslip, .. } = k;
             for &(node, w) in along {

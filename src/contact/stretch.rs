@@ -43,7 +43,7 @@ const CURVED: f64 = 1.4;
 const LONG: f64 = 8.0;
 
 /// Distance of the nearer of two open points from the closed ones, and between the two, in edges.
-const APART: [f64; 2] = [0.5, 0.9];
+const SEPARATED: [f64; 2] = [0.5, 0.9];
 
 /// Number of bisections for s.
 const HALVINGS: usize = 60;
@@ -209,8 +209,8 @@ impl Seen<'_> {
             }
             let open = Open { way: way + gone, gap: state.clearance() };
             match near {
-                None if gone >= APART[0] * self.edge => near = Some((open, gone)),
-                Some((near, start)) if gone - start >= APART[1] * self.edge => {
+                None if gone >= SEPARATED[0] * self.edge => near = Some((open, gone)),
+                Some((near, start)) if gone - start >= SEPARATED[1] * self.edge => {
                     return Some(Side::Open([near, open], first));
                 }
                 _ => {}

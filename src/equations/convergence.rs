@@ -284,8 +284,8 @@ impl ConvergenceCriterion {
     /// Contribution of the contacts last noted to ρ², at nodes with these [`ways`](Self::ways) [F²].
     pub(super) fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
         let of = |(&node, way): (&usize, &f64)| {
-            let [apart, slid] = self.contact_stiffness[node];
-            apart + slid * way
+            let [normal, tangential] = self.contact_stiffness[node];
+            normal + tangential * way
         };
         ROUND_OFF * ROUND_OFF * nodes.iter().zip(ways).map(of).sum::<f64>()
     }
@@ -307,9 +307,9 @@ impl ConvergenceCriterion {
         let mut squares: Vec<f64> = nodes
             .map(|node| {
                 let [strained, moved, _] = stiffness[node];
-                let [apart, slid] = self.contact_stiffness[node];
+                let [normal, tangential] = self.contact_stiffness[node];
                 let way = square(u, node).min(farthest(node).powi(2));
-                strained + apart + (moved + slid) * way + square(magnitudes, node)
+                strained + normal + (moved + tangential) * way + square(magnitudes, node)
             })
             .collect();
         for spring in &step.loads.springs {

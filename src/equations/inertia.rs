@@ -99,8 +99,8 @@ impl Inertia {
                 }
             }
         }
-        for (dof, base, leads) in followed(model, trial, u) {
-            weighted[dof] = leads(&weighted) + factors[dof] * (u[dof] - base);
+        for (dof, base, of_leaders) in followed(model, trial, u) {
+            weighted[dof] = of_leaders(&weighted) + factors[dof] * (u[dof] - base);
         }
         let turning = Turning::all(model, trial, u, scheme);
         let rate = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
@@ -151,9 +151,9 @@ fn rates(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f
     }
     model.ties.spread(2, &mut velocity);
     model.ties.spread(2, &mut acceleration);
-    for (dof, base, leads) in followed(model, trial, u) {
-        velocity[dof] = leads(&velocity) + scheme.dvelocity(dt) * (u[dof] - base);
-        acceleration[dof] = leads(&acceleration) + scheme.dacceleration(dt) * (u[dof] - base);
+    for (dof, base, of_leaders) in followed(model, trial, u) {
+        velocity[dof] = of_leaders(&velocity) + scheme.dvelocity(dt) * (u[dof] - base);
+        acceleration[dof] = of_leaders(&acceleration) + scheme.dacceleration(dt) * (u[dof] - base);
     }
     for plate in Turning::all(model, trial, u, scheme) {
         plate.velocities(scheme.dvelocity(dt), &mut velocity);

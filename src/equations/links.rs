@@ -93,10 +93,10 @@ pub(super) fn couple(model: &Model, plate: [usize; 2], u: &[f64], moment: f64) -
 
 /// Largest error of the constraints: followers relative to their leaders, and lengths of rigid platens [L].
 pub(super) fn missed(model: &Model, u: &[f64]) -> f64 {
-    let led = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.value(i, u)).abs();
+    let error = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.value(i, u)).abs();
     let followers = model.linkage.followers.iter().flat_map(|follower| follower.dofs().map(move |dof| (follower, dof)));
     let plates = model.linkage.rigid.iter().map(|plate| stretch(model, *plate, u).abs());
-    followers.map(led).chain(plates).fold(0.0, f64::max)
+    followers.map(error).chain(plates).fold(0.0, f64::max)
 }
 
 /// Forces with the constraint force of rigid platens moved from B to A: it is no residual.

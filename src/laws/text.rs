@@ -11,8 +11,8 @@ const FEW: usize = 6;
 /// Digits of a number in double precision.
 const ALL: usize = 17;
 
-/// Formats two numbers that are compared, with as many digits as it takes to tell them apart.
-pub fn apart(numbers: [f64; 2]) -> [String; 2] {
+/// Formats two numbers that are compared, with as many digits as it takes to distinguish them.
+pub fn distinct(numbers: [f64; 2]) -> [String; 2] {
     let with = |digits| numbers.map(|value| to_digits(value, digits));
     (FEW..ALL).map(with).find(|[one, other]| one != other).unwrap_or_else(|| with(ALL))
 }
@@ -39,15 +39,15 @@ fn to_digits(value: f64, digits: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{apart, at_least, number};
+    use super::{at_least, distinct, number};
 
     #[test]
     fn numbers_are_short_and_told_apart() {
         assert_eq!([number(0.1 + 0.2), number(-1e300), number(2.0 / 3e9)], ["0.3", "-1e300", "6.66667e-10"]);
-        assert_eq!(apart([1.0, 2.0]), ["1", "2"]);
-        assert_eq!(apart([50.0, 50.000_000_3]), ["50", "50.0000003"]);
-        assert_eq!(apart([1.0, 1.0 + f64::EPSILON]), ["1", "1.0000000000000002"]);
-        assert_eq!(apart([1.0, 1.0]), ["1", "1"]);
+        assert_eq!(distinct([1.0, 2.0]), ["1", "2"]);
+        assert_eq!(distinct([50.0, 50.000_000_3]), ["50", "50.0000003"]);
+        assert_eq!(distinct([1.0, 1.0 + f64::EPSILON]), ["1", "1.0000000000000002"]);
+        assert_eq!(distinct([1.0, 1.0]), ["1", "1"]);
     }
 
     #[test]

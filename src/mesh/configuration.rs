@@ -101,7 +101,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// X − origin and u of a point whose weights sum to one.
-    pub fn apart(&self, weights: &[(usize, f64)], origin: Vector2<f64>) -> [Vector2<f64>; 2] {
+    pub fn split(&self, weights: &[(usize, f64)], origin: Vector2<f64>) -> [Vector2<f64>; 2] {
         let sum = |of: &dyn Fn(usize) -> Vector2<f64>| weights.iter().map(|&(node, w)| of(node) * w).sum();
         [sum(&|node| self.reference[node] - origin), sum(&|node| self.displacement(node))]
     }

@@ -58,9 +58,9 @@ impl RigidBody {
 
     /// A point in the body-fixed frame: X − origin, and its displacement Qᵀ(u − u_R) + (Qᵀ − I)(X − X_R).
     pub fn seen(&self, weights: &[(usize, f64)], origin: Vector2<f64>, x: &Configuration) -> [Vector2<f64>; 2] {
-        let [apart, u] = x.apart(weights, origin);
-        let [arm, moved] = [x.apart(weights, x.reference(self.reference))[0], u - x.displacement(self.reference)];
-        [apart, self.rotation(x).inverse() * moved + turned(arm, -self.angle(x))]
+        let [separation, u] = x.split(weights, origin);
+        let [arm, moved] = [x.split(weights, x.reference(self.reference))[0], u - x.displacement(self.reference)];
+        [separation, self.rotation(x).inverse() * moved + turned(arm, -self.angle(x))]
     }
 }
 

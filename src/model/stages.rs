@@ -78,7 +78,7 @@ impl Model {
     pub fn first_states(&self, pair: &ContactPair) -> Vec<ContactState> {
         match self.steps.first().is_none_or(|step| step.joins(pair)) {
             true => pair.initial_states(&self.mesh.undeformed()),
-            false => pair.apart(),
+            false => pair.separated_states(),
         }
     }
 
@@ -211,7 +211,7 @@ impl Model {
                         pair.states_under(&stresses[&pair.name], [&self.mesh.undeformed(), &x], state.time)
                     }
                     true => pair.initial_states(&x),
-                    false => pair.apart(),
+                    false => pair.separated_states(),
                 };
             }
         }

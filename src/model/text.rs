@@ -1,6 +1,6 @@
 //! Numbers and counts in text.
 
-pub use crate::laws::text::{apart, number};
+pub use crate::laws::text::{distinct, number};
 
 /// Formats a position or another vector: (x, y).
 pub fn vector(of: impl Into<[f64; 2]>) -> String {

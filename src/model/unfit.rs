@@ -12,9 +12,9 @@ use crate::model::{Body, Model};
 pub fn concerns(model: &Model) -> Vec<String> {
     let lock = model.bodies.iter().filter_map(|body| Some((body, locks(model, body)?)));
     // f_bar is not for bodies whose water flows.
-    let remedy = |(body, told): (&Body, String)| match body.flowing() {
-        Some(_) => told.replace("Q4 with \"element\": \"f_bar\", ", ""),
-        None => told,
+    let remedy = |(body, message): (&Body, String)| match body.flowing() {
+        Some(_) => message.replace("Q4 with \"element\": \"f_bar\", ", ""),
+        None => message,
     };
     lock.map(remedy).chain(alone(model)).collect()
 }

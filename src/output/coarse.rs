@@ -28,8 +28,8 @@ impl Coarse {
     pub fn record(&mut self, model: &Model, attempt: &Attempt, state: &State, x: &Configuration) {
         let (step, old) = (attempt.step, attempt.old);
         // What exceeds the allowed error is told as such.
-        let is_told = attempt.local_error.is_some_and(|error| error.is_excessive());
-        if attempt.iterations.is_empty() || is_told || step.increments.slip.is_some() {
+        let is_reported = attempt.local_error.is_some_and(|error| error.is_excessive());
+        if attempt.iterations.is_empty() || is_reported || step.increments.slip.is_some() {
             return;
         }
         for (k, pair) in model.contacts.iter().enumerate().filter(|(_, pair)| !pair.tied && step.joins(pair)) {
@@ -59,8 +59,8 @@ impl Coarse {
         }
     }
 
-    /// The warnings, each of which is told once.
-    pub fn tell(&mut self) -> impl Iterator<Item = String> {
+    /// The warnings, each of which is reported once.
+    pub fn warnings(&mut self) -> impl Iterator<Item = String> {
         std::mem::take(&mut self.largest).into_values().map(|(_, message)| message)
     }
 }

@@ -9,7 +9,7 @@ use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN};
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
-use crate::model::text::apart;
+use crate::model::text::distinct;
 
 /// Process zone of linearly slip-weakening friction, divided by G*/(p |dμ/dδ|). Source: Palmer & Rice (1973), Proc. R. Soc. A
 /// 332, 527; Day et al. (2005), J. Geophys. Res. 110, B12307.
@@ -46,7 +46,7 @@ pub enum Kind {
 
 /// Warning about a pressure above the bound of uniqueness.
 pub fn several_answers(pressure: f64, limit: f64) -> String {
-    let [pressure, limit] = apart([pressure, limit]);
+    let [pressure, limit] = distinct([pressure, limit]);
     format!(
         "the pressure {pressure} exceeds {limit}, above which the response is not unique: slip weakening may \
          exceed the contact stiffness, and the traction jumps; raise alpha_t"

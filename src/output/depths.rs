@@ -8,7 +8,7 @@ use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::configuration::Configuration;
-use crate::model::text::apart;
+use crate::model::text::distinct;
 
 /// Smallest reported depth of a single place, as a fraction of the slave's edge.
 const DEEP: f64 = 0.05;
@@ -47,7 +47,7 @@ pub fn rigid_inside(pair: &ContactPair, x: &Configuration) -> Option<(Vector2<f6
             ("a slave node is inside the rigid master", "take shorter edges there, or raise alpha_n".into())
         }
         (Inside::Disk, Shape::Circle(circle)) => {
-            let [radius, edge] = apart([circle.radius, edge]);
+            let [radius, edge] = distinct([circle.radius, edge]);
             let remedy = format!("edges of {edge} do not see a radius of {radius}: take edges of a fifth of it");
             ("the rigid disk is inside the slave, between its points,", remedy)
         }

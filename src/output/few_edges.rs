@@ -46,20 +46,20 @@ impl FewEdges {
         for (k, (pair, states)) in contacts.filter(|(_, (pair, _))| step.joins(pair)) {
             let force: f64 = states.iter().map(|state| state.contact_pressure() * state.length).sum();
             if force > self.most.get(&k).map_or(0.0, |(most, _)| *most) {
-                self.most.insert(k, (force, told(pair, step, states, state.time, x)));
+                self.most.insert(k, (force, warning(pair, step, states, state.time, x)));
             }
         }
     }
 
-    /// The warnings, each of which is told once.
-    pub fn tell(&mut self) -> impl Iterator<Item = String> {
+    /// The warnings, each of which is reported once.
+    pub fn warnings(&mut self) -> impl Iterator<Item = String> {
         let most = std::mem::take(&mut self.most);
         let largest = most.values().map(|(force, _)| *force).fold(0.0, f64::max);
         most.into_values().filter(move |(force, _)| *force > LIGHT * largest).filter_map(|(_, message)| message)
     }
 }
 
-fn told(pair: &ContactPair, step: &Step, states: &[ContactState], time: f64, x: &Configuration) -> Option<String> {
+fn warning(pair: &ContactPair, step: &Step, states: &[ContactState], time: f64, x: &Configuration) -> Option<String> {
     let is_constrained = |node: usize, along: Vector2<f64>| {
         step.supports
             .iter()

@@ -32,7 +32,7 @@ use crate::run::control::is_of;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 use crate::solve::neighbour::Tangent;
-use crate::time::neighbour::{Lead, Neighbour, follow};
+use crate::time::neighbour::{BaseIncrement, Neighbour, follow};
 
 /// The table.
 pub const FILE: &str = "gradients.csv";
@@ -52,7 +52,7 @@ pub struct Parameter {
 #[derive(Clone, Debug)]
 pub struct Perturbed {
     /// k
-    pub apart: f64,
+    pub offset: f64,
     /// w_k/ε
     pub weight: f64,
     /// the model
@@ -165,9 +165,9 @@ impl Gradients {
         let path = folder.join(FILE);
         let table = if goes_on { Table::reopen(&path, columns) } else { Table::create(&path, columns) }?;
         let derivative = |parameter: &Parameter| {
-            let side = |Perturbed { apart, weight, model }: &Perturbed| Side {
+            let side = |Perturbed { offset, weight, model }: &Perturbed| Side {
                 weight: *weight,
-                neighbour: Neighbour::new(model.clone(), *apart, !parameter.is_of_bodies),
+                neighbour: Neighbour::new(model.clone(), *offset, !parameter.is_of_bodies),
                 quantities: if parameter.is_of_bodies { Quantities::of(model) } else { own.clone() },
             };
             let sides = parameter.neighbours.iter().map(side).collect();
@@ -268,10 +268,10 @@ impl Observer for Gradients {
         let clock = Instant::now();
         let Self { table, store, tangent, own, displacement, derivatives, quantities, warn, warnings, .. } = self;
         let Attempt { step, step_number, ended, old, passes, .. } = *attempt;
-        let lead = Lead { step, number: step_number, ended, old, new, passes };
+        let base = BaseIncrement { step, number: step_number, ended, old, new, passes };
         let alive = derivatives.iter_mut().filter(|derivative| derivative.lives());
         let groups = alive.map(|derivative| derivative.sides.iter_mut().map(|side| &mut side.neighbour).collect());
-        let mut followed = follow(&lead, tangent, groups.collect()).into_iter();
+        let mut followed = follow(&base, tangent, groups.collect()).into_iter();
         let run = own.at(model, old, new, store);
         displacement.clone_from(&new.displacement);
         table.number(new.time);

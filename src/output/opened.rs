@@ -17,7 +17,7 @@ const BY_WATER: f64 = 0.5;
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Opened {
     found: BTreeMap<usize, String>,
-    told: bool,
+    reported: bool,
 }
 
 impl Opened {
@@ -36,7 +36,7 @@ impl Opened {
             // Where the water has risen by less, something else parts the surfaces.
             let opens = |old: &ContactState, new: &ContactState| {
                 let rise = new.fluid - old.fluid;
-                old.is_closed() && new.apart(pair.touch) && rise > BY_WATER * old.friction.pressure && rise > 0.0
+                old.is_closed() && new.is_separated(pair.touch) && rise > BY_WATER * old.friction.pressure && rise > 0.0
             };
             let mut opened = points.filter(|(_, (old, new))| opens(old, new));
             if let Some((point, (_, new))) = opened.next() {
@@ -54,9 +54,9 @@ impl Opened {
         }
     }
 
-    /// The warnings, each of which is told once.
-    pub fn tell(&mut self) -> impl Iterator<Item = String> {
-        let told = std::mem::replace(&mut self.told, true);
-        self.found.clone().into_values().filter(move |_| !told)
+    /// The warnings, each of which is reported once.
+    pub fn warnings(&mut self) -> impl Iterator<Item = String> {
+        let reported = std::mem::replace(&mut self.reported, true);
+        self.found.clone().into_values().filter(move |_| !reported)
     }
 }

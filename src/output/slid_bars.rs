@@ -41,8 +41,8 @@ impl SlidBars {
         }
     }
 
-    /// The warnings, each of which is told once.
-    pub fn tell(&mut self) -> impl Iterator<Item = String> {
+    /// The warnings, each of which is reported once.
+    pub fn warnings(&mut self) -> impl Iterator<Item = String> {
         std::mem::take(&mut self.most).into_values().map(|(_, message)| message)
     }
 }

@@ -15,12 +15,12 @@ const ON_OPEN_POINTS: f64 = 0.01;
 /// Shear of the contacts whose strength fades over an opening that was not given.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Unpressed {
-    contacts: BTreeMap<String, Carried>,
+    contacts: BTreeMap<String, Shear>,
 }
 
 /// Shear of a contact.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
-struct Carried {
+struct Shear {
     /// Largest ∫ |q| ds so far of all points, and of those that are open [F]
     whole: f64,
     open: f64,
@@ -34,22 +34,22 @@ impl Unpressed {
     pub fn record(&mut self, model: &Model, state: &State) {
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
             let Some(opening) = chosen(pair) else { continue };
-            let carried = self.contacts.entry(pair.name.clone()).or_default();
+            let own = self.contacts.entry(pair.name.clone()).or_default();
             let shear = |states: &mut dyn Iterator<Item = &ContactState>| {
                 states.map(|state| state.shear().abs() * state.length).sum::<f64>()
             };
             let open = || states.iter().filter(|state| state.carries_open());
-            carried.whole = carried.whole.max(shear(&mut states.iter()));
-            carried.open = carried.open.max(shear(&mut open()));
-            carried.widest = open().map(ContactState::clearance).fold(carried.widest, f64::max);
-            carried.opening = opening;
+            own.whole = own.whole.max(shear(&mut states.iter()));
+            own.open = own.open.max(shear(&mut open()));
+            own.widest = open().map(ContactState::clearance).fold(own.widest, f64::max);
+            own.opening = opening;
         }
     }
 
-    /// The warnings, each of which is told once.
-    pub fn tell(&mut self) -> impl Iterator<Item = String> {
-        let message = |(contact, carried): (String, Carried)| {
-            let Carried { whole, open, widest, opening } = carried;
+    /// The warnings, each of which is reported once.
+    pub fn warnings(&mut self) -> impl Iterator<Item = String> {
+        let message = |(contact, own): (String, Shear)| {
+            let Shear { whole, open, widest, opening } = own;
             let share = if whole > 0.0 { open / whole } else { 0.0 };
             (share > ON_OPEN_POINTS).then(|| {
                 format!(

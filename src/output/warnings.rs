@@ -29,7 +29,7 @@ use crate::mesh::configuration::{Configuration, vector};
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::step::{SHORTEST_INCREMENT, Until};
-use crate::model::text::{self, apart, readable};
+use crate::model::text::{self, distinct, readable};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
@@ -152,9 +152,9 @@ impl Observer for Warnings {
             self.never_closed(number, pair, states);
             if !explicit || attempt.ends_step(state) {
                 self.deep_unseen(number, pair, state.time, &x);
-                let told = Kind::RigidInside;
-                let deep = if self.given.contains(&(number, told)) { None } else { depths::rigid_inside(pair, &x) };
-                if let Some((at, message)) = deep.filter(|_| self.given.insert((number, told))) {
+                let kind = Kind::RigidInside;
+                let deep = if self.given.contains(&(number, kind)) { None } else { depths::rigid_inside(pair, &x) };
+                if let Some((at, message)) = deep.filter(|_| self.given.insert((number, kind))) {
                     self.list.push(format!("{}: {message}", place(pair, at, state.time)));
                 }
             }
@@ -178,12 +178,12 @@ impl Observer for Warnings {
             self.list.push(format!("contact `{name}` has never closed{where_seen}: {near}"));
         }
         self.list.extend(self.unstable.message());
-        self.list.extend(self.coarse.tell());
-        self.list.extend(self.scattered.tell());
-        self.list.extend(self.few_edges.tell());
-        self.list.extend(self.unpressed.tell());
-        self.list.extend(self.slid_bars.tell());
-        self.list.extend(self.opened.tell());
+        self.list.extend(self.coarse.warnings());
+        self.list.extend(self.scattered.warnings());
+        self.list.extend(self.few_edges.warnings());
+        self.list.extend(self.unpressed.warnings());
+        self.list.extend(self.slid_bars.warnings());
+        self.list.extend(self.opened.warnings());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()
@@ -375,7 +375,7 @@ impl Warnings {
     fn passed(&mut self, attempt: &Attempt, state: &State) {
         let Step { name, until: Some(until), .. } = attempt.step else { return };
         if state.time < attempt.step.span.end && attempt.ends_step(state) && !until.is_met(state) {
-            let [before, after] = apart([attempt.old, state].map(|state| until.value_in(state)));
+            let [before, after] = distinct([attempt.old, state].map(|state| until.value_in(state)));
             let Until { on, value, .. } = until;
             self.list.push(format!(
                 "step `{name}`, t = {}: {} of `{on}` jumps from {before} to {after}, past {value}, where the step ends: \
@@ -409,7 +409,7 @@ impl Warnings {
         let step = attempt.step;
         let Some(error) = attempt.local_error.filter(LocalError::is_excessive) else { return };
         if self.inexact.insert(step.name.clone()) {
-            let [estimate, allowed] = apart([error.estimate, error.allowed]);
+            let [estimate, allowed] = distinct([error.estimate, error.allowed]);
             let found = format!("its error {estimate} exceeds {allowed}");
             self.list.push(shortest(attempt, &found));
         }

@@ -39,7 +39,7 @@ use serde::Serialize;
 use crate::laws::friction::{
     BondState, Cohesion, Confinement, ContactLaw, FrictionLaw, FrictionResponse, FrictionState, Sliding,
 };
-use crate::laws::text::apart;
+use crate::laws::text::distinct;
 use crate::model::boundary::{Drive, Span};
 use crate::run::error::Error;
 
@@ -139,7 +139,7 @@ impl LawTest {
         if let Some(limit) =
             self.law.description.uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
         {
-            let [pressure, limit] = apart([pressure, limit]);
+            let [pressure, limit] = distinct([pressure, limit]);
             report.warnings.push(format!(
                 "the pressure {pressure} at t = {time} exceeds {limit}, above which the response is not \
                  unique: slip weakening may exceed the contact stiffness, and the traction jumps; raise alpha_t"
@@ -219,8 +219,8 @@ impl Phase {
         let mut knots: Vec<f64> = courses.iter().flat_map(|course| course.knots(span)).collect();
         knots.sort_by(f64::total_cmp);
         knots.dedup();
-        let apart = knots.windows(2).map(|pair| pair[1] - pair[0]).fold(dt, f64::min);
-        phase.resolution = SAME * apart.min(span.end - span.start);
+        let separation = knots.windows(2).map(|pair| pair[1] - pair[0]).fold(dt, f64::min);
+        phase.resolution = SAME * separation.min(span.end - span.start);
         phase.stops = phase.find_stops(knots)?;
         Ok(phase)
     }

@@ -207,9 +207,10 @@ impl Flowing<'_> {
         let mut uncertainty = 0.0;
         if self.is_coupled() && trial.old.last_increment.is_some() {
             let bent = self.march(trial, Some(&old.rates))?;
-            let apart = bent.pressure.iter().zip(&new.pressure).map(|(bent, p)| (bent - p).abs()).fold(0.0, f64::max);
+            let difference =
+                bent.pressure.iter().zip(&new.pressure).map(|(bent, p)| (bent - p).abs()).fold(0.0, f64::max);
             let round_off = ROUND_OFF * new.pressure.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
-            uncertainty = if apart <= round_off { 0.0 } else { apart / (self.conduit.error * self.scale()) };
+            uncertainty = if difference <= round_off { 0.0 } else { difference / (self.conduit.error * self.scale()) };
         }
         let rate = 1.0 / trial.dt;
         // The water has reckoned with surfaces that follow it from p_k to p̂, which is what the next increment goes on from.
@@ -273,7 +274,7 @@ impl<'a> Water<'a> {
         trial: Trial,
         contacts: &[Vec<ContactState>],
     ) -> Result<bool, IncrementFailure> {
-        let (mut apart, mut largest, mut renewed) = (0.0f64, 0.0f64, false);
+        let (mut difference, mut largest, mut renewed) = (0.0f64, 0.0f64, false);
         for flowing in &mut self.flowing {
             flowing.walls = flowing.conduit.walls(&contacts[flowing.number]);
             let open = flowing.open_length(&flowing.walls);
@@ -284,11 +285,11 @@ impl<'a> Water<'a> {
             }
             flowing.found = flowing.march(trial, None)?;
             for (found, p) in flowing.found.pressure.iter().zip(&flowing.pressure) {
-                apart = apart.max((found - p).abs());
+                difference = difference.max((found - p).abs());
                 largest = largest.max(found.abs()).max(p.abs());
             }
         }
-        if apart <= allowed(model, largest, self.passes) {
+        if difference <= allowed(model, largest, self.passes) {
             return Ok(false);
         }
         self.passes += 1;
@@ -394,7 +395,7 @@ impl NeighbourWater {
     ) -> Result<Option<Arrived>, IncrementFailure> {
         let mut all = flowing(model, trial.step, trial.old);
         let (mut now, mut next) = (Vec::new(), Vec::new());
-        let (mut apart, mut largest) = (0.0f64, 0.0f64);
+        let (mut difference, mut largest) = (0.0f64, 0.0f64);
         for flowing in &mut all {
             let (Some(course), Some(pressure)) = (&run.courses[flowing.number], &self.pressure[flowing.number]) else {
                 continue;
@@ -407,13 +408,13 @@ impl NeighbourWater {
             let left = run.states[1].conduits[flowing.number].pressure.iter().zip(&course.pressure);
             for ((p, found), (reached, before)) in pressure.iter().zip(&flowing.found.pressure).zip(left) {
                 let wanted = found - (reached - before);
-                apart = apart.max((wanted - p).abs());
+                difference = difference.max((wanted - p).abs());
                 largest = largest.max(p.abs());
                 now.push(*p);
                 next.push(wanted);
             }
         }
-        if apart <= allowed(model, largest, self.passes) {
+        if difference <= allowed(model, largest, self.passes) {
             return arrive(&all, model, trial).map(Some);
         }
         self.passes += 1;

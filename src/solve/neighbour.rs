@@ -127,7 +127,7 @@ pub struct Seeker<'a> {
     /// whether its bodies are those of the run
     pub has_same_bodies: bool,
     /// k of its parameter θ + k ε
-    pub apart: f64,
+    pub offset: f64,
 }
 
 /// A part of (2), and what corrections have left of it.
@@ -147,9 +147,9 @@ struct Part {
 
 impl Part {
     /// All parts of neighbours with these k.
-    fn of(apart: &[f64]) -> Vec<Self> {
-        let count = apart.len();
-        let powers = DMatrix::from_fn(count, count, |k, j| (0..j).fold(apart[k], |power, _| power * apart[k]));
+    fn of(offset: &[f64]) -> Vec<Self> {
+        let count = offset.len();
+        let powers = DMatrix::from_fn(count, count, |k, j| (0..j).fold(offset[k], |power, _| power * offset[k]));
         let inverse = powers.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(count, count));
         let part = |j: usize| Self {
             weights: inverse.row(j).iter().copied().collect(),
@@ -206,7 +206,7 @@ enum Course {
     OnItsWay,
     Solved,
     /// The tangent of the run does not serve it
-    Apart,
+    Left,
 }
 
 /// A correction of the neighbours of a group.
@@ -230,8 +230,8 @@ struct Run<'a> {
 
 impl<'a> Group<'a> {
     fn new(neighbours: Vec<Seeker<'a>>) -> Self {
-        let apart: Vec<f64> = neighbours.iter().map(|neighbour| neighbour.apart).collect();
-        Self { parts: Part::of(&apart), neighbours, course: Course::OnItsWay }
+        let offset: Vec<f64> = neighbours.iter().map(|neighbour| neighbour.offset).collect();
+        Self { parts: Part::of(&offset), neighbours, course: Course::OnItsWay }
     }
 
     fn evaluate(&mut self, solids: Option<&LinearizedSolids>) -> Result<(), TrialFailure> {
@@ -256,7 +256,7 @@ impl<'a> Group<'a> {
             return Vec::new();
         }
         if self.evaluate(run.solids).is_err() {
-            self.course = Course::Apart;
+            self.course = Course::Left;
             return Vec::new();
         }
         let missed = self.missed();
@@ -280,7 +280,7 @@ impl<'a> Group<'a> {
         if corrections.is_empty() {
             *course = Course::Solved;
         } else if !fall {
-            *course = Course::Apart;
+            *course = Course::Left;
             corrections.clear();
         }
         corrections

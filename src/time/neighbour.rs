@@ -31,7 +31,7 @@ use crate::solve::{Pass, Workspace};
 
 /// An accepted increment of the run.
 #[derive(Clone, Copy)]
-pub struct Lead<'a> {
+pub struct BaseIncrement<'a> {
     /// its step
     pub step: &'a Step,
     /// number of the step
@@ -46,7 +46,7 @@ pub struct Lead<'a> {
     pub passes: &'a [Pass],
 }
 
-impl Lead<'_> {
+impl BaseIncrement<'_> {
     /// The increment of a state and step under the penalties of a pass, at the time at which the scheme requires equilibrium.
     fn trial<'a>(&self, old: &'a State, step: &'a Step, pass: &Pass) -> Trial<'a> {
         Trial { stiffening: pass.stiffening, ..self.whole(old, step).ahead() }
@@ -70,7 +70,7 @@ pub struct Neighbour {
     /// Whether its parameter acts on no body, and no water in their pores
     spares_bodies: bool,
     /// k of its parameter θ + k ε
-    apart: f64,
+    offset: f64,
     /// state at the start of the last increment
     pub old: State,
     /// accepted state
@@ -101,11 +101,11 @@ fn are_under_way(ways: &Result<Vec<OnItsWay>, IncrementFailure>) -> bool {
 
 impl Neighbour {
     /// Creates a neighbour in the initial state of its model with θ + k ε, where θ may act on no body.
-    pub fn new(model: Arc<Model>, apart: f64, spares_bodies: bool) -> Self {
+    pub fn new(model: Arc<Model>, offset: f64, spares_bodies: bool) -> Self {
         let state = model.initial_state();
         let work = Workspace::new(&model, Box::<Multifrontal>::default());
         let spares_bodies = spares_bodies && model.flow.is_none();
-        Self { old: state.clone(), state, begun: None, step: None, work, model, spares_bodies, apart }
+        Self { old: state.clone(), state, begun: None, step: None, work, model, spares_bodies, offset }
     }
 
     /// Goes on from a saved state, in the step with this number.
@@ -114,26 +114,26 @@ impl Neighbour {
     }
 
     /// Whether its bodies are those of the run, with the same stress-free places of those that came into the deformed model.
-    fn has_same_bodies(&self, lead: &Lead) -> bool {
-        self.spares_bodies && self.state.step_start.births == lead.old.step_start.births
+    fn has_same_bodies(&self, base: &BaseIncrement) -> bool {
+        self.spares_bodies && self.state.step_start.births == base.old.step_start.births
     }
 
     /// Begins the increment, and its step if that is a new one.
-    fn set_out(&mut self, lead: &Lead) -> Result<OnItsWay, IncrementFailure> {
+    fn set_out(&mut self, base: &BaseIncrement) -> Result<OnItsWay, IncrementFailure> {
         let Self { model, state, begun, step, work, .. } = self;
-        let new = *begun != Some(lead.number);
+        let new = *begun != Some(base.number);
         if new || step.is_none() {
-            *step = Some(model.steps[lead.number].clone().after(lead.ended));
-            *begun = Some(lead.number);
+            *step = Some(model.steps[base.number].clone().after(base.ended));
+            *begun = Some(base.number);
         }
         if let (true, Some(step)) = (new, step) {
             *state = begin(model, step, state, work)?;
         }
-        let (u, of_run) = (state.displacement.clone(), lead.old.displacement.clone());
-        let water = NeighbourWater::new(&lead.water(), state);
+        let (u, of_run) = (state.displacement.clone(), base.old.displacement.clone());
+        let water = NeighbourWater::new(&base.water(), state);
         let mut way = OnItsWay { u, of_run, old: None, water, arrived: None };
-        if let (Some(own), Some(run)) = (&state.last_increment, &lead.old.last_increment) {
-            let share = (lead.new.time - lead.old.time) / own.dt;
+        if let (Some(own), Some(run)) = (&state.last_increment, &base.old.last_increment) {
+            let share = (base.new.time - base.old.time) / own.dt;
             let ahead = |u: &mut [f64], way: &[f64]| u.iter_mut().zip(way).for_each(|(u, way)| *u += share * way);
             ahead(&mut way.u, &own.displacement);
             ahead(&mut way.of_run, &run.displacement);
@@ -142,37 +142,43 @@ impl Neighbour {
     }
 
     /// Prepares a pass, beside the run whose tangent is given.
-    fn seeker<'a>(&'a mut self, lead: &Lead, pass: &Pass, tangent: &Tangent, way: &'a OnItsWay) -> Option<Seeker<'a>> {
-        let has_same_bodies = self.has_same_bodies(lead);
-        let Self { model, apart, step, work, .. } = self;
+    fn seeker<'a>(
+        &'a mut self,
+        base: &BaseIncrement,
+        pass: &Pass,
+        tangent: &Tangent,
+        way: &'a OnItsWay,
+    ) -> Option<Seeker<'a>> {
+        let has_same_bodies = self.has_same_bodies(base);
+        let Self { model, offset, step, work, .. } = self;
         tangent.couple(work);
         let u = pass.displacement.iter().zip(&way.u).zip(&way.of_run).map(|((run, own), of_run)| run + (own - of_run));
         let u = u.collect();
         Some(Seeker {
             model,
-            trial: lead.trial(way.old.as_ref()?, step.as_ref()?, pass),
+            trial: base.trial(way.old.as_ref()?, step.as_ref()?, pass),
             work,
             u,
             has_same_bodies,
-            apart: *apart,
+            offset: *offset,
         })
     }
 
     /// Lets water flow along contacts under the equilibrium of the last pass.
-    fn flow(&self, lead: &Lead, way: &mut OnItsWay) -> Result<(), IncrementFailure> {
-        let step = self.step.as_ref().unwrap_or(lead.step);
-        let trial = lead.whole(&self.state, step).ahead();
-        way.arrived = way.water.flow(&self.model, trial, &lead.water(), self.work.contacts())?;
+    fn flow(&self, base: &BaseIncrement, way: &mut OnItsWay) -> Result<(), IncrementFailure> {
+        let step = self.step.as_ref().unwrap_or(base.step);
+        let trial = base.whole(&self.state, step).ahead();
+        way.arrived = way.water.flow(&self.model, trial, &base.water(), self.work.contacts())?;
         Ok(())
     }
 
     /// Accepts the solution of the last pass.
-    fn accept(&mut self, lead: &Lead, way: OnItsWay) -> Result<(), IncrementFailure> {
+    fn accept(&mut self, base: &BaseIncrement, way: OnItsWay) -> Result<(), IncrementFailure> {
         let Self { model, state, step, work, .. } = self;
         let Some(step) = step else { return Ok(()) };
         let evaluation = std::mem::take(&mut work.assembler.evaluation);
         let found = Found { displacement: way.u, evaluation, water: way.arrived.unwrap_or_default() };
-        let new = arrive(model, lead.whole(state, step), found, work)?;
+        let new = arrive(model, base.whole(state, step), found, work)?;
         self.old = std::mem::replace(&mut self.state, new);
         Ok(())
     }
@@ -182,40 +188,44 @@ impl Neighbour {
 pub type Group<'a> = Vec<&'a mut Neighbour>;
 
 /// Lets neighbours of a run make the increment that it has accepted, all with the same tangents. A group fails as a whole.
-pub fn follow(lead: &Lead, tangent: &mut Tangent, mut groups: Vec<Group>) -> Vec<Result<(), IncrementFailure>> {
-    let set_out = |group: &mut Group| group.iter_mut().map(|neighbour| neighbour.set_out(lead)).collect();
+pub fn follow(
+    base: &BaseIncrement,
+    tangent: &mut Tangent,
+    mut groups: Vec<Group>,
+) -> Vec<Result<(), IncrementFailure>> {
+    let set_out = |group: &mut Group| group.iter_mut().map(|neighbour| neighbour.set_out(base)).collect();
     let mut all: Vec<Result<Vec<OnItsWay>, _>> = groups.par_iter_mut().with_max_len(1).map(set_out).collect();
     let mut is_known = false;
     while all.iter().any(are_under_way) {
-        if let Err(failure) = find(lead, tangent, is_known, &mut groups, &mut all) {
+        if let Err(failure) = find(base, tangent, is_known, &mut groups, &mut all) {
             return groups.iter().map(|_| Err(failure.clone())).collect();
         }
-        is_known = lead.passes.len() == 1;
+        is_known = base.passes.len() == 1;
         let under_way = groups.par_iter_mut().zip(&mut all).with_max_len(1).filter(|(_, ways)| are_under_way(ways));
         under_way.for_each(|(group, all)| {
             let Ok(ways) = all else { return };
-            if let Err(failure) = group.iter().zip(ways).try_for_each(|(neighbour, way)| neighbour.flow(lead, way)) {
+            if let Err(failure) = group.iter().zip(ways).try_for_each(|(neighbour, way)| neighbour.flow(base, way)) {
                 *all = Err(failure);
             }
         });
     }
     let arrive = |(group, ways): (&mut Group, Result<Vec<OnItsWay>, _>)| {
-        group.iter_mut().zip(ways?).try_for_each(|(neighbour, way)| neighbour.accept(lead, way))
+        group.iter_mut().zip(ways?).try_for_each(|(neighbour, way)| neighbour.accept(base, way))
     };
     groups.par_iter_mut().zip(all).with_max_len(1).map(arrive).collect()
 }
 
 /// Finds equilibrium of the groups under way, in the passes of the run; its tangent may be known.
 fn find(
-    lead: &Lead,
+    base: &BaseIncrement,
     tangent: &mut Tangent,
     is_known: bool,
     groups: &mut [Group],
     all: &mut [Result<Vec<OnItsWay>, IncrementFailure>],
 ) -> Result<(), IncrementFailure> {
-    let mut old = lead.water().pressed(tangent.model());
-    let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies(lead));
-    for (k, pass) in lead.passes.iter().enumerate() {
+    let mut old = base.water().pressed(tangent.model());
+    let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies(base));
+    for (k, pass) in base.passes.iter().enumerate() {
         if k > 0 {
             tangent.multiply(&mut old);
         }
@@ -228,16 +238,16 @@ fn find(
             }
         }
         if !is_known {
-            tangent.of(lead.trial(&old, lead.step, pass), pass, linearize)?;
+            tangent.of(base.trial(&old, base.step, pass), pass, linearize)?;
         }
-        solve(lead, pass, tangent, groups, all);
+        solve(base, pass, tangent, groups, all);
     }
     Ok(())
 }
 
 /// Solves a pass of all groups under way.
 fn solve(
-    lead: &Lead,
+    base: &BaseIncrement,
     pass: &Pass,
     tangent: &mut Tangent,
     groups: &mut [Group],
@@ -247,7 +257,7 @@ fn solve(
     for (group, ways) in groups.iter_mut().zip(&*all).filter(|(_, ways)| are_under_way(ways)) {
         if let Ok(ways) = ways {
             let each = group.iter_mut().zip(ways);
-            seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(lead, pass, tangent, way)).collect());
+            seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(base, pass, tangent, way)).collect());
         }
     }
     let found = solve_neighbours(seekers, tangent);

@@ -38,9 +38,9 @@ impl Wall {
     /// At a contact point.
     pub fn of(state: &ContactState) -> Self {
         let lifted = state.friction.opening;
-        let apart = if state.master_point.is_some() { (state.gap - lifted).max(0.0) } else { 0.0 };
+        let separation = if state.master_point.is_some() { (state.gap - lifted).max(0.0) } else { 0.0 };
         let pressure = (state.friction.pressure - state.tension()).max(0.0);
-        Self { opening: lifted + apart, slip: state.friction.plastic_slip, pressure }
+        Self { opening: lifted + separation, slip: state.friction.plastic_slip, pressure }
     }
 
     /// Sum of both, each with a factor.

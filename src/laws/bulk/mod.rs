@@ -220,8 +220,8 @@ pub fn principal_values([xx, yy, zz, xy]: [f64; 4]) -> [f64; 3] {
 /// ```
 pub fn log_strain(deformation: &Matrix2<f64>, stretch: f64) -> [f64; 4] {
     let b = deformation * deformation.transpose();
-    let (middle, apart) = (0.5 * (b.m11 + b.m22), 0.5 * (b.m11 - b.m22));
-    let radius = apart.hypot(b.m12);
+    let (middle, difference) = (0.5 * (b.m11 + b.m22), 0.5 * (b.m11 - b.m22));
+    let radius = difference.hypot(b.m12);
     let (area, share) = (deformation.determinant(), radius / middle);
     // ½ ln(β₁/β₂)/(2 r), whose limit at r = 0 is 1/(2 m)
     let shear = match share {
@@ -230,7 +230,7 @@ pub fn log_strain(deformation: &Matrix2<f64>, stretch: f64) -> [f64; 4] {
         _ => 0.5 * ((middle + radius) / area).ln() / radius,
     };
     let mean = 0.5 * components::ln_stretch(area);
-    [mean + shear * apart, mean - shear * apart, components::ln_stretch(stretch), shear * b.m12]
+    [mean + shear * difference, mean - shear * difference, components::ln_stretch(stretch), shear * b.m12]
 }
 
 impl CauchyStress {

@@ -5,7 +5,7 @@
 use nalgebra::{Rotation2, Vector2};
 
 use super::{Block, BlockKind};
-use crate::laws::text::apart;
+use crate::laws::text::distinct;
 use crate::mesh::nearest::{NotOne, nearest};
 
 /// Relative tolerance for equal radii at the ends of an arc, and for arcs shorter than a half circle.
@@ -224,7 +224,7 @@ impl Sides {
             let (one, other) = (a.norm(), b.norm());
             if (one - other).abs() > ROUND * one.max(other) {
                 let [first, second] = ENDS[k];
-                let [one, other] = apart([one, other]);
+                let [one, other] = distinct([one, other]);
                 return Err(format!(
                     "arcs[{k}]: corner {first} is {one} from the centre, and corner {second} {other}: give the centre of a \
                      circle through both"

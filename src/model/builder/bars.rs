@@ -510,7 +510,7 @@ fn grip(name: &str, given: BarBond, k: usize, edge: &Linear, laid: &Laid, model:
     let bond = Bond::new(&parameters, BondSurfaces::new(stiffness, stiffness, 0.0));
     let bond = bond.map_err(|error| ModelError::new(&place, error))?;
     let body = vertex(&model.mesh, host, bar.at, 0.0);
-    let vectors = Vectors::new([&Linear::apart(&body, bar), edge]);
+    let vectors = Vectors::new([&Linear::bonded(&body, bar), edge]);
     let normal = given.normal.unwrap_or(penalty);
     Ok(Grip { vectors, vertex: k, element: host.element, length: 0.5 * size, bond, mu: given.mu * depth, normal })
 }

@@ -21,7 +21,7 @@ use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{Formulation, SolidElement, consistent_mass};
 use crate::model::imposed::{InitialStress, PoreFluid, PorePressure, Temperature, Thermal};
-use crate::model::text::{apart, number, vector};
+use crate::model::text::{distinct, number, vector};
 use crate::model::{Body, Damping, Model, PointMass};
 
 /// A body.
@@ -296,7 +296,7 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
                 above = layer.top;
             }
             let top = nodes.iter().map(|&node| mesh.nodes[node].y).fold(f64::NEG_INFINITY, f64::max);
-            let [level, reached] = apart([*surface, top]);
+            let [level, reached] = distinct([*surface, top]);
             let message = format!(
                 "is {level}, and the body reaches up to y = {reached}: ground lies below its surface, so give the level of its \
                  top or above"

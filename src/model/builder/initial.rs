@@ -18,7 +18,7 @@ use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::scheme::Scheme;
-use crate::model::text::{apart, number, vector};
+use crate::model::text::{distinct, number, vector};
 
 /// Fraction by which an initial traction may exceed the strength μ p: numbers are written with a few digits.
 const WRITTEN: f64 = 1e-6;
@@ -128,7 +128,7 @@ pub fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &s
         let message = "is for two surfaces, and here one touches itself: leave it out";
         refuse_if(contact.is_own(), format!("{place}.clearance"), message)?;
         check_place(&format!("{place}.clearance"), [gap])?;
-        pair.start_apart(gap, &model.mesh.undeformed());
+        pair.start_at_gap(gap, &model.mesh.undeformed());
     }
     if contact.shrink_fit {
         pair.start_fitting(&model.mesh.undeformed());
@@ -149,7 +149,7 @@ fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, model: &
         let limit = law.starting_limit(pressure);
         if traction.abs() > limit * (1.0 + WRITTEN) {
             let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
-            let [is, limit] = apart([traction.abs(), limit]);
+            let [is, limit] = distinct([traction.abs(), limit]);
             let adjacent = if law.description.bond > 0.0 { "bond.strength + " } else { "" };
             let message = format!(
                 "is {}{is} at {}: it exceeds the initial strength, {adjacent}mu p = {limit} with mu = {mu} and p = {}",
@@ -180,7 +180,7 @@ pub fn check_excess(model: &Model) -> Checked<()> {
             let pressure = effective(*total, pair.pore_pressure(k, &undeformed))[0];
             let strength = cohesion + mu * pressure;
             if traction.abs() > strength * (1.0 + WRITTEN) {
-                let [is, strength] = apart([traction.abs(), strength]);
+                let [is, strength] = distinct([traction.abs(), strength]);
                 let message = format!(
                     "is {}{is} at {}: it exceeds the initial strength, {strength} under the pressure {}, which a static step cannot follow; lower it, \
                      or begin with a dynamic or explicit step, or one with `rupture`",

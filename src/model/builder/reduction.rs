@@ -23,7 +23,7 @@ struct Strength<'a> {
 }
 
 impl Strength<'_> {
-    fn told(&self) -> String {
+    fn described(&self) -> String {
         let angle = (self.tangent.atan().to_degrees() * 1e9).round() / 1e9;
         format!("`{}` (c = {}, phi = {})", self.body, number(self.cohesion), number(angle))
     }
@@ -105,13 +105,13 @@ fn adjacent_strength<'a>(place: &str, of: Option<&str>, contact: &Contact, model
     };
     let all: Vec<Strength> =
         bodies().filter(|body| of.is_none_or(|name| body.name == name)).filter_map(known).collect();
-    let told = || all.iter().map(Strength::told).collect::<Vec<_>>().join(", ");
+    let described = || all.iter().map(Strength::described).collect::<Vec<_>>().join(", ");
     match all.iter().any(|other| other.values() != all[0].values()) {
         true => refused(
             "reduction",
             format!(
                 "is a share of what differs between the bodies beside the contact, {}: name one of them by \"of\", or give each a contact of its own",
-                told()
+                described()
             ),
         ),
         false => all.into_iter().next().map_or_else(

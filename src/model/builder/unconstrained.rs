@@ -72,17 +72,17 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Checked<()> {
 
 /// Checks that free nodes have mass, from which accelerations follow.
 fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
-    let mut carried = vec![false; model.mesh.nodes.len()];
+    let mut has_mass = vec![false; model.mesh.nodes.len()];
     let dense =
         model.bodies.iter().filter(|body| body.material.description().density > 0.0).flat_map(|body| &body.nodes);
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
-    dense.chain(points).for_each(|&node| carried[node] = true);
-    model.mesh.rigid_bodies.iter().for_each(|body| carried[body.turning] = body.inertia > 0.0);
+    dense.chain(points).for_each(|&node| has_mass[node] = true);
+    model.mesh.rigid_bodies.iter().for_each(|body| has_mass[body.turning] = body.inertia > 0.0);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
     let constrained = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
     let heavy = model.bars_in(step).filter(|(_, bar)| bar.mass > 0.0).flat_map(|(_, bar)| &bar.vertices);
-    heavy.flat_map(|vertex| &vertex.nodes).for_each(|&node| carried[node] = true);
-    let massless = |node: &usize| !(carried[*node] || constrained(*node));
+    heavy.flat_map(|vertex| &vertex.nodes).for_each(|&node| has_mass[node] = true);
+    let massless = |node: &usize| !(has_mass[*node] || constrained(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
         let message = format!("is 0, but {why}: give a density");
@@ -253,13 +253,13 @@ impl<'m> Parts<'m> {
         }
         rows.extend(self.of_bars());
         // The leaders of a rotating platen keep their distance.
-        let apart = |&[a, b]: &[usize; 2]| (self.model.mesh.nodes[b] - self.model.mesh.nodes[a]).normalize();
+        let direction = |&[a, b]: &[usize; 2]| (self.model.mesh.nodes[b] - self.model.mesh.nodes[a]).normalize();
         rows.extend(
             self.model
                 .linkage
                 .rigid
                 .iter()
-                .map(|plate| self.row(&[(plate[1], apart(plate)), (plate[0], -apart(plate))])),
+                .map(|plate| self.row(&[(plate[1], direction(plate)), (plate[0], -direction(plate))])),
         );
         rows
     }

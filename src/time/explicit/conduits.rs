@@ -35,9 +35,9 @@ impl Explicit {
         let found = std::mem::take(&mut assembler.evaluation.contacts);
         let again = self.flow(time, state, |k, conduit| conduit.walls(&found[k]))?;
         assembler.evaluation.contacts = found;
-        let apart = |(old, new): (&Wall, &Wall)| old.opening != new.opening;
+        let separation = |(old, new): (&Wall, &Wall)| old.opening != new.opening;
         let opens = arrived.iter().zip(&again).any(|(old, new)| match (old, new) {
-            (Some(old), Some(new)) => old.walls.iter().zip(&new.walls).any(apart),
+            (Some(old), Some(new)) => old.walls.iter().zip(&new.walls).any(separation),
             _ => false,
         });
         if opens {

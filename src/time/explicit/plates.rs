@@ -107,7 +107,7 @@ impl Plates {
             plate.rates = [plate.rates[0] + 0.5 * dt * a, a];
         }
         self.rigid.iter_mut().for_each(|plate| plate.accelerate(dt, u, force, &supported));
-        self.tell(model, u, state);
+        self.set_motion(model, u, state);
     }
 
     /// (8) for dampers on platens; see [`super::Explicit::damp`].
@@ -118,7 +118,7 @@ impl Plates {
         }
         let mut own: Vec<(f64, f64)> = self.alike.iter().map(|plate| (plate.mass, 0.0)).collect();
         for (Absorber { node, coefficients }, force) in dampers.iter().zip(forces).filter(|(at, _)| self.has(at.node)) {
-            let plates = [0, 1].map(|i| self.alike.iter().position(|plate| plate.leads(*node, i)));
+            let plates = [0, 1].map(|i| self.alike.iter().position(|plate| plate.is_leader_of(*node, i)));
             // The coupling of the two components by an absorbing side is contained in its force only.
             for i in (0..2).filter(|_| plates != [None; 2]) {
                 let resisting = 0.5 * dt * coefficients[(i, i)];
@@ -136,15 +136,15 @@ impl Plates {
             plate.rates = [plate.rates[0] + 0.5 * dt * force / inertia, plate.rates[1] + force / inertia];
         }
         self.rigid.iter_mut().for_each(|plate| plate.damp(dt, damping, u));
-        self.tell(model, u, state);
+        self.set_motion(model, u, state);
     }
 
-    /// Gives master and all other nodes of platens the computed rates.
-    fn tell(&self, model: &Model, u: &[f64], state: &mut State) {
+    /// Sets master and all other nodes of platens the computed rates.
+    fn set_motion(&self, model: &Model, u: &[f64], state: &mut State) {
         for plate in &self.alike {
             (state.velocity[plate.leader()], state.acceleration[plate.leader()]) = (plate.rates[0], plate.rates[1]);
         }
-        self.rigid.iter().for_each(|plate| plate.tell(u, state));
+        self.rigid.iter().for_each(|plate| plate.set_motion(u, state));
         self.spread(model, u, state);
     }
 
@@ -177,7 +177,7 @@ impl Alike {
     }
 
     /// Whether a component of a node belongs to this platen.
-    fn leads(&self, node: usize, component: usize) -> bool {
+    fn is_leader_of(&self, node: usize, component: usize) -> bool {
         component == self.component && self.nodes.binary_search(&node).is_ok()
     }
 }
@@ -241,7 +241,7 @@ impl Rigid {
     }
 
     /// Gives A the computed rates.
-    pub fn tell(&self, u: &[f64], state: &mut State) {
+    pub fn set_motion(&self, u: &[f64], state: &mut State) {
         let values = [&mut state.velocity, &mut state.acceleration];
         for ((rates, along), values) in self.rates.iter().zip(self.relative(u)).zip(values) {
             let first = rates.xy() - self.reference * along;

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative};
-use crate::laws::text::{apart, number};
+use crate::laws::text::{distinct, number};
 
 /// Constants of [`DruckerPrager`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -159,9 +159,9 @@ impl ReturnMap for DruckerPrager {
         within(self, stress, history, || {
             let (s, trace) = deviator(&Vector4::from(stress.components()));
             let root = (0.5 * double_dot(&s, &s)).sqrt();
-            let [is, carried] = apart([root, self.radius(trace / 3.0)]);
+            let [is, strength] = distinct([root, self.radius(trace / 3.0)]);
             format!(
-                "√J₂ is {is} at the mean stress {}, where the cone carries {carried}; raise c or phi, or choose stresses that \
+                "√J₂ is {is} at the mean stress {}, where the cone carries {strength}; raise c or phi, or choose stresses that \
                  differ less (K0 nearer to 1)",
                 number(trace / 3.0)
             )

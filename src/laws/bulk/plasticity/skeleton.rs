@@ -161,8 +161,8 @@ impl Skeleton {
         if pressure.value() <= 0.0 {
             return T::from(f64::INFINITY);
         }
-        let apart = sum([T::from(1.0), pressure * -1.0], [deviator, rotation]);
-        pressure + dot(&apart, &apart) * (1.5 / (self.critical * self.critical)) / pressure
+        let difference = sum([T::from(1.0), pressure * -1.0], [deviator, rotation]);
+        pressure + dot(&difference, &difference) * (1.5 / (self.critical * self.critical)) / pressure
     }
 
     /// The share of a way between two stresses up to which P falls. P is convex along it.
@@ -172,10 +172,11 @@ impl Skeleton {
     /// A = Δp² + w₂,   C = Δp (p₀² − w₀) + w₁ p₀ = p₀² dP/dt at the start
     /// ```
     pub fn least(&self, [from, to]: [f64; 2], deviators: [&Tensor<f64>; 2], rotation: &Tensor<f64>) -> f64 {
-        let apart = [0, 1].map(|k| sum([1.0, -[from, to][k]], [deviators[k], rotation]));
-        let (rise, change) = (to - from, sum([1.0, -1.0], [&apart[1], &apart[0]]));
+        let difference = [0, 1].map(|k| sum([1.0, -[from, to][k]], [deviators[k], rotation]));
+        let (rise, change) = (to - from, sum([1.0, -1.0], [&difference[1], &difference[0]]));
         let share = 1.5 / (self.critical * self.critical);
-        let w = [dot(&apart[0], &apart[0]), 2.0 * dot(&apart[0], &change), dot(&change, &change)].map(|w| share * w);
+        let w = [dot(&difference[0], &difference[0]), 2.0 * dot(&difference[0], &change), dot(&change, &change)]
+            .map(|w| share * w);
         let (a, c) = (rise * rise + w[2], rise * (from * from - w[0]) + w[1] * from);
         if from <= 0.0 || c >= 0.0 {
             return 0.0;
@@ -209,10 +210,10 @@ impl Skeleton {
             rotation: trial.rotation,
         };
         let size = way.size();
-        let apart = way.apart(size);
-        let rotation = way.rotation(size, &apart);
+        let difference = way.difference(size);
+        let rotation = way.rotation(size, &difference);
         let over = size * size * (1.5 / square);
-        let dilation = T::from(1.0) - over - dot(&apart, &rotation) * (3.0 / square);
+        let dilation = T::from(1.0) - over - dot(&difference, &rotation) * (3.0 / square);
         let shear = flow * size * (6f64.sqrt() / square);
         let volume = flow * dilation;
         let strain = flow * (dilation * dilation / 3.0 + size * size * (9.0 / (square * square))).sqrt();
@@ -223,7 +224,7 @@ impl Skeleton {
             (compression + volume - trial.compression) / elastic.kappa,
             (pressure * (over + 1.0) * structure / (ratio * trial.p_c)).ln() - hardening,
         ];
-        let deviator = sum([pressure, pressure], [&apart, &rotation]);
+        let deviator = sum([pressure, pressure], [&difference, &rotation]);
         End { rest, compression, deviator, rotation, ratio, structure, p_c: trial.p_c * hardening.exp() }
     }
 
@@ -432,22 +433,22 @@ struct Way<T> {
 
 impl<T: Number> Way<T> {
     /// η̂ with some ‖η̂‖ on the right of (9).
-    fn apart(&self, size: T) -> Tensor<T> {
+    fn difference(&self, size: T) -> Tensor<T> {
         let (turned, limit) = (self.turning * size * size + 1.0, self.turning * size * self.limit);
         let whole = self.softer * turned + limit;
         sum([turned / whole, T::from(-1.0) / whole], [&self.ratio, &self.rotation])
     }
 
     /// β after (6).
-    fn rotation(&self, size: T, apart: &Tensor<T>) -> Tensor<T> {
+    fn rotation(&self, size: T, difference: &Tensor<T>) -> Tensor<T> {
         let turned = self.turning * size * size + 1.0;
-        sum([T::from(1.0) / turned, self.turning * size * self.limit / turned], [&self.rotation, apart])
+        sum([T::from(1.0) / turned, self.turning * size * self.limit / turned], [&self.rotation, difference])
     }
 
     /// ‖η̂‖ with some ‖η̂‖ on the right of (9).
     fn length(&self, size: T) -> T {
-        let apart = self.apart(size);
-        dot(&apart, &apart).sqrt()
+        let difference = self.difference(size);
+        dot(&difference, &difference).sqrt()
     }
 
     /// The same in other numbers.

@@ -328,9 +328,9 @@ impl ReturnMap for SysCamClay {
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64 {
         let (pressure, deviator) = split(stress);
         let beta = ROTATION.of(history);
-        let apart = Vector4::from_fn(|k, _| deviator[k] - pressure * beta[k]);
+        let difference = Vector4::from_fn(|k, _| deviator[k] - pressure * beta[k]);
         let half = 0.5 * P_C.value(history) / STRUCTURE.value(history);
-        ((1.5 * double_dot(&apart, &apart)).sqrt() / self.skeleton.critical).hypot(pressure - half) - half
+        ((1.5 * double_dot(&difference, &difference)).sqrt() / self.skeleton.critical).hypot(pressure - half) - half
     }
 
     /// Where P of the stress is least, if there is a subloading surface.

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::laws::bulk::{CauchyStress, ElasticConstants, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
-use crate::laws::text::apart;
+use crate::laws::text::distinct;
 
 /// Constants of [`VonMises`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -262,7 +262,7 @@ impl ReturnMap for VonMises {
 
     fn begin(&self, stress: &CauchyStress, history: &mut [f64]) -> Result<(), InadmissibleStress> {
         within(self, stress, history, || {
-            let [is, strength] = apart([stress.von_mises(), self.strength]);
+            let [is, strength] = distinct([stress.von_mises(), self.strength]);
             format!("its von Mises stress is {is}, and sigma_y is {strength}; lower it, or raise sigma_y")
         })
     }

@@ -239,7 +239,8 @@ impl SuperSubloading {
         }
         let [slip, by_slip, by_pressure] = match self.integration {
             Integration::Controlled => {
-                let (mut path, start, _) = self.lead(&Inputs::new(&old, sliding, Direction::TANGENT)?, old.pressure);
+                let (mut path, start, _) =
+                    self.begin_path(&Inputs::new(&old, sliding, Direction::TANGENT)?, old.pressure);
                 path.weighs = true;
                 let Dual { value, by } = path.end(&start)?.weighed_slip;
                 [value, by[0], by[1]]
@@ -267,7 +268,7 @@ impl SuperSubloading {
     /// An increment in which slip may be plastic, in sub-steps.
     fn follow(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let inputs = Inputs::new(old, sliding, Direction::TANGENT)?;
-        let (mut path, start, sign) = self.lead(&inputs, old.pressure);
+        let (mut path, start, sign) = self.begin_path(&inputs, old.pressure);
         let end = path.end(&start)?;
         let pressure = sliding.pressure;
         let plastic_slip = sign * end.plastic_slip;

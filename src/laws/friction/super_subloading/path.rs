@@ -21,7 +21,7 @@ use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 impl SuperSubloading {
     /// The path of an increment in which slip may be plastic: from the start, or from where the traction passes 0; its initial
     /// state, and the sign of the traction, by which both are mirrored.
-    pub(super) fn lead(&self, inputs: &Inputs, old_pressure: f64) -> (LoadPath<'_>, PathState, f64) {
+    pub(super) fn begin_path(&self, inputs: &Inputs, old_pressure: f64) -> (LoadPath<'_>, PathState, f64) {
         let Inputs { traction: old, variable: mu, slip, pressure, dt, .. } = *inputs;
         let varied = self.along(inputs);
         let trial = old + varied.alpha_t * slip;
@@ -346,7 +346,7 @@ impl SensitiveLaw for SuperSubloading {
         if self.is_elastic(&self.within_strength(old), trial.value, sliding) {
             return Ok(variations(trial, rested));
         }
-        let (mut path, start, sign) = self.lead(&inputs, old.pressure);
+        let (mut path, start, sign) = self.begin_path(&inputs, old.pressure);
         let end = path.end(&start)?;
         Ok(variations(end.traction * sign, end.mu))
     }
@@ -372,7 +372,7 @@ impl SuperSubloading {
             let ratio = if sliding.dt == 0.0 { own.min(kept) } else { own };
             return Ok(self.variations(trial, rested, ratio));
         }
-        let (mut path, start, sign) = self.lead(inputs, old.pressure);
+        let (mut path, start, sign) = self.begin_path(inputs, old.pressure);
         let end = path.end(&start)?;
         Ok(self.variations(end.traction * sign, end.mu, end.ratio))
     }
