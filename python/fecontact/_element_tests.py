@@ -16,7 +16,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from ._places import value_at
-from ._paths import told
+from ._paths import shown
 from ._plain import refused
 from ._records import Array, array_of, noise_of
 from ._run_record import Run
@@ -46,7 +46,7 @@ class ElementTest:
         self._measured = dict(measured)
         self._noise = sigma
         if not (isinstance(increment, Real) and 0 < float(increment) < math.inf):
-            raise ValueError(f"increment: is {told(increment)}: must be positive")
+            raise ValueError(f"increment: is {shown(increment)}: must be positive")
         self.increment: float = float(increment)
         self.weight: float = noise_of(None, weight, 1)[1]
         names = list(measured)
@@ -306,7 +306,7 @@ def _checked(law: Any) -> dict[str, Any]:
         ValueError: it is none, or needs times, which these records have not, or is one of small strains.
     """
     if not isinstance(law, Mapping) or "model" not in law:
-        raise ValueError(f'law: is {told(law)}: give the material of a body with its constants, such as {{"model": "mohr_coulomb", "E": 5e7, …}}')
+        raise ValueError(f'law: is {shown(law)}: give the material of a body with its constants, such as {{"model": "mohr_coulomb", "E": 5e7, …}}')
     if law["model"] == "linear":
         raise ValueError("law: `linear` is for small strains, which tests of samples exceed: give `hencky`, which has the same constants")
     if law["model"] == "viscoelastic" or law.get("viscosity"):
@@ -330,7 +330,7 @@ def _rows(name: str, given: ArrayLike, size: int | None = None) -> Array:
 
 def _finite(name: str, given: Any) -> float:
     if isinstance(given, bool) or not (isinstance(given, Real) and math.isfinite(float(given))):
-        raise ValueError(f"{name}: is {told(given)}: must be a number")
+        raise ValueError(f"{name}: is {shown(given)}: must be a number")
     return float(given)
 
 

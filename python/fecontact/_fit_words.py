@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 UNKNOWN = 0.5
 # Share in a direction from which on a parameter belongs to it.
 SHARE = 0.3
-# Correlation from which on two parameters are told to trade off.
+# Correlation from which on two parameters are reported to trade off.
 TRADE = 0.98
 # Correlation of residuals beyond 1/√n at which they are no noise, in standard deviations.
 NOISE = 4.0
@@ -60,19 +60,19 @@ class Evidence:
 def words(of: Evidence) -> list[str]:
     """The assessment; empty if there is no problem."""
     weakens = not _no_weakening(of)
-    told = _undetermined(of, weakens) + _trades(of, weakens) + _borders(of)
+    findings = _undetermined(of, weakens) + _trades(of, weakens) + _borders(of)
     if not weakens:
-        told.append("mu_s = mu_k: these data show no weakening, and kappa, xi have no effect")
+        findings.append("mu_s = mu_k: these data show no weakening, and kappa, xi have no effect")
     if of.misfit > COMPUTED and of.memory > NOISE / np.sqrt(of.samples):
-        told.append(
+        findings.append(
             f"the residuals are no noise (each has the correlation {of.memory:.2f} with the one before): this {of.model} does not follow these "
             "data, or their noise has a memory; the intervals are widened as for a memory"
         )
     if of.sigma and of.noise > MISFIT:
-        told.append(
+        findings.append(
             f"the residuals are {of.noise:.3g} times as large as sigma: this {of.model} does not follow these data; the intervals are too narrow"
         )
-    return told + _others(of)
+    return findings + _others(of)
 
 
 def _no_weakening(of: Evidence) -> bool:
@@ -92,20 +92,20 @@ def _unknown(of: Evidence) -> list[set[str]]:
 
 def _undetermined(of: Evidence, weakens: bool) -> list[str]:
     """One sentence per group of parameters connected by undetermined directions."""
-    directions, told = _unknown(of), []
+    directions, findings = _unknown(of), []
     for group in _joined(directions):
         lost = sum(members <= group for members in directions)
         names = [name for name in of.table.index if name in group]
         if not weakens and not {"mu_s", "mu_k"} >= group:
-            # They have no effect, and are told so.
+            # They have no effect, and are reported so.
             continue
         if len(names) == 1:
-            told.append(f"these data do not determine {names[0]}: fix it, or give data that depend on it")
+            findings.append(f"these data do not determine {names[0]}: fix it, or give data that depend on it")
         elif lost >= len(names):
-            told.append(f"these data do not determine {_and(names)}: fix them, or give data that depend on them")
+            findings.append(f"these data do not determine {_and(names)}: fix them, or give data that depend on them")
         else:
-            told.append(f"{_and(names)} trade off: these data do not tell them apart: fix {_number(lost)}")
-    return told
+            findings.append(f"{_and(names)} trade off: these data do not tell them apart: fix {_number(lost)}")
+    return findings
 
 
 def _trades(of: Evidence, weakens: bool) -> list[str]:
@@ -118,15 +118,15 @@ def _trades(of: Evidence, weakens: bool) -> list[str]:
         for k in range(i)
         if abs(matrix[i, k]) > TRADE and weakens and not {one, names[k]} <= unknown
     ]
-    told = []
+    findings = []
     for group in _joined(pairs):
         members = [name for name in names if name in group]
         if len(members) == 2:
             correlation = of.correlation.loc[members[1], members[0]]
-            told.append(f"{_and(members)} trade off (correlation {correlation:.3f}): fix one for a narrower interval of the other")
+            findings.append(f"{_and(members)} trade off (correlation {correlation:.3f}): fix one for a narrower interval of the other")
         else:
-            told.append(f"{_and(members)} trade off (correlations above {TRADE}): fix one for narrower intervals of the others")
-    return told
+            findings.append(f"{_and(members)} trade off (correlations above {TRADE}): fix one for narrower intervals of the others")
+    return findings
 
 
 def _borders(of: Evidence) -> list[str]:

@@ -81,7 +81,7 @@ def _parts(found: Found, bodies: Sequence[str] | str | None) -> dict[str, Any]:
 
 
 def _leave_out_inner(found: Found, lines: dict[str, list[tuple[int, ...]]], members: dict[str, list[int]]) -> None:
-    """Lines inside a body, or between two that share nodes, are no sides: a group of them becomes a group of nodes, which is told."""
+    """Lines inside a body, or between two that share nodes, are no sides: a group of them becomes a group of nodes, with a warning."""
     sides: dict[frozenset[int], int] = {}
     for cells in members.values():
         for cell in cells:
@@ -97,11 +97,11 @@ def _leave_out_inner(found: Found, lines: dict[str, list[tuple[int, ...]]], memb
         if len(inner) == len(own):
             del lines[name]
             found.points.setdefault(name, []).extend(dict.fromkeys(node for line in own for node in line))
-            told = f"its {len(inner)} lines lie inside a body, or between bodies that share nodes, and are no sides: it is a group of nodes"
+            message = f"its {len(inner)} lines lie inside a body, or between bodies that share nodes, and are no sides: it is a group of nodes"
         else:
             lines[name] = [line for line in own if line not in inner]
-            told = f"{len(inner)} of its {len(own)} lines lie inside a body, or between bodies that share nodes, and are no sides: they are left out"
-        warnings.warn(f"{found.file}: {name}: {told}", stacklevel=5)
+            message = f"{len(inner)} of its {len(own)} lines lie inside a body, or between bodies that share nodes, and are no sides: they are left out"
+        warnings.warn(f"{found.file}: {name}: {message}", stacklevel=5)
 
 
 def _numbers(found: Found) -> None:

@@ -13,11 +13,11 @@ def path(given: Any, place: str) -> str:
         ValueError: it is not a path.
     """
     if not isinstance(given, (str, os.PathLike)):
-        raise ValueError(f"{place}: is {told(given)}: must be a path")
+        raise ValueError(f"{place}: is {shown(given)}: must be a path")
     return str(os.fspath(given))
 
 
-def told(given: Any) -> str:
+def shown(given: Any) -> str:
     """Short description of a value."""
-    shown = " ".join(repr(given).split())
-    return shown if len(shown) <= 40 else f"a {type(given).__name__}"
+    text = " ".join(repr(given).split())
+    return text if len(text) <= 40 else f"a {type(given).__name__}"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from numbers import Real
 from typing import Any
 
-from ._paths import told
+from ._paths import shown
 from ._plain import refused
 from .case import Case
 
@@ -26,7 +26,7 @@ def value_at(case: Case, place: str) -> tuple[str, float]:
         case.replace({written: 1.0})
         raise refused(case._path, place, "has no value here: give one to begin with")
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise refused(case._path, place, f"is {told(value)}: only a number can be fitted")
+        raise refused(case._path, place, f"is {shown(value)}: only a number can be fitted")
     if value == 0:
         raise refused(case._path, place, "is 0: values are varied by shares of them: give another in the case")
     return written, float(value)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._paths import told
+from ._paths import shown
 from .errors import CaseError
 
 
@@ -48,7 +48,7 @@ def numbers(given: Any, place: str, file: str) -> NDArray[np.float64]:
     try:
         return np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        raise refused(file, place, f"is {told(given)}: must be a number, or numbers in rows of one length") from None
+        raise refused(file, place, f"is {shown(given)}: must be a number, or numbers in rows of one length") from None
 
 
 def number(given: Any, place: str, file: str) -> float:
@@ -59,7 +59,7 @@ def number(given: Any, place: str, file: str) -> float:
     """
     values = numbers(given, place, file)
     if values.ndim or not np.isfinite(values):
-        raise refused(file, place, f"is {told(given)}: must be a finite number")
+        raise refused(file, place, f"is {shown(given)}: must be a finite number")
     return float(values)
 
 
@@ -70,7 +70,7 @@ def count(given: Any, name: str) -> int | None:
         ValueError: it is not an integer.
     """
     if given is not None and (isinstance(given, (bool, np.bool_)) or not isinstance(given, (int, np.integer))):
-        raise ValueError(f"{name}: is {told(given)}: must be a whole number")
+        raise ValueError(f"{name}: is {shown(given)}: must be a whole number")
     return None if given is None else int(given)
 
 
@@ -82,7 +82,7 @@ def names(given: Any, place: str, file: str) -> list[str]:
     """
     listed: list[Any] = list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [None]
     if not all(isinstance(name, str) for name in listed):
-        raise refused(file, place, f"is {told(given)}: must be a list of names")
+        raise refused(file, place, f"is {shown(given)}: must be a list of names")
     return listed
 
 
@@ -93,7 +93,7 @@ def a_name(given: Any, place: str, file: str) -> str:
         CaseError: it is none, with its place.
     """
     if not isinstance(given, str):
-        raise refused(file, place, f"is {told(given)}: must be a name")
+        raise refused(file, place, f"is {shown(given)}: must be a name")
     return given
 
 

@@ -41,11 +41,11 @@ class Progress:
 
             form = "{l_bar}{bar}| {elapsed}<{remaining}{postfix}"
             self._bar = tqdm(total=100.0, bar_format=form)
-        told = f"t {time:.6g} dt {dt:.2e} {iterations} iter"
+        text = f"t {time:.6g} dt {dt:.2e} {iterations} iter"
         if opened + stick + slip:
-            told += f" open {opened} stick {stick} slip {slip}"
+            text += f" open {opened} stick {stick} slip {slip}"
         self._bar.set_description_str(step, refresh=False)
-        self._bar.set_postfix_str(told, refresh=False)
+        self._bar.set_postfix_str(text, refresh=False)
         # A run that was resumed has come some way already.
         self._bar.update(max(0.0, 100.0 * time / end - self._bar.n) if end > 0.0 else 0.0)
         self._bar.refresh()

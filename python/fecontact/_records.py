@@ -114,7 +114,7 @@ class SpringSlider(Interface):
     """Load-point displacement and force of a machine, whose stiffness k is a parameter, ``stiffness``, and mass M may be one, ``mass``.
 
     With a mass the record is simulated by :meth:`fecontact.law.Law.ride`, from rest: M ü = F − q, F = F₀ + k (w − u). Without, the machine
-    and what the interface yields are springs in series: the load point leads a law with 1/α = 1/α_t + 1/k, of which the data tell no more
+    and what the interface yields are springs in series: the load point drives a law with 1/α = 1/α_t + 1/k, of which the data tell no more
     than α, and a slip event is a jump.
 
     Args:
@@ -284,8 +284,8 @@ Record = Interface | SpringSlider | PullOff | Holds
 def _shown(record: Record, **ranges: Array | float) -> str:
     """Description of a record in one line: number and range of its samples."""
     spans = {name: np.unique([np.min(values, initial=np.inf), np.max(values, initial=-np.inf)]) for name, values in ranges.items()}
-    told = ", ".join(f"{name} {' to '.join(f'{end:.6g}' for end in span)}" for name, span in spans.items())
-    return f"<{type(record).__name__} of {record.measured.size} samples: {told}>"
+    spans_text = ", ".join(f"{name} {' to '.join(f'{end:.6g}' for end in span)}" for name, span in spans.items())
+    return f"<{type(record).__name__} of {record.measured.size} samples: {spans_text}>"
 
 
 def _no_drift(parameters: Parameters) -> None:

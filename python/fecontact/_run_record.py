@@ -182,7 +182,7 @@ class Run:
             Stopped: the run stopped, or its derivatives are lost on the way.
         """
         with warnings.catch_warnings():
-            # Those of every trial are the same; whoever runs the fitted case is told.
+            # Those of every trial are the same; whoever runs the fitted case is warned.
             warnings.simplefilter("ignore", RunWarning)
             places = [self._place(name) for name in by]
             result = lean(self.with_values(values)).run(threads=threads, progress=False, gradients=places)

@@ -166,7 +166,7 @@ def _record(status: str, task: Task | None, reason: str = "", seconds: float = 0
 def _run(task: Task, halted: Callable[[], bool], resume: bool) -> tuple[str, str | None, BaseException | None]:
     last = [time.monotonic()]
 
-    def poll(told: list[str], place: _native.Place | None) -> None:
+    def poll(messages: list[str], place: _native.Place | None) -> None:
         if time.monotonic() - last[0] > SIGN:
             last[0] = time.monotonic()
             os.utime(task.file)

@@ -436,10 +436,10 @@ def compare(fits: Mapping[str, Fit]) -> pd.DataFrame:
         deviance = squares * share if fit._sigma else counted * np.log(squares / rows)
         akaike = deviance + 2 * parameters + 2 * parameters * (parameters + 1) / (counted - parameters - 1)
         table[name] = [len(fit.table), fit.noise, fit.memory, akaike, deviance + parameters * np.log(counted)]
-    told = pd.DataFrame.from_dict(table, orient="index", columns=["parameters", "noise", "memory", "AICc", "BIC"]).sort_values("AICc")
-    told[["AICc", "BIC"]] -= told[["AICc", "BIC"]].min()
-    weight = np.exp(-told["AICc"] / 2)
-    return told.assign(weight=weight / weight.sum()).astype({"parameters": int})
+    compared = pd.DataFrame.from_dict(table, orient="index", columns=["parameters", "noise", "memory", "AICc", "BIC"]).sort_values("AICc")
+    compared[["AICc", "BIC"]] -= compared[["AICc", "BIC"]].min()
+    weight = np.exp(-compared["AICc"] / 2)
+    return compared.assign(weight=weight / weight.sum()).astype({"parameters": int})
 
 
 def _through_runs(

@@ -231,9 +231,9 @@ class Case:
         out, threads = as_path(out, "out"), count(threads, "threads")
         with Progress(progress) as bar:
 
-            def poll(told: list[str], place: _native.Place | None) -> None:
+            def poll(messages: list[str], place: _native.Place | None) -> None:
                 bar.show(place)
-                for text in told:
+                for text in messages:
                     warnings.warn(text, RunWarning, stacklevel=3)
 
             status, why, raised = _native.run(native, out, threads, bool(resume), bool(report), poll)
@@ -244,8 +244,8 @@ class Case:
     def __repr__(self) -> str:
         title = f" «{self.title}»" if self.title else ""
         parts = {"bodies": self._document.get("bodies"), "contacts": self._document.get("contacts")}
-        told = "; ".join(f"{name} {', '.join(part)}" for name, part in parts.items() if part)
-        return f"<Case{title}: {told}; {len(self._document.get('steps', []))} steps>"
+        described = "; ".join(f"{name} {', '.join(part)}" for name, part in parts.items() if part)
+        return f"<Case{title}: {described}; {len(self._document.get('steps', []))} steps>"
 
 
 def _raise(status: str, why: str | None, raised: BaseException | None, result: Result) -> None:

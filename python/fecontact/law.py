@@ -242,7 +242,7 @@ class Law:
 
 def law(law: str | Mapping[str, Any], **parameters: Any) -> Law:
     """Create a friction law without a mesh: ``law("coulomb", mu=[0.3, 0.4], alpha_t=1e5)``, from an object of :mod:`fecontact.model`, or
-    from the ``friction`` of a contact; ``alpha_t`` is required, since there is no mesh for a default. ``bond`` is a bond beside it,
+    from the ``friction`` of a contact; ``alpha_t`` is required, since there is no mesh for a default. ``bond`` is a bond in parallel with it,
     ``bond={"strength": 40, "tension": 15, "opening": 0.002}``, whose ``opening`` is required likewise; its values may be arrays, too.
 
     Args:

@@ -263,7 +263,7 @@ class Hencky(dict[str, Any]):
 
 
 class Viscoelastic(dict[str, Any]):
-    """Neo-Hookean beside a Maxwell arm: relaxes from E + E_1 to E within some tau.
+    """Neo-Hookean in parallel with a Maxwell arm: relaxes from E + E_1 to E within some tau.
 
     Args:
         E: E: Young's modulus that is left when all has relaxed, E > 0 [F/L²]
@@ -786,7 +786,7 @@ class Contact(dict[str, Any]):
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
             point is then measured, throughout the run, relative to the gap at which this pressure acts in its
             initial position
-        interface: Strength of the interface as a share of that of the soil beside it, or by cohesion and angle
+        interface: Strength of the interface as a share of that of the adjacent soil, or by cohesion and angle
             of friction: Coulomb friction and a bond, which `check --resolved` shows. In place of `friction`
         massless: Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their
             elements, so that impact does not excite spurious oscillation of these nodes and of the contact
@@ -809,7 +809,7 @@ class Contact(dict[str, Any]):
         rigid_body: Moving rigid body to which a rigid master belongs: one of `rigid_bodies`; default: the
             master is fixed
         seal: κ: water flows from one body to the other across the contact, closed or open, by κ times the
-            difference of its pressures, κ ≥ 0; default 1000 times what passes through an element beside it, so
+            difference of its pressures, κ ≥ 0; default 1000 times what passes through an element adjacent to it, so
             that the pressure has no jump. Of two bodies whose water flows (`permeability`) [L³/(F T)]
         shrink_fit: Whether the initial overlap of the surfaces, or a negative `clearance`, is applied gradually
             over the first step (shrink fit) instead of at once
@@ -1154,7 +1154,7 @@ class Bond(dict[str, Any]):
             again, 0 ≤ c_r ≤ c; default c, and 0 where `slip` is given [F/L²]
         slip: D: slip over which the strength falls from c to c_r, and the tension to 0; default: without end
             [L]
-        strength: c: shear strength at zero pressure, beside that of friction, c > 0. Required, but with
+        strength: c: shear strength at zero pressure, in addition to that of friction, c > 0. Required, but with
             `adhesion` and with the `cohesion` of slip_weakening, which have it already [F/L²]
         tension: t: tensile strength, 0 ≤ t ≤ c/μ, with the coefficient μ that friction starts with; the
             surfaces open by t/α_n before it is reached; default 0 [F/L²]
@@ -1316,14 +1316,14 @@ class Initial(dict[str, Any]):
 
 
 class Interface(dict[str, Any]):
-    """Strength of an interface, c_i + p tan φ_i: a share of that of the soil beside it, or by its own numbers. In
+    """Strength of an interface, c_i + p tan φ_i: a share of that of the adjacent soil, or by its own numbers. In
     place of `friction`, and of the `strength` of a bond.
 
     Args:
         cohesion: c_i, c_i ≥ 0; default 0 where `friction_angle` is given [F/L²]
         friction_angle: φ_i, 0 ≤ φ_i < 90; default 0 where `cohesion` is given [degrees]
-        of: Name of that body, where bodies beside the interface differ in strength
-        reduction: R: share of the cohesion and of tan φ of the body beside the interface that yields by
+        of: Name of that body, where bodies adjacent to the interface differ in strength
+        reduction: R: share of the cohesion and of tan φ of the body adjacent to the interface that yields by
             mohr_coulomb, drucker_prager or von_mises (c = σ_y/√3, φ = 0), as it is before any softening, 0 ≤ R
             ≤ 1. Without `cohesion` and `friction_angle` [-]
     """

@@ -78,9 +78,9 @@ def safety(
     out, threads = as_path(out, "out"), count(threads, "threads")
     rows: list[tuple[float, bool, float, float, float]] = []
 
-    def poll(told: list[str], tried: list[tuple[float, bool, float, float, float]]) -> None:
+    def poll(messages: list[str], tried: list[tuple[float, bool, float, float, float]]) -> None:
         rows.extend(tried)
-        for text in told:
+        for text in messages:
             warnings.warn(text, RunWarning, stacklevel=3)
 
     stands, fails = _native.safety(case._native, out, [list(bodies), list(contacts)], [within, most], threads, poll)

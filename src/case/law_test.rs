@@ -185,7 +185,7 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     Ok(LawTest { law, start, path, of_bond, confinement })
 }
 
-/// A law with a bond beside it.
+/// A law with a bond in parallel with it.
 fn bonded(law: ContactLaw, bond: &BondParameters, input: &LawTestInput) -> Checked<ContactLaw> {
     let message = "is that of the friction law already: leave one of them out";
     refuse_if(law.law.cohesion() > 0.0, "bond.strength", message)?;

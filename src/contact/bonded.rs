@@ -1,11 +1,11 @@
-//! Contact points that are open and carry tractions over their gap, and bonds beside friction.
+//! Contact points that are open and carry tractions over their gap, and bonds in parallel with friction.
 //!
 //! ```text
 //! w = ⟨(g − d) − p̄/α_n⟩                                        opening; δg of it, d being constant where friction does not slip
 //! p = −T,  q = q_b;   δT = ∂T/∂w δg + ∂T/∂Δu δΔu_b,   δq likewise
 //! ```
 //! The cohesion of a friction law is its own while the surfaces are closed; where they are open its traction goes on as that of a bond with
-//! c_r = c, and the law takes it over again once they meet. A bond beside friction has a traction of its own.
+//! c_r = c, and the law takes it over again once they meet. A bond in parallel with friction has a traction of its own.
 //!
 //! In an increment that starts farther apart than δ, only the slip on the way within δ counts:
 //!
@@ -22,7 +22,7 @@ use super::point::{ContactState, PointIncrement, PredictedStatus};
 use super::surface::SlavePoint;
 use crate::laws::friction::{BondResponse, BondState, Cohesion, FrictionResponse, FrictionState, Regime};
 
-/// A bond beside friction at a closed point.
+/// A bond in parallel with friction at a closed point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BondAnswer {
     pub response: BondResponse,
@@ -47,7 +47,7 @@ impl ContactPair {
         old.shear() != 0.0 || old.tension() != 0.0 || cohesion.bond().reaches(opening, &old.bond.unwrap_or_default())
     }
 
-    /// State of a bond beside friction at the start, which has this part of the traction, of surfaces that touch or lie apart by a gap.
+    /// State of a bond in parallel with friction at the start, which has this part of the traction, of surfaces that touch or lie apart by a gap.
     pub fn bond_at_start(&self, slave: &SlavePoint, gap: Option<f64>, traction: f64) -> Option<BondState> {
         match &self.law(slave).cohesion {
             Some(Cohesion::Parallel(bond)) => Some(bond.start(gap, traction)),
@@ -55,7 +55,7 @@ impl ContactPair {
         }
     }
 
-    /// How far a bond beside friction would be off if it had slipped by so much since it was out of reach [F/L²].
+    /// How far a bond in parallel with friction would be off if it had slipped by so much since it was out of reach [F/L²].
     pub(super) fn bond_off(&self, slave: &SlavePoint, [old, now]: [&ContactState; 2], slip: f64) -> f64 {
         match (&self.law(slave).cohesion, old.bond, now.bond) {
             (Some(Cohesion::Parallel(bond)), Some(before), Some(now))
@@ -67,7 +67,7 @@ impl ContactPair {
         }
     }
 
-    /// An observable that a bond beside friction has: what is left of it and, where friction is none, q over its strength.
+    /// An observable that a bond in parallel with friction has: what is left of it and, where friction is none, q over its strength.
     pub(super) fn observed_of_bond(&self, slave: &SlavePoint, name: &str, state: &ContactState) -> Option<f64> {
         let law = self.law(slave);
         let (Some(Cohesion::Parallel(bond)), Some(own)) = (&law.cohesion, &state.bond) else { return None };
@@ -81,7 +81,7 @@ impl ContactPair {
         }
     }
 
-    /// Elastic slip of a bond beside friction, or what of it multipliers leave; 0 without a bond [L].
+    /// Elastic slip of a bond in parallel with friction, or what of it multipliers leave; 0 without a bond [L].
     pub fn elastic_slip_of_bond(&self, slave: &SlavePoint, state: &ContactState) -> f64 {
         match (&self.law(slave).cohesion, state.bond) {
             (Some(Cohesion::Parallel(_)), Some(bond)) if self.stick.is_some() => bond.elastic_slip,
@@ -110,7 +110,7 @@ impl PointEvaluation<'_> {
         }
     }
 
-    /// Response of a bond beside friction at a closed point.
+    /// Response of a bond in parallel with friction at a closed point.
     pub(super) fn bond_answer(&self) -> Option<BondAnswer> {
         let Some(Cohesion::Parallel(bond)) = &self.law.cohesion else { return None };
         let before = self.old.bond.unwrap_or_default();
@@ -188,7 +188,7 @@ impl PointEvaluation<'_> {
         }
     }
 
-    /// Memory of a bond beside friction at a point that is farther apart than it reaches, with what it dissipates.
+    /// Memory of a bond in parallel with friction at a point that is farther apart than it reaches, with what it dissipates.
     pub(super) fn torn(&self) -> Option<(BondState, f64)> {
         let Some(Cohesion::Parallel(bond)) = &self.law.cohesion else { return None };
         let before = self.old.bond.unwrap_or_default();

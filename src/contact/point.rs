@@ -257,7 +257,7 @@ pub struct ContactState {
     pub fluid: f64,
     /// Part of the contact pressure that the fluid in the pores of a body bears, beside that of friction's state [F/L²]
     pub pores: f64,
-    /// Memory of a bond beside friction, in a contact that has one
+    /// Memory of a bond in parallel with friction, in a contact that has one
     pub bond: Option<BondState>,
     /// Water that flows along the contact, in one that has it
     pub water: Option<WaterPoint>,

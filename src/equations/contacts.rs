@@ -168,7 +168,7 @@ impl Springs {
     }
 }
 
-/// Energy stored in a bond beside friction, q_b²/2α_c + T w/2, with the traction since some start [F/L].
+/// Energy stored in a bond in parallel with friction, q_b²/2α_c + T w/2, with the traction since some start [F/L].
 fn of_bond(pair: &ContactPair, point: &SlavePoint, state: &ContactState, start: f64) -> f64 {
     match (&pair.law(point).cohesion, state.bond) {
         (Some(Cohesion::Parallel(law)), Some(bond)) => {

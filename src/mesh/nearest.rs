@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-/// Difference of distances, as a fraction of the size of the elements beside the nearest node, below which two nodes are equally
+/// Difference of distances, as a fraction of the size of the elements adjacent to the nearest node, below which two nodes are equally
 /// near.
 const EQUALLY_NEAR: f64 = 1e-9;
 

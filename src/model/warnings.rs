@@ -152,7 +152,7 @@ pub fn fragile(pair: &ContactPair) -> [Option<String>; 2] {
 /// Coefficient of friction that stands for none in a law that goes by cohesion alone [-]
 pub const NO_FRICTION: f64 = 1e-6;
 
-/// Warns of friction that goes by the pressure where a body beside it has fluid in its pores: contacts carry total stress.
+/// Warns of friction that goes by the pressure where a body adjacent to it has fluid in its pores: contacts carry total stress.
 fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
     let goes_by_pressure = |law: &Arc<ContactLaw>| {
         let Description { is_frictionless, least_coefficient, .. } = law.description;
@@ -400,7 +400,7 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// Gap or overlap that a contact closes at its start, over the slave's edge there, above which it is told: surfaces that carry a pressure
+/// Gap or overlap that a contact closes at its start, over the slave's edge there, above which a warning is given: surfaces that carry a pressure
 /// touch, but for the facets of both.
 const CLOSED_ACROSS: f64 = 0.1;
 

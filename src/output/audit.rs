@@ -310,7 +310,7 @@ impl Audit {
         self.gained > self.supplied
     }
 
-    /// Largest error that is not told [F·L]
+    /// Largest error that is not reported [F·L]
     fn allowed(&self) -> f64 {
         (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise)
     }
@@ -384,7 +384,7 @@ fn stresses(model: &Model) -> Vec<Stress> {
 }
 
 /// By how much straight edges that stand for a convex and a concave side close the gap between them by mortar, in the mean [L]. A contact that
-/// starts closed counts gaps from where its surfaces are, and of a shrink fit this is told before the run.
+/// starts closed counts gaps from where its surfaces are, and of a shrink fit this is reported before the run.
 fn chords(model: &Model, pair: &ContactPair) -> f64 {
     let counts = pair.mortar.is_some() && !pair.tied && !pair.is_own() && pair.initial.is_none();
     match (&pair.master, &pair.both) {

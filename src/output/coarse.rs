@@ -27,7 +27,7 @@ impl Coarse {
     /// Looks at an accepted implicit or static increment; others come without iterations.
     pub fn record(&mut self, model: &Model, attempt: &Attempt, state: &State, x: &Configuration) {
         let (step, old) = (attempt.step, attempt.old);
-        // What exceeds the allowed error is told as such.
+        // What exceeds the allowed error is reported as such.
         let is_reported = attempt.local_error.is_some_and(|error| error.is_excessive());
         if attempt.iterations.is_empty() || is_reported || step.increments.slip.is_some() {
             return;

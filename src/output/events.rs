@@ -267,7 +267,7 @@ pub struct FrontsInput {
     /// Slip rate that marks the arrival of a front when it is exceeded; a slip event lasts while any point of the contact
     /// slips faster [L/T]
     pub slip_rate: f64,
-    /// Slip rate from which slip counts as seismic, above `slip_rate`: `events.csv` then tells when an event became
+    /// Slip rate from which slip counts as seismic, above `slip_rate`: `events.csv` then says when an event became
     /// seismic, and which share of its slip was [L/T]
     pub seismic_rate: Option<f64>,
     /// Criterion for arrivals instead of the slip rate

@@ -16,14 +16,14 @@ use crate::model::text::{self, count};
 use crate::model::{Model, Step};
 use crate::run::observer::Attempt;
 
-/// Number of tractions along a contact below which it is told: on four linear edges the largest pressure of Hertz's problem is right to a
+/// Number of tractions along a contact below which a warning is given: on four linear edges the largest pressure of Hertz's problem is right to a
 /// tenth, on three, two and one by mortar up to 40, 57 and 60 % off [-]
 const FEW: f64 = 3.5;
 
 /// Number of tractions along a contact on edges as advised [-]
 const ENOUGH: f64 = 6.0;
 
-/// Force of a contact over that of the most loaded one, below which it is not told [-]
+/// Force of a contact over that of the most loaded one, below which a warning is not given [-]
 const LIGHT: f64 = 1e-3;
 
 /// Cosine of the angle up to which a support is along a surface.

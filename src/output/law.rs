@@ -65,7 +65,7 @@ impl<'a> LawTable<'a> {
     }
 }
 
-/// Whether a bond beside friction has columns of its own.
+/// Whether a bond in parallel with friction has columns of its own.
 fn is_bonded(law: &ContactLaw) -> bool {
     matches!(law.cohesion, Some(Cohesion::Parallel(_)))
 }

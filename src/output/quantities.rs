@@ -341,7 +341,7 @@ pub const LAW: [Quantity; 12] = [
 pub const OPENED: Quantity =
     q("gap", LENGTH, "opening of the interface since the start: dilation − wear − (p − p₀)/α_n");
 
-/// Columns of `law.csv` for a bond beside friction, at the end; pressure, traction and dissipation include it.
+/// Columns of `law.csv` for a bond in parallel with friction, at the end; pressure, traction and dissipation include it.
 pub const BONDED: [Quantity; 2] = [
     q("opening", LENGTH, "w: opening of the path"),
     q(

@@ -7,7 +7,7 @@
 //!
 //! t is the direction of the axis by then, from a neighbour of the station to the other, and r is t turned by −90°; of a `linear` body places are those of the mesh. The nodal forces of each
 //! element are in equilibrium, so that F and M are in equilibrium with all that acts on either part, whatever the mesh; of what acts at
-//! the cut itself each part has a half, as has the integral over the elements beside it.
+//! the cut itself each part has a half, as has the integral over the elements adjacent to it.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -9,7 +9,7 @@ use crate::model::scheme::time_text;
 use crate::model::state::State;
 use crate::model::text::{self, number};
 
-/// Slip of a bar over the diagonal of the element that it lies in, above which it is told [-]
+/// Slip of a bar over the diagonal of the element that it lies in, above which a warning is given [-]
 const FAR: f64 = 0.5;
 
 /// The largest such share of each bar, and what is to be said of it.

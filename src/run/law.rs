@@ -51,7 +51,7 @@ pub struct LawTest {
     pub law: ContactLaw,
     /// state at the start of the path
     pub start: FrictionState,
-    /// part of the traction at the start that a bond beside friction has [F/L²]
+    /// part of the traction at the start that a bond in parallel with friction has [F/L²]
     pub of_bond: f64,
     /// how the pressure answers to the opening of the interface; it does not by default
     pub confinement: Confinement,
@@ -110,7 +110,7 @@ impl LawTest {
         self.path.iter().try_for_each(|phase| phase.times().try_for_each(|to| step(to, phase)))
     }
 
-    /// State of a bond beside friction, which has its part of the traction at the start, and what it has dissipated.
+    /// State of a bond in parallel with friction, which has its part of the traction at the start, and what it has dissipated.
     fn bond_at_start(&self, first: &Phase) -> Option<(BondState, f64)> {
         let Some(Cohesion::Parallel(bond)) = &self.law.cohesion else { return None };
         let opening = first.opening(first.start());
@@ -209,7 +209,7 @@ impl Phase {
         Self::opened(span, [slip, pressure, PathDrive::new(Drive::Constant(0.0), 0.0)], dt)
     }
 
-    /// Creates a phase of slip, pressure and opening, for a law with a bond beside it.
+    /// Creates a phase of slip, pressure and opening, for a law with a bond in parallel with it.
     ///
     /// # Errors
     /// Returns [`Undefined`] if an expression has no finite value.
@@ -443,11 +443,11 @@ pub struct LawRow {
     pub mu: f64,
     /// g: opening of the interface since the start, of its law and by its normal stiffness [L]
     pub gap: f64,
-    /// friction and a bond beside it together
+    /// friction and a bond in parallel with it together
     pub bond: Option<LawBond>,
 }
 
-/// Friction and a bond beside it together at a step of the path.
+/// Friction and a bond in parallel with it together at a step of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LawBond {

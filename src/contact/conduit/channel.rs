@@ -5,7 +5,7 @@
 //! T = T₀ + k₁ |slip|  or  (w_h + w)³/12,  × exp(−p′/σ)                                                            (2)
 //! w = d + ⟨g − d⟩                                   d: opening of the law, g: gap, p′: effective pressure of the contact (3)
 //! ```
-//! Volumes belong to nodes, each with half of the edges beside it, and flows to what joins two nodes (finite volumes): no pressure
+//! Volumes belong to nodes, each with half of the edges adjacent to it, and flows to what joins two nodes (finite volumes): no pressure
 //! over- or undershoots, and what leaves one node enters the next. Ends of the contact are impervious; a well holds the pressure of a
 //! node, or gives a rate to the place between two nodes. What is divided by a periodic side is joined.
 //!

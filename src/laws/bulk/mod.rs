@@ -8,7 +8,7 @@
 //! | [`Hencky`] | G ‖ln V‖² + λ/2 (ln J)² |
 //!
 //! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
-//! beside a Maxwell arm that relaxes. Laws that yield stand in [`plasticity`].
+//! in parallel with a Maxwell arm that relaxes. Laws that yield stand in [`plasticity`].
 //!
 //! A law is a [`BulkLaw`], in a file of its own with its equations on top: F and P have five components each, those in plane and that out
 //! of it. So it serves in plane strain, F₃₃ = 1, and in rings; [`BodyLaw`] puts it into a plate, under an initial stress, heats it, and

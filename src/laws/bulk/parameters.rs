@@ -23,7 +23,7 @@ pub enum MaterialParameters {
     NeoHookean(ElasticConstants),
     /// Hencky: linear in the logarithmic strain; large rotations, moderate strains
     Hencky(ElasticConstants),
-    /// Neo-Hookean beside a Maxwell arm: relaxes from E + E_1 to E within some tau
+    /// Neo-Hookean in parallel with a Maxwell arm: relaxes from E + E_1 to E within some tau
     Viscoelastic(ViscoelasticConstants),
     /// Von Mises: metals, and clay that is sheared undrained; isotropic and kinematic hardening, large strains
     VonMises(VonMisesParameters),

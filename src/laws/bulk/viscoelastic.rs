@@ -42,7 +42,7 @@ impl ViscoelasticConstants {
     }
 }
 
-/// A neo-Hookean body beside one Maxwell arm: the standard linear solid at large rotations.
+/// A neo-Hookean body in parallel with one Maxwell arm: the standard linear solid at large rotations.
 ///
 /// ```text
 /// P = P_∞(F) + F H,   H = C₁:ε,   C₁:ε = λ₁ tr(ε) 1 + 2 G₁ ε              ε: elastic strain of the arm             (1)

@@ -13,7 +13,7 @@ use crate::laws::parameter::{InvalidParameter, require, require_not_negative, re
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct BondParameters {
-    /// c: shear strength at zero pressure, beside that of friction, c > 0. Required, but with `adhesion` and with the `cohesion` of
+    /// c: shear strength at zero pressure, in addition to that of friction, c > 0. Required, but with `adhesion` and with the `cohesion` of
     /// slip_weakening, which have it already [F/L²]
     pub strength: Option<f64>,
     /// c_r: what is left of it after the slip `slip`, or after an opening, once the surfaces meet again, 0 ≤ c_r ≤ c; default c,

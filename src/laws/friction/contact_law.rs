@@ -192,7 +192,7 @@ impl Offsets {
 pub enum Cohesion {
     /// That of the friction law itself: where the surfaces are open it goes on, and fades
     Own(Bond),
-    /// A bond beside friction, with a traction of its own
+    /// A bond in parallel with friction, with a traction of its own
     Parallel(Bond),
 }
 
@@ -211,7 +211,7 @@ impl Cohesion {
 pub struct ContactLaw {
     /// The law
     pub law: Box<dyn FrictionLaw>,
-    /// Description of the law, with the parts of the opening varied by the offsets, and a bond beside it
+    /// Description of the law, with the parts of the opening varied by the offsets, and a bond in parallel with it
     pub description: Description,
     /// α_t of the law alone [F/L³]
     pub stiffness: f64,
@@ -264,7 +264,7 @@ impl ContactLaw {
         Ok(Self { description: Description { opening: offsets.names(), ..law.description }, offsets, ..law })
     }
 
-    /// Lets the strength of the law at zero pressure fade over an opening; a law without any gets a bond beside it.
+    /// Lets the strength of the law at zero pressure fade over an opening; a law without any gets a bond in parallel with it.
     ///
     /// # Errors
     /// Returns [`InvalidParameter`] named by its key, such as `bond.tension`, if one is out of range.
@@ -299,7 +299,7 @@ impl ContactLaw {
         Ok(self)
     }
 
-    /// Part of an initial traction under a pressure that a bond beside friction has, in proportion to the strengths [F/L²].
+    /// Part of an initial traction under a pressure that a bond in parallel with friction has, in proportion to the strengths [F/L²].
     pub fn share_of_bond(&self, pressure: f64, traction: f64) -> f64 {
         let Some(Cohesion::Parallel(bond)) = &self.cohesion else { return 0.0 };
         let Description { starting_coefficient, released_above, .. } = self.law.description();

@@ -278,7 +278,7 @@ pub struct Description {
     pub takes_means: bool,
     /// Largest initial |q|/p of a point without previous slip; `None` for a law that releases an excess by slip [-]
     pub starting_coefficient: Option<f64>,
-    /// Strength at zero pressure of a bond beside the law: 0 without one [F/L²]
+    /// Strength at zero pressure of a bond in parallel with the law: 0 without one [F/L²]
     pub bond: f64,
     /// c and μ of the strength c + μ p at the start of a law that releases an excess over it by slip; `None` for laws without
     /// [F/L²], [-]

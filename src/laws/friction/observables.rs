@@ -11,7 +11,7 @@ pub const ALWAYS: [(&str, f64); 3] = [("R", 0.0), ("mu", 0.0), ("structure", 1.0
 /// Parts of an opening in the output.
 const OF_OPENING: [&str; 2] = ["dilation", "wear"];
 
-/// What is left of a bond beside a law.
+/// What is left of a bond in parallel with a law.
 const BOND: &str = "bond";
 
 /// Names of other outputs at contact points, not available to laws.

@@ -83,7 +83,7 @@ pub struct Contact {
     #[serde(default = "Friction::tie", skip_serializing_if = "Friction::is_tie")]
     #[schemars(with = "FrictionParameters")]
     pub friction: Friction,
-    /// Strength of the interface as a share of that of the soil beside it, or by cohesion and angle of friction: Coulomb friction and a
+    /// Strength of the interface as a share of that of the adjacent soil, or by cohesion and angle of friction: Coulomb friction and a
     /// bond, which `check --resolved` shows. In place of `friction`
     pub interface: Option<Interface>,
     /// Bond of the surfaces beside friction: strength without pressure. With `adhesion`, or `cohesion` of slip_weakening, it takes the
@@ -111,7 +111,7 @@ pub struct Contact {
     #[schemars(with = "Option<FluidForms>")]
     pub fluid_pressure: Option<FluidPressure>,
     /// κ: water flows from one body to the other across the contact, closed or open, by κ times the difference of its pressures, κ ≥ 0; default 1000 times
-    /// what passes through an element beside it, so that the pressure has no jump. Of two bodies whose water flows (`permeability`) [L³/(F T)]
+    /// what passes through an element adjacent to it, so that the pressure has no jump. Of two bodies whose water flows (`permeability`) [L³/(F T)]
     pub seal: Option<f64>,
     /// Friction parameters that vary along the slave and in time
     #[serde(default)]
@@ -283,7 +283,7 @@ impl Contact {
         }
     }
 
-    /// Creates a contact whose strength is a share of that of the soil beside it, or given by cohesion and angle.
+    /// Creates a contact whose strength is a share of that of the adjacent soil, or given by cohesion and angle.
     pub fn with_interface(
         name: impl Into<String>,
         slave: impl Into<String>,
@@ -350,7 +350,7 @@ setters! { contact: Contact;
     /// ([`crate::contact::small_sliding`]).
     small_sliding() { contact.sliding = SlidingRange::Small; }
 
-    /// Bonds the surfaces, beside friction; or sets the opening over which the cohesion of friction fades.
+    /// Bonds the surfaces, in parallel with friction; or sets the opening over which the cohesion of friction fades.
     bond(bond: BondParameters) { contact.bond = Some(bond); }
 
     /// Sets dilatancy: opening by plastic slip.

@@ -1,19 +1,19 @@
-//! Strength of an interface as engineers give it: a share of that of the soil beside it, or cohesion and angle.
+//! Strength of an interface as engineers give it: a share of that of the adjacent soil, or cohesion and angle.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Strength of an interface, c_i + p tan φ_i: a share of that of the soil beside it, or by its own numbers. In place of `friction`, and of
+/// Strength of an interface, c_i + p tan φ_i: a share of that of the adjacent soil, or by its own numbers. In place of `friction`, and of
 /// the `strength` of a bond.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Interface {
-    /// R: share of the cohesion and of tan φ of the body beside the interface that yields by mohr_coulomb, drucker_prager or von_mises
+    /// R: share of the cohesion and of tan φ of the body adjacent to the interface that yields by mohr_coulomb, drucker_prager or von_mises
     /// (c = σ_y/√3, φ = 0), as it is before any softening, 0 ≤ R ≤ 1. Without `cohesion` and `friction_angle` [-]
     pub reduction: Option<f64>,
-    /// Name of that body, where bodies beside the interface differ in strength
+    /// Name of that body, where bodies adjacent to the interface differ in strength
     pub of: Option<String>,
     /// c_i, c_i ≥ 0; default 0 where `friction_angle` is given [F/L²]
     pub cohesion: Option<f64>,
@@ -22,7 +22,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// A share of the strength of the soil beside it.
+    /// A share of the strength of the adjacent soil.
     pub fn reduced(reduction: f64) -> Self {
         Self { reduction: Some(reduction), ..Self::default() }
     }

@@ -32,7 +32,7 @@
 //!
 //! A file has the name of what it builds. Of water, `pore_pressure` is given in bodies and `pore_flow` flows through them; `fluid` is the
 //! pressure at a contact, given or flowing, `conduit` the water that flows along it (its keys: `conduit_input`), and `pores` the effective stress
-//! of a contact beside bodies with a fluid.
+//! of a contact next to bodies with a fluid.
 
 /// Methods that change one thing of an input and return it, for chains: `setters! { contact: Contact; area(area: f64) { … } }`.
 macro_rules! setters {

@@ -286,7 +286,7 @@ fn tool(contact: &Contact, mesh: &Mesh) -> Tool {
     }
 }
 
-/// Whether a contact meets a rigid master with corners, by Gauss points and the slave's corners unless told otherwise.
+/// Whether a contact meets a rigid master with corners, by Gauss points and the slave's corners unless given otherwise.
 fn meets_corners(contact: &Contact, mesh: &Mesh) -> bool {
     let free = contact.method.is_none() && contact.points.is_none();
     let slides = !contact.tied && contact.sliding != SlidingRange::Small;

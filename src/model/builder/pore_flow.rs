@@ -86,7 +86,7 @@ impl DrainageInput {
     }
 }
 
-/// Flow through what prescribes a pressure, in multiples of that through an element beside it under the same difference: the pressure is held to the
+/// Flow through what prescribes a pressure, in multiples of that through an element adjacent to it under the same difference: the pressure is held to the
 /// inverse of this [-]
 const PRESCRIBED: f64 = 1e6;
 
@@ -158,7 +158,7 @@ pub fn check_fluid(law: &dyn Material, fluid: &PoreFluid, element: Formulation, 
     refuse_if(law.description().shear_modulus <= 0.0, format!("{body}.material"), message)
 }
 
-/// What a case has beside water that flows, and cannot be computed with it yet.
+/// What a case has together with water that flows, and cannot be computed with it yet.
 pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
     let Some(flow) = &model.flow else {
         let message =

@@ -1,7 +1,7 @@
-//! Strength of an interface as engineers give it, by the soil beside it or by cohesion and angle: Coulomb friction and a bond.
+//! Strength of an interface as engineers give it, by the adjacent soil or by cohesion and angle: Coulomb friction and a bond.
 //!
 //! ```text
-//! c_i = R c,   tan φ_i = R tan φ              c, φ: of the body beside the interface that yields by them; of von_mises c = σ_y/√3
+//! c_i = R c,   tan φ_i = R tan φ              c, φ: of the body adjacent to the interface that yields by them; of von_mises c = σ_y/√3
 //! q ≤ c_i + p tan φ_i
 //! ```
 //! Where φ_i = 0 friction is `frictionless`, and where c_i = 0 there is no bond but the one that is given.
@@ -82,7 +82,7 @@ fn strength(place: &str, interface: &Interface, contact: &Contact, model: &Model
     Ok(soil.values().map(|value| reduction * value))
 }
 
-/// The body beside a contact whose strength counts.
+/// The body adjacent to a contact whose strength counts.
 fn adjacent_strength<'a>(place: &str, of: Option<&str>, contact: &Contact, model: &'a Model) -> Checked<Strength<'a>> {
     let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}.{key}"), message));
     if contact.area.is_some() {

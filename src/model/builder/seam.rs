@@ -9,7 +9,7 @@ use crate::mesh::{Edge, Group};
 use crate::model::Model;
 use crate::model::pore_flow::WetElement;
 
-/// κ between two bodies over what passes through an element beside the contact under the same difference of pressures: the jump is a thousandth of
+/// κ between two bodies over what passes through an element adjacent to the contact under the same difference of pressures: the jump is a thousandth of
 /// what the pressure falls by in that element [-]
 const NEARLY_CONTINUOUS: f64 = 1e3;
 

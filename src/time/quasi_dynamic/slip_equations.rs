@@ -8,7 +8,7 @@
 //! Y, Z: bodies and springs of the contact, ẏ: loading ([`crate::equations::slip_operator`]). The pressure p_w of a fluid is that of the
 //! time at which rates are asked for, at every stage of a step.
 //!
-//! The contact spring α_t, with α_c of a bond beside it, is in series with the slider, its bond and its damper, and these with the bodies.
+//! The contact spring α_t, with α_c of a bond in parallel with it, is in series with the slider, its bond and its damper, and these with the bodies.
 //! Below its strength s = c_r + (c − c_r) ⟨1 − Λ/D⟩ a bond holds, but for a share of 10⁻¹² of the traction that friction sees.
 
 use rayon::prelude::*;
@@ -128,7 +128,7 @@ impl SlipEquations<'_> {
 /// Share of the traction that friction sees while a bond holds: laws have no slip rate without traction [-]
 const LEAST_FRICTION: f64 = 1e-12;
 
-/// s of a bond beside friction after a slip since t₀; 0 without one [F/L²]
+/// s of a bond in parallel with friction after a slip since t₀; 0 without one [F/L²]
 fn strength(pair: &ContactPair, slave: &SlavePoint, start: &ContactState, slip: f64) -> f64 {
     match (&pair.law(slave).cohesion, &start.bond) {
         (Some(Cohesion::Parallel(bond)), Some(state)) => {

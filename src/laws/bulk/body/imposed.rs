@@ -7,7 +7,7 @@
 //! −∂W/∂ϑ = (P:F − 3W)/ϑ                                          expansion stress, tr σ at small strains      (4)
 //! ```
 //! F, P and W are those of the unheated, undeformed body, whose stress is σ₀ as it is given. It turns with the body: σ₀ is a
-//! constant second Piola–Kirchhoff stress beside that of the law, and δ_ik σ₀ its geometric stiffness. All tensors are those in
+//! constant second Piola–Kirchhoff stress in addition to that of the law, and δ_ik σ₀ its geometric stiffness. All tensors are those in
 //! space, F₃₃ = 1 in plane strain. A [linear](MaterialDescription::is_linear) law adds small strains, and no rotation matters:
 //!
 //! ```text
