@@ -1,5 +1,5 @@
 //! The case: JSON of the types from which a model is built ([`crate::model::builder`]) and of what only a file contains
-//! ([`file`]); run by [`job`].
+//! ([`mod@file`]); run by [`job`].
 
 mod again;
 mod by_name;

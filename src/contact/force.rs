@@ -40,8 +40,6 @@
 //! the counted fraction are repeated. Without c, a point that closes with a high pressure would stick because of its stiff
 //! penalty alone, and release the missed slip in the next increment.
 //!
-//! # Open or closed
-//!
 //! A contact point is located at the end of an increment, and its contact status determined.
 
 pub use super::kinematics::Meeting;

@@ -1,5 +1,14 @@
 //! Gap, slip and rotation of a contact point, and their exact variations.
 //!
+//! ```text
+//!                      • x_s                the slave point
+//!             n  ↑     ┊ g
+//!        ●━━━━━━━┷→━━━━•━━━━━━━━━━●         a segment of the master, from ξ = 0 to ξ = 1; its body is below
+//!                 s    x(ξ)                 the projection
+//!        ├─────────────┤
+//!     old projection   Δu_t
+//! ```
+//!
 //! On a segment x(ξ), straight or curved, with x′ = dx/dξ = J s, x″ = d²x/dξ², and δm = Σ N_a(ξ) δx_a:
 //!
 //! ```text

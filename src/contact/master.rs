@@ -1,7 +1,5 @@
 //! Master side of a contact.
 //!
-//! # Rigid masters
-//!
 //! Rigid masters are given by formulas for the projection of a point and its variation. A moving one is evaluated in its
 //! body-fixed frame: projections and paths are those of its undeformed shape.
 

@@ -18,11 +18,7 @@
 //!
 //! Edges against a rigid body are not divided, see below.
 //!
-//! # Averages
-//!
 //! Averages around a point define its projection on the master.
-//!
-//! # Rigid masters
 //!
 //! For a rigid body nothing is divided. g_j and Δu_t,j are means over the Gauss points between two nodes, each with its own
 //! projection, and n_j is the direction of the mean of their normals. One function sums all values with their variations.

@@ -1,11 +1,13 @@
 //! Mortar segments, the integration domains of mortar contact.
 //!
-//! # Cuts
+//! ```text
+//!      ●━━━━━━┿━━━━━━━━━━━━┿━━━━━●         an edge of the slave, cut where nodes of the master are projected on it
+//!      ┊  0   ┊     1      ┊  2  ┊         an overlap for every segment that it faces
+//!   ●━━━━━━━━━●━━━━━━━━━━━━●━━━━━━━━━●     the master
+//! ```
 //!
 //! Slave edges are divided at the projections of master nodes, which gives the part of an edge overlapped by each master
 //! segment.
-//!
-//! # Lines
 //!
 //! Slave edges and master segments are functions of ξ, in numbers with variations.
 

@@ -1,10 +1,6 @@
 //! Nodal forces from the tractions of contact points.
 //!
-//! # Closed points
-//!
 //! A closed point, or one under fluid pressure, contributes the nodal forces of its traction, and their derivative.
-//!
-//! # Resultants
 //!
 //! The tractions of a contact give nodal forces and a resultant on the slave.
 

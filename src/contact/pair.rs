@@ -15,8 +15,6 @@
 //! 1943, §6). Where p_w exceeds the contact pressure, the surfaces open and the fluid pressure continues to act, so that the
 //! traction is continuous there. Its work is that of a load.
 //!
-//! # Fields
-//!
 //! Fields of a contact are available by name, one value per point, for output and callers.
 
 use std::borrow::Cow;

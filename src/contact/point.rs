@@ -1,14 +1,8 @@
 //! A contact point: its position on both sides, its state, and predictions of the linear solve.
 //!
-//! # Points
-//!
 //! Slave points are the evaluation points of contact; master points are their projections.
 //!
-//! # State
-//!
 //! The state of a contact point is kept between increments.
-//!
-//! # Predictions
 //!
 //! A contact is evaluated in an increment, with predictions of a linear solve about each point.
 

@@ -1,5 +1,13 @@
 //! Visibility in self-contact: which parts of its own surface a point may come into contact with.
 //!
+//! ```text
+//! ━━━━━━━━━━━━━━━━━ 1     faces the point across a slot: it may meet that
+//!         ↑
+//! ━━━━━━━━•━━━━━━━━ 2     its own edges and what shares nodes with them: never
+//!     its wall
+//! ━━━━━━━━━━━━━━━━━ 3     the opposite side of the wall, back to back: never
+//! ```
+//!
 //! A point may contact a segment that faces it and in front of which it lay at the start of the increment, but none that shares
 //! a node with its own edges. The opposite side of the body also faces a point, back to back: the point lies farther behind it
 //! than half the thinnest element of the body. All this is determined at the start of the increment, so that it is constant

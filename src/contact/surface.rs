@@ -156,6 +156,13 @@ pub struct PathPart {
 }
 
 /// Path along a surface from one material point to another.
+///
+/// ```text
+///  from                                  to
+/// ●━━×━━━━━━━●━━━━━━━━━━━━━━●━━━━━━━━━━━×━━━●
+///    ├───────┼──────────────┼───────────┤
+///    ξ to 1       0 to 1        0 to ξ          its parts: one of every segment
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {
     surface: &'a Surface,

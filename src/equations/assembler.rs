@@ -1,10 +1,6 @@
 //! Residual and tangent of a model as the sum of its terms.
 //!
-//! # Contacts
-//!
 //! The assembler evaluates the responses of the contacts and stores their states.
-//!
-//! # Parts
 //!
 //! Parts of the equations can be assembled separately: the masses, and the tangent of one term.
 

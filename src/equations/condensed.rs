@@ -14,8 +14,6 @@
 //! If all slave nodes are jumps, nothing opens and the pressure is linear, the equations of the normal jumps are constant and
 //! eliminated as well ([`crate::linear::Eliminated`]): again an eighth of the operations.
 //!
-//! # Nodes at contacts
-//!
 //! Linear bodies are condensed on the nodes at contacts.
 //!
 //! # Jumps

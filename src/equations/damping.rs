@@ -8,8 +8,6 @@
 //! F += η M v + f_v(u, v),   ∂F/∂u += η M ∂v/∂u + ∂f_v/∂u + ∂f_v/∂v ∂v/∂u
 //! ```
 //!
-//! # Dashpots and absorbing sides
-//!
 //! Dashpots and absorbing sides exert the force C (v_driver − v) on a node.
 //!
 //! In implicit increments v follows from u. In explicit ones it is computed last, and the dampers of each node form one matrix,

@@ -1,7 +1,5 @@
 //! Results of an evaluation of the equations for the accepted state.
 //!
-//! # Audit of energies
-//!
 //! The energy audit sums the energy flows of an increment and the energy stored at its end, term by term.
 //!
 //! ```text

@@ -1,7 +1,5 @@
 //! Inertia: mass matrix and forces, and the time-discrete equations of the scheme.
 //!
-//! # Velocities and accelerations
-//!
 //! Velocities and accelerations at a trial displacement follow from the scheme and the supports.
 
 use nalgebra::{DMatrix, Vector2};

@@ -1,6 +1,11 @@
 //! Follower nodes ([`crate::model::linkage`]): their equations, and those of rigid platens.
 //!
 //! ```text
+//!  A ●━━━━━━○━━━━━━━○━━━━━━━━━● B     A, B: leaders, at the distance L;   ○: followers c, which keep their place between them
+//!    ├──────────── e ─────────→
+//! ```
+//!
+//! ```text
 //! w (u_c − Σ G_k u_k) = 0                  a follower; its forces are with its leaders
 //! r_A + r_B = 0,   (J e)·r_B/L = 0         a rigid platen: forces, and moments about A
 //! w (|e|² − L²)/(2 L) = 0                  its length

@@ -15,7 +15,7 @@
 //! | term | contribution to F or r | contribution to the audit |
 //! |---|---|---|
 //! | `solids` | stress of the bodies | strain energy |
-//! | [`interfaces`] | contact and friction | energy in penalties, friction, shrink fits |
+//! | [`contacts`] | contact and friction | energy in penalties, friction, shrink fits |
 //! | [`bars`] | trusses and beams | strain energy, energy of bond, friction, yielding |
 //! | `loads` | −loads, springs, initial stress | work |
 //! | [`damping`] | dashpots, absorbing sides | damping, work of drivers |

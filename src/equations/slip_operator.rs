@@ -23,8 +23,6 @@
 //! K j + ρ̂ = ℓ (y + (p_w, 0))     y = (ℓ + K/α)⁻¹ (K_s s + ρ̂ − ℓ (p_w, 0))                                     (6)
 //! ```
 //!
-//! # Sites
-//!
 //! The ends of a contact that periodic sides join are one node of one jump, with the length of both: a site. Slip and p_w of a site are the
 //! means of its points, and its tractions are those of each of them.
 

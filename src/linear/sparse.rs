@@ -1,7 +1,5 @@
 //! Compressed-column matrix with 2×2 blocks: each node has two unknowns, and the pattern is symmetric.
 //!
-//! # Symmetry of the values
-//!
 //! A pattern knows which nodes' values may be unsymmetric, as those say who add them: A_ij = A_ji wherever one of i and j is not
 //! among them. Values are never compared. A constrained dof has an equation of its own, A_dd x_d = b_d; what its column has elsewhere counts
 //! as on the right-hand side, and spoils no symmetry.

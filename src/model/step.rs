@@ -1,7 +1,5 @@
 //! A load step of the model.
 //!
-//! # Ends of steps
-//!
 //! A step can end early when a reaction reaches a value, or a degree of consolidation.
 //!
 //! ```text

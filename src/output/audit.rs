@@ -21,13 +21,11 @@
 //! # Edges that stand for curves
 //!
 //! Where a convex side lies in a concave one, straight edges of other lengths leave a mean gap a between them that the curves do not have
-//! ([`Surface::by_chords`]). Bodies under the forces f of the contact move to close it:
+//! ([`crate::contact::surface::Surface::by_chords`]). Bodies under the forces f of the contact move to close it:
 //!
 //! ```text
 //! δu/u = |∫ p a dA| / 2W                                                       W: elastic energy when that was largest
 //! ```
-//!
-//! # Touch
 //!
 //! The work of a static increment is that of its mean force. Where surfaces close within it they act in a part of it alone, which the
 //! balance does not see: the states at its ends are right all the same. Such errors are counted for themselves, and all others without them.

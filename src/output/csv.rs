@@ -1,8 +1,6 @@
 //! CSV tables on disk: comma, decimal point, header row, full double precision. Every row reaches the file within 50 ms and as
 //! a whole: a table never ends within a row, even if the run is killed or the disk is full.
 //!
-//! # Memory
-//!
 //! Observers store their memory as bytes.
 
 use std::fs::File;

@@ -16,15 +16,9 @@
 //! Source of the fracture energy: Palmer & Rice (1973), doi:10.1098/rspa.1973.0040; Tinti et al. (2005),
 //! doi:10.1029/2005JB003644, who call it breakdown work.
 //!
-//! # Measures
-//!
 //! The measures of an event are its row in `events.csv`.
 //!
-//! # Passages
-//!
 //! The passages of fronts are recorded per point of an interface, with their events.
-//!
-//! # Wave speeds
 //!
 //! Speeds of elastic waves serve as reference for the speed of fronts.
 
@@ -233,7 +227,7 @@ pub(super) struct Point {
     pub rubs: bool,
     /// State after the last increment
     pub mark: Mark,
-    /// Slip rate of that increment [L/T], and the signal that defines an arrival (see [`Arrive`])
+    /// Slip rate of that increment [L/T], and the signal that defines an arrival (see [`ArrivalInput`])
     pub rate: f64,
     pub signal: f64,
     pub arrivals: Vec<Arrival>,

@@ -1,8 +1,6 @@
 //! Safe writing of files and folders: nothing of a user's is overwritten, links are not followed, and files that may be read
 //! while they are written are replaced as a whole.
 //!
-//! # Lock
-//!
 //! One process at a time writes into a folder. The lock file names it: process id, host, and start time.
 //!
 //! The system holds the lock until the process ends for whatever reason, so a killed process leaves no lock. Where the

@@ -1,5 +1,12 @@
 //! `fronts.csv`: passages of slip fronts along interfaces. `events.csv`: the slip events (`events.rs`).
 //!
+//! ```text
+//! t │         •                    •: arrivals at the points of a contact, each with the speed of its neighbours
+//!   │ •     •                      the steeper, the slower
+//!   │   • •
+//!   └────────────── way along the slave
+//! ```
+//!
 //! The slip rate is the plastic slip of an increment divided by its length. A front arrives where the rate exceeds a threshold,
 //! interpolated linearly in time between the midpoints of two increments. Its local speed is the distance of the two
 //! neighbours along the slave divided by the difference of their arrivals nearest in time (of one neighbour, if it did not pass

@@ -6,6 +6,13 @@
 //! to these samples, body by body:
 //!
 //! ```text
+//! ┌───────●───────┐     ●: X₀, here at a surface
+//! │   ×   │   ×   │     ×: samples, in layers of elements around X₀
+//! ├───────┼───────┤     σ*: the polynomial fitted to them, read at X₀
+//! │   ×   │   ×   │
+//! ```
+//!
+//! ```text
 //! σ*(X) = Σ c_k P_k(X),   P = 1, x, y, x², xy, y²,   Σ_s w_s² (σ*(X_s) − σ_s)² → min,   σ(X₀) = σ*(X₀)                    (1)
 //! w_s = |X_s − X₀|⁻²;   of pairs of T3  w_s = |X_s − X₀|⁻¹ (d²/A + 0.3²)^(−½),   d = X_a + X_b − X_i − X_j                  (2)
 //! ```

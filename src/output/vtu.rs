@@ -11,8 +11,6 @@
 //! whole grid and no `.pvd`; it lets nobody add to what it has encoded, nor keep the text of a grid; and it passes its numbers to
 //! zlib one by one, so that a frame of 90 000 nodes takes it 2.5 s instead of 0.13 s.
 //!
-//! # Read back
-//!
 //! The arrays of such a file, of which nothing else is understood.
 //!
 //! Source: VTK file formats, "XML file formats", inline binary data,

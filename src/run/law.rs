@@ -1,7 +1,5 @@
 //! Law test: a friction law driven without a mesh along a path of slip, pressure and time.
 //!
-//! # Path
-//!
 //! The path prescribes slip and pressure as functions of time; steps end at their turning points. An interface that opens with slip
 //! answers with its pressure as its [`Confinement`] makes it: under constant load, constant normal stiffness or constant volume. A bond
 //! beside friction follows the opening of the path; where that is positive friction has no pressure.

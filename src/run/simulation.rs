@@ -11,8 +11,6 @@
 //! state if it was accepted, otherwise with another attempt. A dropped candidate has no effect: the next attempt reproduces it
 //! bitwise.
 //!
-//! # Saved runs
-//!
 //! A saved run continues in the same process, or from bytes in a file.
 
 use std::sync::Arc;

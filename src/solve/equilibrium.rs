@@ -1,7 +1,5 @@
 //! Equilibrium at the time of a trial, starting from a start value.
 //!
-//! # Start value
-//!
 //! The iterations of an increment start at
 //!
 //! ```text

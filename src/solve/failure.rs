@@ -1,7 +1,5 @@
 //! Failures of an increment, and whether a smaller one may succeed.
 //!
-//! # Suspects
-//!
 //! Likely causes of a failure to find equilibrium: the location of the largest residual, and disproportionate stiffnesses
 //! there.
 

@@ -31,8 +31,6 @@
 //! (`factorized` is 0 in `newton.csv`) and saves a tangent and its factors. Switch `old_tangents`. Source: the modified Newton
 //! method, chosen by the predicted reduction as in Hairer & Wanner (1996), Solving Ordinary Differential Equations II, IV.8.
 //!
-//! # Line search
-//!
 //! The line search finds the step length along a correction of Newton's method.
 
 use thiserror::Error;

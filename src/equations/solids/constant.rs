@@ -19,8 +19,6 @@
 //! in a few where blocks meet. The division into blocks depends on the mesh only: elements are ordered along the
 //! Morton curve through their centres, independent of their numbers.
 //!
-//! # Kernel
-//!
 //! The kernel is the loop over the elements of a block.
 
 use std::collections::HashMap;

@@ -1,7 +1,5 @@
 //! Runs of elements evaluated each time: consecutive elements of one kind and body, in parallel.
 //!
-//! # Sums at the nodes
-//!
 //! Nodes sum the forces computed element by element and block by block.
 
 use std::ops::Range;
@@ -45,7 +43,7 @@ struct Run {
     nodes: usize,
     /// Position of the first node of the first element
     first: usize,
-    /// Whether they are added by [`Evolving`]
+    /// Whether they are added by [`crate::equations::evolving::Evolving`]
     evolves: bool,
 }
 

@@ -1,7 +1,5 @@
 //! The numeric phase: assemble a front, eliminate its pivots, pass the rest on.
 //!
-//! # Jobs
-//!
 //! What can be done at the same time: forests of light fronts, and chains of heavy ones above them.
 //!
 //! # Reuse

@@ -1,10 +1,14 @@
 //! A front, and how it passes on its contribution.
 //!
-//! # Forests
+//! ```text
+//!         root                 the front that is eliminated last
+//!        /    \
+//!     front   forest           a forest: neighbouring subtrees, which one thread eliminates from the leaves up
+//!     /   \                    every front adds its contribution to the equations of its parent
+//! forest  forest
+//! ```
 //!
 //! Subtrees of fronts that are shared out among threads.
-//!
-//! # Stacks
 //!
 //! Where contributions wait while a forest is eliminated.
 

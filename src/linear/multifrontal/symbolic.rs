@@ -7,8 +7,6 @@
 //! 300 000 dofs are 5 and 7 % more than those of symmetric values throughout, of which the longer elimination makes 2 and 4; where
 //! the order has put them, 22 and 17 %.
 //!
-//! # Tree
-//!
 //! Elimination tree, postorder and supernodes of the node graph.
 
 use std::iter;

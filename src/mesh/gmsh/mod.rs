@@ -3,11 +3,7 @@
 //! The `mshio` crate parses the sections of 4.1. This file checks what `mshio` does not (the format line, the
 //! presence of the sections, the counts in their headers) and reads the names of the physical groups, which it skips.
 //!
-//! # Bytes
-//!
 //! The bytes of a file are checked before they are parsed.
-//!
-//! # Groups
 //!
 //! The entities of the parsed file become named groups.
 

@@ -39,8 +39,6 @@
 //! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find
 //! out. The α_c of a bond is the α_t of its friction where that is a penalty on the whole contact, otherwise that of (1) or (2) of a penalty.
 //!
-//! # Data of the bodies
-//!
 //! Some data of a contact do not follow from its points: nodes without a contact point, and the stiffness of the bodies.
 
 use std::collections::BTreeSet;

@@ -1,8 +1,6 @@
 //! Detection of unconstrained motions before the run: bodies with rigid-body modes in a static step, bodies and nodes
 //! without mass in a dynamic one, and unsupported nodes outside all bodies.
 //!
-//! # Unconstrained bodies
-//!
 //! A shared node, a periodic copy, a follower of a platen, a support, a spring and a dashpot are equations between the rigid
 //! motions of the parts of a model, one row of numbers each. A motion orthogonal to all of them meets no resistance ([`Resistance`]).
 

@@ -3,8 +3,6 @@
 //! Degrees of freedom of an element are ordered by node: component i of node a is 2a + i. Integrals are weighted according to
 //! the [`Section`].
 //!
-//! # Mass
-//!
 //! The mass of one element is the same for both directions: component i of node a and component j of node b have M_ab δ_ij.
 //!
 //! # Follower pressure

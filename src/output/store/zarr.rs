@@ -13,8 +13,6 @@
 //!
 //! Source: Zarr storage specification version 2, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>.
 //!
-//! # Arrays
-//!
 //! Arrays of a zarr store and their files.
 
 use std::fs::File;

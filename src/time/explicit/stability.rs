@@ -6,11 +6,7 @@
 //! far relative to each other that an element has changed by [`LATEST`]. The stiffness added by contacts is re-evaluated when a
 //! point moves to another segment.
 //!
-//! # Elements
-//!
 //! This section evaluates the bounds (2) of [`super`] for one element. Identical elements share their bounds.
-//!
-//! # Memory
 //!
 //! The memory of explicit increments follows neither from the model nor from the state: the displacement at which each
 //! element was last evaluated, and the result. A run resumed from a file takes the same increments with it.

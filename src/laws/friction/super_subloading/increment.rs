@@ -1,7 +1,5 @@
 //! One sub-step of an increment along linear paths of slip, pressure and time.
 //!
-//! # Plastic slip
-//!
 //! The sub-step is governed by a scalar equation of plastic slip, of which the smallest root is required.
 
 use super::SuperSubloading;

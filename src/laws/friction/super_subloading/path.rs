@@ -1,14 +1,8 @@
 //! Path of an increment of super/subloading friction.
 //!
-//! # Sub-steps
-//!
 //! An increment with linear paths of slip, pressure and time is divided into sub-steps as the tolerance requires.
 //!
-//! # Short steps
-//!
 //! An error bound decides whether one step is sufficient without comparison with its halves.
-//!
-//! # Sensitivity
 //!
 //! Responses are differentiated with respect to the parameters and the initial state.
 

@@ -1,7 +1,5 @@
 //! Weakening of the peak coefficient μ with slip and its recovery with time.
 //!
-//! # Onset
-//!
 //! The onset of fast slip after stationary contact is characterized by its peak friction, its residual, and the slip and time
 //! of half weakening and healing.
 
@@ -69,7 +67,7 @@ impl Peak {
     }
 }
 
-/// Largest a and b of [`Evolution::at_uniform_rate`]: μ is stationary beyond, and squares must not overflow.
+/// Largest a and b of [`PeakEvolution::at_uniform_rate`]: μ is stationary beyond, and squares must not overflow.
 const LARGEST: f64 = 1e100;
 
 /// Stands for an infinite slope in derivatives: it keeps μ at μ_k or μ_s.

@@ -89,7 +89,7 @@ impl SolidElement {
         shares(self.kind, self.formulation)
     }
 
-    /// Returns what a material [shows](MaterialDescription::shown) at each quadrature point, one behind the other.
+    /// Returns what a material [shows](crate::laws::bulk::MaterialDescription::shown) at each quadrature point, one behind the other.
     ///
     /// # Errors
     /// Returns the [`MaterialFailure`] of the law at a quadrature point.
