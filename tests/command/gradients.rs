@@ -173,24 +173,6 @@ fn of_a_dragged_block_by_every_parameter_are_those_of_complete_runs() {
     assert!(is_close(&worst), "{worst:?}");
 }
 
-/// Coulomb friction in partial slip, by nodes, mortar with multipliers, and in small sliding.
-#[test]
-fn in_partial_slip_are_those_of_complete_runs_by_every_method() {
-    let coulomb = json!({"law": "coulomb", "mu": 0.5, "alpha_t": 4e4});
-    let methods = [
-        json!({"method": "node_to_segment"}),
-        json!({"method": "mortar", "normal": {"alpha_n": 4e4, "penetration": 1e-6}}),
-        json!({"method": "gauss_to_segment", "sliding": "small", "stick": 1e-6}),
-    ];
-    for contact in methods {
-        let mut case = dragged(coulomb.clone(), contact.clone());
-        case["steps"][1]["duration"] = json!(1.5);
-        let places = ["contacts.base.friction.mu", "bodies.block.material.E", "contacts.base.normal.alpha_n"];
-        let worst = compared(&case, &places);
-        assert!(is_close(&worst), "{contact}: {worst:?}");
-    }
-}
-
 /// A bond that slips, softens, opens and pulls, by each of its numbers.
 #[test]
 fn of_a_bond_are_those_of_complete_runs() {
@@ -205,47 +187,6 @@ fn of_a_bond_are_those_of_complete_runs() {
     // Where points open, forces are small beside those of their stiff springs.
     let [main, others] = compared(&case, &places);
     assert!(main.0 < 1e-6 && others.0 < 5e-5, "{main:?} {others:?}");
-}
-
-/// A stiff block that is pressed into soft ground and dragged over several of its elements.
-#[test]
-fn of_ironing_are_those_of_complete_runs() {
-    let mut case = dragged(
-        json!({"law": "coulomb", "mu": 0.3, "alpha_t": 4e3}),
-        json!({"method": "gauss_to_segment", "smooth": true}),
-    );
-    case["contacts"]["base"]["normal"]["alpha_n"] = json!(4e3);
-    case["bodies"]["ground"]["material"]["E"] = json!(10);
-    case["steps"][0]["supports"][1]["uy"] = json!(-0.05);
-    case["steps"][1]["supports"][0]["ux"]["rate"] = json!(0.2);
-    let places = ["contacts.base.friction.mu", "bodies.ground.material.E", "steps[0].supports[1].uy"];
-    let worst = compared(&case, &places);
-    assert!(is_close(&worst), "{worst:?}");
-}
-
-/// A block with mass, driven fast enough for its inertia to count, up to its first slip and through it.
-#[test]
-fn of_motion_are_those_of_complete_runs_in_every_scheme() {
-    for scheme in
-        [json!({"hht": {"alpha": -0.1}}), json!({"newmark": {}}), json!({"generalized_alpha": {"rho_infinity": 0.8}})]
-    {
-        let mut case = dragged(weakening(), json!({"method": "gauss_to_segment"}));
-        for body in ["block", "ground"] {
-            case["bodies"][body]["material"]["density"] = json!(1e-4);
-        }
-        case["steps"][1]["scheme"] = scheme.clone();
-        case["steps"][1]["duration"] = json!(0.04);
-        case["steps"][1]["dt"] = json!({"initial": 0.002, "min": 0.002, "max": 0.002});
-        case["steps"][1]["supports"][0]["ux"]["rate"] = json!(0.3);
-        let places = [
-            "contacts.base.friction.mu_s",
-            "contacts.base.friction.xi",
-            "bodies.block.material.density",
-            "bodies.block.material.E",
-        ];
-        let worst = compared(&case, &places);
-        assert!(is_close(&worst), "{scheme}: {worst:?}");
-    }
 }
 
 /// Elastic ground beside a hot and stressed wall, pressed by a block; a fill comes, goes and comes again.

@@ -103,23 +103,6 @@ fn by_every_number_of_the_flow_are_those_of_complete_runs() {
     assert!(main.0 < 1e-7 && others.0 < 5e-6, "{main:?} {others:?}");
 }
 
-/// The same with inertia.
-#[test]
-fn in_motion_are_those_of_complete_runs() {
-    let mut case = dragged();
-    case["steps"][0]["scheme"] = json!({"newmark": {"beta": 0.3025, "gamma": 0.6}});
-    case["steps"][0]["dt"] = json!({"initial": 0.05, "min": 0.05, "max": 0.05});
-    let flow = places(&["storage", "transmissivity", "viscosity", "closing", "leak.coefficient", "wells[0].rate"]);
-    let places: Vec<&str> = flow
-        .iter()
-        .map(String::as_str)
-        .chain(["contacts.base.dilatancy.rate", "bodies.block.material.density"])
-        .collect();
-    let [main, others] = compared(&case, &places);
-    println!("{main:?} {others:?}");
-    assert!(main.0 < 1e-7 && others.0 < 5e-6, "{main:?} {others:?}");
-}
-
 /// Water parts the surfaces and flows by the cubic law: pressures and openings act on each other.
 #[test]
 fn of_what_opens_are_those_of_complete_runs() {

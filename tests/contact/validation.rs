@@ -735,12 +735,12 @@ fn contact_patch_test_on_matching_meshes() {
     }
 }
 
-/// A block and the ground it is pressed on, everything turned by `angle`; α_n is 10 (λ + 2G)/h, α_t the default.
-fn block_on_ground(angle: f64, law: &Value, steps: Value) -> Finished {
+/// A block and the ground it is pressed on; α_n is 10 (λ + 2G)/h, α_t the default.
+fn block_on_ground(law: &Value, steps: Value) -> Finished {
     finish(&json!({
         "mesh": Blocks::default()
             .rectangle("ground", [16, 4], [-2.0, -0.8], [2.0, 0.0])
-            .rectangle("block", [7, 3], [-0.5, 0.0], [0.5, 0.6]).turned(angle).json(),
+            .rectangle("block", [7, 3], [-0.5, 0.0], [0.5, 0.6]).json(),
         "bodies": {
             "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
             "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
@@ -752,20 +752,17 @@ fn block_on_ground(angle: f64, law: &Value, steps: Value) -> Finished {
     }))
 }
 
-/// Pressed, dragged, and at last turned by 90° while pressed; everything turned by `angle` from the start.
-fn pressed_dragged_turned(angle: f64, law: &Value) -> Finished {
-    let [x, y] = turned([0.0, -0.02], angle);
-    let [dragged_x, dragged_y] = turned([0.01, -0.02], angle);
+/// Pressed, dragged, and at last turned by 90° while pressed.
+fn pressed_dragged_turned(law: &Value) -> Finished {
     let turn = json!({"about": [0.3, 0.4], "angle": FRAC_PI_2});
     let steps = json!([
         {"name": "press", "duration": 1, "dt": {"initial": 0.25},
-         "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": x, "uy": y}]},
-        {"name": "drag", "duration": 1, "dt": {"initial": 0.1},
-         "supports": [{"on": "block_top", "ux": dragged_x, "uy": dragged_y}]},
+         "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.02}]},
+        {"name": "drag", "duration": 1, "dt": {"initial": 0.1}, "supports": [{"on": "block_top", "ux": 0.01, "uy": -0.02}]},
         {"name": "turn", "duration": 1, "dt": {"initial": 0.025},
          "supports": [{"on": "ground_bottom", "rotation": turn}, {"on": "block_top", "rotation": turn}]},
     ]);
-    block_on_ground(angle, law, steps)
+    block_on_ground(law, steps)
 }
 
 fn laws() -> [Value; 2] {
@@ -791,25 +788,12 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
-/// The same problem in axes turned by 37° has the same tractions in its own frame at every increment: nothing knows the
-/// direction of the axes. Measured: 6e-13 of the largest pressure.
-#[test]
-fn tractions_do_not_depend_on_the_direction_of_the_axes() {
-    for law in laws() {
-        let [straight, slanted] = [0.0, 37f64.to_radians()].map(|angle| pressed_dragged_turned(angle, &law));
-        assert_eq!(straight.states.len(), slanted.states.len());
-        for (a, b) in straight.states.iter().zip(&slanted.states) {
-            close("tractions", traction_difference(a, b), 0.0, 1e-10);
-        }
-    }
-}
-
 /// Both bodies turned together by 90° while friction holds q up to 0.3 p: the turned deformation is the answer to every
 /// increment, with no slip and no change of gap, so p and q stay. Exact but for Newton's tolerance; measured: 4e-13.
 #[test]
 fn tractions_turn_with_the_bodies() {
     for law in laws() {
-        let run = pressed_dragged_turned(0.0, &law);
+        let run = pressed_dragged_turned(&law);
         let [p, q] = tractions(run.at(2.0));
         assert!(largest(&q) > 0.2 * largest(&p), "friction holds something");
         close("tractions", traction_difference(run.at(2.0), run.last()), 0.0, 1e-10);
@@ -931,7 +915,7 @@ fn energy_balance_of_a_drag_closes_as_increments_shrink() {
                  "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.02}]},
                 {"name": "drag", "duration": 1, "supports": [{"on": "block_top", "ux": 0.1}]},
             ]);
-            let energy = block_on_ground(0.0, &law, steps).last().energy;
+            let energy = block_on_ground(&law, steps).last().energy;
             assert!(energy.friction_dissipation > 0.5 * energy.external_work, "friction takes most of the work");
             (energy.error() / energy.external_work).abs()
         });
@@ -981,7 +965,6 @@ fn feet_at_ridges_and_valleys() {
 fn a_block_slides_off_the_edge() {
     for law in laws() {
         let run = block_on_ground(
-            0.0,
             &law,
             json!([
                 {"name": "press", "duration": 1, "dt": {"initial": 0.25},

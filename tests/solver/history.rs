@@ -1,4 +1,4 @@
-//! A state is all that the next increment needs: dropped attempts, restarts and threads leave no trace in it.
+//! States and their files: any number of variables; tangents that come first; runs that are cut back.
 
 use crate::common::{self, Blocks, Finished, close, finish};
 use fecontact::equations::{Assembler, Trial};
@@ -41,25 +41,6 @@ fn dragged(method: &str, dt: f64, max_iterations: usize) -> Value {
     })
 }
 
-fn workspace(model: &Arc<Model>) -> Workspace {
-    Workspace::new(model, Box::<SparseLu>::default())
-}
-
-/// Make the given increments of a step, each of which must succeed.
-fn advance_all(model: &Model, step: usize, mut state: State, increments: &[f64], work: &mut Workspace) -> Vec<State> {
-    let mut states = Vec::new();
-    for &dt in increments {
-        state = advance(model, &model.steps[step], &state, dt, work).state.expect("an increment that succeeded before");
-        states.push(state.clone());
-    }
-    states
-}
-
-/// The accepted states of the drag.
-fn drag(run: &Finished) -> Vec<State> {
-    run.states.iter().filter(|state| state.time > 1.0).cloned().collect()
-}
-
 /// Largest difference of displacements, tractions and pressures, each relative to the largest of its kind.
 fn difference(a: &State, b: &State) -> f64 {
     type Values = fn(&State) -> Vec<f64>;
@@ -74,36 +55,6 @@ fn difference(a: &State, b: &State) -> f64 {
         let scale = a.iter().fold(0.0f64, |m, a| m.max(a.abs()));
         largest.max(common::distance(&a, &b) / scale)
     })
-}
-
-/// A run that fails often is the run of its accepted increments alone: dropped trials leave nothing behind.
-#[test]
-fn failed_attempts_leave_no_trace() {
-    for method in ["gauss_to_segment", "node_to_segment"] {
-        let run = finish(&dragged(method, 1.0, 5));
-        assert!(run.report.cutbacks >= 5, "the case is meant to be hard: {} cut-backs", run.report.cutbacks);
-        let states = drag(&run);
-        let increments: Vec<f64> = states.iter().map(|state| state.dt).collect();
-        let mut work = workspace(&run.model);
-        let start = begin(&run.model, &run.model.steps[1], run.at(1.0), &mut work).unwrap();
-        for (state, replayed) in states.iter().zip(advance_all(&run.model, 1, start, &increments, &mut work)) {
-            close("difference", difference(state, &replayed), 0.0, 1e-12);
-        }
-    }
-}
-
-/// The same state twice, in used and new workspaces, gives the same state.
-#[test]
-fn an_increment_is_a_pure_function_of_the_state() {
-    let run = finish(&dragged("gauss_to_segment", 0.05, 25));
-    let (old, new, step) = (&run.states[13], &run.states[14], &run.model.steps[1]);
-    let mut work = workspace(&run.model);
-    let once = |work: &mut Workspace| advance(&run.model, step, old, new.dt, work).state.unwrap();
-    let first = once(&mut work);
-    assert!(first == once(&mut work), "a used workspace");
-    assert!(first == once(&mut workspace(&run.model)), "a new workspace");
-    // The workspace of the run has seen other contacts, so it eliminates in another order.
-    close("in the run", difference(&first, new), 0.0, 1e-12);
 }
 
 /// A tangent that is asked for before any residual predicts nothing: its residual is that of the equations.
@@ -121,24 +72,6 @@ fn a_tangent_may_come_first() {
         system.residual
     });
     assert!(residual == beside_tangent);
-}
-
-/// A state written as JSON and read again is the same, and goes on as if nothing had happened. (To round-off, not to the
-/// bit: which couplings the matrix has room for, and so the order of elimination, depends on the contacts of the past.)
-#[test]
-fn a_state_survives_its_file() {
-    let run = finish(&dragged("gauss_to_segment", 0.05, 25));
-    for k in 0..run.states.len() {
-        let read: State = serde_json::from_str(&serde_json::to_string(&run.states[k]).unwrap()).unwrap();
-        assert!(read == run.states[k], "state {k} has changed");
-    }
-    let states = drag(&run);
-    let read = serde_json::from_str(&serde_json::to_string(&states[5]).unwrap()).unwrap();
-    let increments: Vec<f64> = states[6..].iter().map(|state| state.dt).collect();
-    let resumed = advance_all(&run.model, 1, read, &increments, &mut workspace(&run.model));
-    for (uninterrupted, resumed) in states[6..].iter().zip(&resumed) {
-        close("difference", difference(uninterrupted, resumed), 0.0, 1e-11);
-    }
 }
 
 /// A state remembers as many variables as a law sets, whatever their order; those never set are 0.

@@ -1,4 +1,4 @@
-//! A run as an iterator: every increment tried twice, dropped, stopped and resumed, to the same bits; loads changed on the way.
+//! A run as an iterator: increments dropped and made anew, saved and resumed; loads changed on the way.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -142,51 +142,6 @@ fn every_stretch_of_explicit_increments_can_be_redone_and_resumed() {
     let run = finish_at(&breaks, Path::new("test.json"));
     assert!(run.report.ruptures > 0, "it breaks");
     check(&breaks, Path::new("test.json"));
-}
-
-/// Stopped half way, taken up from the bytes of a checkpoint and run to its end: every increment has the same bits.
-fn half_way(case: &Value, path: &Path) {
-    let run = finish_at(case, path);
-    let mut first = Simulation::new(run.model.clone());
-    for _ in 0..run.states.len() / 2 {
-        first.next_increment().expect("it is solved").expect("an increment");
-    }
-    let bytes = first.save().bytes().expect("it can be written");
-    let saved = Saved::from_bytes(&bytes, &run.model).expect("it can be read");
-    let mut second = Simulation::resume(run.model.clone(), saved);
-    for (k, straight) in run.states.iter().enumerate().skip(run.states.len() / 2) {
-        let increment = second.next_increment().expect("it is solved").expect("an increment");
-        assert!(*increment.state == *straight, "increment {k} has other bits, time {}", straight.time);
-    }
-    assert!(second.next_increment().expect("it ends").is_none() && second.is_complete());
-    let [one, other] = [run.report, second.report()];
-    let counts = |report: &RunReport| [report.increments, report.cutbacks, report.rejected, report.newton_iterations];
-    assert_eq!(counts(&one), counts(&other));
-}
-
-/// What a point and its foot remember where a surface touches itself, and where sides are periodic.
-#[test]
-fn contact_of_a_surface_with_itself_and_periodic_sides_go_on_to_the_same_bits() {
-    let fold = |x: f64, y: f64| {
-        let angle = std::f64::consts::PI * (1.5 - 1.9 * x);
-        let radius = 1.0 + 0.2 * y;
-        [radius * angle.cos(), radius * angle.sin()]
-    };
-    let mut mesh = Blocks::default().block("strip", [24, 2], fold).json();
-    let sides = ["left", "right"].map(|side| mesh["edges"][format!("strip_{side}")].as_array().expect("edges").clone());
-    mesh["edges"]["ends"] = sides.concat().into();
-    let touching = json!({
-        "mesh": mesh,
-        "bodies": {"strip": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
-        "contacts": {"ends": {"slave": "ends", "master": "ends", "normal": {"alpha_n": 1e3},
-            "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 5e2}}},
-        "steps": [{"name": "close", "duration": 1, "dt": {"initial": 0.1}, "supports": [
-            {"on": "strip_left", "ux": 0, "uy": 0}, {"on": "strip_right", "ux": {"rate": -0.2}, "uy": {"rate": 0.7}}]}],
-    });
-    half_way(&touching, Path::new("test.json"));
-    let mut periodic = dragged(json!({"method": "mortar"}), json!({"generalized_alpha": {"rho_infinity": 0.8}}));
-    periodic["periodic"] = json!([["ground_left", "ground_right"]]);
-    check(&periodic, Path::new("test.json"));
 }
 
 /// A caller's loads are no part of the model: a file says so, and a copy in this process has them.

@@ -207,27 +207,26 @@ fn a_rigid_side_keeps_momentum() {
     }
 }
 
-/// A block on its held bottom, its rigid top struck by a moment and a force; all turned by an angle.
-fn struck(scheme: Scheme, dt: f64, angle: f64) -> Finished {
-    let force = turned([1.0, -2.0], angle);
+/// A block on its held bottom, its rigid top struck by a moment and a force.
+fn struck(scheme: Scheme, dt: f64) -> Finished {
     let step = LoadStep::new("strike", 1.0)
         .scheme(scheme)
         .dt(dt)
         .fix("block_bottom")
-        .load(Load::total_force("block_top", force.map(|f| expression(&format!("{f:.17}")))))
+        .load(Load::total_force("block_top", ["1", "-2"].map(expression)))
         .load(Load::moment("block_top", expression("3")));
     let damping = Damping { mass: 0.3, retardation: 0.01 };
-    run_through(block(angle).damping("block", damping).plate_moving("block_top", Plate::Rigid).step(step))
+    run_through(block(0.0).damping("block", damping).plate_moving("block_top", Plate::Rigid).step(step))
 }
 
-/// Explicit and implicit increments agree up to where masses lie, and what is turned moves as what is not.
+/// Explicit and implicit increments agree up to where masses lie.
 #[test]
-fn a_rigid_side_moves_alike_in_all_schemes_and_directions() {
-    let explicit = struck(EXPLICIT, 0.01, 0.0);
+fn a_rigid_side_moves_alike_in_all_schemes() {
+    let explicit = struck(EXPLICIT, 0.01);
     let size = explicit.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
     assert!(size > 0.02, "{size}");
     for scheme in [TRAPEZOIDAL, HHT] {
-        let run = struck(scheme, 0.005, 0.0);
+        let run = struck(scheme, 0.005);
         close(
             &format!("{scheme:?}"),
             distance(&run.last().displacement, &explicit.last().displacement),
@@ -239,15 +238,6 @@ fn a_rigid_side_moves_alike_in_all_schemes_and_directions() {
         }
     }
     close("energy, explicitly", explicit.last().energy.error(), 0.0, 2e-3 * explicit.last().energy.supplied());
-    for scheme in SCHEMES {
-        let [plain, other] = [0.0, 0.7].map(|angle| struck(scheme, 0.02, angle));
-        let (plain, other) = (plain.last(), other.last());
-        for (u, v) in plain.displacement.chunks(2).zip(other.displacement.chunks(2)) {
-            let u = turned([u[0], u[1]], 0.7);
-            (0..2).for_each(|i| close(&format!("{scheme:?}"), v[i], u[i], 1e-9 * size));
-        }
-        close("kinetic", other.energy.kinetic, plain.energy.kinetic, 1e-8 * plain.energy.supplied());
-    }
 }
 
 /// Explicitly, a plate alike in one component that supports lead moves as if all its nodes were led, with the same force; a free one

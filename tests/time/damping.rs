@@ -363,31 +363,6 @@ fn a_held_shear_relaxes_in_a_whole_run() {
     }
 }
 
-/// The same increment after one that was tried and dropped: the same bits.
-#[test]
-fn a_dropped_attempt_leaves_no_trace_in_the_memory() {
-    let model = std::sync::Arc::new(model(&json!({
-        "mesh": Blocks::default().rectangle("bar", [3, 2], [0.0, 0.0], [3.0, 2.0]).json(),
-        "bodies": {"bar": {"material": {"model": "viscoelastic", "E": 100, "nu": 0.25, "E_1": 150, "tau": 2}}},
-        "steps": [{"name": "pull", "duration": 10, "dt": {"initial": 1}, "supports": [
-            {"on": "bar_bottom", "ux": 0, "uy": 0}, {"on": "bar_top", "ux": {"rate": 0.05}, "uy": {"rate": 0.03}}]}],
-    })));
-    let run = |detours: bool| {
-        let mut work = Workspace::new(&model, Box::<SparseLu>::default());
-        let mut state = begin(&model, &model.steps[0], &model.initial_state(), &mut work).unwrap();
-        for _ in 0..5 {
-            if detours {
-                advance(&model, &model.steps[0], &state, 1.7, &mut work).state.unwrap();
-            }
-            state = advance(&model, &model.steps[0], &state, 1.0, &mut work).state.unwrap();
-        }
-        state
-    };
-    let straight = run(false);
-    assert!(straight.memory.iter().any(|value| *value != 0.0));
-    assert_eq!(straight, run(true));
-}
-
 /// A bar that is set swinging, with a Maxwell arm: implicit and explicit increments come to the same displacements, and all of
 /// the energy is accounted for.
 #[test]

@@ -311,55 +311,6 @@ fn explicit_increments_keep_the_momentum_that_is_told() {
     assert!(flying().count() > 20 && first.momentum.norm() > 0.01);
 }
 
-/// Everything that varies in time, written so that a step may be cut anywhere.
-fn varied(scheme: &Value, cut: &[f64]) -> Value {
-    let mut case = square(3, json!([]));
-    case["initial_velocity"] = json!({"body": [0.3, -0.2]});
-    case["bodies"]["body"]["damping"] = json!({"mass": 0.3, "stiffness": 0.002});
-    case["bodies"]["body"]["thermal"] = json!({"expansion": 1e-3});
-    let dt = if scheme.get("explicit").is_some() { 0.005 } else { 0.02 };
-    let mut start = 0.0;
-    let mut steps = Vec::new();
-    for (k, end) in cut.iter().enumerate() {
-        steps.push(json!({"name": format!("{k}"), "duration": end - start, "dt": {"initial": dt, "max": dt}, "scheme": scheme}));
-        start = *end;
-    }
-    steps[0]["supports"] = json!([{"on": "body_bottom", "ux": {"table": [[0, 0], [1, 0.02]]}, "uy": {"rate": -0.05}}]);
-    steps[0]["temperature"] = json!({"body": "20*t*x"});
-    steps[0]["loads"] = json!([
-        {"on": "body_top", "force": {"x": {"table": [[0, 0], [1, 3]]}}},
-        {"on": "body_right", "pressure": "0.5 + sin(3*t)"},
-        {"on": "body_top", "spring": {"kx": 4, "driver": {"x": {"rate": 0.3}}}},
-        {"on": "body_left", "dashpot": {"cx": 0.4, "driver": {"x": "0.2*t"}}},
-        {"on": "body_right", "absorbing": true},
-    ]);
-    case["steps"] = json!(steps);
-    case["output"] = json!({"interval": 0.02});
-    case
-}
-
-/// A step cut in two changes nothing, whatever varies in time.
-#[test]
-fn a_step_cut_in_two_changes_nothing() {
-    let explicit = json!({"explicit": {}});
-    for scheme in schemes().iter().chain([&explicit]) {
-        let [whole, cut] = [&[0.8][..], &[0.4, 0.8]].map(|times| finish(&varied(scheme, times)));
-        for time in [0.42, 0.44, 0.6, 0.8] {
-            let [a, b] = [whole.at(time), cut.at(time)];
-            let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-            for (what, a, b) in [
-                ("u", &a.displacement, &b.displacement),
-                ("v", &a.velocity, &b.velocity),
-                ("F", &a.force, &b.force),
-                ("reactions", &a.reaction, &b.reaction),
-            ] {
-                close(&format!("{scheme} {what} at {time}"), distance(a, b), 0.0, 1e-9 * largest(a));
-            }
-            close(&format!("{scheme} energy"), a.energy.error() - b.energy.error(), 0.0, 1e-9);
-        }
-    }
-}
-
 /// Wilson's scheme is of second order where loads and supports bend: u at the end against the finest, and its error falls fourfold.
 #[test]
 fn wilson_keeps_its_order_under_varied_loads() {
