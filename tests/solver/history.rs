@@ -1,18 +1,12 @@
 //! States and their files: any number of variables; tangents that come first; runs that are cut back.
 
-use crate::common::{self, Blocks, Finished, close, finish};
+use crate::common::{self, Blocks, close, finish};
 use fecontact::equations::{Assembler, Trial};
 use fecontact::laws::friction::FrictionState;
-use fecontact::linear::SparseLu;
 use fecontact::linear::system::Request;
-use fecontact::model::Model;
 use fecontact::model::state::State;
-use fecontact::solve::Workspace;
 use fecontact::solve::contact_iteration::ContactIteration;
-use fecontact::time::beginning::begin;
-use fecontact::time::increment::advance;
 use serde_json::{Value, json};
-use std::sync::Arc;
 
 /// μ, the one variable of the super/subloading law.
 fn mu_of(state: &FrictionState) -> f64 {

@@ -14,7 +14,6 @@ use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::warnings::Warnings;
-use fecontact::run::control::RunReport;
 use fecontact::run::observer::Observer;
 use fecontact::run::{Axis, Saved, SavedRun, Simulation, watch};
 use serde_json::{Value, json};

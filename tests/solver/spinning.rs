@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, distance, expression, neo_hookean, run_through, turned};
+use crate::common::{Blocks, Finished, close, distance, expression, neo_hookean, run_through};
 use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::builder::{Builder, Load, LoadStep, Place, Plate, Support};

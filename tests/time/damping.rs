@@ -1,15 +1,11 @@
 //! Damping of bodies: decay of vibrations and waves by closed forms, the tangent by differences, the stable increment.
 
-use crate::common::{Blocks, Finished, close, distance, finish, model, refusal};
+use crate::common::{Blocks, Finished, close, distance, finish, refusal};
 use fecontact::laws::bulk::{Material, MaterialParameters};
-use fecontact::linear::SparseLu;
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::ElementKind;
 use fecontact::model::element::{Formulation, SolidElement};
 use fecontact::model::state::Energy;
-use fecontact::solve::Workspace;
-use fecontact::time::beginning::begin;
-use fecontact::time::increment::advance;
 use nalgebra::{Complex, DMatrix, Rotation2, Vector2};
 use serde_json::{Value, json};
 
