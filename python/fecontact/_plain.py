@@ -2,16 +2,35 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import os
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._paths import shown
 from .errors import CaseError
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Refuses arguments by their former names, with the names that they have now."""
+
+    def of(function: Callable[P, R]) -> Callable[P, R]:
+        @functools.wraps(function)
+        def call(*given: P.args, **named: P.kwargs) -> R:
+            for former in names.keys() & named.keys():
+                raise TypeError(f"{function.__name__}() has no argument `{former}`: it is called `{names[former]}`")
+            return function(*given, **named)
+
+        return call
+
+    return of
 
 
 def plain(value: Any, place: str = "", file: str = "case") -> Any:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _foreign, _native
 from ._paths import path as as_path
-from ._plain import numbers, plain, refused
+from ._plain import numbers, plain, refused, renamed
 
 Lists = Union[ArrayLike, Sequence[ArrayLike]]
 # What a mesh is made of again: arrays, the content of a gmsh file, blocks as JSON, or such of several meshes.
@@ -97,6 +97,7 @@ class Mesh:
         return cls._of([mesh._source for mesh in given], _native.Mesh.join([mesh._native for mesh in given]))
 
     @classmethod
+    @renamed(apart="separated")
     def from_blocks(
         cls,
         blocks: Sequence[Mapping[str, Any]],

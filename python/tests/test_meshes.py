@@ -469,6 +469,8 @@ def test_blocks_of_two_bodies_share_nodes_where_they_are_joined() -> None:
     square = {"elements": [2, 2], "body": "a", "corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "points": {"tip": [1, 1]}}
     blocks = [square, {**square, "body": "b", "corners": [[1, 0], [2, 0], [2, 1], [1, 1]], "points": {"tip": [2, 1]}}]
     assert len(fc.Mesh.from_blocks(blocks).nodes) == 18
+    with pytest.raises(TypeError, match="no argument `apart`: it is called `separated`"):
+        fc.Mesh.from_blocks(blocks, apart=["a_right"])  # type: ignore[call-arg]
     mesh = fc.Mesh.from_blocks(blocks, joined=[["a", "b"]])
     assert len(mesh.nodes) == 15
     assert mesh.nodes[mesh.document()["points"]["tip"]].tolist() == [[1, 1], [2, 1]]
