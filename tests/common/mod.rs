@@ -170,6 +170,19 @@ pub fn quadratic(mesh: &Value, middle: impl Fn([f64; 2], [f64; 2]) -> [f64; 2]) 
     json!({"nodes": nodes, "elements": elements, "edges": edges})
 }
 
+/// A column of two bodies that share nodes, the first up to 2 and the other from there to 3: Q4 with rollers at `side`, `n` of them to a
+/// length of 1, with `bottom`, `top` and a name for the face between.
+pub fn column(n: usize, width: f64, bodies: [&str; 2], between: Option<&str>) -> Value {
+    let block = |body: &str, low: f64, high: f64, names: [Option<&str>; 4]| {
+        let rows = ((high - low) * n as f64).round();
+        json!({"body": body, "corners": [[0, low], [width, low], [width, high], [0, high]], "elements": [1, rows], "sides": names})
+    };
+    json!({"joined": [bodies], "blocks": [
+        block(bodies[0], 0.0, 2.0, [Some("bottom"), Some("side"), between, Some("side")]),
+        block(bodies[1], 2.0, 3.0, [None, Some("side"), Some("top"), Some("side")]),
+    ]})
+}
+
 /// Half way between two points.
 pub fn half_way(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| 0.5 * (a[i] + b[i]))

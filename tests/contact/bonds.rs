@@ -301,26 +301,35 @@ fn a_stop_names_the_bond_that_snaps() {
     assert!(told.contains("contact `c`: its bond softens over the slip 5e-4, below 4 (c − c_r) h/E = 0.002"), "{told}");
 }
 
+/// A strip that is glued by a tension over an opening but for its end, with so many elements along the glue.
+fn strip(elements: usize, [tension, opening]: [f64; 2], step: Value) -> Value {
+    let block = |left: f64, right: f64, n: usize, sides: Value| json!({"body": "b", "corners": [[left, 0], [right, 0], [right, 0.1], [left, 0.1]], "elements": [n, 2], "kind": "Q8", "sides": sides});
+    let mut blocks = vec![
+        block(0.0, 0.5, 8, json!([null, null, null, null])),
+        block(0.5, 2.0, elements, json!(["bottom", "far", null, null])),
+    ];
+    blocks[0]["points"] = json!({"end": [0, 0]});
+    json!({
+        "section": {"plane_stress": {"thickness": 1}},
+        "mesh": {"blocks": blocks},
+        "bodies": {"b": {"material": {"model": "linear", "E": 2000, "nu": 0}, "element": "reduced"}},
+        "contacts": {"c": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
+            "friction": {"law": "frictionless"}, "bond": {"strength": 1e-6, "tension": tension, "opening": opening}}},
+        "steps": [step]
+    })
+}
+
 /// A strip whose glue is strong over a short opening: Newton's method comes to the strip that has torn off everywhere, without any force.
 /// That is not accepted: the force goes on as G = t δ/2 has it, P² = √(2 E I G)³/(3 E I u), or the run stops and names the bond.
 #[test]
 fn a_strip_does_not_come_off_all_at_once() {
     for (elements, step) in [(75, 0.025), (50, 0.025)] {
-        let block = |left: f64, right: f64, n: usize, sides: Value| json!({"body": "b", "corners": [[left, 0], [right, 0], [right, 0.1], [left, 0.1]], "elements": [n, 2], "kind": "Q8", "sides": sides});
-        let mut blocks = vec![
-            block(0.0, 0.5, 8, json!([null, null, null, null])),
-            block(0.5, 2.0, elements, json!(["bottom", "far", null, null])),
-        ];
-        blocks[0]["points"] = json!({"end": [0, 0]});
-        let case = json!({
-            "section": {"plane_stress": {"thickness": 1}},
-            "mesh": {"blocks": blocks},
-            "bodies": {"b": {"material": {"model": "linear", "E": 2000, "nu": 0}, "element": "reduced"}},
-            "contacts": {"c": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
-                "friction": {"law": "frictionless"}, "bond": {"strength": 1e-6, "tension": 5, "opening": 2e-3}}},
-            "steps": [{"name": "peel", "duration": 1, "dt": {"initial": step, "max": step},
-                "supports": [{"on": "end", "uy": 0.06}, {"on": "far", "ux": 0}]}]
-        });
+        let case = strip(
+            elements,
+            [5.0, 2e-3],
+            json!({"name": "peel", "duration": 1, "dt": {"initial": step, "max": step},
+            "supports": [{"on": "end", "uy": 0.06}, {"on": "far", "ux": 0}]}),
+        );
         let model = std::sync::Arc::new(common::model(&case));
         let mut run = fecontact::run::Simulation::new(model);
         let bending = 2000.0 * 1e-3 / 12.0;
@@ -348,21 +357,12 @@ fn a_strip_does_not_come_off_all_at_once() {
 /// what to do.
 #[test]
 fn a_stop_under_force_says_what_to_do() {
-    let block = |left: f64, right: f64, n: usize, sides: Value| json!({"body": "b", "corners": [[left, 0], [right, 0], [right, 0.1], [left, 0.1]], "elements": [n, 2], "kind": "Q8", "sides": sides});
-    let mut blocks = vec![
-        block(0.0, 0.5, 8, json!([null, null, null, null])),
-        block(0.5, 2.0, 50, json!(["bottom", "far", null, null])),
-    ];
-    blocks[0]["points"] = json!({"end": [0, 0]});
-    let case = json!({
-        "section": {"plane_stress": {"thickness": 1}},
-        "mesh": {"blocks": blocks},
-        "bodies": {"b": {"material": {"model": "linear", "E": 2000, "nu": 0}, "element": "reduced"}},
-        "contacts": {"c": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
-            "friction": {"law": "frictionless"}, "bond": {"strength": 1e-6, "tension": 2.5, "opening": 4e-3}}},
-        "steps": [{"name": "pull", "duration": 1, "dt": {"initial": 0.05},
-            "supports": [{"on": "far", "ux": 0}], "loads": [{"on": "end", "force": {"y": 0.2}}]}]
-    });
+    let case = strip(
+        50,
+        [2.5, 4e-3],
+        json!({"name": "pull", "duration": 1, "dt": {"initial": 0.05},
+        "supports": [{"on": "far", "ux": 0}], "loads": [{"on": "end", "force": {"y": 0.2}}]}),
+    );
     let model = std::sync::Arc::new(common::model(&case));
     let told = fecontact::run::run(&model, &mut []).1.expect_err("it stops").to_string();
     assert!(told.contains("has come to its tensile strength under loads that grow (load along y 0."), "{told}");

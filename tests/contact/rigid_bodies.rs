@@ -16,7 +16,7 @@ use fecontact::model::{Model, NewtonSettings, State};
 use fecontact::output::history::History;
 use fecontact::run::run;
 use nalgebra::{Rotation2, Vector2};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::common::{
     Blocks, Finished, Record, close, expression, finish, finish_at, linear, model, neo_hookean, run_through,
@@ -350,24 +350,33 @@ fn the_work_of_a_tool_is_stored() {
     errors.iter().for_each(|error| close("balance", *error, 0.0, 1e-8 * energy.external_work));
 }
 
-/// A point of 0.7 under a weight on top of a roller of radius 2, held along x, that turns by 0.6: it slides by R θ less what it
-/// sticks elastically, q = μ N, and the moment is that of the friction at its arm, R − N/(α_n A).
-#[test]
-fn a_roller_that_turns_slides_below_a_point() {
-    let (weight, area, alpha_n, alpha_t, radius) = (3.0, 0.7, 2e3, 1e3, 2.0);
-    let case = json!({
+/// A point under a weight on top of a roller, held along x, and then a step in which the roller turns.
+fn on_roller([weight, area, alpha_n, alpha_t, radius]: [f64; 5], turn: Value) -> Finished {
+    finish(&json!({
         "mesh": {"nodes": [[0, 2]], "points": {"p": [0]}},
         "rigid_bodies": {"roller": {"reference": [0, 0]}},
         "contacts": {"c": {"slave": "p", "area": area, "rigid_body": "roller", "normal": {"alpha_n": alpha_n},
             "master": {"circle": {"centre": [0, 0], "radius": radius}},
             "friction": {"law": "coulomb", "mu": MU, "alpha_t": alpha_t}}},
+        "newton": {"tolerance": 1e-12},
         "steps": [
             {"name": "press", "duration": 1, "dt": {"initial": 0.5}, "loads": [{"on": "p", "force": {"y": -weight}}],
              "supports": [{"on": "p", "ux": 0}, {"on": "roller", "ux": 0, "uy": 0, "angle": 0}]},
-            {"name": "turn", "duration": 1, "dt": {"initial": 0.125}, "supports": [{"on": "roller", "angle": {"rate": 0.6}}]}
+            turn
         ]
-    });
-    let run = finish(&case);
+    }))
+}
+
+/// A point of 0.7 under a weight on top of a roller of radius 2, held along x, that turns by 0.6: it slides by R θ less what it
+/// sticks elastically, q = μ N, and the moment is that of the friction at its arm, R − N/(α_n A).
+#[test]
+fn a_roller_that_turns_slides_below_a_point() {
+    let (weight, area, alpha_n, alpha_t, radius) = (3.0, 0.7, 2e3, 1e3, 2.0);
+    let run = on_roller(
+        [weight, area, alpha_n, alpha_t, radius],
+        json!({"name": "turn", "duration": 1, "dt": {"initial": 0.125},
+        "supports": [{"on": "roller", "angle": {"rate": 0.6}}]}),
+    );
     let (state, point) = (run.last(), run.last().contacts[0][0].clone());
     let (pressure, arm) = (weight / area, radius - weight / area / alpha_n);
     close("p", point.friction.pressure, pressure, 1e-9);
@@ -450,21 +459,11 @@ fn a_disk_sinks_in_under_its_force() {
 #[test]
 fn a_roller_turns_under_a_moment() {
     let (weight, area, alpha_n, alpha_t, radius, moment) = (3.0, 0.7, 2e3, 1e3, 2.0, 1.2);
-    let case = json!({
-        "mesh": {"nodes": [[0, 2]], "points": {"p": [0]}},
-        "rigid_bodies": {"roller": {"reference": [0, 0]}},
-        "contacts": {"c": {"slave": "p", "area": area, "rigid_body": "roller", "normal": {"alpha_n": alpha_n},
-            "master": {"circle": {"centre": [0, 0], "radius": radius}},
-            "friction": {"law": "coulomb", "mu": MU, "alpha_t": alpha_t}}},
-        "newton": {"tolerance": 1e-12},
-        "steps": [
-            {"name": "press", "duration": 1, "dt": {"initial": 0.5}, "loads": [{"on": "p", "force": {"y": -weight}}],
-             "supports": [{"on": "p", "ux": 0}, {"on": "roller", "ux": 0, "uy": 0, "angle": 0}]},
-            {"name": "turn", "duration": 1, "dt": {"initial": 0.25}, "supports": [{"on": "roller", "angle": null}],
-             "loads": [{"on": "roller", "moment": moment}]}
-        ]
-    });
-    let run = finish(&case);
+    let run = on_roller(
+        [weight, area, alpha_n, alpha_t, radius],
+        json!({"name": "turn", "duration": 1, "dt": {"initial": 0.25},
+        "supports": [{"on": "roller", "angle": null}], "loads": [{"on": "roller", "moment": moment}]}),
+    );
     let (state, arm) = (run.last(), radius - weight / area / alpha_n);
     let q = moment / (area * arm);
     close("q", state.contacts[0][0].friction.traction, q, 1e-9);

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{Finished, close, finish, model, refusal};
+use crate::common::{Finished, close, column, finish, model, refusal};
 use crate::terms::{arbitrary_displacement, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::Model;
@@ -14,18 +14,6 @@ use serde_json::{Value, json};
 /// Numbers of the bodies, in the order of their names.
 const HIGH: usize = 0;
 const LOW: usize = 1;
-
-/// `low`, from 0 to 2, below `high`, from 2 to 3, which share their nodes: a column of Q4 with rollers, `n` of them to a length of 1.
-fn column(n: usize, between: Option<&str>) -> Value {
-    let block = |body: &str, low: f64, high: f64, names: [Option<&str>; 4]| {
-        let rows = ((high - low) * n as f64).round();
-        json!({"body": body, "corners": [[0, low], [0.1, low], [0.1, high], [0, high]], "elements": [1, rows], "sides": names})
-    };
-    json!({"joined": [["low", "high"]], "blocks": [
-        block("low", 0.0, 2.0, [Some("bottom"), Some("side"), between, Some("side")]),
-        block("high", 2.0, 3.0, [None, Some("side"), Some("top"), Some("side")]),
-    ]})
-}
 
 /// Weight of ground with its water per volume.
 const WEIGHT: f64 = 20.0;
@@ -43,7 +31,7 @@ fn ground(law: &str) -> Value {
 fn excavation(n: usize, law: &str) -> Value {
     let gravity = |body: &str| json!({"on": body, "gravity": {"y": "-10"}});
     json!({
-        "mesh": column(n, Some("between")), "bodies": {"low": ground(law), "high": ground(law)},
+        "mesh": column(n, 0.1, ["low", "high"], Some("between")), "bodies": {"low": ground(law), "high": ground(law)},
         "steps": [
             {"name": "rest", "duration": 1, "dt": {"initial": 1.0}, "loads": [gravity("low"), gravity("high")],
              "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}],
@@ -123,7 +111,7 @@ fn ground_heaves_as_water_enters_below_an_excavation() {
 #[test]
 fn a_fill_consolidates_in_the_shape_in_which_it_comes() {
     let mut case = excavation(12, "linear");
-    case["mesh"] = column(12, None);
+    case["mesh"] = column(12, 0.1, ["low", "high"], None);
     case["bodies"]["low"] = json!({"material": {"model": "linear", "E": 1000, "nu": 0.25}});
     let high = case["bodies"]["high"].as_object_mut().expect("a body");
     high["pore_fluid"]["weighs"] = json!(false);
@@ -191,7 +179,7 @@ fn the_tangent_counts_elements_as_they_came() {
     for (law, section) in [("hencky", "plane_strain"), ("hencky", "axisymmetric"), ("linear", "axisymmetric")] {
         let mut case = excavation(3, law);
         case["section"] = json!(section);
-        case["mesh"] = column(3, None);
+        case["mesh"] = column(3, 0.1, ["low", "high"], None);
         case["steps"][1]["remove"] = json!([]);
         case["steps"][1]["add"] = json!(["high"]);
         (0..3).for_each(|k| case["steps"][k]["drainage"] = json!([]));
@@ -242,7 +230,7 @@ fn a_step_ends_at_a_degree_of_consolidation() {
         assert!(message.contains(expected), "{message}");
     }
     let mut simple = case.clone();
-    simple["mesh"] = column(8, None);
+    simple["mesh"] = column(8, 0.1, ["low", "high"], None);
     for body in ["low", "high"] {
         simple["bodies"][body] = json!({"material": {"model": "linear", "E": 1000, "nu": 0.25},
             "pore_fluid": {"bulk_modulus": 1e9, "porosity": 0.5, "permeability": 1, "unit_weight": 1200}});

@@ -2,25 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::common::{Blocks, close, distance, finish, model, refusal};
+use crate::common::{Blocks, close, column, distance, finish, model, refusal};
 use crate::terms::tangent_error;
 use fecontact::equations::Trial;
 use fecontact::model::Model;
 use fecontact::model::state::State;
 use fecontact::output::warnings::Warnings;
 use serde_json::{Value, json};
-
-/// A column of `ground`, 2 high, below 1 of `cut`: 1 wide, with rollers, joined, elements of 1/n.
-fn column(n: usize) -> Value {
-    let block = |body: &str, low: f64, high: f64, names: [Option<&str>; 4]| {
-        let rows = ((high - low) * n as f64).round();
-        json!({"body": body, "corners": [[0, low], [1, low], [1, high], [0, high]], "elements": [1, rows], "sides": names})
-    };
-    json!({"joined": [["ground", "cut"]], "blocks": [
-        block("ground", 0.0, 2.0, [Some("bottom"), Some("side"), None, Some("side")]),
-        block("cut", 2.0, 3.0, [None, Some("side"), Some("top"), Some("side")]),
-    ]})
-}
 
 const WEIGHT: f64 = 20.0;
 
@@ -30,7 +18,7 @@ fn unloading(n: usize, law: &str, scheme: Value) -> Value {
         "initial_stress": {"geostatic": {"surface": 3, "weight": WEIGHT, "K0": 0.5}}});
     let gravity = |body: &str| json!({"on": body, "gravity": {"y": "-10"}});
     json!({
-        "mesh": column(n), "bodies": {"ground": body, "cut": body}, "watch": ["bottom"],
+        "mesh": column(n, 1.0, ["ground", "cut"], None), "bodies": {"ground": body, "cut": body}, "watch": ["bottom"],
         "steps": [
             {"name": "rest", "duration": 1, "dt": {"initial": 1.0}, "loads": [gravity("ground"), gravity("cut")],
              "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}]},
@@ -430,7 +418,7 @@ fn what_has_gone_holds_nothing_and_is_not_named() {
 fn bodies_come_and_go_with_their_heat() {
     for (scheme, dt) in [(json!("static"), 0.25), (json!({"newmark": {}}), 0.05)] {
         for [warm, jump, back] in [["1", "0", "1 + 0*t"], ["-1", "2", "0.5 + t"], ["0", "1 + 0*t", "2"]] {
-            let mut mesh = column(2);
+            let mut mesh = column(2, 1.0, ["ground", "cut"], None);
             let feather = json!({"body": "feather", "corners": [[0, 3], [1, 3], [1, 3.5], [0, 3.5]], "elements": [1, 1], "sides": [null, null, null, null]});
             mesh["blocks"].as_array_mut().expect("blocks").push(feather);
             mesh["blocks"][1]["sides"][2] = Value::Null;
