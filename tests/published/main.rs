@@ -12,6 +12,7 @@ mod cycles;
 mod faults;
 mod fracture;
 mod ground_and_metal;
+mod ground_and_water;
 mod healing;
 mod law_cycles;
 mod limit_loads;
