@@ -26,7 +26,7 @@ run = Run(program, committed("cases/excavation_below_water.json"))
 steps = np.array(run.history["step"])
 ends = {stage: run.history["time"][np.flatnonzero(steps == stage)[-1]] for stage in STAGES}
 
-figure, (field, water, normal, shear, bent) = plt.subplots(1, 5, figsize=(15, 4.6), width_ratios=[2.3, 1.1, 1, 1, 1], layout="constrained")
+figure, (field, water, normal, shear, moved, bent) = plt.subplots(1, 6, figsize=(16, 4.4), width_ratios=[2.5, 1.1, 1, 1, 1, 1], layout="constrained")
 solid = run.frame("solid")
 places, borders = solid["places"], np.r_[0, solid["offsets"]]
 cells = [solid["connectivity"][start:end][:4] for start, end, ghost in zip(borders, borders[1:], solid["vtkGhostType"]) if ghost != HIDDEN]
@@ -59,7 +59,8 @@ for number, stage in enumerate(STAGES):
 for axes, title in ((water, "water [kPa]"), (normal, "effective p [kPa]"), (shear, "shear q [kPa]")):
     axes.set(title=title, xlabel="pit | ground", ylim=(-9.2, 0.2))
     axes.axvline(0, color="grey", linewidth=0.8)
-water.legend(fontsize=8)
+# At the corners of the tip it grows with finer elements.
+normal.set_xlim(-90, 60)
 sections = table(run.folder / "sections.csv")
 names = [name.removesuffix(".y") for name in sections if name.endswith(".y")]
 for number, stage in enumerate(STAGES[1:], 1):
@@ -69,5 +70,13 @@ for number, stage in enumerate(STAGES[1:], 1):
     at = np.abs(run.history["time"] - ends[stage]).argmin()
     outlets = {name: run.history[f"{name}.discharge"][at] for name in ("far", "pit_2", "pit_3", "pit_4")}
     print(stage, "head", run.history["head.ux"][at], "moment", np.nanmin(moments), np.nanmax(moments), "outlets", outlets)
+    solid = run.frame("solid", ends[stage])
+    wall = np.flatnonzero(solid["body"] == solid["body wall"][0])
+    face = np.unique([solid["connectivity"][end - 8 : end] for end in solid["offsets"][wall]])
+    face = face[np.isclose(solid["Points"][face, 0], 0)]
+    face = face[np.argsort(solid["Points"][face, 1])]
+    moved.plot(1e3 * solid["displacement"][face, 0], solid["Points"][face, 1], f"C{number}")
+moved.set(xlabel="displacement [mm]", title="movement of the wall", ylim=(-9.2, 0.2))
+bent.legend(*water.get_legend_handles_labels(), fontsize=8, loc="lower right")
 bent.set(xlabel="moment [kNm/m]", title="bending of the wall", ylim=(-9.2, 0.2))
 figure.savefig(target, dpi=80)

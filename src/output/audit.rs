@@ -230,6 +230,9 @@ const BY_CHORDS: f64 = 0.02;
 /// Error of the balance of water that causes a warning, as a fraction of what has come and gone [-]
 const WATER: f64 = 1e-5;
 
+/// Least volume that counts as having come and gone, as a fraction of the bodies: none passes through sealed ones [-]
+const SEALED: f64 = 1e-4;
+
 /// Share of the energy that the advised penalties leave in the contacts [-]
 const ADVISED: f64 = 0.004;
 
@@ -260,7 +263,8 @@ impl Audit {
         self.work += (new.energy.external_work - old.energy.external_work).abs();
         self.error = error;
         if let Some([error, throughput]) = model.balance_of_water(new) {
-            self.water = [self.water[0].max(error.abs()), self.water[1].max(throughput)];
+            let bodies: f64 = model.flow.iter().flat_map(|flow| &flow.elements).flat_map(|wet| &wet.volumes).sum();
+            self.water = [self.water[0].max(error.abs()), self.water[1].max(throughput).max(SEALED * bodies)];
         }
         let stresses = self.stresses.get_or_insert_with(|| stresses(model));
         let chords = self.chords.get_or_insert_with(|| model.contacts.iter().map(|pair| chords(model, pair)).collect());
