@@ -52,7 +52,8 @@ for healing in (True, False):
         if wait:
             step = {**WAIT, "duration": wait - waited, "dt": {**WAIT["dt"], "max": max(WAIT["dt"]["initial"], (wait - waited) / 5)}}
             run, waited = part([step], run, healing), wait
-        pulled = part([PULL], run, healing)
+        # What has not drained yet has no drainage to end.
+        pulled = part([PULL if wait else {**PULL, "drainage": []}], run, healing)
         held = pulled.history["shaft.tangential_force"]
         best = held.argmax()
         found.append(held[best])
