@@ -85,8 +85,8 @@ fn a_pile_waits_for_its_water() {
     balance(&run);
 }
 
-/// An excavation below water: at rest nothing moves; beside the wall the water is hydrostatic until it is dug; in the end flows the q = 0.3000 k h of the same
-/// ground by finite elements of another program on squares of 1/8 m, saturated up to the first water table.
+/// An excavation below water: at rest nothing moves; beside the wall the water is hydrostatic until it is dug; in the end flows what an independent
+/// computation of seepage alone gives, saturated up to the first water table (`seepage_below_wall.py`).
 #[test]
 fn water_flows_into_an_excavation() {
     let run = run(&committed("excavation_below_water"));
