@@ -127,14 +127,14 @@ fn no_files_import_each_other_in_a_circle() {
         }
         done.iter().for_each(|module| drop(graph.remove(module)));
     }
-    let told = |(module, imports): (Module, BTreeSet<Module>)| {
+    let message = |(module, imports): (Module, BTreeSet<Module>)| {
         let imports: Vec<String> = imports.iter().map(|import| import.join("::")).collect();
         format!("{} imports {}", module.join("::"), imports.join(", "))
     };
     assert!(
         graph.is_empty(),
         "in circles, or above one:\n{}",
-        graph.into_iter().map(told).collect::<Vec<_>>().join("\n")
+        graph.into_iter().map(message).collect::<Vec<_>>().join("\n")
     );
 }
 

@@ -72,7 +72,7 @@ fn mistakes_in_named_laws_have_their_place() {
         case.pointer_mut(parent).unwrap()[key] = value;
         resolved(&case).unwrap_err()
     };
-    for (pointer, value, told) in [
+    for (pointer, value, text) in [
         ("/materials/rubber/E", json!("stiff"), "materials.rubber.E: is \"stiff\", but must be a number"),
         ("/frictions/smooth/mu", json!(0.3), "frictions.smooth.mu: `mu` is not known here"),
         ("/frictions/smooth", json!("rough"), "frictions.smooth: is \"rough\", but must be an object {…}"),
@@ -90,7 +90,7 @@ fn mistakes_in_named_laws_have_their_place() {
         ("/note", json!(3), "note: `note` is not known here"),
     ] {
         let message = refused(pointer, value);
-        assert!(message.contains(told), "{told}: {message}");
+        assert!(message.contains(text), "{text}: {message}");
     }
     let mut case = good();
     case["bodies"]["block"]["material"] = json!("rubber");
@@ -104,7 +104,7 @@ fn mistakes_in_named_laws_have_their_place() {
 /// Words of other programs are met with the key that they are here, in this object or elsewhere.
 #[test]
 fn words_of_other_programs_are_translated() {
-    for (pointer, told) in [
+    for (pointer, text) in [
         ("/bodies/block/material/youngs_modulus", "`youngs_modulus` is not known here: here that is `E`. Known are"),
         ("/bodies/block/material/Poisson's ratio", "here that is `nu`"),
         (
@@ -122,6 +122,6 @@ fn words_of_other_programs_are_translated() {
         let (parent, key) = pointer.rsplit_once('/').unwrap();
         case.pointer_mut(parent).unwrap()[key] = json!(1);
         let message = resolved(&case).unwrap_err();
-        assert!(message.contains(told), "{told}: {message}");
+        assert!(message.contains(text), "{text}: {message}");
     }
 }

@@ -54,16 +54,16 @@ fn a_chain_of_parameters() {
     parameters.insert(format!("p{count:04}"), json!(2.0));
     let corners = [json!([0, 0]), json!(["p0001", 0]), json!(["p0001", 1]), json!([0, 1])];
     let blocks = [block("bar", corners, [1, 1], ["low", "high"])];
-    let told = checked(&pressed(json!({"parameters": parameters, "blocks": blocks}), ["bar".into()]));
-    assert!(told.contains("x from 0 to 2"), "{told}");
+    let message = checked(&pressed(json!({"parameters": parameters, "blocks": blocks}), ["bar".into()]));
+    assert!(message.contains("x from 0 to 2"), "{message}");
 }
 
 /// Blocks in a row, each joined to the next.
 #[test]
 fn a_row_of_blocks() {
     let blocks: Vec<Value> = (0..5000).map(|k| square("bar", f64::from(k), [1, 1], ["low", "high"])).collect();
-    let told = checked(&pressed(json!({"blocks": blocks}), ["bar".into()]));
-    assert!(told.contains("10002 nodes, 5000 elements"), "{told}");
+    let message = checked(&pressed(json!({"blocks": blocks}), ["bar".into()]));
+    assert!(message.contains("10002 nodes, 5000 elements"), "{message}");
 }
 
 /// Feet of a long bar, each on a rigid floor of its own.

@@ -51,14 +51,14 @@ impl Chance {
 struct Ended {
     /// none if it had to be killed
     code: Option<i32>,
-    told: String,
+    message: String,
     /// whether it was asked to end because it took long
     asked: bool,
 }
 
 fn run(folder: &Path, arguments: &[&str]) -> Ended {
-    let told = folder.join("told.txt");
-    let stderr = fs::File::create(&told).expect("a file");
+    let message = folder.join("told.txt");
+    let stderr = fs::File::create(&message).expect("a file");
     let mut command = Command::new("env");
     command.args(["--default-signal", PROGRAM]).args(arguments).current_dir(folder).env("RAYON_NUM_THREADS", "1");
     let mut child = command.stdout(Stdio::null()).stderr(stderr).spawn().expect("the program starts");
@@ -80,31 +80,31 @@ fn run(folder: &Path, arguments: &[&str]) -> Ended {
         }
         std::thread::sleep(Duration::from_micros(500));
     };
-    Ended { code, told: String::from_utf8_lossy(&fs::read(&told).expect("a file")).into_owned(), asked }
+    Ended { code, message: String::from_utf8_lossy(&fs::read(&message).expect("a file")).into_owned(), asked }
 }
 
 /// What is wrong with how a command ended.
-fn fault(folder: &Path, Ended { code, told, asked }: &Ended, must_refuse: bool, file: &str) -> Option<String> {
+fn fault(folder: &Path, Ended { code, message, asked }: &Ended, must_refuse: bool, file: &str) -> Option<String> {
     let out = folder.join("out");
     let reason = |start: &str| -> Option<String> {
-        let line = told.lines().find_map(|line| line.strip_prefix(start))?;
+        let line = message.lines().find_map(|line| line.strip_prefix(start))?;
         Some(line.trim_end().trim_end_matches(['.', ';', ':', ' ']).into())
     };
     let hollow =
         |reason: &str| reason.is_empty() || reason.contains(": ;") || reason.contains("()") || reason.ends_with(file);
-    if told.chars().any(|c| c.is_control() && c != '\n') {
+    if message.chars().any(|c| c.is_control() && c != '\n') {
         return Some("control characters are printed".into());
     }
     match code {
         None => Some("it hangs, or was ended by the system".into()),
         Some(2) => match reason("error: ") {
             None => Some("no reason is told".into()),
-            Some(reason) if hollow(&reason) || !told.contains(file) => Some(format!("an empty reason: {reason}")),
-            Some(_) if told.len() > 4000 => Some("the reason is endless".into()),
+            Some(reason) if hollow(&reason) || !message.contains(file) => Some(format!("an empty reason: {reason}")),
+            Some(_) if message.len() > 4000 => Some("the reason is endless".into()),
             Some(_) if out.exists() => Some("results were written for bad input".into()),
             Some(_) => None,
         },
-        Some(1) if *asked && told.contains("interrupted") => None,
+        Some(1) if *asked && message.contains("interrupted") => None,
         Some(0 | 1) if must_refuse => Some("it was accepted".into()),
         Some(1) => match reason("stopped: ") {
             Some(reason) if !hollow(&reason) => unreadable(&out),
@@ -332,7 +332,7 @@ fn changed(chance: &mut Chance, document: &Value) -> (String, String, bool) {
     let mut all = Vec::new();
     places(document, "", &mut all);
     let mut changed = document.clone();
-    let mut told = Vec::new();
+    let mut message = Vec::new();
     let mut must_refuse = false;
     for _ in 0..*chance.of(&[1, 1, 1, 2, 3]) {
         let pointer = chance.of(&all).clone();
@@ -363,13 +363,13 @@ fn changed(chance: &mut Chance, document: &Value) -> (String, String, bool) {
             9 => {
                 if let Value::Object(object) = &old {
                     set(object.values().cloned().collect());
-                    must_refuse = told.is_empty();
+                    must_refuse = message.is_empty();
                 }
             }
             10 => {
                 if let Value::Object(object) = holder {
                     object.insert("stray".into(), json!(1));
-                    must_refuse = told.is_empty();
+                    must_refuse = message.is_empty();
                 }
             }
             11 => {
@@ -387,10 +387,10 @@ fn changed(chance: &mut Chance, document: &Value) -> (String, String, bool) {
             _ => set((0..*chance.of(&[1, 5, 150]))
                 .fold(old, |value, k| if k % 2 == 0 { json!([value]) } else { json!({"a": value}) })),
         }
-        told.push(format!("{what} at {pointer}"));
+        message.push(format!("{what} at {pointer}"));
     }
     let mut text = changed.to_string();
-    if told.len() > 1 {
+    if message.len() > 1 {
         must_refuse = false;
     }
     if chance.below(12) == 0 {
@@ -418,9 +418,9 @@ fn changed(chance: &mut Chance, document: &Value) -> (String, String, bool) {
             1 => format!("{text}{text}"),
             _ => format!("{}{inserted}{}", &text[..at], &text[at..]),
         };
-        told.push(format!("text at {at}"));
+        message.push(format!("text at {at}"));
     }
-    (text, told.join(", "), must_refuse)
+    (text, message.join(", "), must_refuse)
 }
 
 #[test]
@@ -431,7 +431,7 @@ fn mutated_cases_end_with_a_reason() {
         let (command, document) = &seeds[number];
         fs::write(folder.path().join("good.json"), document.to_string()).expect("a file");
         let ended = run(folder.path(), &[command, "good.json", "--out", "out"]);
-        assert_eq!(ended.code, Some(0), "seed {number} itself: {}", ended.told);
+        assert_eq!(ended.code, Some(0), "seed {number} itself: {}", ended.message);
         fs::remove_dir_all(folder.path().join("out")).expect("a folder");
     };
     (0..seeds.len()).for_each(original);
@@ -447,7 +447,7 @@ fn mutated_cases_end_with_a_reason() {
         }
         if let Some(fault) = fault(folder.path(), &ended, must_refuse, "bad.json") {
             faults += 1;
-            let line = format!("seed {seed} ({how}): {fault}: {}", ended.told.chars().take(600).collect::<String>());
+            let line = format!("seed {seed} ({how}): {fault}: {}", ended.message.chars().take(600).collect::<String>());
             println!("{line}");
             first = if first.is_empty() { line } else { first };
             fs::write(folder.path().join(format!("seed_{seed}.json")), text).expect("a file");
@@ -553,7 +553,7 @@ fn mutated_meshes_end_with_a_reason() {
         let ended = run(folder.path(), &["run", "case.json", "--out", "out"]);
         if let Some(fault) = fault(folder.path(), &ended, false, "case.json") {
             faults += 1;
-            let line = format!("seed {seed}: {fault}: {}", ended.told.chars().take(600).collect::<String>());
+            let line = format!("seed {seed}: {fault}: {}", ended.message.chars().take(600).collect::<String>());
             println!("{line}");
             first = if first.is_empty() { line } else { first };
             fs::write(folder.path().join(format!("seed_{seed}.msh")), bytes).expect("a file");

@@ -79,14 +79,14 @@ fn a_line_every_tenth_elsewhere_and_only_warnings_where_it_is_quiet() {
         assert!(output.status.success());
         String::from_utf8(output.stderr).expect("text")
     };
-    let told = run(&["--out", "out"]);
+    let message = run(&["--out", "out"]);
     // The first increment at or after every half of a unit of time: they are 0.25 up to t = 1, and 0.2 up to t = 5.
     let shares: Vec<&str> =
-        told.lines().filter_map(|line| line.trim_start().split_once(" %  ")).map(|(n, _)| n).collect();
-    assert_eq!(shares, ["10", "20", "32", "40", "52", "60", "72", "80", "92", "100"], "{told}");
-    assert_eq!(told.matches("% of the slave's edge").count(), 1, "{told}");
-    let [warned, last] = ["% of the slave's edge", "drag  t 5  "].map(|what| told.find(what).expect(what));
-    assert!(warned < last, "{told}");
+        message.lines().filter_map(|line| line.trim_start().split_once(" %  ")).map(|(n, _)| n).collect();
+    assert_eq!(shares, ["10", "20", "32", "40", "52", "60", "72", "80", "92", "100"], "{message}");
+    assert_eq!(message.matches("% of the slave's edge").count(), 1, "{message}");
+    let [warned, last] = ["% of the slave's edge", "drag  t 5  "].map(|what| message.find(what).expect(what));
+    assert!(warned < last, "{message}");
     let quiet = run(&["--out", "quiet", "--quiet"]);
     let (warnings, end): (Vec<&str>, Vec<&str>) = quiet.lines().partition(|line| line.starts_with("warning: "));
     assert_eq!(warnings.iter().filter(|line| line.contains("% of the slave's edge")).count(), 1, "{quiet}");

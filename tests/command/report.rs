@@ -84,8 +84,8 @@ impl Page {
 
     fn of(folder: &Path) -> Self {
         let file = folder.parent().unwrap().join("page.html");
-        let told = report(&[folder], &file);
-        assert!(told.status.success(), "{}", stderr(&told));
+        let message = report(&[folder], &file);
+        assert!(message.status.success(), "{}", stderr(&message));
         Self::read(&file)
     }
 
@@ -221,7 +221,7 @@ fn a_page_holds_the_numbers_of_its_folder() {
 }
 
 #[test]
-fn faults_of_a_folder_are_told_and_hide_no_more_than_they_must() {
+fn faults_of_a_folder_are_reported_and_hide_no_more_than_they_must() {
     let (_kept, out) = run(json!({}));
     let frames = fs::read_dir(out.join("solid")).unwrap().count();
     fs::remove_file(out.join("solid/00002.vtu")).unwrap();
@@ -234,10 +234,10 @@ fn faults_of_a_folder_are_told_and_hide_no_more_than_they_must() {
     fs::write(out.join("history.csv"), lines.join("\n") + "\n").unwrap();
     fs::write(out.join("newton.csv"), "").unwrap();
     let page = Page::of(&out);
-    for told in
+    for message in
         ["solid/00002.vtu is missing", "solid/00003.vtu", "not numbers", "only the rows before it", "newton.csv"]
     {
-        assert!(page.notes().contains(told), "{told}: {}", page.notes());
+        assert!(page.notes().contains(message), "{message}: {}", page.notes());
     }
     assert_eq!(page.run()["solid"]["frames"].as_array().unwrap().len(), frames - 2);
     assert_eq!(page.run()["history"]["rows"], history.lines().count() - 1);
@@ -248,8 +248,10 @@ fn faults_of_a_folder_are_told_and_hide_no_more_than_they_must() {
     let header = history.lines().next().unwrap();
     fs::write(out.join("history.csv"), format!("{header}\n")).unwrap();
     let page = Page::of(&out);
-    for told in ["summary.json is missing", "history.csv has no rows yet", "contact.pvd lists a frame without a time"] {
-        assert!(page.notes().contains(told), "{told}: {}", page.notes());
+    for message in
+        ["summary.json is missing", "history.csv has no rows yet", "contact.pvd lists a frame without a time"]
+    {
+        assert!(page.notes().contains(message), "{message}: {}", page.notes());
     }
 }
 
@@ -292,28 +294,32 @@ fn what_is_no_page_of_ours_is_left_alone() {
     let (folder, out) = run(json!({"report": false}));
     let mine = out.join("report.html");
     fs::write(&mine, "<html>mine</html>").unwrap();
-    let told = fecontact(&["report", out.to_str().unwrap()]);
-    assert!(!told.status.success() && stderr(&told).contains("is in the way"), "{}", stderr(&told));
+    let message = fecontact(&["report", out.to_str().unwrap()]);
+    assert!(!message.status.success() && stderr(&message).contains("is in the way"), "{}", stderr(&message));
     let file = folder.path().join("case.json");
     fs::write(&file, case(json!({})).to_string()).unwrap();
-    let told = fecontact(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
-    assert_eq!(told.status.code(), Some(2));
-    assert!(stderr(&told).contains("report.html: --out: is in the way"), "{}", stderr(&told));
+    let message = fecontact(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
+    assert_eq!(message.status.code(), Some(2));
+    assert!(stderr(&message).contains("report.html: --out: is in the way"), "{}", stderr(&message));
     assert_eq!(fs::read_to_string(&mine).unwrap(), "<html>mine</html>");
     // A page of ours is replaced by the next run, whoever asked for it.
     fs::remove_file(&mine).unwrap();
     assert!(fecontact(&["report", out.to_str().unwrap()]).status.success());
-    let told = fecontact(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
-    assert!(told.status.success(), "{}", stderr(&told));
+    let message = fecontact(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
+    assert!(message.status.success(), "{}", stderr(&message));
 }
 
 #[test]
 fn a_folder_of_something_else_is_refused_by_name() {
     let folder = TempDir::new().unwrap();
     let refused = |path: &Path, why: &str| {
-        let told = report(&[path], &folder.path().join("page.html"));
-        assert_eq!(told.status.code(), Some(2), "{}", stderr(&told));
-        assert!(stderr(&told).contains(path.to_str().unwrap()) && stderr(&told).contains(why), "{}", stderr(&told));
+        let message = report(&[path], &folder.path().join("page.html"));
+        assert_eq!(message.status.code(), Some(2), "{}", stderr(&message));
+        assert!(
+            stderr(&message).contains(path.to_str().unwrap()) && stderr(&message).contains(why),
+            "{}",
+            stderr(&message)
+        );
         assert!(!folder.path().join("page.html").exists());
     };
     refused(&folder.path().join("nowhere"), "is not a folder");
@@ -328,11 +334,11 @@ fn folders_of_other_units_are_refused() {
     let text = fs::read_to_string(&summary).unwrap().replace("\"mm\"", "\"m\"");
     fs::write(&summary, text).unwrap();
     let page = second.with_file_name("page.html");
-    let told = report(&[&first, &second], &page);
-    assert_eq!(told.status.code(), Some(2), "{}", stderr(&told));
+    let message = report(&[&first, &second], &page);
+    assert_eq!(message.status.code(), Some(2), "{}", stderr(&message));
     let places = [&first, &second].map(|folder| folder.to_str().unwrap());
     for what in ["length is in m, but in mm in", places[0], places[1]] {
-        assert!(stderr(&told).contains(what), "{what}: {}", stderr(&told));
+        assert!(stderr(&message).contains(what), "{what}: {}", stderr(&message));
     }
     assert!(!page.exists());
 }
@@ -356,8 +362,8 @@ fn a_line_that_is_being_written_is_left_out() {
 fn law(folder: &Path, name: &str) -> PathBuf {
     let test = crate::common::repository(format!("cases/law/{name}.json"));
     let out = folder.join(name);
-    let told = fecontact(&["law", test.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-    assert!(told.status.success(), "{}", stderr(&told));
+    let message = fecontact(&["law", test.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert!(message.status.success(), "{}", stderr(&message));
     out
 }
 
@@ -388,11 +394,11 @@ fn a_law_driven_alone_has_its_page() {
     assert_eq!(fs::read(outs[0].join("report.html")).unwrap(), written);
     let (_kept, ran) = run(json!({"report": false}));
     let file = folder.path().join("all.html");
-    let told = report(&[&outs[0], &outs[1]], &file);
-    assert!(told.status.success(), "{}", stderr(&told));
+    let message = report(&[&outs[0], &outs[1]], &file);
+    assert!(message.status.success(), "{}", stderr(&message));
     assert_eq!(Page::read(&file).data["runs"].as_array().unwrap().len(), 2);
-    let told = report(&[&ran, &outs[0]], &file);
-    assert!(told.status.success(), "{}", stderr(&told));
+    let message = report(&[&ran, &outs[0]], &file);
+    assert!(message.status.success(), "{}", stderr(&message));
     let page = Page::read(&file);
     assert!(page.data["runs"][0]["law"].is_null() && page.data["runs"][1]["history"].is_null());
 }
@@ -404,8 +410,8 @@ fn stale_figures_are_removed() {
     fs::write(out.join("friction.svg"), "<svg data-drawn-by=\"fecontact\">").unwrap();
     fs::write(out.join("slip.svg"), "<svg>mine</svg>").unwrap();
     let file = folder.path().join("case.json");
-    let told = fecontact(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
-    assert!(told.status.success(), "{}", stderr(&told));
+    let message = fecontact(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
+    assert!(message.status.success(), "{}", stderr(&message));
     assert!(!out.join("friction.svg").exists() && out.join("slip.svg").exists());
 }
 
@@ -438,6 +444,6 @@ fn accepted_attempts_are_not_among_those_given_up() {
     let page = Page::of(&out);
     let attempts = &page.run()["newton"]["attempts"];
     assert_eq!(attempts["total"], 1, "{attempts}");
-    let told = attempts["given_up"][0]["why"].as_str().unwrap();
-    assert_eq!(told, "contact was lost during the iterations: body `block` flies off");
+    let message = attempts["given_up"][0]["why"].as_str().unwrap();
+    assert_eq!(message, "contact was lost during the iterations: body `block` flies off");
 }

@@ -38,7 +38,7 @@ fn built(text: &str, path: &Path) -> (Model, String) {
 }
 
 /// All of a model but why its methods, and the openings over which bonds fade, were chosen.
-fn told(mut model: Model) -> String {
+fn message(mut model: Model) -> String {
     for pair in &mut model.contacts {
         pair.fades = None;
     }
@@ -79,7 +79,7 @@ fn a_resolved_case_is_the_same_case() {
             run += 1;
             assert!(bits(model) == bits(again), "{}: other bits", path.display());
         } else {
-            assert!(told(model) == told(again), "{}: another model", path.display());
+            assert!(message(model) == message(again), "{}: another model", path.display());
         }
     }
     assert!(compared >= 20 && run >= 5, "{compared} cases were compared, {run} of them run");

@@ -34,8 +34,8 @@ fn no_object_takes_unknown_keys() {
 /// `law`, hold profiles.
 fn find_open(schema: &Value, place: &str, open: &mut Vec<String>) {
     let others = &schema["additionalProperties"];
-    let told = *others == json!(false) || others.is_object();
-    if schema.get("properties").is_some_and(Value::is_object) && !told {
+    let message = *others == json!(false) || others.is_object();
+    if schema.get("properties").is_some_and(Value::is_object) && !message {
         open.push(place.into());
     }
     match schema {
@@ -66,7 +66,9 @@ fn the_reference_has_every_key() {
     find_keys(&schema(), &mut keys);
     find_keys(&printed(&["schema", "law"]), &mut keys);
     assert!(keys.len() > 100, "{keys:?}");
-    keys.retain(|key| ![format!("| `{key}` |"), format!("**`{{\"{key}\"")].iter().any(|told| page.contains(told)));
+    keys.retain(|key| {
+        ![format!("| `{key}` |"), format!("**`{{\"{key}\"")].iter().any(|message| page.contains(message))
+    });
     // Tags of a choice: `"law": "coulomb"`.
     keys.retain(|key| !page.contains(&format!("**`\"{key}\": ")));
     assert!(keys.is_empty(), "python3 docs/reference.py: the page has no {keys:?}");

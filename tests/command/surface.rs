@@ -138,8 +138,8 @@ fn commands_and_their_options() {
     for command in commands.into_iter().filter(|command| *command != "help") {
         writeln!(text, "{command}").unwrap();
         let help = printed(&[command, "--help"]);
-        let told = help.lines().map(str::trim_start).filter(|line| line.starts_with(['<', '[', '-']));
-        for line in told {
+        let message = help.lines().map(str::trim_start).filter(|line| line.starts_with(['<', '[', '-']));
+        for line in message {
             // What it is for stands behind two spaces, behind a colon for a word of a choice.
             let end = if line.starts_with("- ") { ":" } else { "  " };
             writeln!(text, "  {}", line.split(end).next().unwrap_or_default()).unwrap();

@@ -130,8 +130,8 @@ fn bad_choices_are_refused() {
         (json!({"alpha_t": "1 + t"}), "along.alpha_t", "and not t"),
         (json!({"law": [{"on": "x"}]}), "", "where"),
     ] {
-        let told = refused(along);
-        assert!(told.contains(place) && told.contains(what), "{place}, {what}: {told}");
+        let message = refused(along);
+        assert!(message.contains(place) && message.contains(what), "{place}, {what}: {message}");
     }
 }
 
@@ -152,8 +152,11 @@ fn parameters_of_registered_laws_vary() {
         1.0,
         0.5,
     );
-    let told = refusal(&case);
-    assert!(["contacts.base.along.nu", "Known are `mu`, `alpha_t`"].iter().all(|what| told.contains(what)), "{told}");
+    let message = refusal(&case);
+    assert!(
+        ["contacts.base.along.nu", "Known are `mu`, `alpha_t`"].iter().all(|what| message.contains(what)),
+        "{message}"
+    );
 }
 
 /// A parameter that leaves its range in time ends the run, and says when.
@@ -165,8 +168,8 @@ fn a_parameter_that_leaves_its_range_stops_the_run() {
     while matches!(result, Ok(Some(_))) {
         result = run.next_increment();
     }
-    let told = result.err().expect("it stops").to_string();
-    assert!(told.contains("the parameters of the friction law") && told.contains("along"), "{told}");
+    let message = result.err().expect("it stops").to_string();
+    assert!(message.contains("the parameters of the friction law") && message.contains("along"), "{message}");
     assert!((0.4..0.5).contains(&run.state().time), "{}", run.state().time);
 }
 
@@ -243,13 +246,13 @@ fn friction_that_falls_below_the_dilatancy_stops_the_run() {
     let mut case = points(&json!({"mu": "0.5 - 0.3*t"}), &coulomb(0.5), 1.0, 0.1);
     case["contacts"]["base"]["dilatancy"] = json!({"rate": 0.35});
     let mut run = fecontact::run::Simulation::new(model(&case));
-    let told = loop {
+    let message = loop {
         match run.next_increment() {
             Ok(Some(_)) => {}
             Ok(None) => panic!("it goes on where sliding produces energy"),
             Err(error) => break error.to_string(),
         }
     };
-    assert!(["dilatancy.rate", "0.35", "along"].iter().all(|what| told.contains(what)), "{told}");
+    assert!(["dilatancy.rate", "0.35", "along"].iter().all(|what| message.contains(what)), "{message}");
     assert!((0.48..=0.5).contains(&run.state().time), "{}", run.state().time);
 }

@@ -328,8 +328,8 @@ fn surfaces_choose_the_method() {
 /// A column on a penalty is two springs in series: half of the energy is in the penalty, and that is told with a number, with which it
 /// is not. A point mass on a spring of its own is meant.
 #[test]
-fn contacts_that_give_way_are_told() {
-    let told = |alpha_n: f64| {
+fn contacts_that_give_way_are_reported() {
+    let message = |alpha_n: f64| {
         let case = json!({
             "mesh": Blocks::default().rectangle("column", [1, 4], [0.0, 0.0], [1.0, 2.0]).json(),
             "bodies": {"column": {"material": {"model": "linear", "E": 100, "nu": 0}}},
@@ -341,11 +341,11 @@ fn contacts_that_give_way_are_told() {
         fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
         warnings.list
     };
-    let soft = told(50.0);
+    let soft = message(50.0);
     assert!(
         soft.len() == 1 && soft[0].contains("contact `base`: at t = 1 50.0 % of the elastic energy is in its penalty"),
         "{soft:?}"
     );
     let number = soft[0].split("\"alpha_n\": ").nth(1).and_then(|rest| rest.split(',').next()).expect("a number");
-    assert_eq!(told(number.parse().expect("a number")), Vec::<String>::new());
+    assert_eq!(message(number.parse().expect("a number")), Vec::<String>::new());
 }

@@ -225,8 +225,8 @@ fn a_block_that_comes_down_sliding_rides_up() {
 
 /// Friction of rate and state has no least coefficient: where it has come down to the dilatancy, the run says so.
 #[test]
-fn sliding_that_yields_work_is_told() {
-    let told = |rate: f64| {
+fn sliding_that_yields_work_is_reported() {
+    let message = |rate: f64| {
         let contact = json!({
             "friction": {"law": "rate_and_state", "f_0": 0.3, "V_0": 1e-3, "a": 0.01, "b": 0.05, "D_c": 1e-3, "alpha_t": ALPHA_T},
             "dilatancy": {"rate": rate}});
@@ -252,8 +252,8 @@ fn sliding_that_yields_work_is_told() {
         warnings.list.into_iter().filter(|warning| warning.contains("produces energy")).collect::<Vec<_>>()
     };
     // Steadily 0.3 − 0.04 ln 300 = 0.07.
-    assert_eq!(told(0.05), Vec::<String>::new());
-    let warned = told(0.2);
+    assert_eq!(message(0.05), Vec::<String>::new());
+    let warned = message(0.2);
     assert!(
         warned.len() == 1 && warned[0].contains("contact `base`") && warned[0].contains("0.2000 per slip"),
         "{warned:?}"
@@ -320,18 +320,18 @@ fn box_under_constant(name: &str, run: Finished, dilation: fn(f64) -> f64) -> f6
             _ => start,
         };
         let lift = if name == "volume" { -start / ALPHA_N } else { d - pressure / ALPHA_N };
-        let told = format!("constant {name} at {}", state.time);
-        close(&told, friction.opening, d, 1e-9 * DILATANCY[1]);
-        close(&told, friction.pressure, pressure, 1e-9 * pressure);
-        close(&told, state.displacement[1], lift, 1e-9 * DILATANCY[1]);
-        close(&told, friction.plastic_slip, state.displacement[0] - friction.traction / ALPHA_T, 1e-12);
+        let message = format!("constant {name} at {}", state.time);
+        close(&message, friction.opening, d, 1e-9 * DILATANCY[1]);
+        close(&message, friction.pressure, pressure, 1e-9 * pressure);
+        close(&message, state.displacement[1], lift, 1e-9 * DILATANCY[1]);
+        close(&message, friction.plastic_slip, state.displacement[0] - friction.traction / ALPHA_T, 1e-12);
         if friction.regime == Regime::Slip {
             // Coulomb's law remembers nothing.
             let strength = if friction.variables[0] == 0.0 { MU * pressure } else { friction.traction.abs() };
-            close(&told, friction.traction.abs(), strength, 1e-9 * pressure);
+            close(&message, friction.traction.abs(), strength, 1e-9 * pressure);
             slid += 1;
         }
-        assert!(d >= last[0], "{told}: it comes down");
+        assert!(d >= last[0], "{message}: it comes down");
         last = [d, way];
     }
     assert!(slid > 30 && last[1] > 0.5 && last[0] > 0.9 * DILATANCY[1], "constant {name}: {slid}, {last:?}");

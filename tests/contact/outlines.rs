@@ -52,7 +52,7 @@ fn whole_outlines_press_where_they_face() {
 }
 
 fn overlapping(case: &Value) -> Vec<String> {
-    common::model(case).warnings().into_iter().filter(|told| told.contains("overlap")).collect()
+    common::model(case).warnings().into_iter().filter(|message| message.contains("overlap")).collect()
 }
 
 /// Disks that are apart do not overlap, whatever their outlines face.
@@ -133,8 +133,8 @@ fn closing_an_overlap_leaves_a_cylinder_round() {
                        "loads": [{"on": "top", "total_force": {"y": -5}}]}],
         })
     };
-    let told = overlapping(&case(Value::Null));
-    assert!(told.len() == 1 && told[0].contains("\"initial\": {\"pressure\": 0}"), "{told:?}");
+    let message = overlapping(&case(Value::Null));
+    assert!(message.len() == 1 && message[0].contains("\"initial\": {\"pressure\": 0}"), "{message:?}");
     let closed = case(json!({"pressure": 0}));
     assert_eq!(overlapping(&closed), Vec::<String>::new());
     let run = finish(&closed);
@@ -147,7 +147,7 @@ fn closing_an_overlap_leaves_a_cylinder_round() {
 /// A gap that a pressure is said to act across is told; where no pressure acts it stays, and an overlap deeper than a tenth of an edge is not
 /// sent there.
 #[test]
-fn a_pressure_across_a_gap_is_told() {
+fn a_pressure_across_a_gap_is_reported() {
     let case = |at: f64, initial: Value| {
         json!({
             "mesh": {"blocks": [
@@ -159,15 +159,15 @@ fn a_pressure_across_a_gap_is_told() {
             "steps": [{"name": "rest", "duration": 1, "supports": [{"on": "low", "ux": 0, "uy": 0}, {"on": "up", "ux": 0, "uy": 0}]}],
         })
     };
-    let told = |at: f64, initial: Value| common::model(&case(at, initial)).warnings();
-    let across = told(1.05, json!({"pressure": 3}));
+    let message = |at: f64, initial: Value| common::model(&case(at, initial)).warnings();
+    let across = message(1.05, json!({"pressure": 3}));
     assert!(across.len() == 1 && across[0].contains("closes a gap of 0.05 at"), "{across:?}");
     assert!(common::warnings::is_listed(&across[0]), "{across:?}");
-    assert_eq!(told(1.03, json!({"pressure": 3})), Vec::<String>::new());
+    assert_eq!(message(1.03, json!({"pressure": 3})), Vec::<String>::new());
     let open = common::model(&case(1.05, json!({"pressure": 0})));
     assert_eq!(open.warnings(), Vec::<String>::new());
     open.initial_state().contacts[0].iter().for_each(|state| close("gap", state.gap, 0.05 - 1e-6 / 3.0, 1e-12));
-    let [small, large] = [0.99, 0.9].map(|at| told(at, Value::Null));
+    let [small, large] = [0.99, 0.9].map(|at| message(at, Value::Null));
     assert!(small.len() == 1 && small[0].contains("\"pressure\": 0"), "{small:?}");
     assert!(
         large.len() == 1 && large[0].contains("overlap by up to 0.1") && !large[0].contains("\"pressure\": 0"),

@@ -165,11 +165,11 @@ fn a_field_does_not_depend_on_the_mesh() {
 fn fields_are_truncated_to_the_range_of_the_law() {
     let random = |seed: u64, mean: f64, deviation: f64| json!({"random": {"seed": seed, "mean": mean, "deviation": deviation, "correlation": 1e-3}});
     let share = |model: &Model, name: &str| {
-        let (pair, told) = (&model.contacts[0], model.warnings());
+        let (pair, said) = (&model.contacts[0], model.warnings());
         let outside = pair.truncated[name];
         let text =
             format!("`{name}` is random, and outside the range of the friction law at {outside} of 801 contact points");
-        assert!(told.iter().any(|warning| warning.contains("contact `base`") && warning.contains(&text)), "{told:?}");
+        assert!(said.iter().any(|warning| warning.contains("contact `base`") && warning.contains(&text)), "{said:?}");
         outside as f64 / pair.points.len() as f64
     };
     let allowed = |share: f64| ERRORS * (share * (1.0 - share) / 801.0).sqrt();
@@ -226,7 +226,7 @@ fn a_resolved_case_has_the_same_field() {
 #[test]
 fn bad_fields_are_refused() {
     let good = json!({"seed": 1, "mean": 0.4, "deviation": 0.1, "correlation": 1});
-    let told = |key: &str, value: Value| {
+    let said = |key: &str, value: Value| {
         let mut random = good.clone();
         random[key] = value;
         let case = block(4, &coulomb(), &json!({"mu": {"random": random}}));
@@ -235,7 +235,7 @@ fn bad_fields_are_refused() {
             Err(error) => Some(error.to_string()),
         }
     };
-    assert_eq!(told("seed", json!(2)), None);
+    assert_eq!(said("seed", json!(2)), None);
     for (key, value, place, what) in [
         ("deviation", json!(-0.1), "contacts.base.along.mu.random.deviation", "is -0.1: must be zero or positive"),
         ("correlation", json!(0), "contacts.base.along.mu.random.correlation", "is 0: must be positive"),
@@ -249,7 +249,7 @@ fn bad_fields_are_refused() {
         // No field of this mean has any value that the law takes.
         ("mean", json!(-5), "contacts.base.along.mu at", "positive"),
     ] {
-        let message = told(key, value).unwrap_or_else(|| panic!("{key} is taken"));
+        let message = said(key, value).unwrap_or_else(|| panic!("{key} is taken"));
         assert!(message.contains(place) && message.contains(what), "{key}: {message}");
     }
     let mut random = good.clone();

@@ -320,7 +320,7 @@ fn a_periodic_fault_slides_under_uniform_tractions() {
 }
 
 /// What a run says of small sliding.
-fn told(case: &Value) -> Vec<String> {
+fn message(case: &Value) -> Vec<String> {
     let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(case)));
     fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
     warnings.list.into_iter().filter(|warning| warning.contains("small sliding")).collect()
@@ -336,41 +336,41 @@ fn dragged(by: f64, lifted: f64) -> Value {
 /// A run warns where a point, closed or open, slides by more than the stated share of the shorter edge, or a surface
 /// turns by more than the stated angle; and not before.
 #[test]
-fn what_is_no_small_sliding_is_told() {
+fn what_is_no_small_sliding_is_reported() {
     let edge = 1.0 / 7.0;
     for lifted in [0.0, 0.01] {
-        assert_eq!(told(&dragged(0.95 * LITTLE_SLIP * edge, lifted)), Vec::<String>::new());
+        assert_eq!(message(&dragged(0.95 * LITTLE_SLIP * edge, lifted)), Vec::<String>::new());
         for way in [1.05, -1.05] {
-            let far = told(&dragged(way * LITTLE_SLIP * edge, lifted));
+            let far = message(&dragged(way * LITTLE_SLIP * edge, lifted));
             assert!(far.len() == 1 && far[0].contains("10.5 % of the distance between nodes, but small"), "{far:?}");
         }
     }
     for (share, count) in [(0.95, 0), (1.05, 1)] {
         let mut case = dragged(share * LITTLE_SLIP * 0.5 * edge, 0.0);
         case["mesh"] = quadratic(&case["mesh"], half_way);
-        assert_eq!(told(&case).len(), count, "quadratic edges");
+        assert_eq!(message(&case).len(), count, "quadratic edges");
     }
     for (share, count) in [(0.95, 0), (1.05, 1)] {
         let angle = share * LITTLE_TURN;
         let mut case = dragged(0.0, 0.0);
         let turn = json!({"about": [0.5, 0.5], "angle": angle});
         case["steps"][0]["supports"] = json!([{"on": "lower", "rotation": turn}, {"on": "upper", "rotation": turn}]);
-        let turned = told(&case);
+        let turned = message(&case);
         assert_eq!(turned.len(), count, "{turned:?}");
-        assert!(turned.iter().all(|told| told.contains("rotated by 0.021 rad")), "{turned:?}");
+        assert!(turned.iter().all(|message| message.contains("rotated by 0.021 rad")), "{turned:?}");
     }
     for (share, count) in [(0.95, 0), (1.05, 1), (-1.05, 1)] {
         let mut case = dragged(0.0, 0.0);
         let wider = format!("{}*x", share * LITTLE_TURN);
         case["steps"][0]["supports"] =
             json!([{"on": "lower", "ux": wider, "uy": 0}, {"on": "upper", "ux": wider, "uy": 0}]);
-        let stretched = told(&case);
+        let stretched = message(&case);
         assert_eq!(stretched.len(), count, "{stretched:?}");
-        assert!(stretched.iter().all(|told| told.contains("2.1 % longer or shorter")), "{stretched:?}");
+        assert!(stretched.iter().all(|message| message.contains("2.1 % longer or shorter")), "{stretched:?}");
     }
     let finite = |mut case: Value| {
         case["contacts"]["base"]["sliding"] = json!("finite");
-        told(&case)
+        message(&case)
     };
     assert_eq!(finite(dragged(0.5, 0.0)), Vec::<String>::new());
 }
@@ -386,13 +386,13 @@ fn rigid_bodies_are_left_where_their_normal_turns() {
             "steps": [{"name": "slide", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "block", "ux": by, "uy": -1e-5}]}]})
     };
     let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
-    assert_eq!(told(&case(plane, 7.0)), Vec::<String>::new());
-    let circle = |by: f64| told(&case(json!({"circle": {"centre": [0, -5], "radius": 5}}), by));
+    assert_eq!(message(&case(plane, 7.0)), Vec::<String>::new());
+    let circle = |by: f64| message(&case(json!({"circle": {"centre": [0, -5], "radius": 5}}), by));
     assert_eq!(circle(0.95 * LITTLE_TURN * 5.0), Vec::<String>::new());
-    assert!(circle(1.1 * LITTLE_TURN * 5.0).iter().any(|told| told.contains("rotated by")));
-    let line = |by: f64| told(&case(json!({"polyline": {"points": [[-1, 0], [1, 0]]}}), by));
+    assert!(circle(1.1 * LITTLE_TURN * 5.0).iter().any(|message| message.contains("rotated by")));
+    let line = |by: f64| message(&case(json!({"polyline": {"points": [[-1, 0], [1, 0]]}}), by));
     assert_eq!(line(0.5), Vec::<String>::new());
-    assert!(line(1.5).iter().any(|told| told.contains("past the end")), "{:?}", line(1.5));
+    assert!(line(1.5).iter().any(|message| message.contains("past the end")), "{:?}", line(1.5));
 }
 
 /// On a rigid circle, points are held on the tangents at their feet: the answer of a pair, against the plane through the foot.

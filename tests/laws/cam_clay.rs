@@ -274,9 +274,9 @@ fn moduli_and_strength_come_from_the_initial_stress() {
     let of = |name: &str| old[law.description().variables.iter().position(|own| *own == name).expect(name)];
     close("p_c", of("p_c"), over * (p + q * q / (M * M * p)), 1e-10);
     close("G", of("shear_modulus"), shear, 1e-9);
-    let told = law.at_pressure(p).expect("they depend on it");
-    close("G told", told.description().shear_modulus, shear, 1e-9);
-    close("K + 4G/3", told.description().p_wave_modulus, bulk + 4.0 / 3.0 * shear, 1e-9);
+    let message = law.at_pressure(p).expect("they depend on it");
+    close("G told", message.description().shear_modulus, shear, 1e-9);
+    close("K + 4G/3", message.description().p_wave_modulus, bulk + 4.0 / 3.0 * shear, 1e-9);
     let given = Matrix2::new(1.0 + 1e-7, 0.0, 0.0, 1.0);
     let answer = law.respond(&Straining::new(given, &old), &mut old.clone()).expect("an answer");
     // dP₁₁ = dτ₁₁ − τ₁₁ dF₁₁

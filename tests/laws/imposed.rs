@@ -107,8 +107,8 @@ fn stress_tangent_and_expansion_stress_are_derivatives() {
             if heated && model != "viscoelastic" {
                 let [hi, lo] = [1e-3, -1e-3].map(|way| law.stretched(&f, rise + way).0.energy);
                 let slope = (hi - lo) / (2e-3 * ALPHA);
-                let told = new[new.len() - 1];
-                assert!((slope + told).abs() < 1e-7, "{model} at {f:?}: {slope} {told}");
+                let message = new[new.len() - 1];
+                assert!((slope + message).abs() < 1e-7, "{model} at {f:?}: {slope} {message}");
             }
             let flat = Vector5::new(f[0], f[1], f[2], f[3], 1.0);
             let (spatial, known) =

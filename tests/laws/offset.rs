@@ -49,15 +49,15 @@ fn tangents_of_opening_equal_differences() {
                 let (h, k) = (1e-7, 1e-4);
                 let by_slip = (at(slip + h, pressure).opening - at(slip - h, pressure).opening) / (2.0 * h);
                 let by_pressure = (at(slip, pressure + k).opening - at(slip, pressure - k).opening) / (2.0 * k);
-                let told = format!("{text}, {dilatancy:?}, {wear:?}, slip {slip}");
+                let message = format!("{text}, {dilatancy:?}, {wear:?}, slip {slip}");
                 assert!(
                     (response.dopening_dslip - by_slip).abs() < 1e-6,
-                    "{told}: {} {by_slip}",
+                    "{message}: {} {by_slip}",
                     response.dopening_dslip
                 );
                 let scale = 1e-3 / 700.0;
                 let off = (response.dopening_dpressure - by_pressure).abs();
-                assert!(off < 1e-3 * scale + 1e-9, "{told}: {} {by_pressure}", response.dopening_dpressure);
+                assert!(off < 1e-3 * scale + 1e-9, "{message}: {} {by_pressure}", response.dopening_dpressure);
                 slips += usize::from(by_slip > 1e-3);
                 reversals += usize::from(by_slip < -1e-3);
             }
@@ -155,13 +155,13 @@ fn tangents_of_opening_by_structure_equal_differences() {
                     let (h, k) = (1e-6, 1e-3);
                     let by_slip = (at(slip + h, pressure) - at(slip - h, pressure)) / (2.0 * h);
                     let by_pressure = (at(slip, pressure + k) - at(slip, pressure - k)) / (2.0 * k);
-                    let told = format!("{more}, {dilatancy:?}, slip {slip} from {}", start.plastic_slip);
+                    let message = format!("{more}, {dilatancy:?}, slip {slip} from {}", start.plastic_slip);
                     let off = (response.dopening_dslip - by_slip).abs();
-                    assert!(off < 3e-4 * by_slip.abs() + 1e-5, "{told}: {} {by_slip}", response.dopening_dslip);
+                    assert!(off < 3e-4 * by_slip.abs() + 1e-5, "{message}: {} {by_slip}", response.dopening_dslip);
                     let off = (response.dopening_dpressure - by_pressure).abs();
                     assert!(
                         off < 1e-3 * by_pressure.abs() + 1e-9,
-                        "{told}: {} {by_pressure}",
+                        "{message}: {} {by_pressure}",
                         response.dopening_dpressure
                     );
                     opened += usize::from(by_slip.abs() > 1e-3);
@@ -261,11 +261,11 @@ fn dilatancy_by_structure_stays_below_the_peak() {
         let error = moving(text, Some(dilatancy), None).expect_err("refused");
         format!("{}: {}", error.name, error.allowed)
     };
-    let told = refused(&text, Dilatancy::of_structure(1.001 * most));
-    assert!(told.starts_with("dilatancy.structure") && told.contains("below 0.5"), "{told}");
+    let message = refused(&text, Dilatancy::of_structure(1.001 * most));
+    assert!(message.starts_with("dilatancy.structure") && message.contains("below 0.5"), "{message}");
     for other in [0, 2, 3] {
-        let told = refused(LAWS[other], Dilatancy::of_structure(0.1));
-        assert!(told.contains("dilatancy.structure") && told.contains("has no structure"), "{told}");
+        let message = refused(LAWS[other], Dilatancy::of_structure(0.1));
+        assert!(message.contains("dilatancy.structure") && message.contains("has no structure"), "{message}");
     }
     let both = with!(Dilatancy::of_structure(0.1), rate: Some(0.1));
     assert!(refused(&text, both).contains("`rate` is given as well"));

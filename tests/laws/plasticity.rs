@@ -429,7 +429,7 @@ fn an_initial_stress_is_inside_the_law() {
 /// compared differ in what is told. A p_c that is asked for is enough. Where p alone acts, p_c = p is needed; where q = 2 p alone, p_c =
 /// p + q²/(M² p) (Cam-clay); σ_y is the difference of the principal stresses of uniaxial stress; √J₂ is |xy| in pure shear, and c the limit at φ = 0.
 #[test]
-fn what_is_needed_is_told_with_digits_that_tell() {
+fn what_is_needed_is_reported_with_digits_that_tell() {
     let pressed = CauchyStress { xx: -50.0, yy: -50.0, zz: -50.0, xy: 0.0 };
     let steep = CauchyStress { xx: -20.0 / 3.0, yy: -20.0 / 3.0, zz: -50.0 / 3.0, xy: 0.0 };
     let (p, q, critical) = (10.0, 10.0, 1.1f64);
@@ -446,10 +446,10 @@ fn what_is_needed_is_told_with_digits_that_tell() {
         assert!(admits(&*of(needed * (1.0 - 1e-8)), &stress).is_ok(), "{model}: {needed}");
         let given = needed * (1.0 - 1e-5);
         let why = admits(&*of(given), &stress).expect_err("too small").to_string();
-        let told = why.split("p_c of ").nth(1).and_then(|rest| rest.split(' ').next()).expect("what is needed");
-        let told: f64 = told.parse().expect("a number");
-        assert!(told >= needed && told < needed * (1.0 + 1e-5), "{why}");
-        admits(&*of(told), &stress).expect("as told");
+        let message = why.split("p_c of ").nth(1).and_then(|rest| rest.split(' ').next()).expect("what is needed");
+        let message: f64 = message.parse().expect("a number");
+        assert!(message >= needed && message < needed * (1.0 + 1e-5), "{why}");
+        admits(&*of(message), &stress).expect("as told");
     }
     let uniaxial = CauchyStress { xx: SIGMA_Y * (1.0 + 3e-6), yy: 0.0, zz: 0.0, xy: 0.0 };
     let sheared = CauchyStress { xx: 0.0, yy: 0.0, zz: 0.0, xy: 0.1 * (1.0 + 3e-6) };
@@ -501,7 +501,7 @@ fn a_heated_body_yields() {
 
 /// Failures say which law, and why; soils are no plates.
 #[test]
-fn what_cannot_be_answered_is_told() {
+fn what_cannot_be_answered_is_reported() {
     let law = with_elasticity(json!({"model": "von_mises", "sigma_y": SIGMA_Y}));
     let old = vec![0.0; law.description().variables.len()];
     let far = stretched(&*law, &Vector5::new(1.0, 0.0, 2.0, 1.0, 1.0), &old).expect_err("too far");

@@ -212,7 +212,7 @@ fn rows(path: &Path) -> Vec<Vec<String>> {
 
 /// Shows an accepted increment to the observer of fronts.
 fn accepted(fronts: &mut Fronts, model: &Model, old: &State, new: &State) {
-    let told = Attempt {
+    let message = Attempt {
         step: &model.steps[0],
         step_number: 0,
         ended: &[],
@@ -228,7 +228,7 @@ fn accepted(fronts: &mut Fronts, model: &Model, old: &State, new: &State) {
         uncertainty: None,
         local_error: None,
     };
-    fronts.record(model, &told).expect("a row");
+    fronts.record(model, &message).expect("a row");
 }
 
 /// The middle of a fault slips at 0.6 for 2 s and at 2 for 1 s, rests, and slips at 0.6 for another second: of the first event a share of

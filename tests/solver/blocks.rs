@@ -507,16 +507,16 @@ fn elements_that_do_not_fit_their_body_are_warned_of() {
     assert_eq!(plain("Q4", "displacement", "hencky"), [""; 0]);
     assert_eq!(plain("Q8", "reduced", "mohr_coulomb"), [""; 0]);
     for kind in ["Q4", "Q8"] {
-        let told = plain(kind, "displacement", "von_mises");
+        let text = plain(kind, "displacement", "von_mises");
         let expected = format!("its elements ({kind}) lock where it yields");
-        assert!(told.len() == 1 && told[0].contains(&expected) && told[0].contains("\"f_bar\""), "{told:?}");
-        let told = plain(kind, "displacement", "mohr_coulomb");
-        assert!(told.len() == 1 && told[0].contains("dilates") && !told[0].contains("f_bar"), "{told:?}");
+        assert!(text.len() == 1 && text[0].contains(&expected) && text[0].contains("\"f_bar\""), "{text:?}");
+        let text = plain(kind, "displacement", "mohr_coulomb");
+        assert!(text.len() == 1 && text[0].contains("dilates") && !text[0].contains("f_bar"), "{text:?}");
     }
-    let told = plain("Q4", "f_bar", "mohr_coulomb");
-    assert!(told.len() == 1 && told[0].contains("f_bar cures in part only"), "{told:?}");
+    let text = plain("Q4", "f_bar", "mohr_coulomb");
+    assert!(text.len() == 1 && text[0].contains("f_bar cures in part only"), "{text:?}");
     let plate = json!({"plane_stress": {"thickness": 1}});
     assert_eq!(lock(warned("Q4", "displacement", "von_mises", [2, 2], plate)), [""; 0]);
-    let told = lock(warned("Q8", "reduced", "hencky", [1, 1], Value::Null));
-    assert!(told.len() == 1 && told[0].contains("can bend into an hourglass"), "{told:?}");
+    let text = lock(warned("Q8", "reduced", "hencky", [1, 1], Value::Null));
+    assert!(text.len() == 1 && text[0].contains("can bend into an hourglass"), "{text:?}");
 }

@@ -351,8 +351,8 @@ fn error_functions_of_expressions_are_those_of_tables() {
             1e-15 + 1e-14 * expected.abs(),
         );
     }
-    assert!(Expression::parse("erfx(x)").is_err_and(|told| {
-        ["`erf`?", "`erfc`?"].iter().any(|near| told.to_string().contains(&format!("did you mean {near}")))
+    assert!(Expression::parse("erfx(x)").is_err_and(|message| {
+        ["`erf`?", "`erfc`?"].iter().any(|near| message.to_string().contains(&format!("did you mean {near}")))
     }));
 }
 

@@ -416,8 +416,8 @@ fn strains_that_are_no_numbers_name_their_element() {
     let first = model.mesh.elements.iter().position(|element| element.nodes.contains(&node)).expect("an element");
     let failure = assembler.forces(Trial::new(&state, &model.steps[0], 0.1, 0.1), &u, None).expect_err("no number");
     let element = model.mesh.element_tags[first];
-    let fecontact::equations::sums::TrialFailure::Inverted { element: told, .. } = failure else {
+    let fecontact::equations::sums::TrialFailure::Inverted { element: message, .. } = failure else {
         panic!("{failure:?}")
     };
-    assert_eq!(told, element);
+    assert_eq!(message, element);
 }

@@ -307,9 +307,9 @@ fn temperatures_may_be_tables_by_place() {
     for stress in stresses(&bent) {
         close("stress", stress.xx.abs().max(stress.yy.abs()).max(stress.xy.abs()), 0.0, 1e-10);
     }
-    let [table, told] = [json!({"x": [[0.5, 20], [1, 70]]}), json!("20 + 100*t*max(0, min(0.5, x - 0.5))")].map(run);
-    let [table, told] = [table, told].map(|run| run.last().displacement.clone());
-    close("the same", common::distance(&table, &told), 0.0, 1e-13);
+    let [table, message] = [json!({"x": [[0.5, 20], [1, 70]]}), json!("20 + 100*t*max(0, min(0.5, x - 0.5))")].map(run);
+    let [table, message] = [table, message].map(|run| run.last().displacement.clone());
+    close("the same", common::distance(&table, &message), 0.0, 1e-13);
     assert!(table.iter().any(|u| u.abs() > 0.01), "it widens");
 }
 
@@ -435,13 +435,13 @@ fn ground_at_rest_stays_at_rest() {
 /// What is out of balance is told by the body's name, with how much it is and what to do; a static step takes it up, and the audit
 /// closes.
 #[test]
-fn ground_out_of_balance_is_told() {
-    let told = |change: &dyn Fn(&mut Value)| {
+fn ground_out_of_balance_is_reported() {
+    let message = |change: &dyn Fn(&mut Value)| {
         let mut case = ground("linear", json!("plane_strain"), 0.0);
         change(&mut case);
         common::model(&case).warnings()
     };
-    let ramped = told(&|case| {
+    let ramped = message(&|case| {
         case["steps"][0]["loads"] =
             json!([{"on": "lower", "gravity": {"y": -9.81}}, {"on": "upper", "gravity": {"y": -9.81}}])
     });
@@ -453,13 +453,13 @@ fn ground_out_of_balance_is_told() {
     // Each body weighs 2 × 1.5 × 9.81 = 29.43; without gravity the upper one is pushed up by that, and so is the lower one but for
     // the nodes on its support.
     assert!(ramped[1].contains("resultant (0, 29.43)"), "{ramped:?}");
-    let heavier = told(&|case| case["bodies"]["upper"]["material"]["density"] = json!(1.001));
+    let heavier = message(&|case| case["bodies"]["upper"]["material"]["density"] = json!(1.001));
     assert_eq!(heavier.len(), 1);
     assert!(heavier[0].contains("body `upper`") && heavier[0].contains("(0, -0.02943)"), "{heavier:?}");
     assert!(heavier[0].contains("check initial_stress"), "{heavier:?}");
-    let open = told(&|case| drop(case["contacts"]["joint"].as_object_mut().expect("it is").remove("initial")));
+    let open = message(&|case| drop(case["contacts"]["joint"].as_object_mut().expect("it is").remove("initial")));
     assert_eq!(open.len(), 2, "{open:?}");
-    let free = told(&|case| case["steps"][0]["supports"].as_array_mut().expect("a list").truncate(3));
+    let free = message(&|case| case["steps"][0]["supports"].as_array_mut().expect("a list").truncate(3));
     assert!(free.len() == 1 && free[0].contains("body `upper`"), "{free:?}");
     let mut case = ground("neo_hookean", json!("plane_strain"), 0.0);
     case["bodies"]["upper"]["material"]["density"] = json!(1.05);

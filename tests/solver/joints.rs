@@ -66,8 +66,8 @@ fn a_body_is_held_by_nodes_that_it_shares() {
 #[test]
 fn bodies_that_share_nodes_are_refused_if_all_are_free() {
     let refused = |supports: Value, words: &str| {
-        let told = refusal(&pulled(row(2), supports));
-        assert!(told.contains(words), "`{words}` is not in `{told}`");
+        let message = refusal(&pulled(row(2), supports));
+        assert!(message.contains(words), "`{words}` is not in `{message}`");
     };
     refused(json!([]), "`body0` with `body1` can move freely along x: there is no support at all");
     refused(
@@ -93,8 +93,8 @@ fn apart(joined: impl Fn(Builder) -> Builder, steps: LoadStep) -> Builder {
 }
 
 fn refused(builder: Builder, words: &str) {
-    let told = builder.build().err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(told.contains(words), "`{words}` is not in `{told}`");
+    let message = builder.build().err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(message.contains(words), "`{words}` is not in `{message}`");
 }
 
 /// What couples two bodies that are pulled in a row takes the force from one to the other: σ L (1/E₁ + 1/E₂) at the end.

@@ -274,7 +274,7 @@ fn the_tangent_knows_inclined_supports() {
     }
 }
 
-fn told(builder: Builder) -> String {
+fn message(builder: Builder) -> String {
     builder.build().err().map(|error| error.to_string()).unwrap_or_default()
 }
 
@@ -292,11 +292,11 @@ fn directions_that_agree_in_time_are_accepted_and_a_contradiction_has_its_instan
             .support(corner().along([1.0, 1.0], expression(text)))
     };
     for agrees in [three("0*t", "0*t", "0*t"), three("0.11*t", "0.05*t", "0.1*t"), twice("t/10")] {
-        assert_eq!(told(block(0.0, false).step(agrees)), "");
+        assert_eq!(message(block(0.0, false).step(agrees)), "");
     }
-    let later = told(block(0.0, false).step(three("0.11*t + max(0, t - 0.5)", "0.05*t", "0.1*t")));
+    let later = message(block(0.0, false).step(three("0.11*t + max(0, t - 0.5)", "0.05*t", "0.1*t")));
     assert!(later.contains("contradictory values: at t = 0.51 two of them move it by 0.0561"), "{later}");
-    let later = told(block(0.0, false).step(twice("0.1*t^2")));
+    let later = message(block(0.0, false).step(twice("0.1*t^2")));
     assert!(later.contains("contradicts what this step gives node 0 along the same direction"), "{later}");
 }
 
@@ -337,8 +337,8 @@ fn what_inclined_supports_cannot_say_is_refused() {
         ),
         (step().support(bottom().un(expression("log(x-5)"))), "steps[0].supports[1].un: has no finite value at t ="),
     ] {
-        let told = told(block(0.0, false).step(model));
-        assert!(told.starts_with(words), "`{words}` is not in `{told}`");
+        let message = message(block(0.0, false).step(model));
+        assert!(message.starts_with(words), "`{words}` is not in `{message}`");
     }
 }
 

@@ -65,7 +65,7 @@ impl<F: Fn(f64) -> Result<[f64; 2], ()>> Equations for Unknown<F> {
 /// The correction of atan(u) = 0 from u = 1.6 leads to −2.5, which is out of bounds here, and that is told; from u = 1 it
 /// leads to the root.
 #[test]
-fn a_correction_out_of_bounds_is_told() {
+fn a_correction_out_of_bounds_is_reported() {
     let bounded = |u: f64| if u.abs() < 2.0 { Ok([u.atan(), 1.0 / (1.0 + u * u)]) } else { Err(()) };
     assert_eq!(root(1.6, bounded).1, Err(NewtonFailure::Evaluation(())));
     let (iterations, result) = root(1.0, bounded);
@@ -375,13 +375,15 @@ fn a_run_that_meets_a_limit_point_under_forces_says_so() {
         }
     };
     assert_eq!(stopped(0.79, 1e-4, json!({})), "");
-    let told = stopped(2.0, 1e-4, json!({}));
-    let (_, reached) =
-        told.split_once("this may be a limit point").and_then(|(_, rest)| rest.split_once("pressure ")).expect(&told);
+    let message = stopped(2.0, 1e-4, json!({}));
+    let (_, reached) = message
+        .split_once("this may be a limit point")
+        .and_then(|(_, rest)| rest.split_once("pressure "))
+        .expect(&message);
     let reached: f64 = reached.split(' ').next().expect("a number").parse().expect("a number");
-    assert!((0.79..0.8008).contains(&reached), "{told}");
-    let told = stopped(0.4, 0.1, json!({"max_iterations": 1, "tolerance": 1e-15}));
-    assert!(told.contains("no equilibrium within 1 iteration") && !told.contains("limit point"), "{told}");
+    assert!((0.79..0.8008).contains(&reached), "{message}");
+    let message = stopped(0.4, 0.1, json!({"max_iterations": 1, "tolerance": 1e-15}));
+    assert!(message.contains("no equilibrium within 1 iteration") && !message.contains("limit point"), "{message}");
 }
 
 /// Slip weakening on a rigid plane is unstable once it weakens, over the length that slips, by more than 1.158 G/(1 − ν) per slip (Uenishi &
@@ -409,11 +411,11 @@ fn a_run_that_meets_unstable_slip_says_so() {
         }
     };
     assert_eq!(stopped(2.0, json!({})), "");
-    let told = stopped(0.002, json!({}));
-    let (_, weakening) = told.split_once("friction weakens by up to ").expect(&told);
+    let message = stopped(0.002, json!({}));
+    let (_, weakening) = message.split_once("friction weakens by up to ").expect(&message);
     let weakening: f64 = weakening.split(' ').next().expect("a number").parse().expect("a number");
     let modulus = 1000.0 / 2.6 / 0.7;
-    assert!(told.contains("may be unstable here") && weakening > 1.158 * modulus, "{told}");
-    let told = stopped(2.0, json!({"max_iterations": 1, "tolerance": 1e-15}));
-    assert!(told.contains("no equilibrium within 1 iteration") && !told.contains("unstable"), "{told}");
+    assert!(message.contains("may be unstable here") && weakening > 1.158 * modulus, "{message}");
+    let message = stopped(2.0, json!({"max_iterations": 1, "tolerance": 1e-15}));
+    assert!(message.contains("no equilibrium within 1 iteration") && !message.contains("unstable"), "{message}");
 }

@@ -244,8 +244,8 @@ fn what_a_plate_cannot_do_is_refused() {
             "steps[0].velocity.block: is NaN: must be a finite number",
         ),
     ] {
-        let told = model.build().err().map(|error| error.to_string()).unwrap_or_default();
-        assert!(told.starts_with(words), "`{words}` is not in `{told}`");
+        let message = model.build().err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(message.starts_with(words), "`{words}` is not in `{message}`");
     }
 }
 

@@ -214,7 +214,7 @@ fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
     let p = 1e-5;
     let tube = |r: f64| [p / 3.0 * (1.0 - 4.0 / (r * r)), p / 3.0 * (1.0 + 4.0 / (r * r))];
     let sphere = |r: f64| [p / 7.0 * (1.0 - 8.0 / r.powi(3)), p / 7.0 * (1.0 + 4.0 / r.powi(3))];
-    let told = |what: &str, errors: [f64; 4], bound: f64| {
+    let message = |what: &str, errors: [f64; 4], bound: f64| {
         println!(
             "{what}: inside rr {:.3} %, hoop {:.3} %; outside rr {:.3} %, hoop {:.3} %",
             100.0 * errors[0],
@@ -229,7 +229,7 @@ fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
     let loads = json!([{"on": "body_left", "traction": {"x": p}}]);
     let mut case_of_rings = case(&json!("axisymmetric"), quadratic(&mesh, half_way), linear(), loads);
     case_of_rings["steps"][0]["supports"].as_array_mut().expect("supports").push(json!({"on": "body_top", "uy": 0}));
-    told(
+    message(
         "tube of rings, Q8 16 x 2",
         surface_errors(&finish(&case_of_rings), ["body_left", "body_right"], tube, true),
         0.003,
@@ -240,9 +240,9 @@ fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
         linear(),
         json!([{"on": "inside", "pressure": p}]),
     );
-    told("sphere, Q8 10 x 16", surface_errors(&finish(&ball), ["inside", "outside"], sphere, false), 0.01);
+    message("sphere, Q8 10 x 16", surface_errors(&finish(&ball), ["inside", "outside"], sphere, false), 0.01);
     ball["mesh"] = quarter("Q4", [1.0, 2.0], [20, 32]);
-    told("sphere, Q4 20 x 32", surface_errors(&finish(&ball), ["inside", "outside"], sphere, false), 0.01);
+    message("sphere, Q4 20 x 32", surface_errors(&finish(&ball), ["inside", "outside"], sphere, false), 0.01);
     for (kind, element, elements, bound) in [
         ("Q4", "displacement", [9, 16], 0.03),
         ("Q4", "f_bar", [9, 16], 0.03),
@@ -256,7 +256,7 @@ fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
         if element == "f_bar" {
             ring["bodies"]["body"]["material"]["model"] = json!("hencky");
         }
-        told(
+        message(
             &format!("tube, {kind} {element} {elements:?}"),
             surface_errors(&finish(&ring), ["inside", "outside"], tube, false),
             bound,
@@ -265,6 +265,6 @@ fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
     for (elements, to_and_fro, bound) in [([9, 16], true, 0.03), ([18, 32], true, 0.006), ([18, 32], false, 0.05)] {
         let run = finish(&ring_of_triangles(elements, to_and_fro, p));
         let what = format!("tube, T3 {elements:?}, to and fro {to_and_fro}");
-        told(&what, surface_errors(&run, ["body_left", "body_right"], tube, false), bound);
+        message(&what, surface_errors(&run, ["body_left", "body_right"], tube, false), bound);
     }
 }

@@ -149,8 +149,8 @@ fn a_step_that_was_led_is_saved_in_the_process_alone() {
     let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
     assert!(simulation.save().bytes().is_ok());
     simulation.prescribe("square_top", Axis::Y, 0.01, 10.0).expect("a support");
-    let told = simulation.save().bytes().unwrap_err().to_string();
-    assert!(told.contains("step `pull` was changed by its caller"), "{told}");
+    let message = simulation.save().bytes().unwrap_err().to_string();
+    assert!(message.contains("step `pull` was changed by its caller"), "{message}");
     let model = simulation.model().clone();
     let mut again = Simulation::resume(model, simulation.save());
     while again.next_increment().expect("it is solved").is_some() {}
@@ -275,8 +275,8 @@ fn bounds_of_increments_are_checked() {
         (Some(f64::NAN), None, "increments.max: is NaN: must be positive"),
         (None, Some(0.0), "increments.min: is 0: must be positive"),
     ] {
-        let told = simulation.bound_increments(max, min).expect_err("bad bounds").to_string();
-        assert!(told.starts_with(words), "{told}");
+        let message = simulation.bound_increments(max, min).expect_err("bad bounds").to_string();
+        assert!(message.starts_with(words), "{message}");
     }
     assert!(simulation.save().bytes().is_ok(), "nothing was changed");
     // A min above the new max comes down to it.
@@ -287,16 +287,16 @@ fn bounds_of_increments_are_checked() {
 }
 
 #[test]
-fn names_that_a_run_does_not_know_are_told() {
+fn names_that_a_run_does_not_know_are_reported() {
     let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
-    let told = [
+    let message = [
         simulation.reaction("square_tip").unwrap_err().to_string(),
         simulation.contact_field("base", "pressure").unwrap_err().to_string(),
         simulation.prescribe("square_left", Axis::X, 0.0, 1.0).unwrap_err().to_string(),
     ];
-    assert!(told[0].contains("square_tip") && told[0].contains("square_top"), "{told:?}");
-    assert!(told[1].contains("no contact `base`"), "{told:?}");
-    assert!(told[2].contains("`square_left` has no support along x in step `pull`"), "{told:?}");
+    assert!(message[0].contains("square_tip") && message[0].contains("square_top"), "{message:?}");
+    assert!(message[1].contains("no contact `base`"), "{message:?}");
+    assert!(message[2].contains("`square_left` has no support along x in step `pull`"), "{message:?}");
 }
 
 /// Contact fields by name are those of the state.
@@ -310,8 +310,8 @@ fn contact_fields_are_there_by_name() {
     assert_eq!(field("pressure"), points.iter().map(|point| point.friction.pressure).collect::<Vec<_>>());
     let mu = field("mu");
     assert!(field("state").contains(&2.0) && mu.iter().all(|mu| (0.2..=0.4).contains(mu)), "{mu:?}");
-    let told = simulation.contact_field("base", "theta").unwrap_err().to_string();
-    assert!(told.contains("no field `theta`") && told.contains("structure"), "{told}");
+    let message = simulation.contact_field("base", "theta").unwrap_err().to_string();
+    assert!(message.contains("no field `theta`") && message.contains("structure"), "{message}");
 }
 
 /// All files of a run, but the times it took.
@@ -353,15 +353,15 @@ fn observers_go_back_with_the_run() {
     let mut observers: [&mut dyn Observer; 5] = [&mut history, &mut log, &mut fields, &mut fronts, &mut warnings];
     for _ in 0..4 {
         let candidate = simulation.try_increment().expect("it begins").expect("an increment");
-        let told = simulation.attempt_of(&candidate);
-        observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
+        let message = simulation.attempt_of(&candidate);
+        observers.iter_mut().for_each(|observer| observer.record(&model, &message).expect("it writes"));
         simulation.apply(candidate).expect("it goes on");
     }
     let saved = SavedRun::new(&simulation, &mut observers).expect("it is saved");
     let step = |simulation: &mut Simulation, observers: &mut [&mut dyn Observer]| {
         while let Some(candidate) = simulation.try_increment().expect("it begins") {
-            let told = simulation.attempt_of(&candidate);
-            observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
+            let message = simulation.attempt_of(&candidate);
+            observers.iter_mut().for_each(|observer| observer.record(&model, &message).expect("it writes"));
             simulation.apply(candidate).expect("it goes on");
         }
     };

@@ -22,7 +22,7 @@ fn beam(raised: f64, by: f64, dt: Value) -> Value {
 }
 
 /// Runs a case with its warnings.
-fn told(case: &Value) -> (Finished, Vec<String>) {
+fn message(case: &Value) -> (Finished, Vec<String>) {
     let run = finish(case);
     let mut warnings = Warnings::default();
     let mut simulation = Simulation::new(run.model.clone());
@@ -43,7 +43,7 @@ fn is_unstable(warnings: &[String]) -> bool {
 #[test]
 fn long_increments_keep_to_the_stable_branch() {
     for dt in [json!({"initial": 0.1}), json!({"initial": 0.05, "error": 1e-3})] {
-        let (run, warnings) = told(&beam(0.05, 2.0, dt));
+        let (run, warnings) = message(&beam(0.05, 2.0, dt));
         close("end force", run.reaction("right", run.last())[0], -0.1181, 1e-2);
         assert!(!is_unstable(&warnings), "{warnings:?}");
     }
@@ -54,7 +54,7 @@ fn long_increments_keep_to_the_stable_branch() {
 #[test]
 fn the_straight_branch_is_reported_from_eulers_load_on() {
     let strain = 4.0 * std::f64::consts::PI.powi(2) / 12.0 * (0.5f64 / 20.0).powi(2);
-    let at = |times: f64| told(&beam(0.0, times * strain * 20.0, json!({"initial": 0.1, "max": 0.1}))).1;
+    let at = |times: f64| message(&beam(0.0, times * strain * 20.0, json!({"initial": 0.1, "max": 0.1}))).1;
     assert!(!is_unstable(&at(0.9)));
     let warnings = at(2.0);
     let warning = warnings.iter().find(|warning| warning.contains("equilibria are unstable")).expect("a warning");
@@ -86,10 +86,10 @@ fn what_slides_elsewhere_hides_no_instability() {
         case["steps"][0]["supports"].as_array_mut().expect("supports").extend(held);
         case
     };
-    let (run, warnings) = told(&beside(beam(0.05, 2.0, json!({"initial": 0.1}))));
+    let (run, warnings) = message(&beside(beam(0.05, 2.0, json!({"initial": 0.1}))));
     close("end force", run.reaction("right", run.last())[0], -0.1181, 1e-2);
     assert!(!is_unstable(&warnings), "{warnings:?}");
-    assert!(is_unstable(&told(&beside(beam(0.0, 0.1, json!({"initial": 0.1, "max": 0.1})))).1));
+    assert!(is_unstable(&message(&beside(beam(0.0, 0.1, json!({"initial": 0.1, "max": 0.1})))).1));
 }
 
 /// A straight column, clamped at one end, at the other held across only and pressed by a pressure, which follows the surface: the tangent
@@ -102,7 +102,7 @@ fn the_sign_of_the_determinant_tells_where_the_tangent_is_not_symmetric() {
         let mut case = beam(0.0, 0.0, json!({"initial": 0.1, "max": 0.1}));
         case["steps"][0]["supports"] = json!([{"on": "left", "ux": 0, "uy": 0}, {"on": "right", "uy": 0}]);
         case["steps"][0]["loads"] = json!([{"on": "right", "pressure": format!("{}*t", times * critical)}]);
-        told(&case).1
+        message(&case).1
     };
     assert!(!is_unstable(&at(0.9)));
     let warnings = at(1.8);

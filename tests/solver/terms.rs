@@ -256,8 +256,8 @@ fn the_tangent_of_a_contact_that_moves_or_holds_water_is_that_of_the_residual() 
             let section = [Section::PlaneStrain, Section::Axisymmetric][(k / 2 + k + i) % 2];
             let model = model_in(section, &case);
             for [slide, lift] in [[1e-4, -0.01], [3e-2, -0.01], [1e-2, 0.04]] {
-                let told = format!("{method}, {sliding} on {master} in {section:?}, {more}, moved {slide}, {lift}");
-                moved_tangent(&model, [slide, lift], !more["fluid_pressure"].is_null(), &told);
+                let message = format!("{method}, {sliding} on {master} in {section:?}, {more}, moved {slide}, {lift}");
+                moved_tangent(&model, [slide, lift], !more["fluid_pressure"].is_null(), &message);
             }
         }
     }
@@ -284,10 +284,10 @@ fn the_tangent_of_friction_by_effective_stress_is_that_of_the_residual() {
                 for section in [Section::PlaneStrain, Section::Axisymmetric] {
                     let model = model_in(section, &case);
                     for slide in [1e-4, 3e-2] {
-                        let told = format!(
+                        let message = format!(
                             "{method}, {sliding} on {master} in {section:?}, {element} {material}, slid {slide}"
                         );
-                        moved_tangent(&model, [slide, -0.01], false, &told);
+                        moved_tangent(&model, [slide, -0.01], false, &message);
                     }
                 }
             }
@@ -296,7 +296,7 @@ fn the_tangent_of_friction_by_effective_stress_is_that_of_the_residual() {
 }
 
 /// Check the tangent where the upper block is moved; it is closed unless it is lifted.
-fn moved_tangent(model: &Arc<Model>, [slide, lift]: [f64; 2], is_wet: bool, told: &str) {
+fn moved_tangent(model: &Arc<Model>, [slide, lift]: [f64; 2], is_wet: bool, message: &str) {
     let (state, step) = (moving(model), &model.steps[0]);
     let mut u = arbitrary_displacement(model, 1e-3);
     let upper = model.bodies.iter().find(|body| body.name == "upper").expect("a body");
@@ -312,9 +312,9 @@ fn moved_tangent(model: &Arc<Model>, [slide, lift]: [f64; 2], is_wet: bool, told
     let points = || assembler.evaluation.contacts.iter().flatten();
     let closed = points().filter(|point| point.friction.pressure > 0.0).count();
     let wet = points().filter(|point| point.fluid > 0.0).count();
-    assert_eq!(closed == 0, lift > 0.0, "{told}: {closed} are closed");
-    assert_eq!(wet > 0, is_wet, "{told}: {wet} are in the fluid");
-    assert!(error < 1e-6, "{told}: {error:.1e}");
+    assert_eq!(closed == 0, lift > 0.0, "{message}: {closed} are closed");
+    assert_eq!(wet > 0, is_wet, "{message}: {wet} are in the fluid");
+    assert!(error < 1e-6, "{message}: {error:.1e}");
 }
 
 fn sum(forces: &[f64], component: usize) -> f64 {

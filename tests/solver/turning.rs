@@ -240,7 +240,7 @@ fn what_these_plates_cannot_do_is_refused() {
             "steps[0].supports[1].uy: is NaN: must be a finite number",
         ),
     ] {
-        let told = model.build().err().map(|error| error.to_string()).unwrap_or_default();
-        assert!(told.starts_with(words), "`{words}` is not in `{told}`");
+        let message = model.build().err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(message.starts_with(words), "`{words}` is not in `{message}`");
     }
 }

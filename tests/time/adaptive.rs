@@ -435,17 +435,17 @@ fn cuts_of_a_dynamic_increment_become_stronger() {
 
 /// The shortest increment is accepted with any error, and the user is told once.
 #[test]
-fn an_error_that_cannot_be_met_is_told() {
+fn an_error_that_cannot_be_met_is_reported() {
     let slider = Slider { velocity: 10.0, duration: 6.0, ..Slider::default() };
     let model = model(&slider.case(&trapezoidal(), json!({"initial": 0.1, "min": 0.05, "max": 1, "error": 1e-6})));
     let mut warnings = Warnings::default();
     let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut warnings]);
     assert!(result.is_ok() && report.increments <= 120);
-    let told: Vec<_> = warnings.list.iter().filter(|warning| warning.contains("error")).collect();
-    assert_eq!(told.len(), 1, "{told:?}");
+    let message: Vec<_> = warnings.list.iter().filter(|warning| warning.contains("error")).collect();
+    assert_eq!(message.len(), 1, "{message:?}");
     for part in ["step `go`, t = 0: the increment 5.000e-2 is the shortest", "exceeds 1e-6; lower dt.min"] {
-        assert!(told[0].contains(part), "{}", told[0]);
+        assert!(message[0].contains(part), "{}", message[0]);
     }
 }
 

@@ -284,7 +284,7 @@ fn a_load_that_jumps_at_one_body_leaves_the_others_as_they_are() {
 /// What a free body of quadratic elements is told to have of momentum does not change under explicit increments, although it shakes:
 /// lumped masses keep P and L by themselves, and not by the shape functions.
 #[test]
-fn explicit_increments_keep_the_momentum_that_is_told() {
+fn explicit_increments_keep_the_momentum_that_is_reported() {
     let corners = Blocks::default().rectangle("body", [2, 2], [0.0, 0.0], [1.0, 1.0]).json();
     let case = json!({
         "mesh": common::quadratic(&corners, common::half_way),

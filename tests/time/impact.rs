@@ -114,15 +114,15 @@ fn a_struck_surface_with_mass_rings_and_creates_energy() {
 /// Energy that came from nowhere, more than there was, is an error, in shares of the energy there was and not of what it became,
 /// with the cure; what is solved well is none.
 #[test]
-fn energy_that_came_from_nowhere_is_told() {
+fn energy_that_came_from_nowhere_is_reported() {
     for (massless, stiffness, tells) in [(false, 10.0, true), (false, 1000.0, true), (true, 10.0, false)] {
         let model = struck_bar(TRAPEZOIDAL, massless, stiffness);
         let (mut warnings, mut record) = (Warnings::default(), Record::default());
-        let told = match run(&Arc::new(model), &mut [&mut warnings, &mut record]).1 {
+        let message = match run(&Arc::new(model), &mut [&mut warnings, &mut record]).1 {
             Err(Error::Unstable(text)) => Some(text),
             ended => ended.map(|_| None).expect("it is solved"),
         };
-        assert_eq!(told.is_some(), tells, "{told:?}");
+        assert_eq!(message.is_some(), tells, "{message:?}");
         assert!(warnings.list.iter().all(|warning| !warning.contains("energy balance")), "{:?}", warnings.list);
         let there_was = 0.5 * HEIGHT * SPEED * SPEED;
         let gained = record.states.iter().map(|state| {
@@ -130,7 +130,7 @@ fn energy_that_came_from_nowhere_is_told() {
             energy.kinetic + energy.strain + energy.contact_elastic - there_was
         });
         let percent = 100.0 * gained.fold(0.0, f64::max) / there_was;
-        if let Some(text) = told {
+        if let Some(text) = message {
             assert!(
                 percent > 200.0
                     && text.contains("spurious gain")

@@ -275,8 +275,8 @@ fn what_it_cannot_do_is_refused() {
         (|c| c["steps"][0]["rupture"] = json!({"slip_rate": 1}), "steps[0].rupture", "by itself"),
     ];
     for (change, place, what) in changes {
-        let told = refused(&change);
-        assert!(told.contains(place) && told.contains(what), "{place}, {what}: {told}");
+        let message = refused(&change);
+        assert!(message.contains(place) && message.contains(what), "{place}, {what}: {message}");
     }
 }
 
@@ -286,15 +286,15 @@ fn an_interface_that_opens_stops_the_run() {
     let mut case = weak_slabs(&quasi_dynamic(1e-5, 10), 100.0);
     case["steps"][0]["supports"][1]["uy"] = json!({"rate": 1e-3});
     let mut run = Simulation::new(model(&case));
-    let told = loop {
+    let message = loop {
         match run.next_increment() {
             Ok(Some(_)) => {}
             Ok(None) => panic!("it ended"),
             Err(error) => break error.to_string(),
         }
     };
-    assert!(told.contains("contact `fault` at (") && told.contains("keep every point closed"), "{told}");
-    assert!(!told.contains("smallest allowed"), "no increment is to blame: {told}");
+    assert!(message.contains("contact `fault` at (") && message.contains("keep every point closed"), "{message}");
+    assert!(!message.contains("smallest allowed"), "no increment is to blame: {message}");
     let pressure =
         run.state().contacts[0].iter().map(|contact| contact.friction.pressure).fold(f64::INFINITY, f64::min);
     assert!((0.0..0.1).contains(&pressure), "{pressure}");
@@ -312,11 +312,11 @@ fn given_rates_may_vary_in_time() {
 
 /// Where no step may be as short as its error asks for, the run says how long the shortest was, and what the least is.
 #[test]
-fn steps_that_may_not_be_short_enough_are_told_of() {
+fn steps_that_may_not_be_short_enough_are_reported_of() {
     let mut case = slider("ageing", 20.0, &quasi_dynamic(1e-6, 10));
     case["steps"][0]["dt"] = json!({"initial": 1e4, "min": 1e4});
     let mut run = Simulation::new(model(&case));
-    let told = loop {
+    let message = loop {
         match run.next_increment() {
             Ok(Some(_)) => {}
             Ok(None) => panic!("a rupture in steps of three hours"),
@@ -324,10 +324,10 @@ fn steps_that_may_not_be_short_enough_are_told_of() {
         }
     };
     assert!(
-        ["a step of 1.000e4 is above the tolerance", "dt.min = 1e4"].iter().all(|what| told.contains(what)),
-        "{told}"
+        ["a step of 1.000e4 is above the tolerance", "dt.min = 1e4"].iter().all(|what| message.contains(what)),
+        "{message}"
     );
-    assert!(!told.contains("smallest allowed"), "{told}");
+    assert!(!message.contains("smallest allowed"), "{message}");
 }
 
 /// A bond of c = 4 that softens over D beside the friction of the spring-slider, driven at 1e-9 until it has slid off it, against

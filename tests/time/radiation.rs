@@ -133,12 +133,15 @@ fn bad_dampings_are_refused() {
         change(&mut case);
         refusal(&case)
     };
-    let told = refused(&|case| case["contacts"]["fault"]["radiation_damping"] = json!(-1));
-    assert!(told.contains("contacts.fault.radiation_damping") && told.contains("must be positive"), "{told}");
-    let told = refused(&|case| case["bodies"]["upper"]["material"]["density"] = json!(0));
-    assert!(told.contains("contacts.fault.radiation_damping") && told.contains("density of body `upper`"), "{told}");
-    let told = refused(&|case| case["contacts"]["fault"]["radiation_damping"] = json!("yes"));
-    assert!(told.contains("true, false or a number"), "{told}");
+    let message = refused(&|case| case["contacts"]["fault"]["radiation_damping"] = json!(-1));
+    assert!(message.contains("contacts.fault.radiation_damping") && message.contains("must be positive"), "{message}");
+    let message = refused(&|case| case["bodies"]["upper"]["material"]["density"] = json!(0));
+    assert!(
+        message.contains("contacts.fault.radiation_damping") && message.contains("density of body `upper`"),
+        "{message}"
+    );
+    let message = refused(&|case| case["contacts"]["fault"]["radiation_damping"] = json!("yes"));
+    assert!(message.contains("true, false or a number"), "{message}");
 }
 
 /// The forces of a contact count what slip radiates, in sum and node by node, as the reactions do that hold against them:

@@ -56,8 +56,8 @@ fn fastest(run: &Finished, until: f64) -> f64 {
 fn warnings(case: &Value) -> Vec<String> {
     let mut warnings = Warnings::default();
     fecontact::run::run(&Arc::new(model(case)), &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
-    for told in &warnings.list {
-        assert!(common::warnings::is_listed(told), "docs/reference/warnings.md has no entry for: {told}");
+    for message in &warnings.list {
+        assert!(common::warnings::is_listed(message), "docs/reference/warnings.md has no entry for: {message}");
     }
     warnings.list
 }
@@ -83,11 +83,11 @@ fn static_stick_slip_is_followed_by_default() {
     let off = slider(&statics, &json!({"initial": 1000, "error": null}));
     let none = events(&finish(&off));
     assert!(none.is_empty(), "{none:?}: they are damped away");
-    let told = warnings(&off);
-    assert!(told.iter().any(|told| told.contains("leave \"error\": null out of dt")), "{told:?}");
+    let message = warnings(&off);
+    assert!(message.iter().any(|message| message.contains("leave \"error\": null out of dt")), "{message:?}");
     let loose = slider(&statics, &json!({"initial": 1000, "error": 0.3 * D_C}));
-    let told = warnings(&loose);
-    assert!(told.iter().any(|told| told.contains("lower dt.error, to 1e-9 say")), "{told:?}");
+    let message = warnings(&loose);
+    assert!(message.iter().any(|message| message.contains("lower dt.error, to 1e-9 say")), "{message:?}");
 }
 
 /// With inertia the first event and its overshoot follow the differential equations as well; vibrations after it, which the
@@ -106,8 +106,8 @@ fn implicit_stick_slip_is_followed_by_default() {
         close("slip", slip / 1.046_924e-3, 1.0, 2e-3);
         assert!(run.report.increments < 13_000, "{}", run.report.increments);
         let off = slider(&scheme, &json!({"initial": 1000, "error": null}));
-        let told = warnings(&off);
-        assert!(told.iter().any(|told| told.contains("damp stick-slip away")), "{told:?}");
+        let message = warnings(&off);
+        assert!(message.iter().any(|message| message.contains("damp stick-slip away")), "{message:?}");
     }
 }
 
@@ -183,8 +183,8 @@ fn what_is_chosen_is_refined_and_kept() {
     assert_eq!(chosen(&newmark, json!({"initial": 1000, "error": 1e-8})), (Some(1e-8), Some(1e-4)));
     assert_eq!(chosen(&newmark, json!({"initial": 1000, "error": null})), (None, None));
     assert_eq!(chosen(&json!({"wilson": {}}), json!({"initial": 1000})), (None, Some(1e-4)));
-    let told = refusal(&slider(&json!({"wilson": {}}), &json!({"initial": 1000, "error": 1e-8})));
-    assert!(told.contains("wilson has no error estimate"), "{told}");
+    let message = refusal(&slider(&json!({"wilson": {}}), &json!({"initial": 1000, "error": 1e-8})));
+    assert!(message.contains("wilson has no error estimate"), "{message}");
     let mut case = slider(&statics, &json!({"initial": 1000}));
     case["mesh"] = Blocks::default().rectangle("block", [1, 1], [0.0, 0.0], [1.0, 0.002]).json();
     case["bodies"] = json!({"block": {"material": {"model": "linear", "E": 1e7, "nu": 0.25}}});

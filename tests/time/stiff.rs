@@ -120,10 +120,10 @@ fn a_direct_effect_makes_sliding_steady() {
 fn what_implicit_steps_do_not_have_is_refused() {
     let mut case = slider(&json!({"law": "coulomb", "mu": 0.2, "alpha_t": 1e4}), &quasi_dynamic(1e-5), 1.0);
     case["contacts"]["base"]["stick"] = json!(1e-6);
-    let told = refusal(&case);
-    assert!(told.contains("contacts.base.stick") && told.contains("raise alpha_t"), "{told}");
+    let message = refusal(&case);
+    assert!(message.contains("contacts.base.stick") && message.contains("raise alpha_t"), "{message}");
     let mut case = slider(&paper(), &quasi_dynamic(1e-5), 1.0);
     case["contacts"]["base"]["bond"] = json!({"strength": 5});
-    let told = refusal(&case);
-    assert!(told.contains("contacts.base.bond") && told.contains("slip rate"), "{told}");
+    let message = refusal(&case);
+    assert!(message.contains("contacts.base.bond") && message.contains("slip rate"), "{message}");
 }

@@ -47,13 +47,13 @@ fn contacts_are_checked() {
 #[test]
 fn fluids_that_would_pull_are_found_before_the_run() {
     let fluid = |pressure: Value| ("/contacts/base/fluid_pressure", pressure);
-    for (pressure, told) in [
+    for (pressure, message) in [
         (json!("0.2 - 0.5*t"), "t = 0.41: must be a finite number, zero or positive"),
         (json!("1 + 0*sqrt(0.5 - t)"), "is NaN at ("),
         (json!("erfc(x)*(t - 0.7)*(t - 0.9)"), "t = 0.71: "),
         (json!({"x": [[0.8, -1], [0.9, 1]]}), "and t = 0: "),
     ] {
-        refused_edits(&[fluid(pressure)], &["contacts.base.fluid_pressure: ", told]);
+        refused_edits(&[fluid(pressure)], &["contacts.base.fluid_pressure: ", message]);
     }
     outcome("check", &[fluid(json!("0.5*t"))]);
     let until = json!({"on": "block_top", "fy": -0.001});
@@ -86,14 +86,14 @@ fn checked(edits: &[(&str, Value)]) -> String {
 
 /// Edges of the block's bottom begin at x = 0.5, 1.5, 2.5: a pressure at x = 1.5 alone is an isolated one.
 #[test]
-fn a_fluid_that_starts_at_one_point_is_told_and_round_off_is_no_suction() {
+fn a_fluid_that_starts_at_one_point_is_reported_and_round_off_is_no_suction() {
     let initial = ("/contacts/base/initial", json!({"pressure": 1.0}));
     let nodal = ("/contacts/base/method", json!("node_to_segment"));
     let at_start =
         |text: &str| checked(&[initial.clone(), nodal.clone(), ("/contacts/base/fluid_pressure", json!(text))]);
-    let told = "its fluid_pressure is 0.1 at (1.5, 0) at t = 0 and none beside it";
+    let message = "its fluid_pressure is 0.1 at (1.5, 0) at t = 0 and none beside it";
     let diffusing = at_start("0.1*erfc(abs(x - 1.5)/(2*sqrt(0.1*t + 1e-12)))");
-    assert!(diffusing.contains(told), "{diffusing}");
+    assert!(diffusing.contains(message), "{diffusing}");
     for right in [
         "0.1*erfc((abs(x - 1.5) + 1e-9)/(2*sqrt(0.1*t + 1e-30)))", // begins with 0
         "0.1*erfc(abs(x - 1.5)/(2*sqrt(0.1*t + 0.1)))",            // begins everywhere

@@ -55,9 +55,9 @@ fn every_variant_refuses_unknown_keys() {
             write(folder.path(), "bad.json", bad.to_string());
             let message = stderr(&fecontact(folder.path(), &["check", "bad.json"]));
             // What is chosen by its only key has two now.
-            let told =
+            let said =
                 message.contains("stray") || message.contains("2 entries") || message.contains("exactly one key");
-            assert!(told, "{place}: {message}");
+            assert!(said, "{place}: {message}");
             refused(folder.path(), &["check", "bad.json"], &["bad.json: "]);
         }
     }
@@ -204,12 +204,12 @@ fn what_is_like_nothing_known_is_not_likened() {
     for key in ["zz", "b0", "xyz", "comment"] {
         let folder = TempDir::new().unwrap();
         write(folder.path(), "bad.json", with(&[(&format!("/{key}"), json!(1))]).to_string());
-        let told = stderr(&fecontact(folder.path(), &["check", "bad.json"]));
-        assert!(told.contains(&format!("`{key}` is not known here. Known are `title`")), "{told}");
-        assert!(!told.contains("did you mean"), "{told}");
+        let said = stderr(&fecontact(folder.path(), &["check", "bad.json"]));
+        assert!(said.contains(&format!("`{key}` is not known here. Known are `title`")), "{said}");
+        assert!(!said.contains("did you mean"), "{said}");
     }
     let folder = TempDir::new().unwrap();
     write(folder.path(), "bad.json", with(&[("/watch", json!(["roof"]))]).to_string());
-    let told = stderr(&fecontact(folder.path(), &["check", "bad.json"]));
-    assert!(told.contains("the mesh has no group `roof`; it has `block`"), "{told}");
+    let said = stderr(&fecontact(folder.path(), &["check", "bad.json"]));
+    assert!(said.contains("the mesh has no group `roof`; it has `block`"), "{said}");
 }

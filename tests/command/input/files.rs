@@ -43,8 +43,8 @@ fn what_two_mesh_files_share_is_refused() {
     write(folder.path(), "good.json", both(&[]));
     let checked = fecontact(folder.path(), &["check", "good.json"]);
     assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
-    let told = String::from_utf8_lossy(&checked.stdout).into_owned();
-    assert!(told.contains("ground.msh, block.msh") && told.contains("8 nodes, 2 elements"), "{told}");
+    let message = String::from_utf8_lossy(&checked.stdout).into_owned();
+    assert!(message.contains("ground.msh, block.msh") && message.contains("8 nodes, 2 elements"), "{message}");
     let node = json!([{"node": 3}]);
     for (edits, fragments) in [
         (vec![("/mesh/1", json!("clash.msh"))], ["mesh[1]: ", "`ground_top` is in ground.msh and in clash.msh"]),
@@ -166,9 +166,9 @@ fn names_that_no_file_can_have_are_refused() {
         write(folder.path(), "bad.json", case.to_string());
         for command in [&["check", "bad.json"][..], &["run", "bad.json", "--out", "out"]] {
             let output = fecontact(folder.path(), command);
-            let told = stderr(&output);
-            assert_eq!(output.status.code(), Some(2), "{told}");
-            assert!(expected.iter().all(|part| told.contains(part)), "{expected:?}: {told}");
+            let message = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{message}");
+            assert!(expected.iter().all(|part| message.contains(part)), "{expected:?}: {message}");
         }
         assert!(!folder.path().join("out").exists());
     }

@@ -113,10 +113,10 @@ fn what_does_not_converge_names_a_suspect() {
         let folder = TempDir::new().unwrap();
         write(folder.path(), "bad.json", with(edits).to_string());
         let output = fecontact(folder.path(), &["run", "bad.json", "--quiet"]);
-        let told = stderr(&output);
-        assert_eq!(output.status.code(), Some(1), "{told}");
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
         for fragment in fragments {
-            assert!(told.contains(fragment), "`{fragment}` is not in: {told}");
+            assert!(said.contains(fragment), "`{fragment}` is not in: {said}");
         }
     };
     // One linear solve is never enough for a contact that closes.

@@ -18,28 +18,28 @@ fn default_penalty_is_that_of_the_softer_side() {
 /// 0.040384 − 25.0175/1000 are those of `the_attained_peak_converges_to_25_0175`, the rest is ln 2 μ_k/κ and ln 2 μ_s/ξ.
 #[test]
 fn check_tells_what_the_numbers_of_a_law_mean() {
-    let told = |changes: &[(&str, Value)]| {
-        let [told, _] = outcome("check", changes);
+    let message = |changes: &[(&str, Value)]| {
+        let [message, _] = outcome("check", changes);
         let lines: Vec<String> =
-            told.lines().filter(|line| line.contains("q/p")).map(|line| line.trim().into()).collect();
-        assert_eq!(lines.len(), 1, "{told}");
+            message.lines().filter(|line| line.contains("q/p")).map(|line| line.trim().into()).collect();
+        assert_eq!(lines.len(), 1, "{message}");
         lines.into_iter().next().unwrap()
     };
     let first = "rapid slip after a long hold: peak q/p 0.255 at a plastic slip of 0.0154";
     let falls = "residual q/p 0.2, half of the weakening from mu_s within 0.0139 of slip";
-    assert_eq!(told(&[]), format!("{first}, {falls}; no healing"));
+    assert_eq!(message(&[]), format!("{first}, {falls}; no healing"));
     let heals = [("/contacts/base/friction/xi", json!(0.02)), ("/contacts/base/friction/structure", json!(1))];
-    assert_eq!(told(&heals), format!("{first} (0.2 at the start of the run), {falls}; half recovers in 13.9"));
+    assert_eq!(message(&heals), format!("{first} (0.2 at the start of the run), {falls}; half recovers in 13.9"));
     let along = ("/contacts/base/along", json!({"kappa": "5*x"}));
-    let varies = told(&[along]);
+    let varies = message(&[along]);
     // Ranges of the peak, its slip and the slip of half of the fall.
     assert!(varies.matches(" to ").count() == 3 && varies.contains(", residual q/p 0.2, "), "{varies}");
     let coulomb = ("/contacts/base/friction", json!({"law": "coulomb", "mu": 0.3}));
-    let [told, _] = outcome("check", &[coulomb]);
-    assert!(!told.contains("q/p"), "{told}");
+    let [message, _] = outcome("check", &[coulomb]);
+    assert!(!message.contains("q/p"), "{message}");
     for (every, words) in [(2, "every 2nd row"), (3, "every 3rd row"), (11, "every 11th row"), (21, "every 21st row")] {
-        let [told, _] = outcome("check", &[("/output", json!({"every": every}))]);
-        assert!(told.contains(words), "{told}");
+        let [message, _] = outcome("check", &[("/output", json!({"every": every}))]);
+        assert!(message.contains(words), "{message}");
     }
 }
 
@@ -50,12 +50,12 @@ fn the_method_follows_from_the_surfaces() {
     let bent = |by: f64| ("/mesh/nodes/6/1", json!(-by));
     let mortar = "mortar, averaged around each node (chosen because the master is a mesh)";
     for by in [0.0, 1e-12, 1e-6, 0.05] {
-        let [told, _] = outcome("check", &[bent(by)]);
-        assert!(told.contains(mortar), "bent by {by}:\n{told}");
+        let [message, _] = outcome("check", &[bent(by)]);
+        assert!(message.contains(mortar), "bent by {by}:\n{message}");
     }
     let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
-    let [_, told] = outcome("run", &[bent(0.05), ("/contacts/base/master", plane)]);
-    assert!(told.contains("contact `base`: mortar, chosen because surfaces are curved"), "{told}");
+    let [_, message] = outcome("run", &[bent(0.05), ("/contacts/base/master", plane)]);
+    assert!(message.contains("contact `base`: mortar, chosen because surfaces are curved"), "{message}");
     for method in ["node_to_segment", "gauss_to_segment"] {
         let named = [bent(0.05), ("/contacts/base/method", json!(method))];
         let concern = format!("contact `base`: {method} on curved or quadratic surfaces: pressures scatter");
@@ -65,8 +65,8 @@ fn the_method_follows_from_the_surfaces() {
         let [checked, _] = outcome("check", &[named[1].clone()]);
         assert!(!checked.contains("curved"), "{checked}");
     }
-    let [told, _] = outcome("check", &[bent(0.05), ("/contacts/base/smooth", json!(true))]);
-    assert!(told.contains("gauss_to_segment") && told.contains("leave `smooth` out for mortar"), "{told}");
+    let [message, _] = outcome("check", &[bent(0.05), ("/contacts/base/smooth", json!(true))]);
+    assert!(message.contains("gauss_to_segment") && message.contains("leave `smooth` out for mortar"), "{message}");
 }
 
 /// The block of three edges of length 1 on a ground of two of length 2, and the same moved until one point in three is past the
@@ -76,11 +76,11 @@ fn check_tells_how_far_small_sliding_goes() {
     let small = ("/contacts/base/sliding", json!("small"));
     let line = "small sliding: every point keeps its initial projection, normal and length; valid for slips up to 0.1 \
                 and rotations up to 0.02 rad";
-    let [told, _] = outcome("check", std::slice::from_ref(&small));
-    assert!(told.contains(line), "{told}");
+    let [message, _] = outcome("check", std::slice::from_ref(&small));
+    assert!(message.contains(line), "{message}");
     let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
-    let [told, _] = outcome("check", &[small.clone(), ("/contacts/base/master", plane)]);
-    assert!(told.contains("length; valid for rotations up to 0.02 rad"), "{told}");
+    let [message, _] = outcome("check", &[small.clone(), ("/contacts/base/master", plane)]);
+    assert!(message.contains("length; valid for rotations up to 0.02 rad"), "{message}");
     let moved: Vec<Value> = good()["mesh"]["nodes"]
         .as_array()
         .expect("nodes")
@@ -88,15 +88,19 @@ fn check_tells_how_far_small_sliding_goes() {
         .enumerate()
         .map(|(k, node)| json!([node[0].as_f64().expect("x") + if k > 5 { 1.5 } else { 0.0 }, node[1]]))
         .collect();
-    let [told, _] = outcome("check", &[small, ("/mesh/nodes", json!(moved.clone()))]);
+    let [message, _] = outcome("check", &[small, ("/mesh/nodes", json!(moved.clone()))]);
     assert!(
-        told.contains("of the slave without a projection on the master, and never come into contact in small sliding"),
-        "{told}"
+        message
+            .contains("of the slave without a projection on the master, and never come into contact in small sliding"),
+        "{message}"
     );
-    let [told, _] = outcome("check", &[("/mesh/nodes", json!(moved))]);
+    let [message, _] = outcome("check", &[("/mesh/nodes", json!(moved))]);
     // In finite sliding they do no harm: `check` counts them, and nothing is warned of.
-    assert!(told.contains("point without a projection") || told.contains("points without a projection"), "{told}");
-    assert!(told.contains("warnings  none"), "{told}");
+    assert!(
+        message.contains("point without a projection") || message.contains("points without a projection"),
+        "{message}"
+    );
+    assert!(message.contains("warnings  none"), "{message}");
 }
 
 #[test]
@@ -147,20 +151,24 @@ fn warnings_of_check_reach_the_run() {
     let folder = TempDir::new().unwrap();
     write(folder.path(), "case.json", with(&[("/mesh/nodes/6/1", json!(-0.01))]).to_string());
     let check = fecontact(folder.path(), &["check", "case.json"]);
-    let told = "surfaces overlap by up to 0.006667 at the start, at (0.5, -0.01)";
-    assert!(String::from_utf8_lossy(&check.stdout).contains(told), "{}", String::from_utf8_lossy(&check.stdout));
+    let message = "surfaces overlap by up to 0.006667 at the start, at (0.5, -0.01)";
+    assert!(String::from_utf8_lossy(&check.stdout).contains(message), "{}", String::from_utf8_lossy(&check.stdout));
     let run = fecontact(folder.path(), &["run", "case.json"]);
-    assert_eq!(stderr(&run).matches(told).count(), 1, "{}", stderr(&run));
+    assert_eq!(stderr(&run).matches(message).count(), 1, "{}", stderr(&run));
     let summary: Value =
         serde_json::from_str(&fs::read_to_string(folder.path().join("out/case/summary.json")).unwrap()).unwrap();
     let warnings = summary["warnings"].as_array().unwrap();
-    assert_eq!(warnings.iter().filter(|warning| warning.as_str().unwrap().contains(told)).count(), 1, "{warnings:?}");
+    assert_eq!(
+        warnings.iter().filter(|warning| warning.as_str().unwrap().contains(message)).count(),
+        1,
+        "{warnings:?}"
+    );
 }
 
 /// Overlap that is round-off of the positions is none, near the origin and far from it; that of a shrink fit is told, and no
 /// reason to warn.
 #[test]
-fn overlap_is_told_where_it_means_something() {
+fn overlap_is_reported_where_it_means_something() {
     let folder = TempDir::new().unwrap();
     let checked = |case: &Value| {
         write(folder.path(), "case.json", case.to_string());
@@ -178,8 +186,8 @@ fn overlap_is_told_where_it_means_something() {
     let text = checked(&far);
     assert!(text.contains("warnings  none"), "one digit of 1e5:\n{text}");
     let text = checked(&with(&[("/mesh/nodes/6/1", json!(-0.01)), ("/contacts/base/shrink_fit", json!(true))]));
-    let told = "shrink fit: the surfaces overlap by up to 0.006667, at (0.5, -0.01), brought in over the first";
-    assert!(text.contains(told) && text.contains("warnings  none"), "{text}");
+    let message = "shrink fit: the surfaces overlap by up to 0.006667, at (0.5, -0.01), brought in over the first";
+    assert!(text.contains(message) && text.contains("warnings  none"), "{text}");
 }
 
 /// A step inherits the scheme; `check` says which each has, and how what is freed or ended goes.

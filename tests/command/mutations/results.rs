@@ -103,7 +103,7 @@ fn damaged_results_are_drawn_or_refused() {
         fs::write(folder.path().join(format!("case_{number}.json")), case.to_string()).expect("a file");
         let out = format!("whole_{number}");
         let ended = run(folder.path(), &[command, &format!("case_{number}.json"), "--out", &out]);
-        assert_eq!(ended.code, Some(0), "{}", ended.told);
+        assert_eq!(ended.code, Some(0), "{}", ended.message);
         let drawn = |path: &Path| path.extension().is_some_and(|end| end == "html");
         files(&folder.path().join(&out)).into_iter().filter(|(path, _)| !drawn(path)).collect::<Vec<_>>()
     });
@@ -130,7 +130,7 @@ fn damaged_results_are_drawn_or_refused() {
                 });
             let other = other.then(|| "it ends with another table".to_owned());
             let fault = fault(folder.path(), &ended, false, "bad").or_else(|| broken(&results)).or(other)?;
-            Some(format!("{command:?}: {fault}: {}", ended.told.chars().take(400).collect::<String>()))
+            Some(format!("{command:?}: {fault}: {}", ended.message.chars().take(400).collect::<String>()))
         });
         if let Some(fault) = faulty {
             faults += 1;

@@ -177,8 +177,8 @@ fn bad_places_of_probes_are_named() {
     ] {
         case["probes"] = json!({"gauge": probe});
         let output = start(folder.path(), &case);
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.code() == Some(2) && told.contains(words), "{told}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && message.contains(words), "{message}");
     }
     case["probes"] = json!({"gauge": {"at": [1.0, 0.0], "body": "block"}});
     run(folder.path(), &case);

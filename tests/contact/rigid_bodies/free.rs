@@ -129,9 +129,9 @@ fn free_rigid_bodies_need_something_that_holds_them() {
     let tool = || block(true, on(plane()).rigid_body("tool")).rigid_body("tool", [0.0, -1.0]);
     let step = || LoadStep::new("press", 1.0).dt(0.5).fix("block_top");
     let newmark = || step().scheme(Scheme::Newmark { beta: 0.25, gamma: 0.5 });
-    let refused = |builder: Builder, told: &str| {
-        let error = builder.build().map(|_| ()).expect_err(told).to_string();
-        assert!(error.contains(told), "{error}, expected {told}");
+    let refused = |builder: Builder, message: &str| {
+        let error = builder.build().map(|_| ()).expect_err(message).to_string();
+        assert!(error.contains(message), "{error}, expected {message}");
     };
     refused(
         tool().rigid_body("idle", [0.0, 0.0]).step(step().support(Support::on("idle").ux(0.0).angle(0.0))),
@@ -150,8 +150,8 @@ fn free_rigid_bodies_need_something_that_holds_them() {
         .build()
         .expect("a model");
     let (_, result) = run(&Arc::new(model), &mut []);
-    let told = result.expect_err("a free body").to_string();
-    assert!(told.contains("rigid body `tool` along y"), "{told}");
+    let message = result.expect_err("a free body").to_string();
+    assert!(message.contains("rigid body `tool` along y"), "{message}");
 }
 
 /// The disk of `cases/indenter.json`: pressed in, its forces are those of the base; dragged, it slides everywhere, Q = μ N; rolling, hardly.

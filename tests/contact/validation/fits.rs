@@ -44,8 +44,8 @@ fn a_shrink_fit_of_meshes_that_do_not_match_closes_all_round() {
 /// master comes upon the middle of a facet of the slave it lies θ₁²/12 + θ₂²/24 deep in it, 2.7 % of its edge, while the means
 /// of the slave's points say less than 0.5 %. That is told; between facets of 3° (0.7 %) nothing is.
 #[test]
-fn master_nodes_deep_in_the_slave_are_told() {
-    let told = |n: [usize; 2]| -> Vec<String> {
+fn master_nodes_deep_in_the_slave_are_reported() {
+    let message = |n: [usize; 2]| -> Vec<String> {
         let delta = 0.01;
         let mesh = Blocks::default().ring("inner", [n[0], 2], [0.5, 1.0 + delta]).ring("outer", [n[1], 2], [1.0, 1.5]);
         // Held on the axes, as the facets alone would let one ring turn in the other: they stand at rest on top of each other, too.
@@ -73,9 +73,9 @@ fn master_nodes_deep_in_the_slave_are_told() {
         let share = |(point, state): (&SlavePoint, &ContactState)| -state.gap / point.edge_length(&x).expect("an edge");
         assert!(points.map(share).fold(0.0, f64::max) < 5e-3);
         // Chords on chords: their pressure alternates as well.
-        warnings.list.into_iter().filter(|told| !told.contains("tractions alternate")).collect()
+        warnings.list.into_iter().filter(|message| !message.contains("tractions alternate")).collect()
     };
-    let coarse = told([32, 40]);
+    let coarse = message([32, 40]);
     println!("{coarse:?}");
     assert!(coarse.len() == 1 && coarse[0].contains("a master node penetrates the slave"), "{coarse:?}");
     assert!(!coarse[0].contains("alpha_n"), "a stiffer penalty would not help: {coarse:?}");
@@ -85,7 +85,7 @@ fn master_nodes_deep_in_the_slave_are_told() {
     let turn = |edges: f64| std::f64::consts::TAU / edges;
     let expected = turn(32.0).powi(2) / 12.0 + turn(40.0).powi(2) / 24.0;
     close("depth", depth, expected, 0.15 * expected);
-    assert_eq!(told([120, 140]), Vec::<String>::new());
+    assert_eq!(message([120, 140]), Vec::<String>::new());
 }
 
 /// Rings whose nodes meet, pressed from outside with p = 1 while the inner side is held, slave and master either way round: a
@@ -261,8 +261,8 @@ fn an_interference_given_as_a_number_does_not_depend_on_the_mesh() {
             "steps": [{"name": "fit", "duration": 1, "dt": {"initial": 0.25}, "supports": [
                 {"on": "inner_bottom", "uy": 0}, {"on": "inner_top", "ux": 0}, {"on": "outer_bottom", "uy": 0}, {"on": "outer_top", "ux": 0}]}]
         });
-        let told = model(&case).warnings();
-        assert!(told.is_empty() || method == "gauss_to_segment", "{told:?}");
+        let message = model(&case).warnings();
+        assert!(message.is_empty() || method == "gauss_to_segment", "{message:?}");
         let run = finish(&case);
         for (time, share) in [(0.5, 0.5), (1.0, 1.0)] {
             let [found, _] = tractions(run.at(time));
@@ -298,8 +298,11 @@ fn a_clearance_is_closed_before_anything_is_pressed() {
             let [early, _] = tractions(run.at(0.25));
             assert!(early.iter().all(|pressure| *pressure == 0.0), "{early:?}");
             case["contacts"]["ends"]["clearance"] = json!(-0.2);
-            let told = model(&case).warnings();
-            assert!(told.iter().any(|told| told.contains("`clearance` changes the gap of the mesh by")), "{told:?}");
+            let message = model(&case).warnings();
+            assert!(
+                message.iter().any(|message| message.contains("`clearance` changes the gap of the mesh by")),
+                "{message:?}"
+            );
         }
     }
 }

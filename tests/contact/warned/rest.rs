@@ -40,20 +40,23 @@ fn layers_tied_at_rest_are_not_told_but_a_wrong_weight_is() {
             assert_eq!(common::model(&layers(elements, [weight, 10.0], None)).warnings(), Vec::<String>::new());
         }
     }
-    let told = common::model(&layers([10, 10], [18.18, 10.0], None)).warnings();
-    assert!(told.len() == 2 && told.iter().all(|told| told.contains("is not in equilibrium")), "{told:?}");
+    let message = common::model(&layers([10, 10], [18.18, 10.0], None)).warnings();
+    assert!(
+        message.len() == 2 && message.iter().all(|message| message.contains("is not in equilibrium")),
+        "{message:?}"
+    );
 }
 
 /// A tie that gives way as much as a twentieth of its bodies is told under initial stress too, by how much the load presses the layers
 /// together, and is not with the penalty advised.
 #[test]
-fn a_soft_tie_is_told_and_its_remedy_ends_that() {
-    let told = warnings(&layers([10, 10], [18.0, 10.0], Some(15_000.0)));
+fn a_soft_tie_is_reported_and_its_remedy_ends_that() {
+    let message = warnings(&layers([10, 10], [18.0, 10.0], Some(15_000.0)));
     // p²/2α_n beside p² H/2M
     let share = |alpha_n: f64| 1.0 / (1.0 + alpha_n * 10.0 * 1.3 * 0.4 / (5000.0 * 0.7));
     let words = format!("{:.1} % of the elastic energy is in its penalty", 100.0 * share(15_000.0));
-    assert!(told.len() == 1 && told[0].contains(&words), "{words} {told:?}");
-    let advised = told[0].split_once("\"alpha_n\": ").expect("a number").1;
+    assert!(message.len() == 1 && message[0].contains(&words), "{words} {message:?}");
+    let advised = message[0].split_once("\"alpha_n\": ").expect("a number").1;
     let advised = advised.split(',').next().and_then(|text| text.trim().parse().ok()).expect("a number");
     assert!(share(advised) < 0.01);
     assert_eq!(warnings(&layers([10, 10], [18.0, 10.0], Some(advised))), Vec::<String>::new());
@@ -83,7 +86,7 @@ fn edges_at_rest_around_a_circle_are_no_penalty_that_gives_way() {
         })
     };
     let of_penalty = |case: &Value| -> Vec<String> {
-        warnings(case).into_iter().filter(|told| told.contains("of the elastic energy")).collect()
+        warnings(case).into_iter().filter(|message| message.contains("of the elastic energy")).collect()
     };
     for edges in [4, 8, 16] {
         let case = ring(edges, None);
@@ -91,8 +94,8 @@ fn edges_at_rest_around_a_circle_are_no_penalty_that_gives_way() {
         let moved = common::finish(&case).last().displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
         assert!(moved < 1e-6, "{edges} edges a quarter move by {moved:e}");
     }
-    let told = of_penalty(&ring(8, Some(1e5)));
-    let advised = told[0].split_once("\"alpha_n\": ").expect("a number").1;
+    let message = of_penalty(&ring(8, Some(1e5)));
+    let advised = message[0].split_once("\"alpha_n\": ").expect("a number").1;
     let advised: f64 = advised.split(',').next().and_then(|text| text.trim().parse().ok()).expect("a number");
     assert_eq!(of_penalty(&ring(8, Some(advised))), Vec::<String>::new());
 }
@@ -100,16 +103,16 @@ fn edges_at_rest_around_a_circle_are_no_penalty_that_gives_way() {
 /// Work of surfaces that close within an increment is no loss of the equations: on the forces at its ends it is told as what it is, and
 /// shorter increments end that.
 #[test]
-fn energy_of_touch_is_told_as_such() {
+fn energy_of_touch_is_reported_as_such() {
     let circle = json!({"circle": {"centre": [2.0, -2.0], "radius": 2.0}});
-    let told = |dt: f64| {
+    let message = |dt: f64| {
         let mut case = moved(&circle, [0.0, -0.5]);
         case["bodies"]["block"]["material"]["model"] = json!("neo_hookean");
         case["steps"][0]["dt"] = json!({"initial": dt, "min": dt});
         warnings(&case)
     };
-    let has = |told: &[String], words: &str| told.iter().any(|told| told.contains(words));
-    let (coarse, fine) = (told(0.5), told(0.1));
+    let has = |message: &[String], words: &str| message.iter().any(|message| message.contains(words));
+    let (coarse, fine) = (message(0.5), message(0.1));
     assert!(has(&coarse, "surfaces close or part within increments"), "{coarse:?}");
     assert!(!has(&coarse, "energy balance violated"), "{coarse:?}");
     assert!(!has(&fine, "surfaces close or part") && !has(&fine, "energy balance violated"), "{fine:?}");

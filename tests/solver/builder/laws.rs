@@ -73,15 +73,15 @@ fn laws_serve_in_their_sections_alone() {
         (plate, Sections::PlaneStrain, ["bodies.block.material", "does not support plane stress"]),
         (plate, Sections::AnyStretch, ["bodies.block.material", "does not support plane stress"]),
     ] {
-        let told = block(section, Of(of, law()).into()).build().expect_err("another section").to_string();
-        assert!(told.contains(place) && told.contains(why), "{of:?}: {told}");
+        let message = block(section, Of(of, law()).into()).build().expect_err("another section").to_string();
+        assert!(message.contains(place) && message.contains(why), "{of:?}: {message}");
     }
     let alone = || block(Section::PlaneStrain, Of(Sections::PlaneStrain, law()).into());
     assert!(alone().build().is_ok());
     for (more, place) in [(heated(alone()), "bodies.block.thermal"), (stressed(alone()), "bodies.block.initial_stress")]
     {
-        let told = more.build().expect_err("no stretch").to_string();
-        assert!(told.contains(place) && told.contains("out-of-plane stretch"), "{told}");
+        let message = more.build().expect_err("no stretch").to_string();
+        assert!(message.contains(place) && message.contains("out-of-plane stretch"), "{message}");
     }
     let own =
         BodyLaw::new(law(), Surroundings { plate: true, ..Surroundings::default() }).expect("it serves in plates");
@@ -111,13 +111,13 @@ impl FrictionLaw for Named {
 #[test]
 fn names_that_a_law_gives_are_checked() {
     let named = |variables: &'static [&'static str]| Named { variables, offsets: &["dilation"] };
-    let told = |law: Named| {
+    let message = |law: Named| {
         let model = small().contact(Contact::new("other", "block_left", floor(), law)).build();
         model.map_or_else(|error| error.to_string(), |_| String::new())
     };
-    assert_eq!(told(named(&["mu", "T", "ψ_1", "weakening_slip"])), "");
+    assert_eq!(message(named(&["mu", "T", "ψ_1", "weakening_slip"])), "");
     let many: Vec<&'static str> = (0..40).map(|k| &*format!("v_{k}").leak()).collect();
-    assert_eq!(told(named(many.leak())), "");
+    assert_eq!(message(named(many.leak())), "");
     for (law, words) in [
         (named(&["q"]), "a variable cannot be named `q`: the results already use that name"),
         (named(&["dilation"]), "a variable cannot be named `dilation`"),
@@ -135,8 +135,11 @@ fn names_that_a_law_gives_are_checked() {
             "an opening has no part `rise`: outputs show `dilation` and `wear`",
         ),
     ] {
-        let told = told(law);
-        assert!(told.starts_with("contacts.other.friction: the names of the law: ") && told.contains(words), "{told}");
+        let message = message(law);
+        assert!(
+            message.starts_with("contacts.other.friction: the names of the law: ") && message.contains(words),
+            "{message}"
+        );
     }
     // Parameters that vary in time take the place of none.
     let fades = Profile::Expression(parsed("1 - t"));

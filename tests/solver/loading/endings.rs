@@ -60,9 +60,9 @@ fn a_reaction_that_is_not_reached_stops_the_run() {
         .chunks_exact(2)
         .skip(15)
         .fold([0.0; 2], |[x, y], r| [x + r[0], y + r[1]]);
-    let told = result.expect_err("it is not reached").to_string();
+    let message = result.expect_err("it is not reached").to_string();
     let words = format!("step `drag` ended at time 2 before fx of `block_top` reached 1000: it is {x:.6e};");
-    assert!(told.starts_with(&words), "`{words}` is not in `{told}`");
+    assert!(message.starts_with(&words), "`{words}` is not in `{message}`");
     close("slides", x, 0.3 * -y, 1e-2);
     let value = 0.9 * x;
     let run = run_through(model(value));
@@ -74,7 +74,7 @@ fn a_reaction_that_is_not_reached_stops_the_run() {
 
 /// A reaction that jumps past the value ends the step behind the jump, and the user is told.
 #[test]
-fn a_jump_past_the_value_is_told() {
+fn a_jump_past_the_value_is_reported() {
     let jump = Drive::Table(vec![[0.0, 0.0], [0.5, -0.01], [0.5 + 1e-11, -0.03], [1.0, -0.03]]);
     let step = LoadStep::new("press", 1.0)
         .dt(0.25)
@@ -85,8 +85,8 @@ fn a_jump_past_the_value_is_told() {
     let mut warnings = fecontact::output::warnings::Warnings::default();
     let (_, result) = run(&model, &mut [&mut warnings]);
     close("ends at the jump", result.expect("it ends").time, 0.5, 1e-8);
-    let told = warnings.list.join("\n");
-    assert!(told.contains("step `press`, t = 0.5") && told.contains("past -3, where the step ends"), "{told}");
+    let message = warnings.list.join("\n");
+    assert!(message.contains("step `press`, t = 0.5") && message.contains("past -3, where the step ends"), "{message}");
 }
 
 #[test]
@@ -123,8 +123,8 @@ fn what_a_step_cannot_end_by_is_refused() {
             "steps[0].damping.block.mass: is -1: must be zero or positive",
         ),
     ] {
-        let told = told(block(0.0, false).step(step));
-        assert!(told.starts_with(words), "`{words}` is not in `{told}`");
+        let message = message(block(0.0, false).step(step));
+        assert!(message.starts_with(words), "`{words}` is not in `{message}`");
     }
 }
 
@@ -154,10 +154,10 @@ fn what_warms_by_the_time_of_the_run_may_end_a_step() {
     close("so long", run.last().time, 1.5, 1e-6);
     for given in [BodyTemperature::Constant(0.4), BodyTemperature::X(vec![[0.0, 0.2], [2.0, 0.4]])] {
         let warm = held().temperature("block", given).until("block_top", ForceComponent::Y, -2.0);
-        let told = told(block().step(warm));
+        let message = message(block().step(warm));
         let words = "steps[0].until: may end the step early, before the temperature of `block`, given as a number or \
                      by place, is fully applied: give it in the step before, or as a rate";
-        assert!(told.starts_with(words), "{told}");
+        assert!(message.starts_with(words), "{message}");
     }
 }
 
@@ -175,9 +175,9 @@ fn a_shrink_fit_is_not_cut_short() {
             .step(LoadStep::new("press", 1.0).support(draw).until("block_top", ForceComponent::Y, -2.5))
     };
     let fit = || LoadStep::new("fit", 1.0);
-    let told = told(model(fit().until("block_top", ForceComponent::Y, -1.0)));
+    let message = message(model(fit().until("block_top", ForceComponent::Y, -1.0)));
     let words = "steps[0].until: may end the step early, before the overlap of `fit`, brought in over the first step";
-    assert!(told.starts_with(words), "{told}");
+    assert!(message.starts_with(words), "{message}");
     let run = run_through(model(fit()));
     close("pressed", run.reaction("block_top", run.last())[1], -2.5, 2.5e-6);
 }

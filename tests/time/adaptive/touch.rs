@@ -268,8 +268,8 @@ fn slip_is_followed_from_milliseconds_to_months() {
 /// Where increments may not be shortened, what friction after touch may have to do with them is told, once a step; where they
 /// may, there is nothing to tell.
 #[test]
-fn friction_left_in_doubt_by_touch_is_told() {
-    let told = |min: f64| -> Vec<String> {
+fn friction_left_in_doubt_by_touch_is_reported() {
+    let message = |min: f64| -> Vec<String> {
         let mut steps = all_the_way(1.0);
         steps[0]["dt"]["min"] = json!(min);
         let model = model(&Slab { steps, ..Slab::default() }.case());
@@ -279,10 +279,10 @@ fn friction_left_in_doubt_by_touch_is_told() {
         assert!(result.is_ok() && (report.rejected == 0) == (min == 1.0));
         warnings.list.into_iter().filter(|warning| warning.contains("uncertain by")).collect()
     };
-    let single = told(1.0);
+    let single = message(1.0);
     let parts = ["step `in`", "contact closed within it: friction force uncertain by", "lower dt.min"];
     assert!(single.len() == 1 && parts.iter().all(|part| single[0].contains(part)), "{single:?}");
-    assert_eq!(told(1e-3), Vec::<String>::new());
+    assert_eq!(message(1e-3), Vec::<String>::new());
 }
 
 /// A film of oil, q = η v: it resists slip and stores nothing.
