@@ -3,8 +3,10 @@
 mod bars;
 mod bodies;
 mod contacts;
+mod names;
 mod steps;
 
+pub use names::Names;
 use std::path::Path;
 
 use fecontact::case::{Halvings, Written, refined};
@@ -119,24 +121,6 @@ impl Ways {
         self.frame.later = self.frame.time * stages * duration(draft);
         self.later = stages;
         self
-    }
-}
-
-/// Names of the parts of a case.
-pub struct Names {
-    pub block: &'static str,
-    pub ground: &'static str,
-    pub contact: &'static str,
-    pub second: &'static str,
-    pub tie: &'static str,
-}
-
-impl Names {
-    pub fn of(ways: &Ways) -> Self {
-        match ways.renamed {
-            false => Self { block: "block", ground: "ground", contact: "c", second: "d", tie: "tie" },
-            true => Self { block: "upper", ground: "base", contact: "z", second: "e", tie: "zz" },
-        }
     }
 }
 
@@ -465,7 +449,7 @@ impl Writer<'_> {
         let first_of_block = sheet.nodes.len();
         let bottom = match () {
             () if self.has("shrink_fit") => -GAP,
-            () if starts_apart(self.draft) => GAP,
+            () if starts_separated(self.draft) => GAP,
             () => 0.0,
         };
         sheet.rectangle(&Rectangle {
@@ -598,7 +582,7 @@ pub fn duration(draft: &Draft) -> f64 {
 }
 
 /// Whether the surfaces lie apart at the start.
-pub fn starts_apart(draft: &Draft) -> bool {
+pub fn starts_separated(draft: &Draft) -> bool {
     draft.is("master", "itself")
         || !draft.has("shrink_fit")
             && !draft.has("tractions")

@@ -205,7 +205,7 @@ pub(super) fn linear_energies(base: &Base) -> Outcome {
     let others: Vec<&str> = SLOTS.iter().map(|(slot, _)| *slot).filter(|slot| !LINEAR.contains(slot)).collect();
     let linear = base.draft.plainer(&others).and_then(|draft| draft.with("friction", "frictionless"));
     let Some(draft) = linear.and_then(|draft| draft.with("sliding", "small")) else { return Outcome::Idle };
-    if model::starts_apart(&draft) {
+    if model::starts_separated(&draft) {
         return Outcome::Idle;
     }
     let base = Base::new(&draft);

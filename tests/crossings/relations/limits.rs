@@ -91,7 +91,7 @@ pub(super) fn simple(draft: &Draft) -> Option<Draft> {
     let plainer = draft.plainer(&slots)?;
     let elastic = ["linear", "neo_hookean", "saint_venant_kirchhoff", "hencky"];
     let remembers = ["ground_law", "block_law"].iter().any(|slot| !elastic.contains(&plainer.of(slot)));
-    let apart = model::starts_apart(&plainer) || plainer.of("section").starts_with("rings");
+    let apart = model::starts_separated(&plainer) || plainer.of("section").starts_with("rings");
     (!remembers && !apart).then_some(plainer)
 }
 
