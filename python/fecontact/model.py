@@ -1220,7 +1220,7 @@ class FlowWell(dict[str, Any]):
     """Well of a contact, which has either a pressure or a rate.
 
     Args:
-        at: Reference position [x, y] on the slave: a pressure is held at the nearest node, a rate is shared by
+        at: Reference position [x, y] on the slave: a pressure is prescribed at the nearest node, a rate is shared by
             the two beside it [L]
         from_: Start; it is shut before. Default: that of the run [T]
         pressure: Pressure that is held, from its start on [F/L²]
