@@ -38,26 +38,30 @@ def along_the_ray(v, h):
     return 1 / low - 1
 
 
-def inclined_footing_case(vertical, mu, element="f_bar", kind="Q4", under=(40, 6), beside=(18, 40), rows=(22, 0.04), way=0.004):
-    blocks = []
-    for x, (columns, grading), names in (((-2.5, -0.5), (beside[0], 1 / beside[1]), ["bottom", None, None, "side"]),
+def inclined_footing_case(vertical, mu, element="f_bar", kind="Q4", under=(40, 6), beside=(18, 40), rows=(22, 0.04), stiffer=1, boxed=False):
+    """On a plane, or under a box with sides whose corners lie at nodes; with clay that is so many times stiffer, and driven by as much less."""
+    blocks, free = [], "base" if boxed else None
+    for x, (columns, grading), names in (((-2.5, -0.5), (beside[0], 1 / beside[1]), ["bottom", None, free, "side"]),
                                          ((-0.5, 0.5), (under[0], {"middle": under[1]}), ["bottom", None, "base", None]),
-                                         ((0.5, 2.5), beside, ["bottom", "side", None, None])):
+                                         ((0.5, 2.5), beside, ["bottom", "side", free, None])):
         blocks.append(block("ground", [[x[0], -2], [x[1], -2], [x[1], 0], [x[0], 0]], [columns, rows[0]], names, kind=kind, grading=[grading, rows[1]]))
-    contact = {"slave": "base", "master": {"plane": {"point": [0, 0], "normal": [0, -1]}}, "rigid_body": "footing",
+    shape = {"polyline": {"points": [[0.5, 0.5], [0.5, 0], [-0.5, 0], [-0.5, 0.5]]}} if boxed else {"plane": {"point": [0, 0], "normal": [0, -1]}}
+    contact = {"slave": "base", "master": shape, "rigid_body": "footing",
                "friction": {"law": "coulomb", "mu": mu}}
     steps = [{"name": "load", "duration": 1, "dt": {"initial": 0.05, "max": 0.1, "min": 1e-4},
-              "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}, {"on": "footing", "ux": 0, "uy": -0.003, "angle": 0}],
+              "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}, {"on": "footing", "ux": 0, "uy": -0.003 / stiffer, "angle": 0}],
               "until": {"on": "footing", "fy": -vertical}},
              {"name": "drive", "duration": 1, "dt": {"initial": 0.02, "max": 0.05, "min": 1e-5},
-              "supports": [{"on": "footing", "uy": None, "ux": way}], "loads": [{"on": "footing", "force": {"y": -vertical}}]}]
-    return {"title": f"V = {vertical}, mu = {mu}", "mesh": {"blocks": blocks}, "bodies": {"ground": {"material": CLAY, "element": element}},
+              "supports": [{"on": "footing", "uy": None, "ux": 0.004 / stiffer}], "loads": [{"on": "footing", "force": {"y": -vertical}}]}]
+    return {"title": f"V = {vertical}, mu = {mu}", "mesh": {"blocks": blocks}, "bodies": {"ground": {"material": {**CLAY, "E": stiffer * CLAY["E"]}, "element": element}},
             "rigid_bodies": {"footing": {"reference": [0, 0]}}, "contacts": {"base": contact}, "steps": steps, "output": {"fields": False}}
 
 
 # Elements under the footing and beside it, of which the smallest are at the corners, and rows.
 MESHES = {"Q4 F-bar, B/100": {}, "Q4 F-bar, B/150": {"under": (56, 8), "beside": (20, 60), "rows": (26, 0.025)},
           "Q8 reduced, B/95": {"kind": "Q8", "element": "reduced", "under": (28, 8), "beside": (12, 60), "rows": (14, 0.02)}}
+BOX = {"B/31": {"under": (14, 5), "beside": (8, 30), "rows": (8, 0.05)}, "B/95": {"under": (28, 8), "beside": (12, 60), "rows": (14, 0.02)},
+       "B/300": {"under": (50, 20), "beside": (20, 200), "rows": (22, 0.006)}}
 
 
 def footing_v_h(program):
@@ -70,6 +74,17 @@ def footing_v_h(program):
         exact, found = min(green_h(vertical), mu * vertical), abs(run.last("footing.fx"))
         ray = f"{100 * along_the_ray(vertical, found):+.2f} %" if mu == 1 else ""
         rows.append([name, f"{vertical:g}", f"{mu:g}", *row("H/(B s_u)", exact, found, 4), ray])
+    return rows
+
+
+def footing_in_a_box(program):
+    """The same as a rigid box with corners and sides under V = 4 B s_u; the stiffer the clay, the less it sinks before it slides."""
+    rows = [["Q8 reduced, corner", "E/s_u", *HEAD, "along the ray", "sunk by [B]"]]
+    for name, stiffer in (("B/31", 1), ("B/95", 1), ("B/31", 10), ("B/95", 10), ("B/300", 10)):
+        run = Run(program, inclined_footing_case(4, 1, "reduced", "Q8", stiffer=stiffer, boxed=True, **BOX[name]))
+        found = abs(run.last("footing.fx"))
+        rows.append([name, f"10{'⁵' if stiffer == 10 else '⁴'}", *row("H/(B s_u)", green_h(4), found, 4), f"{100 * along_the_ray(4, found):+.2f} %",
+                     f"{-run.last('footing.uy'):.1e}"])
     return rows
 
 
@@ -188,4 +203,4 @@ def drawing(program):
     return rows
 
 
-FORMING = {"footing_v_h": footing_v_h, "necking": necking, "drawing": drawing}
+FORMING = {"footing_v_h": footing_v_h, "footing_in_a_box": footing_in_a_box, "necking": necking, "drawing": drawing}

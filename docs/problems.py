@@ -9,6 +9,7 @@ from math import exp, pi, sqrt
 
 import numpy as np
 
+import greco_exact
 from results import ROOT, Run, committed, law, table
 
 HEAD = ["quantity", "reference", "ours", "difference"]
@@ -162,6 +163,25 @@ def greco(program):
     return [[*HEAD, *COST], [*rows[0], *run.cost()], *([*other, "", ""] for other in rows[1:])]
 
 
+def greco_profile(program):
+    """p and q along the bottom by three methods, against states of nodes that meet the conditions exactly."""
+    methods = (("at nodes", "node_to_segment"), ("at Gauss points (default)", None), ("mortar", "mortar"))
+    x, _, p, q = greco_exact.bottom(40)
+    found = [("states met exactly", x, p, q)]
+    for name, method in methods:
+        case = committed("cases/validation/greco.json")
+        case["contacts"]["base"]["method"] = method
+        frame = Run(program, case).frame("contact")
+        order = np.argsort(frame["Points"][:, 0])
+        found.append((name, *(values[order] for values in (frame["Points"][:, 0], frame["pressure"], frame["traction"]))))
+    head = [["", *(f"{name}({place:g})" for name, places in (("p", GRECO_PLACES), ("q", GRECO_PLACES[-2:])) for place in places)]]
+    return head + [[name, *(f"{np.interp(place, x, p):.2f}" for place in GRECO_PLACES), *(f"{np.interp(place, x, q):.2f}" for place in GRECO_PLACES[-2:])]
+                   for name, x, p, q in found]
+
+
+GRECO_PLACES = (5, 10, 15, 20, 25, 32, 36)
+
+
 def greco_bottom(program):
     run = Run(program, committed("cases/validation/greco.json"))
     frame = run.frame("contact")
@@ -225,6 +245,7 @@ QUICK = {
     "partial_slip": partial_slip,
     "partial_slip_heals": partial_slip_heals,
     "greco": greco,
+    "greco_profile": greco_profile,
     "wedge": wedge,
     "spring_mass": spring_mass,
     "coulomb_drag": coulomb_drag,

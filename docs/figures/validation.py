@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+import greco_exact
 from closed_forms import tube
 from problems import along, ellipse, greco_bottom, partial_slip_of
 from results import Run, committed
@@ -55,12 +56,19 @@ def partial_slip():
 
 
 def greco():
-    _, x, u = greco_bottom(program)
-    figure, panel = plt.subplots(figsize=(5, 3), layout="constrained")
+    run, x, u = greco_bottom(program)
+    figure, (panel, under) = plt.subplots(1, 2, figsize=(8, 3), layout="constrained")
     panel.plot(x, u, "-", lw=1, label="here")
     panel.plot([0, 1.25, 5, 7.5, 11.25], [28.65, 27.27, 22.90, 19.84, 15.0], "ko", mfc="none", label="mean of several codes")
     panel.set(xlabel="x along the bottom [mm]", ylabel="$u_x$ [µm]", xlim=(-0.5, 40), ylim=(0, None))
     panel.legend(frameon=False)
+    frame, exact = run.frame("contact"), greco_exact.bottom(40)
+    order = np.argsort(frame["Points"][:, 0])[:-1]  # without the supported corner
+    for name, field, reference, colour in (("p", "pressure", exact[2], "C0"), ("q", "traction", exact[3], "C1")):
+        under.plot(exact[0], reference, "-", lw=1, color=colour, label=f"{name}, states met exactly")
+        under.plot(x[order], frame[field][order], "o", mfc="none", ms=3, color=colour, label=f"{name} here")
+    under.set(xlabel="x along the bottom [mm]", ylabel="[MPa]", xlim=(-0.5, 40), ylim=(0, None))
+    under.legend(frameon=False, fontsize=8)
     saved(figure, "greco")
 
 
