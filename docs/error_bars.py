@@ -37,7 +37,7 @@ def converged(program, case, measures):
         if not found:
             raise SystemExit(f"{case.get('title', measure)}: {said.stderr}")
         order = re.search(r"with the order (\S+)", found[2])
-        words = next((short for words, short in (("alternating", "alternates"), ("by chance", "by chance"), ("no order", "within 0.1 %"), ("does not converge", "does not converge"))
+        words = next((short for words, short in (("alternating", "alternates"), ("accidental", "by chance"), ("no order", "within 0.1 %"), ("does not converge", "does not converge"))
                       if words in found[2]), "does not change")
         yield [float(value) for value in found[1].split(", ")], float(found[3]) if found[3] else None, order[1] if order else words
 

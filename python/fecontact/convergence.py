@@ -85,7 +85,7 @@ def converge(
     """
     measure = a_name(measure, "measure", "measure")
     if levels < 3:
-        raise ValueError(f"levels: is {levels}: an order takes 3 or more")
+        raise ValueError(f"levels: is {levels}: an order of convergence needs 3 or more")
     finest, longer = case.refined(levels - 1), case.refined(levels - 1, levels - 2)
     with tempfile.TemporaryDirectory(prefix="fecontact-", ignore_cleanup_errors=True) as holder:
 

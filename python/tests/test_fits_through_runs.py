@@ -197,7 +197,7 @@ def test_a_profile_agrees_with_the_interval() -> None:
         ([FRICTION + "law"], {}, "friction.law: is 'super_subloading': only a number can be fitted"),
         (["steps[0].supports[0].ux"], {}, "ux: is 0: values are varied by shares"),
         (["steps.pusch.duration"], {}, "there is no `pusch` in steps; there is 0 to 1, press, push"),
-        (["steps.push.duration"], {}, "`duration` decides on the increments"),
+        (["steps.push.duration"], {}, "`duration` determines the increments"),
         ([FRICTION + "mu_k", FRICTION + "mu_k"], {}, "given twice"),
         ({FRICTION + "mu_k": (0.5, 0.8)}, {}, "mu_s.*not less than"),
         ({FRICTION + "mu_k": 0.5}, {}, "the range is 0.5: give two numbers"),

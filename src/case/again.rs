@@ -298,15 +298,16 @@ fn same_bodies(before: &Value, now: &Value, taken_over: usize) -> Checked<()> {
     let own = |[step, k]: [usize; 2]| format!("steps[{}].add[{k}]", step.saturating_sub(taken_over));
     if let Some((body, place)) = is.iter().find(|(body, _)| !was.contains_key(*body)) {
         let message = format!(
-            "`{body}` is there from the start of the run so far, and a body that a step adds before any removes it is absent until then: \
-             remove it in a step before this one, or run the case with all its steps from the beginning"
+            "`{body}` is present from the start of the run so far, but a body that a step adds before any step removes \
+             it counts as absent until then: remove it in a step before this one, or run the case with all its steps \
+             from the beginning"
         );
         return Err(ModelError::new(own(*place), message));
     }
     let Some((body, place)) = was.iter().find(|(body, _)| !is.contains_key(*body)) else { return Ok(()) };
     let message = format!(
-        "`{body}` is absent from the start of the run so far, whose {} added it; without that it is there from the start: keep the step that \
-         adds it, or run the case from the beginning",
+        "`{body}` is absent at the start of the run so far, whose {} added it; without that step it would be present \
+         from the start: keep the step that adds it, or run the case from the beginning",
         own(*place)
     );
     Err(ModelError::new("steps", message))
@@ -344,8 +345,9 @@ fn same_defaults(before: &Value, now: &Case, mesh: &Mesh) -> Checked<()> {
         } else {
             continue;
         };
-        let message = "is left open, and is another one where all steps are static, where one has inertia and where one is explicit, \
-                       and in this the runs differ: give it in both cases; `fecontact check --resolved` prints what it was";
+        let message = "is not given, and its default depends on whether all steps are static, one has inertia or one \
+                       is explicit, in which the runs differ: give it in both cases; `fecontact check --resolved` \
+                       prints what it was";
         return Err(ModelError::new(format!("contacts.{name}.{key}"), message));
     }
     Ok(())
@@ -388,7 +390,9 @@ pub fn refuse(differences: Vec<Difference>, what: &str) -> Checked<()> {
     };
     let first = differences.iter().take(MOST_LISTED);
     let first: Vec<String> = first
-        .map(|Difference { place, was, is }| format!("`{}` is {}, and was {}", clipped(place), value(is), value(was)))
+        .map(|Difference { place, was, is }| {
+            format!("`{}` is now {} and was {}", clipped(place), value(is), value(was))
+        })
         .collect();
     let more = if differences.len() > MOST_LISTED {
         format!(", and {} more", differences.len() - MOST_LISTED)

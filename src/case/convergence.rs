@@ -45,8 +45,8 @@ enum Of {
     Mean,
 }
 
-const FORM: &str = "give COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean, with a column of history.csv or probes.csv, or one over another \
-                    (COLUMN/COLUMN), and @STEP behind it for a step alone";
+const FORM: &str = "give COLUMN:max, COLUMN:min, COLUMN:end or COLUMN:mean, where COLUMN is a column of history.csv or \
+                    probes.csv or a ratio of two (COLUMN/COLUMN), and append @STEP for one step only";
 
 impl FromStr for Measure {
     type Err = String;
@@ -67,7 +67,7 @@ impl FromStr for Measure {
             Some(Self { value: value.into(), of: kind(word)?, step })
         });
         measure.ok_or_else(|| match text.rsplit_once(':') {
-            Some((_, other)) => format!("`{other}` is nothing that is taken of a column: {FORM}"),
+            Some((_, other)) => format!("`{other}` is not max, min, end or mean: {FORM}"),
             None => format!("`{text}` is no measure: {FORM}"),
         })
     }
@@ -93,7 +93,7 @@ impl Measure {
             .columns(|name| header.iter().any(|other| other == name))
             .ok_or_else(|| format!("the history has no column `{}`; there are {}", self.value, header.join(", ")))?;
         if column == "step" || over == Some("step") {
-            return Err("the column `step` is not of numbers".into());
+            return Err("the column `step` does not hold numbers".into());
         }
         let names: Vec<&str> = model.steps.iter().map(|step| step.name.as_str()).collect();
         match self.step.as_deref().filter(|step| !names.contains(step)) {
@@ -117,7 +117,7 @@ impl Measure {
         let has = |name: &str| table.get(name).is_ok() || of_probes(name).is_some();
         let (column, over) = self.columns(has).unwrap_or((&self.value, None));
         if let Some(words) = [Some(column), over].into_iter().flatten().find(|name| table.words(name).is_some()) {
-            return Err(error(format!("the column `{words}` is not of numbers")));
+            return Err(error(format!("the column `{words}` does not hold numbers")));
         }
         let numbers = |name: &str| table.get(name).or_else(|fault| of_probes(name).ok_or(fault.to_string()));
         let (values, times, steps) = (numbers(column)?, numbers("time")?, numbers("step")?);
@@ -135,7 +135,7 @@ impl Measure {
         };
         let value = value.filter(|value| value.is_finite());
         let place = self.step.as_ref().map_or(String::new(), |step| format!(" in the step `{step}`"));
-        value.ok_or_else(|| error(format!("`{}` is no number{place}", self.value)))
+        value.ok_or_else(|| error(format!("`{}` is not a number{place}", self.value)))
     }
 }
 
@@ -207,10 +207,10 @@ pub const WITHIN: f64 = 1e-3;
 /// Returns a message if there are fewer, or one is not finite.
 pub fn judge(values: &[f64], within: f64) -> Result<Convergence, String> {
     let [.., first, second, last] = *values else {
-        return Err(format!("there are {} numbers: an order takes {FEWEST} levels", values.len()));
+        return Err(format!("there are {} numbers: an order of convergence needs {FEWEST} levels", values.len()));
     };
     if let Some(bad) = values.iter().find(|value| !value.is_finite()) {
-        return Err(format!("{bad} is no number that can converge"));
+        return Err(format!("{bad} is not a finite number"));
     }
     let judged = of_three([first, second, last]);
     let most = (second - first).abs().max((last - second).abs());
@@ -235,7 +235,7 @@ fn of_three(values: [f64; 3]) -> Convergence {
     };
     let least = ROUND_OFF * first.abs().max(last.abs());
     if before.abs().max(after.abs()) <= least {
-        let verdict = "does not change with mesh and increments, but for round-off".into();
+        let verdict = "does not change with mesh and increments, apart from round-off".into();
         return judged(None, Some(last), Some(least), verdict);
     }
     if after.abs() >= before.abs() {
@@ -247,7 +247,8 @@ fn of_three(values: [f64; 3]) -> Convergence {
     }
     let by_difference = (SAFETY[1] * after.abs()).max(LEAST * before.abs());
     if before * after <= 0.0 {
-        let verdict = "converges, with differences of alternating sign; the bar follows from the differences".into();
+        let verdict =
+            "converges, with differences of alternating sign; the error bar follows from the differences".into();
         return judged(None, Some(last), Some(by_difference), verdict);
     }
     let order = (before / after).log2();
@@ -260,7 +261,7 @@ fn of_three(values: [f64; 3]) -> Convergence {
     let correction = after / (before / after - 1.0);
     if order > PLAUSIBLE[1] {
         let verdict =
-            format!("converges; the order of {order:.2} is by chance, and the bar follows from the differences");
+            format!("converges; the order of {order:.2} is accidental, and the error bar follows from the differences");
         return judged(Some(order), Some(last + correction), Some(by_difference), verdict);
     }
     let smooth = order > 1.0 - WHOLE && (order - order.round()).abs() < WHOLE;

@@ -68,10 +68,12 @@ impl Differentiated<'_> {
 
     fn neighbours_on(&self, mesh: &Mesh) -> Checked<Vec<Parameter>> {
         let places = &self.case.gradients;
-        let message = "a case that begins with the end of another has no derivatives of that end: give the steps of both in one case";
+        let message = "a case that begins with the end of another run has no derivatives of that end: give the steps \
+            of both in one case";
         refuse_if(self.begins_with, "gradients", message)?;
         self.model.steps.iter().try_for_each(check_step)?;
-        let message = "are not for bodies that come or go beside water that flows, whose pressures then begin anew: leave them out";
+        let message = "are not available where bodies are added or removed in a model with flowing water, whose \
+            pressures then start anew: leave them out";
         refuse_if(self.model.flow.is_some() && self.model.changes_bodies(), "gradients", message)?;
         let defaults: Value = serde_json::from_str(&resolved(self.case, self.model)).unwrap_or_default();
         let one = |(k, place): (usize, &String)| {
@@ -97,7 +99,7 @@ impl Differentiated<'_> {
         let value = given.unwrap_or_else(|| at(defaults, &keys));
         let theta = value.as_f64().ok_or_else(|| format!("is {}: it must be a number", kind(value)))?;
         if theta == 0.0 {
-            return Err("is 0, of which no small part can be taken: give the value about which it is to vary".into());
+            return Err("is 0, and it is varied by a small fraction of itself: give a value other than 0".into());
         }
         let perturbed = |stencil: &[(f64, f64)]| {
             let one = |(k, weight): &(f64, f64)| {
@@ -119,13 +121,10 @@ impl Differentiated<'_> {
         let mut document = self.document.clone();
         keep_openings(&mut document, self.model);
         put(&mut document, keys, Number::from_f64(value).map_or(Value::Null, Value::Number));
-        let refused =
-            |place: &str, message: &str| format!("cannot be {value}, a little beside its value: {place}: {message}");
+        let refused = |place: &str, message: &str| format!("cannot be varied to {value}: {place}: {message}");
         let model = self.model_of(&document, mesh).map_err(|error| refused(&error.place, &error.message))?;
         if !is_alike(self.model, &model) {
-            return Err(
-                "acts on the mesh, or on contact points or times of steps, which have to stay as they are".into()
-            );
+            return Err("changes the mesh, contact points or times of steps, which must stay as they are".into());
         }
         Ok(solved_exactly(model))
     }
@@ -168,7 +167,8 @@ fn check_step(step: &Step) -> Checked<()> {
         _ => return Ok(()),
     };
     let message = format!(
-        "step `{}` {why}, with whose tangent derivatives could be carried on: leave `gradients` out, and compare runs with two values",
+        "step `{}` {why}, so there is no tangent that derivatives could follow from: leave `gradients` out, and \
+        compare runs with two values",
         step.name
     );
     Err(ModelError::new("gradients", message))
@@ -255,7 +255,7 @@ fn check_place(keys: &[Key]) -> Result<(), String> {
     };
     if !PARTS.contains(&name(0)) {
         return Err(format!(
-            "`{}` is no parameter of the run: there are derivatives by values in {}",
+            "`{}` is not a parameter of the run: derivatives are available with respect to values in {}",
             name(0),
             PARTS.join(", ")
         ));
@@ -263,7 +263,7 @@ fn check_place(keys: &[Key]) -> Result<(), String> {
     let of_steps = name(0) == "steps" && OF_INCREMENTS.contains(&name(2));
     if of_steps || (name(3), name(4)) == ("flow", "error") {
         return Err(format!(
-            "`{}` decides on the increments, and derivatives are those of a run with its increments as they were",
+            "`{}` determines the increments, and derivatives are those of a run with fixed increments",
             if of_steps { name(2) } else { name(4) }
         ));
     }
@@ -276,7 +276,7 @@ fn check_well(document: &Value, keys: &[Key]) -> Result<(), String> {
         matches!(keys, [.., Key::Name(wells), Key::Number(_), Key::Name(at), _] if wells == "wells" && at == "at");
     if is_place && !at(document, &keys[..keys.len() - 2])["pressure"].is_null() {
         return Err(
-            "is the place of a pressure, which is prescribed at the nearest node: nothing changes until that is another one"
+            "is the position of a prescribed pressure, which acts at the nearest node: a small change has no effect"
                 .into(),
         );
     }

@@ -151,7 +151,12 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     let confinement = confinement(&input.normal)?;
     let path = match (&input.path, &input.table) {
         (Some(phases), None) => {
-            refuse_if(input.opening.is_some(), "opening", "is for the rows of a table: give that of each phase")?;
+            refuse_if(
+                input.opening.is_some(),
+                "opening",
+                "belongs to the rows of a table: give each phase its own \
+                `opening`",
+            )?;
             phases_of(input, phases)?
         }
         (None, Some(table)) => vec![table_of(input, table)?],
@@ -170,7 +175,7 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     let Some(bond) = &input.bond else {
         let opens = input.path.iter().flatten().position(|phase| phase.opening.is_some());
         let place = opens.map_or("opening".into(), |k| format!("path[{k}].opening"));
-        let message = "is for a `bond` beside friction, and there is none: leave it out";
+        let message = "belongs to a `bond` in addition to friction, and there is none: leave it out";
         refuse_if(opens.is_some() || input.opening.is_some(), place, message)?;
         return Ok(LawTest { law, start, path, of_bond: 0.0, confinement });
     };
@@ -187,7 +192,7 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
 
 /// A law with a bond in parallel with it.
 fn bonded(law: ContactLaw, bond: &BondParameters, input: &LawTestInput) -> Checked<ContactLaw> {
-    let message = "is that of the friction law already: leave one of them out";
+    let message = "is given by the friction law already: leave one of them out";
     refuse_if(law.law.cohesion() > 0.0, "bond.strength", message)?;
     refuse_if(
         bond.strength.is_none(),
@@ -205,7 +210,8 @@ fn bonded(law: ContactLaw, bond: &BondParameters, input: &LawTestInput) -> Check
     refuse_if(
         moves,
         "bond",
-        "follows the opening of the path, and not that by dilatancy, wear or a normal stiffness: leave one of them out",
+        "follows the opening given by the path, not one caused by dilatancy, wear or a normal stiffness: leave one of \
+        them out",
     )?;
     let surfaces = BondSurfaces::new(alpha_n.unwrap_or(f64::INFINITY), f64::NAN, 0.0);
     law.bonded(bond, surfaces)

@@ -76,14 +76,14 @@ pub fn refined_on(written: &Written, mesh: &Mesh, halvings: Halvings) -> Result<
 /// Refuses what cannot be refined.
 fn check(case: &Case, times: u32) -> Checked<()> {
     let message =
-        "the mesh is that of the case before, which has to be refined as well: give the steps of both in one case";
+        "the mesh is that of the preceding run, which must be refined as well: give the steps of both in one case";
     refuse_if(case.begin_with.is_some(), "begin_with", message)?;
-    refuse_if(times > MOST, "mesh", format_args!("cannot be halved {times} times: {MOST} are the most"))
+    refuse_if(times > MOST, "mesh", format_args!("cannot be halved {times} times: at most {MOST} times are allowed"))
 }
 
 /// Refuses what another mesh makes another problem: nodes by their tags, and what acts at every node of a body or a side.
 fn check_nodes(Written { case, document, .. }: &Written, mesh: &Mesh) -> Checked<()> {
-    let instead = "a mesh that is refined has others: name a single node by its place, {\"near\": [x, y]}";
+    let instead = "a refined mesh has other nodes: name a single node by its position, {\"near\": [x, y]}";
     if let Some(place) = tagged(document, "") {
         return Err(ModelError::new(place, format!("is a node by its tag, and {instead}")));
     }
@@ -134,8 +134,8 @@ fn check_near(Written { path, document, .. }: &Written, own: &Mesh, finer: &Case
         let of_finer = nodes_at(&finer, &Place::Near([x, y]), &place).ok().map(|found| finer.nodes[found[0]]);
         let stays = of_finer.is_some_and(|at| (at - own.nodes[node]).norm() <= SAME * size);
         let message = format!(
-            "is nearest to the node at {}, and with halved elements to another: give the place of that node, or measure at \
-             ({x}, {y}) by a probe (`probes`)",
+            "is nearest to the node at {}, but with halved elements to another node: give the position of that node, \
+             or measure at ({x}, {y}) with a probe (`probes`)",
             vector(own.nodes[node])
         );
         refuse_if(!stays, place, message)?;

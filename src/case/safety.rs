@@ -65,8 +65,8 @@ impl Reduced {
     /// A case with strengths divided by F.
     fn of(&self, document: &Value, factor: f64) -> Checked<Value> {
         for (name, body) in document["bodies"].as_object().into_iter().flatten() {
-            let message = "the trials of a factor of safety do not follow water that flows: leave it out, and give the pressure of the water \
-                           (pore_pressure)";
+            let message = "a factor of safety is not available with flowing water: leave it out, and give the pressure \
+                           of the water (pore_pressure)";
             let flows = !body["pore_fluid"]["permeability"].is_null();
             refuse_if(flows, format!("bodies.{name}.pore_fluid.permeability"), message)?;
         }
@@ -88,7 +88,7 @@ impl Reduced {
                 let [has_bond, is_interface] =
                     ["bond", "interface"].map(|key| given.get(key).is_some_and(Value::is_object));
                 if given.get("radiation_damping").is_some_and(|eta| eta.is_number() || *eta == json!(true)) {
-                    let message = "bears load as long as anything moves, so that nothing fails: leave it out";
+                    let message = "carries load as long as anything moves, so that nothing fails: leave it out";
                     return Err(ModelError::new(format!("{list}.{name}.radiation_damping"), message));
                 }
                 let part = &mut case[list][name];
@@ -187,7 +187,8 @@ fn stands_still(case: &Value) -> Checked<()> {
     });
     let changing = in_force.into_values().chain(given).find(|(_, value)| changes_after(value, end));
     changing.map_or(Ok(()), |(place, _)| {
-        let message = "goes on changing after the end of the case, and so in the trials: hold it in a last step, a motion by {\"rate\": 0}, or give it without the time";
+        let message = "would go on changing in the trials, after the end of the case: keep it constant in a last step \
+            (a motion by {\"rate\": 0}), or give it without t";
         Err(ModelError::new(place, message))
     })
 }

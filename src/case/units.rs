@@ -176,8 +176,8 @@ impl<'a> Units<'a> {
         let names: Vec<&String> = is.unknown().chain(expected.unknown()).collect();
         let names = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         Some(format!(
-            "units.{} is {label:?}, which nothing checks against length, force and time; not known as names of units, as mm, kN, MPa, \
-             kg or h: {names}",
+            "units.{} is {label:?}, which cannot be checked against length, force and time; not known as names of \
+             units, as mm, kN, MPa, kg or h: {names}",
             unit.name
         ))
     }

@@ -41,7 +41,9 @@ pub fn converge(path: &Path, study: Study) -> Result<(), Failure> {
     let read = measures.iter().map(|measure| measure.parse::<Measure>().map_err(refused));
     let read = read.collect::<Result<Vec<_>, _>>()?;
     if levels < FEWEST {
-        return Err(Failure::BadInput(format!("--levels: is {levels}: an order takes {FEWEST} or more")));
+        return Err(Failure::BadInput(format!(
+            "--levels: is {levels}: an order of convergence needs {FEWEST} or more"
+        )));
     }
     if !(0.0..1.0).contains(&within) {
         return Err(Failure::BadInput(format!(

@@ -123,8 +123,9 @@ pub enum TrialFailure {
     },
     /// The place where an element comes is too narrow for it.
     #[error(
-        "element {element} of body `{body}` at ({}, {}) would come with {:.0} % of its size in the mesh: what it shares nodes with has moved \
-         against its other nodes, which wait where they were; let it come earlier", number(at[0]), number(at[1]), 100.0 * share
+        "element {element} of body `{body}` at ({}, {}) would be added with {:.0} % of its size in the mesh: the nodes \
+         that it shares with other bodies have moved relative to its other nodes, which stay where they were; add the \
+         body earlier", number(at[0]), number(at[1]), 100.0 * share
     )]
     Narrow {
         /// its tag in the mesh file

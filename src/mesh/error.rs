@@ -148,8 +148,8 @@ pub enum MeshError {
     },
     /// A group of nodes holds both ends of a side of an element, and the mesh is to be refined.
     #[error(
-        "the group `{group}` holds the nodes {} and {}, the ends of a side: whether nodes between them belong to it cannot be told; \
-         name the side, not its nodes", nodes[0], nodes[1]
+        "the group `{group}` holds the nodes {} and {}, the ends of a side: it is unclear whether nodes between them \
+         belong to it; name the side, not its nodes", nodes[0], nodes[1]
     )]
     SideOfNodes {
         /// name of the group

@@ -58,10 +58,10 @@ impl PlacedGroup {
     fn check(&self) -> Result<(), String> {
         let places = [self.x.is_some(), self.y.is_some(), self.within.is_some(), self.circle.is_some()];
         if !places.contains(&true) && self.angle.is_none() && self.of.is_none() {
-            return Err("says no place: give x, y, box, circle, angle or of".into());
+            return Err("gives no place: give x, y, box, circle, angle or of".into());
         }
         if self.nodes && self.angle.is_some() {
-            return Err("has an angle, which nodes have not: leave out angle, or nodes".into());
+            return Err("has an angle, which nodes do not have: leave out angle, or nodes".into());
         }
         let numbers = [self.x, self.y, self.tolerance].into_iter().flatten();
         let corners = self.within.into_iter().flatten().flatten().chain(self.angle.into_iter().flatten());

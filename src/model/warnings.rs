@@ -171,8 +171,9 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
         None => (adjacent(pair.nodes().collect())?, "make it the slave and "),
     };
     Some(format!(
-        "its friction goes by the total pressure, part of which the fluid in the pores of body `{body}` bears: {swap}take that part \
-         from the pores of the slave (`\"fluid_pressure\": \"of_bodies\"`), or give it (`fluid_pressure`), or a strength by total stress (friction law `adhesion`)"
+        "its friction depends on the total pressure, part of which is carried by the fluid in the pores of body \
+         `{body}`: {swap}take that part from the pores of the slave (`\"fluid_pressure\": \"of_bodies\"`), or give it \
+         (`fluid_pressure`), or a strength by total stress (friction law `adhesion`)"
     ))
 }
 
@@ -206,8 +207,9 @@ fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
     let mut reached = (0..first.len()).filter(|&k| is_none(first[k]) && !is_none(last[k])).filter_map(nearest);
     let edge = reached.find(|&edge| first[edge] > ABRUPT * highest)?;
     Some(format!(
-        "its fluid_pressure is {} at {} at t = 0 and none beside it: that is there before anything moves, in addition to the initial pressure. \
-         If the run raises it, let it be 0 at t = 0, such as P*erfc((abs(x) + 1e-9)/(2*sqrt(D*t + 1e-30)))",
+        "its fluid_pressure is {} at {} at t = 0 and none beside it: it acts before anything moves, in addition to the \
+         initial pressure. If the run raises it, let it be 0 at t = 0, such as P*erfc((abs(x) + 1e-9)/(2*sqrt(D*t + \
+         1e-30)))",
         number(first[edge]),
         vector(pair.points[edge].at(&x))
     ))
@@ -243,8 +245,8 @@ fn uneven(model: &Model, pair: &ContactPair, chosen: &Chosen) -> Option<String> 
     }
     let at = method::between_nodes(nodes, facing, &x)?.at(&x);
     Some(format!(
-        "{} where nodes do not face nodes, as at ({}, {}): an even pressure comes out uneven by 5 % and more, however fine the meshes; \
-         take \"method\": \"mortar\"",
+        "{} on nodes that do not match, as at ({}, {}): a uniform pressure comes out non-uniform by 5 % or more, \
+         however fine the meshes; take \"method\": \"mortar\"",
         chosen.method.name(),
         number(at.x),
         number(at.y)
@@ -310,8 +312,8 @@ fn sheared_at_faults(model: &Model) -> Option<String> {
         sharp.find_map(|element| Some((element, element.nodes.iter().find_map(|node| adjacent.get(node))?)))?;
     let degrees = sharpest(&element).to_degrees();
     Some(format!(
-        "contact `{}`: bilinear elements beside it have corners of {degrees:.0}°, and are too stiff against its slip at every \
-         size: earthquakes come early by percents; take quadratic elements (Q8)",
+        "contact `{}`: bilinear elements beside it have corners of {degrees:.0}°, and are too stiff against its slip \
+         at every size: earthquakes come some percent too early; take quadratic elements (Q8)",
         pair.name
     ))
 }
@@ -415,8 +417,8 @@ fn closed_across(model: &Model, pair: &ContactPair) -> Option<String> {
     let (point, gap, share) = moved.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|moved| moved.2 > CLOSED_ACROSS)?;
     if pair.initial.is_none() {
         return Some(format!(
-            "`clearance` changes the gap of the mesh by {} at {}, {} of the edge there: name as slave only what lies so close, or draw the surfaces \
-             closer to it",
+            "`clearance` changes the gap of the mesh by {} at {}, {} of the edge there: name as slave only the part \
+             that lies that close, or draw the surfaces closer to it",
             number(gap.abs()),
             vector(point.at(&x)),
             number(share)

@@ -117,10 +117,11 @@ impl Arisen {
             return String::new();
         }
         format!(
-            ", unless what arose in the one to t = {}, {:.0} % of it, stays: where a load or support jumps, let it grow over several increments; \
-             where bodies snap through or break away, a step with inertia keeps the energy that a static one drops",
-            time_text(at),
-            100.0 * most / self.error
+            ", unless the {:.0} % that arose in the increment to t = {} remain: where a load or support jumps, let it \
+             grow over several increments; where bodies snap through or break away, a step with inertia keeps the \
+             energy that a static one drops",
+            100.0 * most / self.error,
+            time_text(at)
         )
     }
 }
@@ -359,9 +360,9 @@ impl Audit {
         let ([touch, time], work) = (self.touch.worst, self.work.max(self.supplied));
         (work > 0.0 && touch.abs() > self.allowed().max(BY_TOUCH * work)).then(|| {
             format!(
-                "surfaces close or part within increments, whose work is known to {:.3e} by t = {}, {:.1} % of the work of the run: displacements \
-                 and forces at the ends of increments do not suffer, but energies do; where these matter, take shorter increments as they \
-                 close (dt.initial, dt.max){}",
+                "surfaces close or part within increments, whose work is uncertain by {:.3e} by t = {}, {:.1} % of the \
+                 work of the run: displacements and forces at the ends of increments are not affected, but energies \
+                 are; where these matter, take shorter increments as they close (dt.initial, dt.max){}",
                 touch.abs(),
                 time_text(time),
                 100.0 * touch.abs() / work,
@@ -484,7 +485,7 @@ impl Give {
     ) -> Option<String> {
         let share = energy[way] / self.elastic;
         let advised = rounded_up(stiffness[way] * share / ADVISED);
-        let massless = if *rings { "\"massless\": true, for a stiff penalty rings on mass, and " } else { "" };
+        let massless = if *rings { "\"massless\": true, as a stiff penalty oscillates on mass, and " } else { "" };
         let key = [format!("{massless}\"alpha_n\": {advised}"), format!("\"alpha_t\": {advised}")];
         // Multipliers on surfaces that have mass gain energy.
         let or = [("penetration", *by_steps && !rings), ("stick", *by_steps)]

@@ -48,8 +48,8 @@ pub enum Kind {
 pub fn several_answers(pressure: f64, limit: f64) -> String {
     let [pressure, limit] = distinct([pressure, limit]);
     format!(
-        "the pressure {pressure} exceeds {limit}, above which the response is not unique: slip weakening may \
-         exceed the contact stiffness, and the traction jumps; raise alpha_t"
+        "the pressure {pressure} exceeds {limit}, above which the response is not unique: the law may weaken faster \
+         than the contact stiffness unloads, and the traction jumps; raise alpha_t"
     )
 }
 

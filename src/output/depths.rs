@@ -41,14 +41,15 @@ pub fn penetrates(pair: &ContactPair, states: &[ContactState], x: &Configuration
 pub fn rigid_inside(pair: &ContactPair, x: &Configuration) -> Option<(Vector2<f64>, String)> {
     let Master::Rigid(Rigid { shape, .. }) = &pair.master else { return None };
     let Depth { what, at, depth, edge } = pair.deepest(x).filter(|deepest| deepest.depth > DEEP * deepest.edge)?;
-    let rounded = "drawn along it drags too much; round the corner off by an edge, or take shorter edges there";
+    let rounded = "sliding past it meets too much resistance; round the corner off over one edge, or take shorter \
+        edges there";
     let (what, remedy) = match (what, shape) {
         (Inside::SlaveNode, _) => {
             ("a slave node is inside the rigid master", "take shorter edges there, or raise alpha_n".into())
         }
         (Inside::Disk, Shape::Circle(circle)) => {
             let [radius, edge] = distinct([circle.radius, edge]);
-            let remedy = format!("edges of {edge} do not see a radius of {radius}: take edges of a fifth of it");
+            let remedy = format!("edges of {edge} do not resolve a radius of {radius}: take edges of a fifth of it");
             ("the rigid disk is inside the slave, between its points,", remedy)
         }
         _ => ("a corner of the rigid master is inside the slave", rounded.into()),

@@ -99,7 +99,7 @@ pub const BAR: [Quantity; 8] = [
     q("moment_max", ENERGY, "largest |M| along it"),
     q("shear_max", FORCE, "largest |Q| along it"),
     q("bond_slip_max", LENGTH, "largest slip of its bond"),
-    q("slipping", NONE, "share of its bonded length that slipped for good in the increment"),
+    q("slipping", NONE, "fraction of its bonded length that slipped irreversibly in the increment"),
 ];
 
 /// Quantities of bars in frames: at their points, then of their segments.
@@ -317,7 +317,7 @@ pub const EVENTS: [Quantity; 20] = [
     q(
         "seismic_share",
         NONE,
-        "share of slip times length that is faster than `seismic_rate`: 0 in an aseismic event; NaN without one",
+        "fraction of slip times length that is faster than `seismic_rate`: 0 in an aseismic event; NaN without one",
     ),
 ];
 

@@ -27,8 +27,8 @@ impl SlidBars {
                 let share = own.slip.abs() / size;
                 if share > self.most.get(&k).map_or(FAR, |(most, _)| *most) {
                     let message = format!(
-                        "bar `{}` at {}, t = {}: it has slipped by {} in an element that is {} across, \
-                         and its bond acts on the body where it was: take longer elements, or a smaller slip",
+                        "bar `{}` at {}, t = {}: it has slipped by {} in an element that is {} across, and its bond \
+                         acts on the body where it was at first: take longer elements, or a smaller slip",
                         bar.name,
                         text::vector(bar.vertices[grip.vertex].at),
                         time_text(state.time),

@@ -214,7 +214,8 @@ impl Warnings {
     ) {
         let quasi_dynamic = model.steps.iter().any(|step| matches!(step.scheme, Scheme::QuasiDynamic { .. }));
         let remedy = if quasi_dynamic {
-            "quasi_dynamic steps have no other sliding, so judge by how far tractions stay alike along the surface"
+            "quasi_dynamic steps have no other sliding, so judge by the distance over which tractions hardly vary \
+            along the surface"
         } else {
             "take finite sliding"
         };

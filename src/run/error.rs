@@ -63,7 +63,7 @@ pub enum Error {
         reached: f64,
     },
     /// A motion gained more energy than was supplied; its results are kept, but are those of an instability.
-    #[error("the results are of no use: {0}")]
+    #[error("the results are not usable: {0}")]
     Unstable(String),
     /// A friction law failed in a law test.
     #[error("the law stopped after time {}: {cause}", time_text(*time))]

@@ -139,8 +139,8 @@ impl LawTest {
         {
             let [pressure, limit] = distinct([pressure, limit]);
             report.warnings.push(format!(
-                "the pressure {pressure} at t = {time} exceeds {limit}, above which the response is not \
-                 unique: slip weakening may exceed the contact stiffness, and the traction jumps; raise alpha_t"
+                "the pressure {pressure} at t = {time} exceeds {limit}, above which the response is not unique: the \
+                 law may weaken faster than the contact stiffness unloads, and the traction jumps; raise alpha_t"
             ));
         }
     }

@@ -265,7 +265,7 @@ impl Attempt<'_> {
         match self.local_error {
             Some(LocalError { estimate, allowed }) if estimate > allowed => {
                 let is_given = self.step.increments.error == Some(allowed);
-                let what = if is_given { "dt.error = " } else { "what is allowed of slip, " };
+                let what = if is_given { "dt.error = " } else { "the error allowed in slip, " };
                 format!("solved, but the local error {} is above {what}{}", rounded(estimate), number(allowed))
             }
             _ => "solved, but a contact began to slip, stopped or reversed at a time that dt.error requires to be \

@@ -59,8 +59,8 @@ pub struct WaterCourse {
 fn disagree(flowing: &[Flowing]) -> IncrementFailure {
     let contact = flowing.first().map(|flowing| flowing.pair.name.clone()).unwrap_or_default();
     let why = format!(
-        "{MOST_PASSES} passes of equilibrium and flow do not agree on its pressure: give shorter increments (dt.min), the ground water that \
-         is there (`initial`), or a larger `storage`"
+        "its pressure has not converged after {MOST_PASSES} passes of equilibrium and flow: give shorter increments \
+         (dt.min), the initial pressure of the ground water (`initial`), or a larger `storage`"
     );
     IncrementFailure::Water { contact, why }
 }
@@ -198,8 +198,9 @@ impl Flowing<'_> {
         let (old, new) = (self.old, &self.found);
         if let Some((node, pressure)) = self.conduit.bad(&new.pressure, self.pair.modulus) {
             let why = format!(
-                "its pressure would be {pressure:e} at node {} of its slave: the surfaces open faster than water flows in, or a well takes \
-                 more than there is; raise `initial`, the ground water that is there, or lower what a well takes",
+                "its pressure would be {pressure:e} at node {} of its slave: the surfaces open faster than water flows \
+                 in, or a well withdraws more than there is; raise the initial pressure of the ground water \
+                 (`initial`), or withdraw less",
                 node + 1
             );
             return Err(self.failure(why));

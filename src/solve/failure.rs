@@ -49,7 +49,7 @@ pub enum IncrementFailure {
         passes: usize,
     },
     /// The velocities of an explicit run are no longer finite.
-    #[error("the motion grows without bound: lower the safety of the explicit scheme, or check loads and supports")]
+    #[error("the motion grows without bound: lower the `safety` of the explicit scheme, or check loads and supports")]
     Unbounded,
     /// An element collapsed in explicit increments of any allowed length.
     #[error(
@@ -81,9 +81,10 @@ pub enum IncrementFailure {
     Floating(String),
     /// A bond that pulls has torn over much of a contact at once.
     #[error(
-        "the bond of contact `{contact}` tears over {percent:.0} % of its length within one increment: what is torn off is in equilibrium, too, \
-         but the run has not come there step by step; where no shorter increments lead on, it breaks away at once: take a step with inertia, or \
-         `rupture`, or a longer `bond.opening` under a lower `bond.tension`"
+        "the bond of contact `{contact}` tears over {percent:.0} % of its length within one increment: the torn state \
+         is in equilibrium too, but the run has not reached it step by step. If shorter increments do not help, the \
+         bond ruptures at once: take a step with inertia, or `rupture`, or a longer `bond.opening` under a lower \
+         `bond.tension`"
     )]
     Torn {
         /// contact pair

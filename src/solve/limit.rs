@@ -40,8 +40,8 @@ fn limit_point(step: &Step, state: &State) -> String {
         return String::new();
     }
     format!(
-        "this may be a limit point, the most that the structure bears, since displacements grow ever faster than the loads: {} had been \
-         reached; prescribe displacements instead of forces to go on; ",
+        "this may be a limit point, the largest load that the structure carries, since displacements grow ever faster \
+         than the loads: {} had been reached; prescribe displacements instead of forces to go on; ",
         loads.join(" and ")
     )
 }
@@ -102,8 +102,9 @@ fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[Conta
     let slides = weakening > 0.0 && slipping > SLIDES * length && now > RUNS_AWAY * so_far;
     (nucleates || slides).then(|| {
         format!(
-            "slip of contact `{}` may be unstable here: where it slips, {what} by up to {} per slip (force over length); where the \
-             bodies and what drives them give way by less, no static equilibrium follows: take a dynamic step (\"hht\"), with densities; ",
+            "slip of contact `{}` may be unstable here: where it slips, {what} by up to {} per slip (force over \
+             length); if the bodies and their loading are softer than that, no static equilibrium follows: take a \
+             dynamic step (\"hht\"), with densities; ",
             pair.name,
             number(weakening)
         )
@@ -137,9 +138,9 @@ fn tears(step: &Step, state: &State, pair: &ContactPair, states: &[ContactState]
         return String::new();
     }
     format!(
-        "the bond of contact `{}` has come to its tensile strength under loads that grow ({} had been reached): once it tears it bears less, and \
-         no static equilibrium under more load need follow: prescribe the displacement of what is loaded instead, which the tear can follow \
-         (`until` ends a step at a force), or take a step with inertia; ",
+        "the bond of contact `{}` has reached its tensile strength under growing loads ({} had been reached): once it \
+         tears it carries less, and there may be no static equilibrium under more load: prescribe the displacement of \
+         the loaded side instead (`until` ends a step at a force), or take a step with inertia; ",
         pair.name,
         loads.join(" and ")
     )

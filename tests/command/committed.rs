@@ -28,7 +28,7 @@ const SHOWN: &[(&str, &str, &str)] = &[
     ),
     (
         "coulomb_drag_",
-        "gauss_to_segment where nodes do not face nodes",
+        "gauss_to_segment on nodes that do not match",
         "other codes are compared at these points with these penalties (benches/README.md)",
     ),
     (

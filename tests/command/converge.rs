@@ -217,7 +217,9 @@ fn sequences_are_judged() {
         assert!((judged.bar.expect("a bar") - factor * error).abs() < 1e-12, "{p}");
     }
     assert!(power(0.3).bar.is_none() && power(0.3).verdict.contains("does not converge"));
-    assert!(power(5.0).bar.expect("a bar") > 5.0 * (5.0_f64 * -3.0).exp2() && power(5.0).verdict.contains("by chance"));
+    assert!(
+        power(5.0).bar.expect("a bar") > 5.0 * (5.0_f64 * -3.0).exp2() && power(5.0).verdict.contains("is accidental")
+    );
     let to_and_fro = of([1.1, 0.95, 1.02]);
     assert_eq!((to_and_fro.order, to_and_fro.extrapolated), (None, Some(1.02)));
     assert!((to_and_fro.bar.expect("a bar") - 0.21).abs() < 1e-12);
@@ -267,7 +269,7 @@ fn numbers_are_taken_of_columns_ratios_and_steps() {
         ("a/b.q/c:max.q:max", "`a/b.q/c:max.q` is no number"),
         ("a/b.q/a/b.p:mean", "is no number"),
         ("a/b.q:max@off", "is no number in the step `off`"),
-        ("a/b.q/step:max", "the column `step` is not of numbers"),
+        ("a/b.q/step:max", "the column `step` does not hold numbers"),
         ("a/b.r:max", "has no column `a/b.r`"),
     ] {
         let complaint = of(measure).expect_err(measure);
@@ -307,7 +309,7 @@ fn a_probe_stays_where_it_is() {
         let output = fecontact(&["converge", "off.json", "--measure", "wall.ux:end"], folder.path());
         let said = String::from_utf8_lossy(&output.stderr);
         let told = format!("off.json: {place}: is nearest to the node at (");
-        assert!(output.status.code() == Some(2) && said.contains(&told) && said.contains("by a probe"), "{said}");
+        assert!(output.status.code() == Some(2) && said.contains(&told) && said.contains("with a probe"), "{said}");
     };
     let mut off = case.clone();
     off["watch"] = json!(["bore", {"near": [1.27, 0.5]}]);
@@ -384,17 +386,21 @@ fn bad_studies_are_refused() {
             "point_masses.bore: is at every node of the group",
         ),
         (["good.json", "--measure", "bore.ux", "--levels", "3"], 2, "`bore.ux` is no measure: give COLUMN:max"),
-        (["good.json", "--measure", "bore.ux:last", "--levels", "3"], 2, "`last` is nothing that is taken of a column"),
+        (["good.json", "--measure", "bore.ux:last", "--levels", "3"], 2, "`last` is not max, min, end or mean"),
         (["good.json", "--measure", "bor.ux:end", "--levels", "3"], 2, "the history has no column `bor.ux`; there are"),
-        (["good.json", "--measure", "step:end", "--levels", "3"], 2, "is not of numbers"),
+        (["good.json", "--measure", "step:end", "--levels", "3"], 2, "does not hold numbers"),
         (["good.json", "--measure", "bore.ux/bore.fz:end", "--levels", "3"], 2, "has no column `bore.ux/bore.fz`"),
-        (["good.json", "--measure", "bore.ux/step:end", "--levels", "3"], 2, "is not of numbers"),
+        (["good.json", "--measure", "bore.ux/step:end", "--levels", "3"], 2, "does not hold numbers"),
         (
             ["good.json", "--measure", "bore.ux:end@lead", "--levels", "3"],
             2,
             "the case has no step `lead`; there are load",
         ),
-        (["good.json", "--measure", "bore.ux:end", "--levels", "2"], 2, "--levels: is 2: an order takes 3"),
+        (
+            ["good.json", "--measure", "bore.ux:end", "--levels", "2"],
+            2,
+            "--levels: is 2: an order of convergence needs 3",
+        ),
     ] {
         let output = fecontact(&[&["converge"], &arguments[..]].concat(), folder.path());
         let said = String::from_utf8_lossy(&output.stderr);

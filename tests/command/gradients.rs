@@ -525,10 +525,10 @@ fn that_no_run_has_are_refused_with_the_reason() {
     let told = asked(json!(["contacts.base.friction.mu_x"]));
     assert!(told.contains("gradients[0]") && told.contains("did you mean `mu_"), "{told}");
     for (place, why) in [
-        ("newton.tolerance", "is no parameter of the run"),
-        ("mesh.nodes", "is no parameter of the run"),
-        ("steps.drag.duration", "decides on the increments"),
-        ("steps.drag.dt.initial", "decides on the increments"),
+        ("newton.tolerance", "is not a parameter of the run"),
+        ("mesh.nodes", "is not a parameter of the run"),
+        ("steps.drag.duration", "determines the increments"),
+        ("steps.drag.dt.initial", "determines the increments"),
         ("contacts.base.friction.law", "the text \"super_subloading\""),
         ("contacts.base.friction", "an object"),
         ("steps.press.supports[0].ux", "is 0"),

@@ -153,8 +153,8 @@ fn by_times_and_held_places_are_refused() {
         ("wells[0].until", "or times of steps"),
         ("wells[0].rate.table[1][0]", "or times of steps"),
         ("wells[1].from", "or times of steps"),
-        ("wells[1].at[0]", "prescribed at the nearest node"),
-        ("error", "decides on the increments"),
+        ("wells[1].at[0]", "acts at the nearest node"),
+        ("error", "determines the increments"),
     ] {
         let mut asked = case.clone();
         asked["gradients"] = json!(places(&[name]));

@@ -114,7 +114,7 @@ fn what_a_bond_alone_cannot_be_is_refused() {
     for (refused, words) in [
         (with("/bond/opening", Value::Null), "bond.opening: is missing"),
         (with("/bond/strength", Value::Null), "bond.strength: is missing"),
-        (with("/friction", json!({"law": "adhesion", "strength": 1, "alpha_t": 1})), "bond.strength: is that of the friction law"),
+        (with("/friction", json!({"law": "adhesion", "strength": 1, "alpha_t": 1})), "bond.strength: is given by the friction law"),
         (with("/wear", json!(1e-3)), "bond: follows the opening of the path"),
         (with("/initial", json!({"pressure": 0, "traction": 11})), "initial.traction: is 10 for the bond"),
         (with("/path/0", json!({"duration": 1, "opening": "1+t"})), "path[0].opening: jumps from 0 to 1"),

@@ -412,7 +412,7 @@ fn later_steps_do_not_change_who_was_there() {
         run(folder.path(), out, more)
     };
     done(&start(&case(json!([rest])), "there", &[]));
-    let there = "`fill` is there from the start of the run so far";
+    let there = "`fill` is present from the start of the run so far";
     let added = case(json!([rest, changing("build", "add")]));
     let refusal = told(&start(&added, "there", &["--resume"]), 2);
     assert!(refusal.contains("steps[1].add[0]") && refusal.contains(there), "{refusal}");

@@ -110,8 +110,8 @@ fn a_label_that_contradicts_is_refused_with_what_it_would_be() {
 fn a_label_that_nothing_checks_is_told() {
     let plane = json!("plane_strain");
     let all = [
-        (json!({"length": "m", "force": "kN", "stress": "Mpa"}), "units.stress is \"Mpa\", which nothing checks"),
-        (json!({"length": "R", "force": "F", "stress": "E"}), "units.stress is \"E\", which nothing checks"),
+        (json!({"length": "m", "force": "kN", "stress": "Mpa"}), "units.stress is \"Mpa\", which cannot be checked"),
+        (json!({"length": "R", "force": "F", "stress": "E"}), "units.stress is \"E\", which cannot be checked"),
         (
             json!({"length": "m", "force": "((((N", "stress": "MPa"}),
             "not known as names of units, as mm, kN, MPa, kg or h: `((((N`",

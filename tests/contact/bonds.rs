@@ -365,6 +365,6 @@ fn a_stop_under_force_says_what_to_do() {
     );
     let model = std::sync::Arc::new(common::model(&case));
     let told = fecontact::run::run(&model, &mut []).1.expect_err("it stops").to_string();
-    assert!(told.contains("has come to its tensile strength under loads that grow (load along y 0."), "{told}");
-    assert!(told.contains("prescribe the displacement of what is loaded"), "{told}");
+    assert!(told.contains("has reached its tensile strength under growing loads (load along y 0."), "{told}");
+    assert!(told.contains("prescribe the displacement of the loaded side"), "{told}");
 }

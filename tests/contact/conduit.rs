@@ -270,7 +270,7 @@ fn a_well_cannot_take_what_is_not_there() {
             Err(error) => break error.to_string(),
         }
     };
-    assert!(stopped.contains("a well takes more than there is"), "{stopped}");
+    assert!(stopped.contains("a well withdraws more than there is"), "{stopped}");
 }
 
 /// A dilatant fault between periodic sides that slips without drainage: p_w = p₀ − δ tan ψ/S, so that slip strengthens it, and it stops where

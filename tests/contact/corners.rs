@@ -106,7 +106,7 @@ fn a_tool_inside_an_edge_is_told() {
         (
             wedge,
             Inside::Corner,
-            "a corner of the rigid master is inside the slave by 8.000e-2, 8.0 % of its edge; drawn along it drags too much",
+            "a corner of the rigid master is inside the slave by 8.000e-2, 8.0 % of its edge; sliding past it meets too much resistance",
         ),
     ] {
         let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(&entered("Q4", &tool))));

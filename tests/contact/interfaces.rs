@@ -149,7 +149,7 @@ fn interfaces_that_cannot_be_are_refused() {
             steel(),
             json!({"interface": {"reduction": 0.5}}),
             "interface.reduction",
-            "of no strength: none of the bodies beside the contact (`soil`, `wall`)",
+            "is a fraction, but none of the bodies at the contact (`soil`, `wall`)",
         ),
         (
             steel(),

@@ -119,7 +119,9 @@ fn work_of_a_load_that_jumps_is_told_as_such() {
     };
     for dt in [0.1, 0.02] {
         let at_once = pulled(json!("3"), dt);
-        let words = format!("in the one to t = {dt}, 100 % of it, stays: where a load or support jumps, let it grow");
+        let words = format!(
+            "the 100 % that arose in the increment to t = {dt} remain: where a load or support jumps, let it grow"
+        );
         assert!(has(&at_once, "energy balance violated") && has(&at_once, &words), "{at_once:?}");
     }
     assert!(!has(&pulled(json!(3), 0.1), "energy balance"));
@@ -151,7 +153,9 @@ fn energy_of_touch_is_told_with_what_ends_it() {
     let touch = "surfaces close or part within increments";
     for dt in [0.1, 0.02] {
         let at_once = closed(json!("-2"), dt);
-        let words = format!("in the one to t = {dt}, 100 % of it, stays: where a load or support jumps, let it grow");
+        let words = format!(
+            "the 100 % that arose in the increment to t = {dt} remain: where a load or support jumps, let it grow"
+        );
         assert!(has(&at_once, touch) && has(&at_once, &words) && !has(&at_once, "energy balance"), "{at_once:?}");
     }
     let coarse = closed(json!(-2), 0.1);

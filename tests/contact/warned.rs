@@ -245,10 +245,7 @@ fn points_on_edges_that_do_not_match_are_told() {
         assert_eq!(told.len(), usize::from(is_told), "{what}: {told:?}");
         if is_told {
             let method = contact["method"].as_str().expect("a name");
-            assert!(
-                told[0].starts_with(&format!("contact `base`: {method} where nodes do not face nodes")),
-                "{told:?}"
-            );
+            assert!(told[0].starts_with(&format!("contact `base`: {method} on nodes that do not match")), "{told:?}");
             assert!(told[0].ends_with("take \"method\": \"mortar\""), "{told:?}");
         }
     }

@@ -342,6 +342,6 @@ fn bad_parameters_are_refused() {
     let missing = with!(ROCK, reference_rate: None);
     assert_eq!(
         refused(missing),
-        "\"a\" is 0.01, but \"V_0\", the slip rate from which on it grows, is missing: give it as well"
+        "\"a\" is 0.01, but \"V_0\", the slip rate above which it grows, is missing: give it as well"
     );
 }

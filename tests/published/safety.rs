@@ -133,13 +133,13 @@ fn laws_that_heal_are_refused() {
     refused(&wet, &[], "bodies.block.pore_fluid.permeability: the trials of a factor of safety do not follow");
     let mut damped = case(coulomb.clone());
     damped["contacts"]["base"]["radiation_damping"] = json!(true);
-    refused(&damped, &[], "contacts.base.radiation_damping: bears load as long as anything moves");
+    refused(&damped, &[], "contacts.base.radiation_damping: carries load as long as anything moves");
     // What moves on would move in the trials, too.
     let mut moves = case(coulomb.clone());
     moves["steps"][0]["loads"][0]["gravity"]["x"] = json!("0.1*t");
-    refused(&moves, &[], "steps[0].loads[0].gravity: goes on changing after the end of the case");
+    refused(&moves, &[], "steps[0].loads[0].gravity: would go on changing in the trials");
     moves["steps"][0]["loads"][0]["gravity"]["x"] = json!({"rate": 0.1});
-    refused(&moves, &[], "steps[0].loads[0].gravity: goes on changing after the end of the case");
+    refused(&moves, &[], "steps[0].loads[0].gravity: would go on changing in the trials");
     refused(&case(coulomb.clone()), &["--within", "0"], "--within: is 0: must be above 0");
     refused(&case(coulomb.clone()), &["--most", "1"], "--most: is 1: must be above 1");
     let output = safety(&case(coulomb), &["--most", "1.2"]);

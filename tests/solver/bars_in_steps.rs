@@ -174,7 +174,7 @@ fn bad_bars_are_refused_by_name() {
     let cases = [
         (
             bar(json!({"points": [[1, 1], [5, 1]], "segments": 4, "embedded": {"in": ["soil"]}})),
-            "bars.bar.embedded.in: the point (5, 1) lies outside of `soil`; the nearest node of it is at (4, 1)",
+            "bars.bar.embedded.in: the point (5, 1) lies outside of `soil`; its nearest node is at (4, 1)",
         ),
         (
             bar(json!({"start": {"on": "soil"}, "points": [[1, 3], [3, 1]]})),
@@ -208,7 +208,7 @@ fn bad_bars_are_refused_by_name() {
     let mut cases: Vec<(Value, &str)> = Vec::new();
     let mut case = with(json!({}));
     case["section"] = json!("axisymmetric");
-    cases.push((case, "bars.bar: a bar in rings would be a shell"));
+    cases.push((case, "bars.bar: a bar in axisymmetry would be a shell"));
     let mut case = with(json!({}));
     case["bars"]["bar"]["embedded"]["bond"] = json!({"strength": 1});
     case["steps"][0]["prestress"] = json!({"bar": 1});
@@ -218,7 +218,7 @@ fn bad_bars_are_refused_by_name() {
     cases.push((case, "steps[0].prestress.tie: there is no bar `tie`; the bars are bar"));
     let mut case = with(json!({}));
     case["steps"][0]["add"] = json!(["bar"]);
-    cases.push((case, "steps[0].add[0]: the first step begins with the bars as they are"));
+    cases.push((case, "steps[0].add[0]: bars cannot be added or removed in the first step"));
     let mut case = with(json!({}));
     case["bars"]["soil"] = case["bars"]["bar"].clone();
     cases.push((case, "bars.soil: is a group of the mesh as well"));

@@ -145,7 +145,7 @@ fn friction_of_the_total_pressure_is_warned_of() {
         });
         change(&mut case);
         let warnings = model(&case).warnings().join("\n");
-        warnings.contains("contact `floor`: its friction goes by the total pressure, part of which the fluid in the pores of body `ground`")
+        warnings.contains("contact `floor`: its friction depends on the total pressure, part of which is carried by the fluid in the pores of body `ground`")
     };
     assert!(said(&|_| ()));
     assert!(!said(&|case| case["bodies"]["ground"]["pore_fluid"] = Value::Null));
@@ -264,7 +264,7 @@ fn friction_by_effective_stress_needs_pores_behind_it() {
         "{why}"
     );
     let warnings = model(&case(true, sliding())).warnings().join("\n");
-    assert!(!warnings.contains("goes by the total pressure"), "{warnings}");
+    assert!(!warnings.contains("depends on the total pressure"), "{warnings}");
     // Written with all defaults it is the same.
     let text = case(true, sliding()).to_string();
     let parsed = fecontact::case::from_text(&text, std::path::Path::new("test.json")).expect("well formed");

@@ -225,7 +225,7 @@ fn what_water_cannot_do_is_refused() {
     case["contacts"] = json!({"base": {"slave": "pier_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
         "friction": {"law": "coulomb", "mu": 0.3}}});
     let warnings = model(&case).warnings();
-    assert!(warnings.iter().any(|told| told.contains("its friction goes by the total pressure")), "{warnings:?}");
+    assert!(warnings.iter().any(|told| told.contains("its friction depends on the total pressure")), "{warnings:?}");
 }
 
 /// Ground at rest under its weight in water whose level falls by 5 m: the settlement of the column is ∫ Δσ′/M dy, with Δσ′ = Δp in the water that is left

@@ -353,7 +353,9 @@ fn what_makes_no_sense_is_refused() {
     refused("`block` is not there in this step", &|case| case["steps"][3]["remove"] = json!(["block"]));
     refused("steps[4].add[0]: `guest` is there already", &|case| case["steps"][3]["add"] = json!(["guest"]));
     refused("`block` comes or goes twice", &|case| case["steps"][2]["remove"] = json!(["block", "block"]));
-    refused("the first step begins", &|case| case["steps"][0]["remove"] = json!(["block"]));
+    refused("bodies cannot be added or removed in the first step", &|case| {
+        case["steps"][0]["remove"] = json!(["block"])
+    });
     refused("steps[3].loads: the pressure on block_top acts on `block`", &|case| {
         case["steps"][3]["loads"] = json!([{"on": "block_top", "pressure": 1}]);
     });
@@ -374,13 +376,13 @@ fn what_makes_no_sense_is_refused() {
     refused("`ground` can move freely", &|case| {
         case["steps"][0]["supports"] = json!([{"on": "block_top", "ux": 0, "uy": 0}]);
     });
-    refused("the contact `base` has a side on bodies of which only some are there", &|case| {
+    refused("the contact `base` has a side on several bodies, some of which are absent", &|case| {
         let edges = &case["mesh"]["edges"];
         let both =
             [&edges["block_bottom"], &edges["guest_bottom"]].map(|edges| edges.as_array().expect("edges").clone());
         case["mesh"]["edges"]["block_bottom"] = json!(both.concat());
     });
-    refused("that are `balanced`", &|case| {
+    refused("`balanced` initial tractions", &|case| {
         case["contacts"]["base"]["initial"] = json!({"pressure": 1, "balanced": true});
     });
     refused("loading platen", &|case| case["plates"] = json!(["block_top"]));
@@ -473,7 +475,7 @@ fn a_narrow_place_is_told() {
     });
     let (_, result) = fecontact::run::run(&Arc::new(model(&case)), &mut []);
     let said = result.expect_err("no place").to_string();
-    assert!(said.contains("of body `bar` at (1.5, 0.5) would come with 40 % of its size"), "{said}");
+    assert!(said.contains("of body `bar` at (1.5, 0.5) would be added with 40 % of its size"), "{said}");
 }
 
 /// The excavation of the gallery. Nothing moves before, and little while the wall is installed, which is heavier than the ground; then it leans into

@@ -182,7 +182,7 @@ fn what_cannot_part_is_refused() {
     let later = json!({"name": "later", "duration": 1, "remove": ["plug"]});
     case["steps"].as_array_mut().expect("steps").push(later);
     let said = refusal(&case);
-    assert!(said.contains("which is there with it"), "{said}");
+    assert!(said.contains("that two present bodies share"), "{said}");
     let mut case = installed("Q4", 1.8, true);
     case["contacts"]["left"]["initial"] = json!({"pressure": 10});
     let said = refusal(&case);

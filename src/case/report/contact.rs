@@ -32,7 +32,7 @@ pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
         lines.extend(contact(case, model, pair, chosen.as_ref()).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
             Some(_) if pair.comes_stressed => {
-                "comes later, closed under the stress that is in force there by then".into()
+                "added later, closed under the stress that acts there at that time".into()
             }
             Some(initial) => initial_tractions(initial, pair),
             None => gaps(model, pair, case.contacts[&pair.name].shrink_fit),
@@ -127,7 +127,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
             }
         };
         let what =
-            if penalty { "a penalty that holds what sticks" } else { "of the law, whose slip is elastic at first" };
+            if penalty { "penalty of sticking points" } else { "parameter of the law, whose slip is elastic at first" };
         let alpha_t = range(pair.laws.iter().map(|law| law.stiffness));
         lines.push(format!("alpha_t {alpha_t} ({chosen}): {what}"));
     }

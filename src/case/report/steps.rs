@@ -19,10 +19,16 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
         lines.push(step.name.clone());
         let mut own = step_lines(step, critical_slip(model, step.span));
         own.extend(
-            input.remove.iter().map(|name| format!("body {name} goes: its forces on the rest fade over the step")),
+            input
+                .remove
+                .iter()
+                .map(|name| format!("body {name} is removed: its forces on the rest fade over the step")),
         );
         own.extend(
-            input.add.iter().map(|name| format!("body {name} comes, without strain; its weight grows over the step")),
+            input
+                .add
+                .iter()
+                .map(|name| format!("body {name} is added, without strain; its weight grows over the step")),
         );
         let launched = input.velocity.iter();
         own.extend(launched.map(|(name, velocity)| format!("{name}: initial velocity {}", vector(*velocity))));

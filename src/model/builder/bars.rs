@@ -93,7 +93,7 @@ impl<'m> Bodies<'m> {
             let nearest = nodes.min_by(|a, b| far(a).total_cmp(&far(b)));
             let nearest = nearest.map_or(String::new(), |&node| {
                 let x = self.mesh.nodes[node];
-                format!("; the nearest node of it is at ({}, {})", x.x, x.y)
+                format!("; its nearest node is at ({}, {})", x.x, x.y)
             });
             let message = format!("the point ({}, {}) lies outside of {}{nearest}", at.x, at.y, names.join(" and "));
             ModelError::new(place, message)
@@ -154,9 +154,10 @@ pub fn lay(given: &[(String, BarInput)], mesh: &mut Mesh) -> Checked<Vec<Laid>> 
 fn check(name: &str, bar: &BarInput, mesh: &Mesh) -> Checked<()> {
     let place = format!("bars.{name}");
     let at = |key: &str| format!("{place}.{key}");
-    let message = "is a group of the mesh as well, and supports would not know which: rename it";
+    let message = "is also the name of a group of the mesh, so supports would be ambiguous: rename it";
     refuse_if(mesh.groups.contains_key(name), &place, message)?;
-    let message = "a bar in rings would be a shell, which is not there: take plane strain, or model it as a body";
+    let message = "a bar in axisymmetry would be a shell, which is not available: take plane strain, or model it as a \
+        body";
     refuse_if(mesh.section.is_axisymmetric(), &place, message)?;
     let message = "give either `points`, two or more, or `on`, a group of lines";
     refuse_if(bar.points.is_empty() == bar.on.is_none(), &place, message)?;
@@ -184,9 +185,9 @@ fn check(name: &str, bar: &BarInput, mesh: &Mesh) -> Checked<()> {
         let Some(end) = end else { continue };
         let message = "a truss is hinged at its ends: give `ei`, or leave `clamped` out";
         refuse_if(end.clamped && bar.ei == 0.0, format!("{place}.{key}.clamped"), message)?;
-        let message = "the nodes of the group are those of a body already: leave `on` of the end out";
+        let message = "the group has nodes of a body, to which the bar is joined already: leave `on` of the end out";
         refuse_if(shares && end.on.is_some(), format!("{place}.{key}.on"), message)?;
-        let message = "a bar that lies in a body with its whole length is joined to it: leave `on` of the end out";
+        let message = "an embedded bar is joined to its body over its whole length: leave `on` of the end out";
         let moves = bar.embedded.as_ref().is_some_and(|embedded| embedded.bond.is_none());
         refuse_if(moves && end.on.is_some(), format!("{place}.{key}.on"), message)?;
     }
@@ -494,7 +495,7 @@ fn grip(name: &str, given: BarBond, k: usize, edge: &Linear, laid: &Laid, model:
     let stiffness = given.stiffness.unwrap_or(penalty);
     let place = format!("bars.{name}.embedded.bond");
     let message =
-        "goes by the pressure of the body, which has a pore_fluid whose pressure would count: give `strength` instead";
+        "depends on the total pressure in the body, which includes that of its pore_fluid: give `strength` instead";
     refuse_if(given.mu > 0.0 && model.body_of(host.element).pore_fluid.is_some(), format!("{place}.mu"), message)?;
     let otherwise = if given.mu > 0.0 { f64::MIN_POSITIVE } else { f64::MAX };
     let mut parameters = BondParameters::new(given.strength.unwrap_or(otherwise));

@@ -41,8 +41,9 @@ pub fn bond(
     let at = |key: &str| format!("{place}.bond.{key}");
     let BondParameters { strength, residual, slip, tension, opening, limit, bonded, alpha_t: stiffness } = given;
     let has_own = own > 0.0 || grows;
-    let message = "is that of the friction law already (adhesion, or cohesion of slip_weakening): leave one of them out; a bond that softens \
-                   or pulls goes with frictionless, coulomb or slip_weakening without cohesion";
+    let message = "is given by the friction law already (adhesion, or cohesion of slip_weakening): leave one of them \
+                   out; a bond that softens or pulls goes with frictionless, coulomb or slip_weakening without \
+                   cohesion";
     let besides = [
         ("residual", residual.is_some()),
         ("slip", slip.is_some()),

@@ -100,7 +100,8 @@ pub fn flow(bodies: &[Body], solids: &[SolidElement], mesh: &mut Mesh) -> Checke
                 let at = flow.corners[k].map_or_else(Vector2::zeros, |node| mesh.nodes[node]);
                 let (own, other) = (fluid.pressure.value(at), flow.initial[k]);
                 let message = format!(
-                    "is {} at {}, where a body beside it starts with {}: a pressure that water can flow by has no jump there",
+                    "is {} at {}, where an adjacent body starts with {}: the pressure of flowing water is continuous \
+                    there",
                     number(own),
                     vector(at),
                     number(other)
@@ -138,7 +139,7 @@ pub fn check_fluid(law: &dyn Material, fluid: &PoreFluid, element: Formulation, 
     )?;
     let message = "is for water that weighs: give \"weighs\": true, or leave it out";
     refuse_if(fluid.capillary.is_some() && !fluid.weighs, place("capillary"), message)?;
-    let besides = " (leave it out for a fluid that has no time to flow)";
+    let besides = " (leave it out for undrained conditions)";
     check_positive(&place("permeability"), fluid.permeability.unwrap_or(1.0), besides)?;
     check_positive(&place("permeability_y"), fluid.permeability_y.unwrap_or(1.0), "")?;
     let message = "is missing: the permeability k is a speed under a gradient of head, and k/unit_weight under one of the pressure (9.81e3 N/m³ of \
@@ -172,7 +173,7 @@ pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
     for (k, step) in model.steps.iter().enumerate() {
         let place = format!("steps[{k}]");
         let message = format!(
-            "water flows in `{first}` in static steps alone: make it static, or leave out pore_fluid.permeability"
+            "water flows in `{first}` in static steps only: make it static, or leave out pore_fluid.permeability"
         );
         refuse_if(step.scheme != Scheme::Static, format!("{place}.scheme"), message)?;
         let message = format!("is not for a model with water that flows, as in `{first}`: leave it out");
@@ -189,7 +190,8 @@ pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
         check_contact(pair, contact, model)?;
     }
     let message = format!(
-        "is heated, and its water flows: what water expands by is not followed; leave out one of them (`{first}`)"
+        "is heated, and its water flows: thermal expansion of flowing water is not modelled; leave out one of them \
+        (`{first}`)"
     );
     let heated = flow.bodies.iter().find(|&&body| model.bodies[body].thermal.is_some());
     heated.map_or(Ok(()), |&body| Err(ModelError::new(format!("bodies.{}.thermal", name(body)), message)))
@@ -213,8 +215,9 @@ fn check_contact(pair: &ContactPair, contact: &Contact, model: &Model) -> Checke
         !law.is_frictionless && law.least_coefficient.is_none_or(|least| least > NO_FRICTION)
     });
     let message = format!(
-        "goes by the pressure, part of which the water bears that flows in body `{}`: give the pressure of the water at the contact \
-         (`fluid_pressure`, by place and time), or a strength by total stress (friction law `adhesion`), or none (`frictionless`)",
+        "depends on the total pressure, part of which is carried by the water that flows in body `{}`: give the \
+         pressure of the water at the contact (`fluid_pressure`, by place and time), or a strength by total stress \
+         (friction law `adhesion`), or none (`frictionless`)",
         body.name
     );
     refuse_if(by_pressure && !pair.tied && !pair.holds_fluid(), format!("{place}.friction"), message)
@@ -244,7 +247,7 @@ impl DrainsInForce {
             let twice = given[..k].iter().any(|other| other.on.in_words(&model.mesh) == on);
             refuse_if(twice, format!("{place}.on"), message)?;
             if entry.impervious == Some(true) {
-                let message = format!("nothing leaves at `{on}` before: leave it out");
+                let message = format!("no earlier step drains `{on}`: leave it out");
                 refuse_if(self.all.remove(&on).is_none(), format!("{place}.impervious"), message)?;
             } else {
                 self.all.insert(on, (entry.clone(), place));

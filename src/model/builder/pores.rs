@@ -63,8 +63,8 @@ pub fn pores(place: &str, contact: &Contact, points: &[SlavePoint], model: &Mode
     let place = format!("{place}.fluid_pressure");
     let refused = |message: String| Err(ModelError::new(place.clone(), message));
     let opens = Offsets { dilatancy: contact.dilatancy, wear: contact.wear } != Offsets::default();
-    let message = "of bodies is for surfaces that keep their distance: what an interface that opens takes in of the fluid is not followed; \
-                   leave out dilatancy and wear";
+    let message = "of bodies is for interfaces without dilatancy and wear, because fluid drawn into an opening \
+                   interface is not modelled: leave out dilatancy and wear";
     refuse_if(opens, &place, message)?;
     let Some(Group::Edges(edges)) = model.mesh.groups.get(&contact.slave) else {
         return refused("of bodies needs a slave of edges, which have elements behind them: give a number".into());

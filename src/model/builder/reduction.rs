@@ -64,7 +64,7 @@ fn strength(place: &str, interface: &Interface, contact: &Contact, model: &Model
     let Some(reduction) = *reduction else {
         refuse_if(of.is_some(), at("of"), "is for a `reduction` of the strength of a body: leave it out")?;
         let message =
-            "is missing: give the share of the soil's strength (0.67 say), or `cohesion` and `friction_angle`";
+            "is missing: give the fraction of the soil's strength (0.67 say), or `cohesion` and `friction_angle`";
         refuse_if(cohesion.is_none() && friction_angle.is_none(), at("reduction"), message)?;
         let (cohesion, angle) = (cohesion.unwrap_or(0.0), friction_angle.unwrap_or(0.0));
         let message = format!("is {cohesion}: it must be zero or positive, and finite");
@@ -86,7 +86,8 @@ fn strength(place: &str, interface: &Interface, contact: &Contact, model: &Model
 fn adjacent_strength<'a>(place: &str, of: Option<&str>, contact: &Contact, model: &'a Model) -> Checked<Strength<'a>> {
     let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}.{key}"), message));
     if contact.area.is_some() {
-        let message = "takes the strength of bodies beside edges, and the slave is a group of points: give `cohesion` and `friction_angle`";
+        let message = "needs bodies at slave edges, and the slave is a group of points: give `cohesion` and \
+            `friction_angle`";
         return refused("reduction", message.into());
     }
     let sides = facing(&format!("contacts.{}", contact.name), contact, model)?;
@@ -97,7 +98,7 @@ fn adjacent_strength<'a>(place: &str, of: Option<&str>, contact: &Contact, model
     let bodies = || numbers.iter().map(|&body| &model.bodies[body]);
     let names = || bodies().map(|body| format!("`{}`", body.name)).collect::<Vec<_>>().join(", ");
     if let Some(name) = of.filter(|name| bodies().all(|body| body.name != **name)) {
-        return refused("of", format!("is `{name}`, which is not beside this contact: there are {}", names()));
+        return refused("of", format!("is `{name}`, which is not a body at this contact: there are {}", names()));
     }
     let known = |body: &'a crate::model::Body| {
         let [cohesion, tangent] = body.material.description().strength?;
@@ -110,7 +111,8 @@ fn adjacent_strength<'a>(place: &str, of: Option<&str>, contact: &Contact, model
         true => refused(
             "reduction",
             format!(
-                "is a share of what differs between the bodies beside the contact, {}: name one of them by \"of\", or give each a contact of its own",
+                "is a fraction of a strength that differs between the bodies at the contact, {}: name one of them by \
+                 \"of\", or give each a contact of its own",
                 described()
             ),
         ),
@@ -118,11 +120,11 @@ fn adjacent_strength<'a>(place: &str, of: Option<&str>, contact: &Contact, model
             || {
                 let named = match of {
                     Some(name) => format!("`{name}` does not yield"),
-                    None => format!("none of the bodies beside the contact ({}) yields", names()),
+                    None => format!("none of the bodies at the contact ({}) yields", names()),
                 };
                 let message = format!(
-                    "is a share of no strength: {named} by cohesion and friction (mohr_coulomb, drucker_prager, von_mises): give `cohesion` and \
-                     `friction_angle` of the interface"
+                    "is a fraction, but {named} by cohesion and friction (mohr_coulomb, drucker_prager, von_mises): \
+                     give `cohesion` and `friction_angle` of the interface"
                 );
                 refused("reduction", message)
             },

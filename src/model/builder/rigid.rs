@@ -270,7 +270,7 @@ pub fn add_bodies(given: &[(String, RigidBodyInput)], contacts: &[Contact], mesh
         let place = format!("rigid_bodies.{name}");
         check_place(&format!("{place}.reference"), *reference)?;
         check_positive(&format!("{place}.inertia"), inertia.unwrap_or(1.0), " (leave it out for none)")?;
-        let message = "is a group of the mesh as well, and supports would not know which: rename it";
+        let message = "is also the name of a group of the mesh, so supports would be ambiguous: rename it";
         refuse_if(mesh.groups.contains_key(name), place, message)?;
         let point = Vector2::from(*reference);
         let own = contacts.iter().filter(|contact| contact.rigid_body.as_ref() == Some(name));

@@ -50,10 +50,11 @@ impl<'m> Stages<'m> {
                 refuse_if(changed.contains(&body), &place, format!("`{name}` {message}"))?;
                 let message = if comes { "is there already" } else { "is not there in this step" };
                 refuse_if(self.absent[body] != comes, &place, format!("`{name}` {message}: check the steps before"))?;
-                let message = "the first step begins with the bodies as they are: let it rest under initial stress and loads, and change \
-                               bodies in the next";
+                let message = "bodies cannot be added or removed in the first step: let it find the equilibrium under \
+                               initial stress and loads, and change bodies in the next";
                 refuse_if(!self.has_begun, &place, message)?;
-                let message = "has a pore_pressure, which acts from its birth on as if it had always been there: let the body be there from the start";
+                let message = "has a pore_pressure, which would act on it as if it had always been there: let the body \
+                    be present from the start";
                 let pressed = comes && self.model.bodies[body].pore_pressure.is_some();
                 refuse_if(pressed, &place, format!("`{name}` {message}"))?;
                 self.check_platens(body, &place)?;
@@ -66,7 +67,8 @@ impl<'m> Stages<'m> {
         let by_masses = scheme.is_integrated_explicitly() || scheme.is_quasi_dynamic() || given.rupture.is_some();
         if let Some(name) = self.fleeting(&changed).filter(|_| by_masses) {
             let message = format!(
-                "`{name}` comes or goes, which explicit and quasi-dynamic steps, and `rupture`, cannot follow: make it static or implicit"
+                "`{name}` is added or removed, which explicit and quasi-dynamic steps, and `rupture`, cannot follow: \
+                make it static or implicit"
             );
             return Err(ModelError::new(place, message));
         }
@@ -90,7 +92,7 @@ impl<'m> Stages<'m> {
         refuse_if(self.bars_changed.contains(&bar), place, format!("`{name}` {message}"))?;
         let message = if comes { "is there already" } else { "is not there in this step" };
         refuse_if(self.bars_absent[bar] != comes, place, format!("`{name}` {message}: check the steps before"))?;
-        let message = "the first step begins with the bars as they are: let the bar come or go in the next";
+        let message = "bars cannot be added or removed in the first step: change the bar in the next";
         refuse_if(!self.has_begun, place, message)?;
         self.bars_absent[bar] = !comes;
         self.bars_changed.push(bar);
@@ -108,7 +110,8 @@ impl<'m> Stages<'m> {
             let has_idle = bar.nodes().into_iter().any(|node| idle.binary_search(&model.ties.original(node)).is_ok());
             let away = bar.bodies.iter().find(is_away).map_or("a body", |name| name.as_str());
             let message = format!(
-                "the bar `{}` is joined to {away}, which is not there in this step: let the bar come later, or go as well",
+                "the bar `{}` is joined to {away}, which is not there in this step: add the bar later, or remove it as \
+                well",
                 bar.name
             );
             refuse_if(has_idle || bar.bodies.iter().any(|name| is_away(&name)), place, message)?;
@@ -187,8 +190,10 @@ impl<'m> Stages<'m> {
         let model = self.model;
         let mut platens = model.plates.iter().chain(model.linkage.plates.iter().map(|(nodes, _)| nodes)).flatten();
         let body = &model.bodies[body];
-        let message =
-            format!("`{}` has nodes of a loading platen, which would be left alone: take the platen off it", body.name);
+        let message = format!(
+            "`{}` has nodes of a loading platen, which would be left without a body: remove the platen first",
+            body.name
+        );
         refuse_if(platens.any(|node| body.nodes.binary_search(node).is_ok()), place, message)
     }
 
@@ -201,25 +206,27 @@ impl<'m> Stages<'m> {
         for pair in &self.model.contacts {
             let name = &pair.name;
             let parted = |side: &Vec<usize>| side.iter().any(|body| self.absent[*body] != self.absent[side[0]]);
-            let message = "has a side on bodies of which only some are there: divide the side, body by body";
+            let message = "has a side on several bodies, some of which are absent in this step: divide the side, body \
+                by body";
             refuse_if(pair.bodies.iter().any(parted), place, format!("the contact `{name}` {message}"))?;
-            let message = "has a side on an edge that a body shares which is there with it: what shares nodes cannot slide. Let the \
-                           contact come with the step that removes the other body";
+            let message = "has a side on an edge that two present bodies share: surfaces that share nodes cannot \
+                           slide. Let the contact begin with the step that removes the other body";
             refuse_if(self.joins(pair) && self.is_shared(pair), place, format!("the contact `{name}` {message}"))?;
-            let message = "is not for a contact that comes in a step, beside pores whose pressure follows the motion: give it as a number or an \
-                           expression, or a `pore_pressure` of the body";
+            let message = "is not for a contact that begins in a later step, where the pressure in the pores follows \
+                           the motion: give it as a number or an expression, or a `pore_pressure` of the body";
             let fluid = format!("contacts.{name}.fluid_pressure");
             refuse_if(is_new(pair) && pair.pores.is_some(), fluid, message)?;
             let offset = !pair.comes_stressed && pair.is_offset();
             let at_places = pair.tied || pair.initial.is_some() || offset;
             let why = format!(
-                "changes the bodies of the contact `{name}`, along which water flows: let them be there from the start to the end"
+                "adds or removes bodies of the contact `{name}`, along which water flows: let them be present from the \
+                start to the end"
             );
             let changes = pair.bodies.iter().flatten().any(|body| changed.contains(body));
             refuse_if(changes && pair.conduit.is_some(), place, why)?;
-            let message = "comes in this step, and is tied, starts closed or overlaps at mesh positions, which are not those of \
-                           then: let the bodies share nodes, or begin under the stress in force by then, \"initial\": {\"of_bodies\": true}, \
-                           with a body that is absent before";
+            let message = "begins in this step, and is tied, starts closed or overlaps in the mesh, whose positions \
+                           are not those at that time: let the bodies share nodes, or begin under the stress that acts \
+                           by then, \"initial\": {\"of_bodies\": true}, with a body that is absent before";
             refuse_if(is_new(pair) && at_places, place, format!("the contact `{name}` {message}"))?;
         }
         Ok(())
@@ -248,8 +255,8 @@ impl<'m> Stages<'m> {
         let body = &self.model.bodies[body];
         let has_force = |dof: usize| forces.get(dof).is_some_and(|force| *force != 0.0);
         let message = format!(
-            "`{}` is in contact with initial tractions that are `balanced`, by no stress that could go with it: give it an initial_stress, and \
-             the contact `of_bodies`",
+            "`{}` is in contact with `balanced` initial tractions, without a stress that could be removed with it: \
+             give it an initial_stress, and the contact `of_bodies`",
             body.name
         );
         refuse_if(groups::dofs_of(&body.nodes).any(has_force), place, message)

@@ -12,7 +12,7 @@ use crate::output::events::{ContactPoints, Point};
 use crate::output::quantities::{LENGTH, NONE, PLACE, Quantity, TIME, Unit, in_store};
 
 /// Meaning of the slip of a frictionless contact.
-const FREE_MOTION: &str = "motion along the master so far; the contact has no friction";
+const FREE_MOTION: &str = "sliding along the master so far; the contact has no friction";
 
 /// Unique names of the contacts that are valid in file names.
 pub fn prefixes(model: &Model) -> Vec<String> {

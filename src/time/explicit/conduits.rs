@@ -85,7 +85,8 @@ impl Explicit {
                 reached.map_err(|fast| failed(format!("its pressure has no value from t = {:e} on", fast.time)))?;
             if let Some((_, pressure)) = conduit.bad(&reached.pressure, pair.modulus) {
                 return Err(failed(format!(
-                    "its pressure would be {pressure:e}: the surfaces open faster than water flows in; raise `initial`, the ground water that is there"
+                    "its pressure would be {pressure:e}: the surfaces open faster than water flows in; raise the \
+                    initial pressure of the ground water (`initial`)"
                 )));
             }
             let volume = conduit.gained([&old.pressure, &reached.pressure], [&old.walls, &walls]);

@@ -169,7 +169,8 @@ impl QuasiDynamic {
         let below_zero = steps.conduits().and_then(|conduits| conduits.below_zero(&model.contacts));
         if let Some((pair, pressure)) = below_zero {
             let why = format!(
-                "its pressure has fallen to {pressure:e} at t = {time:e}: raise `initial`, the ground water that is there, or lower what a well takes"
+                "its pressure has fallen to {pressure:e} at t = {time:e}: raise the initial pressure of the ground \
+                water (`initial`), or withdraw less from the wells"
             );
             return Err(IncrementFailure::Water { contact: pair.name.clone(), why });
         }
@@ -294,8 +295,8 @@ impl QuasiDynamic {
         } else {
             let Rates { slip_rate, pressure, .. } = rates;
             format!(
-                "at the slip rate {slip_rate:e} and the pressure {pressure:e} the error of a step of {dt:.3e} is above the tolerance, and \
-                 none may be shorter (dt.min = {:e}): lower dt.min, or allow a larger tolerance",
+                "at the slip rate {slip_rate:e} and the pressure {pressure:e} the error of a step of {dt:.3e} is above \
+                 the tolerance, and dt.min = {:e} allows no shorter one: lower dt.min, or allow a larger tolerance",
                 self.step.increments.min
             )
         };

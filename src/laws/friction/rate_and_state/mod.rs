@@ -165,7 +165,7 @@ impl RateAndState {
         } else if let Some((name, value)) =
             [("D_c2", critical_slip_2), ("theta_2", theta_2)].into_iter().find_map(|(name, value)| Some((name, value?)))
         {
-            require(name, value, false, "it is of a second state, whose effect b_2 is not given")?;
+            require(name, value, false, "it belongs to a second state, whose effect b_2 is missing")?;
         }
         let coefficients = Coefficients::new(parameters, alpha_t);
         let given = [theta, theta_2];

@@ -436,7 +436,7 @@ impl SuperSubloadingParameters {
             _ if a == 0.0 => Ok(None),
             Some(reference_rate) => Ok(Some(DirectEffect { a, reference_rate })),
             None => {
-                let allowed = "\"V_0\", the slip rate from which on it grows, is missing: give it as well".into();
+                let allowed = "\"V_0\", the slip rate above which it grows, is missing: give it as well".into();
                 Err(InvalidParameter { name: "a", value: a, allowed })
             }
         }
