@@ -32,9 +32,9 @@ for folder in folders:
     time = [float(row["time"]) for row in rows]
     [line] = left.plot(time, [abs(float(row["die_top.fy"])) / 1e6 for row in rows], label=pathlib.Path(folder).name, linewidth=1)
     left.plot(time, [abs(float(row["die_top.fx"])) / 1e6 for row in rows], color=line.get_color(), linewidth=1)
-left.text(1.6, 415, "down")
-left.text(1.6, 145, "along the way")
-left.set(xlabel="time: pressed by 1 until 1, drawn by 10 until 11", ylabel="force on the die [10⁶]", xlim=(0, 11), ylim=(0, 450))
+left.text(1.6, 415, "normal")
+left.text(1.6, 145, "tangential")
+left.set(xlabel="time [-]: pressed to 1, dragged to 11", ylabel="force on the die [10⁶]", xlim=(0, 11), ylim=(0, 450))
 left.legend(loc="center", fontsize=8)
 
 reader = pyvista.get_reader(pathlib.Path(folders[0]) / "solid.pvd")
@@ -45,6 +45,6 @@ corners = [np.array(grid.get_cell(cell).point_ids)[:4] for cell in range(grid.n_
 stress = np.array([grid["von_mises"][ids].mean() / 1e6 for ids in corners])
 drawn = PolyCollection([places[ids] for ids in corners], array=stress, cmap="viridis", edgecolors="black", linewidths=0.4)
 right.add_collection(drawn)
-right.set(xlim=(3, 9.5), ylim=(-2.6, 1), aspect="equal", title=f"{pathlib.Path(folders[0]).name}, half the way")
+right.set(xlim=(3, 9.5), ylim=(-2.6, 1), aspect="equal", xlabel="x [-]", ylabel="y [-]", title=f"{pathlib.Path(folders[0]).name}, t = {HALF_WAY:g}")
 plt.colorbar(drawn, ax=right, label="von Mises stress [10⁶]", shrink=0.8)
 figure.savefig(target, dpi=100)

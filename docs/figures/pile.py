@@ -48,7 +48,7 @@ left.add_collection(ground)
 left.set(xlim=(0, 6), ylim=(-15, 0.5), xlabel="r [m]", ylabel="z [m]", title="uplift at the peak [mm]")
 plt.colorbar(ground, ax=left)
 drawn = middle.pcolormesh(lift[-len(mobilized):], depth[order], mobilized[:, order].T, cmap="inferno", vmin=0, vmax=MU_S, shading="nearest")
-middle.set(xlabel="uplift of the head [mm]", title="q/p along the shaft")
+middle.set(xlabel="uplift of the head [mm]", ylabel="z [m]", title="q/p along the shaft")
 plt.colorbar(drawn, ax=middle)
 right.plot(lift, pull)
 for coefficient, name in ((MU_S, "μ_s"), (MU_K, "μ_k")):

@@ -45,7 +45,7 @@ figure, (left, middle, right) = plt.subplots(1, 3, figsize=(10, 3.4), layout="co
 drawn = PolyCollection([grid.points[ids, :2] for ids in cells], array=np.array([hoop[ids].mean() for ids in cells]), cmap="RdBu_r")
 drawn.set(clim=(-250, 250), antialiased=False)
 left.add_collection(drawn)
-left.set(xlim=(-41, 41), ylim=(-41, 41), aspect="equal", xlabel="x [mm]", title="hoop stress, cooled [MPa]")
+left.set(xlim=(-41, 41), ylim=(-41, 41), aspect="equal", xlabel="x [mm]", ylabel="y [mm]", title="hoop stress, cooled [MPa]")
 plt.colorbar(drawn, ax=left)
 for name, label, color in (("turn", "first turn", "C0"), ("turn again", "after 1000 s of rest", "C1")):
     angle = 0.001 * (column("time", name) - column("time", name)[0] + column("dt", name)[0])

@@ -126,8 +126,11 @@ test("cycles are read in years: slip rates, cumulative slip, profiles at interva
   await close(page, "fault");
 });
 
-test("the friction path of a cycle fills its chart", async () => {
-  const page = await open(of("fault"));
+test("a friction path is drawn where the normal force changes, and fills its chart", async () => {
+  const fault = await open(of("fault"));
+  assert.equal(await fault.evaluate(() => charts.filter((one) => one.title.startsWith("Friction path")).length), 0);
+  await close(fault);
+  const page = await open(of("block_on_ground"));
   const [low, high, seen] = await page.evaluate(() => {
     const chart = charts.find((one) => one.title.startsWith("Friction path")).draw();
     const { min, max } = chart.plot.scales.y;

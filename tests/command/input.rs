@@ -269,6 +269,22 @@ fn refused_point(edits: &[(&str, Value)], fragments: &[&str]) {
     refused_case(edited(point(), edits).to_string(), fragments);
 }
 
+/// Nodes of a body as points: α_n is 300 (λ + 2G)/h of elements of size 1, λ + 2G = E (1 − ν)/((1 + ν)(1 − 2ν)) = 1346.15, and 10 in dynamics.
+#[test]
+fn points_on_a_body_are_told_their_stiffness() {
+    for (scheme, number) in [(json!("static"), "403846"), (json!({"hht": {"alpha": -0.1}}), "13461.5")] {
+        let mut case = good();
+        case["groups"] = json!({"foot": {"of": "block_bottom", "nodes": true}});
+        for body in ["ground", "block"] {
+            case["bodies"][body]["material"]["density"] = json!(1);
+        }
+        let base = &mut case["contacts"]["base"];
+        (base["slave"], base["area"], base["normal"]) = (json!("foot"), json!(1), json!({}));
+        case["steps"][0]["scheme"] = scheme;
+        refused_case(case.to_string(), &["contacts.base.normal.alpha_n: ", &format!("give {number}")]);
+    }
+}
+
 #[test]
 fn points_are_checked() {
     for (pointer, value, fragments) in [
@@ -284,7 +300,7 @@ fn points_are_checked() {
         (
             "/contacts/base/normal",
             json!({}),
-            ["contacts.base.normal.alpha_n: ", "get a spring of alpha_n × area each; take 100 times"],
+            ["contacts.base.normal.alpha_n: ", "get a spring of alpha_n × area each; give 100 times"],
         ),
         ("/contacts/base/friction/alpha_t", json!(null), ["contacts.base.friction.alpha_t: ", "is missing"]),
         ("/contacts/base/initial/pressure", json!(-1), ["contacts.base.initial.pressure: ", "is -1: must be zero or"]),

@@ -517,7 +517,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model, regime: Regime) ->
         (Some(alpha_n), _) => alpha_n,
         (None, Some(elastic)) => elastic * default_over(contact, method, regime),
         (None, None) => {
-            return Err(ModelError::new(at, needs_stiffness(contact, model)));
+            return Err(ModelError::new(at, needs_stiffness(contact, model, regime)));
         }
     };
     check_positive(&at, alpha_n, " (leave it out for the default)")?;
@@ -555,15 +555,14 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
 }
 
 /// What to give as α_n of a slave group of points: the default of sides with elements of that size, if there are any at the points.
-fn needs_stiffness(contact: &Contact, model: &Model) -> String {
+fn needs_stiffness(contact: &Contact, model: &Model, regime: Regime) -> String {
     let nodes = model.mesh.group(&contact.slave).map(|group| model.mesh.nodes_of(group)).unwrap_or_default();
     let is_adjacent = |k: &usize| model.mesh.elements[*k].nodes.iter().any(|node| nodes.binary_search(node).is_ok());
     let stiffness = |k: usize| model.body_of(k).material.description().p_wave_modulus / model.solids[k].area().sqrt();
     let softest = (0..model.solids.len()).filter(is_adjacent).map(stiffness).fold(f64::INFINITY, f64::min);
-    let [stiff, soft] = [STATIC, SOFTER].map(|over| number(over * softest));
     let advice = match softest.is_finite() {
-        true => format!("sides of elements like those there take {stiff} in static steps, {soft} in dynamics"),
-        false => "take 100 times the stiffness of what holds the points, over their area".into(),
+        true => format!("give {}, the default of element sides there", number(default_over(contact, None, regime) * softest)),
+        false => "give 100 times the stiffness of what holds the points, over their area".into(),
     };
     format!("is missing: points have no sides to choose it by, and get a spring of alpha_n × area each; {advice}")
 }

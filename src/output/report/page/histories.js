@@ -127,7 +127,10 @@ function contactCharts(runs, contact) {
   const grey = styled("--soft");
   const bound = (x, y, name, k) => ({ name, x, y, colour: grey, dash: BOUNDS[k % BOUNDS.length], plain: true });
   const path = curves(runs, of([["tangential_force", "friction"]]), `${contact}.normal_force`);
-  const most = 1.05 * Math.max(0, ...path.map((one) => bounds(one.x)[1]));
+  const pressed = bounds(path.flatMap((one) => bounds(one.x)));
+  const most = 1.05 * Math.max(0, pressed[1]);
+  // Under a constant normal force it is a vertical line.
+  const isPath = path.some((one) => sizeOf([one]) > 0) && pressed[1] - pressed[0] > 1e-7 * most;
   for (const [k, [name, mu]] of limits.entries()) {
     for (const sign of backwards ? [1, -1] : [1]) {
       const label = `${sign < 0 ? "−" : ""}${name} × normal force`;
@@ -142,7 +145,7 @@ function contactCharts(runs, contact) {
     new Chart({ title: `Friction in ${contact}`, x: timeAxis(), y: { label: withUnit("tangential force", force) }, series: forces, time: true }),
     ratioChart(runs, contact, limits),
     overTime(runs, `Normal force in ${contact}`, of([["normal_force", "normal"]]), "normal force", force),
-    path.some((one) => sizeOf([one]) > 0) && new Chart({ title: `Friction path of ${contact}`, x: { label: withUnit("normal force", force), include: [0] },
+    isPath && new Chart({ title: `Friction path of ${contact}`, x: { label: withUnit("normal force", force), include: [0] },
       y: { label: withUnit("tangential force", force), include: [0] }, series: path, path: true }),
     overTime(runs, `Slipping fraction of ${contact}`, of([["slip_fraction", "slipping fraction of the closed length"]]), "slipping fraction", "", { include: [0, 1], always: true }),
     overTime(runs, `Slip in ${contact}`, of([["mean_slip", "plastic slip"], ["mean_elastic_slip", "elastic slip"]]), "mean slip", unitOf("length")),
