@@ -83,7 +83,7 @@ class Block:
     def whole(self, cell: str) -> int:
         """A number of a node or an element."""
         if not re.fullmatch("0*[1-9][0-9]{0,11}", cell):
-            raise self.refused(f"cannot be understood: `{cell}` is no whole number from 1 on")
+            raise self.refused(f"cannot be understood: `{cell}` is not a whole number of 1 or more")
         return int(cell)
 
     def place(self) -> Place:
@@ -97,7 +97,7 @@ class Block:
         start, end, angle = np.array(rows[1][:3]), np.array(rows[1][3:6]), math.radians(rows[1][6])
         size = float(np.linalg.norm(end - start))
         if not size > 0.0:
-            raise self.refused("its axis of rotation has no direction: its two points are one")
+            raise self.refused("its axis of rotation has no direction: its two points coincide")
         return Place(moved, start, (end - start) / size, angle)
 
     def real(self, cell: str) -> float:
@@ -107,7 +107,7 @@ class Block:
         except ValueError:
             value = math.nan
         if not math.isfinite(value) or "_" in cell:
-            raise self.refused(f"cannot be understood: `{cell}` is no finite number")
+            raise self.refused(f"cannot be understood: `{cell}` is not a finite number")
         return value
 
 
@@ -151,7 +151,7 @@ def _blocks(path: str, above: list[str], blocks: list[Block]) -> None:
     for number, text in _lines(Path(path).read_text(errors="replace")):
         if not text.startswith("*"):
             if not blocks:
-                raise refused(path, f"line {number}", f"`{text[:40]}` stands before the first keyword: this is no deck")
+                raise refused(path, f"line {number}", f"`{text[:40]}` stands before the first keyword: this is not a deck")
             blocks[-1].rows.append(text)
             continue
         keyword, comma, behind = text[1:].partition(",")
@@ -219,7 +219,7 @@ class _Deck:
             elif block.keyword == "SURFACE":
                 name = block.named(block.options(), "NAME")
                 if (block.scope, name.upper()) in ((scope, known.upper()) for scope, known in self.surfaces):
-                    raise block.refused("stands in the file twice: give the surfaces different names", f" {name}")
+                    raise block.refused("appears in the file twice: give the surfaces different names", f" {name}")
                 self.surfaces[block.scope, name] = block
 
     def placed(self, written: list[Block]) -> list[Block]:
@@ -236,9 +236,9 @@ class _Deck:
                 within, own = block, []
                 name = block.named(block.options(), "NAME").upper()
                 if keyword == "PART" and name in parts:
-                    raise block.refused("stands in the file twice: give the parts different names", f" {block.options()['NAME']}")
+                    raise block.refused("appears in the file twice: give the parts different names", f" {block.options()['NAME']}")
                 if keyword == "INSTANCE" and any(name == known.upper() for known, _ in self.instances.values()):
-                    raise block.refused("stands in the file twice: give the instances different names", f" {block.options()['NAME']}")
+                    raise block.refused("appears in the file twice: give the instances different names", f" {block.options()['NAME']}")
             elif keyword == "ENDPART" and within is not None and within.keyword == "PART":
                 parts[within.options()["NAME"].upper()] = (within, own)
                 within = None
@@ -305,7 +305,7 @@ class _Deck:
                 self.of_assembly.add(tag)
             if self.nodes.setdefault(tag, at) != at:
                 places = f"at {tuple(self.nodes[tag])} and {tuple(at)}"
-                raise block.refused(f"node {tag % APART} stands in the file twice, {places}: give each node, also of an assembly, its own number")
+                raise block.refused(f"node {tag % APART} appears in the file twice, {places}: give each node, also of an assembly, its own number")
             tags.append(tag)
         return tags
 
@@ -315,7 +315,7 @@ class _Deck:
         name = f", TYPE={kind}"
         match = ELEMENTS.match(kind)
         if not match or not VARIANT.match(kind, match.end()):
-            raise block.refused("is no plane element, nor a line: CPE, CPS and CAX with 3, 4, 6 or 8 nodes are read", name)
+            raise block.refused("is neither a plane element nor a line: CPE, CPS and CAX with 3, 4, 6 or 8 nodes are read", name)
         count = _count(match)
         numbers = [block.whole(cell) for row in block.cells() for cell in row]
         if len(numbers) % (count + 1):
@@ -324,7 +324,7 @@ class _Deck:
         for k in range(0, len(numbers), count + 1):
             tag, *nodes = (self.first(block.scope) + number for number in numbers[k : k + count + 1])
             if tag in self.elements:
-                raise block.refused(f"element {tag % APART} stands in the file twice", name)
+                raise block.refused(f"element {tag % APART} appears in the file twice", name)
             self.elements[tag] = (kind, nodes)
             tags.append(tag)
         return tags
@@ -347,7 +347,7 @@ class _Deck:
     def range(self, block: Block, row: list[str], name: str, of: int) -> Sequence[int]:
         """The numbers from the first to the last by the step, which are all there."""
         if not 2 <= len(row) <= 3:
-            raise block.refused(f"`{', '.join(row)}` is no range: first, last, step", name)
+            raise block.refused(f"`{', '.join(row)}` is not a range: first, last, step", name)
         first, last, step = [*map(block.whole, row), 1][:3]
         begin = self.first(of)
         tags = range(begin + first, begin + last + 1, step)

@@ -54,7 +54,7 @@ class ElementTest:
             if unknown := [name for name in sigma if name not in names]:
                 raise ValueError(f"sigma: {unknown[0]!r} was not measured; there is {', '.join(names)}")
         elif len(names) > 1:
-            raise ValueError(f"sigma: {' and '.join(names)} need it: how large their noise is says what each counts for: {{{names[0]!r}: …, {names[1]!r}: …}}")
+            raise ValueError(f"sigma: {' and '.join(names)} need it: the size of their noise determines the weight of each: {{{names[0]!r}: …, {names[1]!r}: …}}")
         elif sigma is not None:
             self._noise = {names[0]: sigma}
 

@@ -65,7 +65,7 @@ def words(of: Evidence) -> list[str]:
         findings.append("mu_s = mu_k: these data show no weakening, and kappa, xi have no effect")
     if of.misfit > COMPUTED and of.memory > NOISE / np.sqrt(of.samples):
         findings.append(
-            f"the residuals are no noise (each has the correlation {of.memory:.2f} with the one before): this {of.model} does not follow these "
+            f"the residuals are not noise (each has the correlation {of.memory:.2f} with the one before): this {of.model} does not follow these "
             "data, or their noise has a memory; the intervals are widened as for a memory"
         )
     if of.sigma and of.noise > MISFIT:

@@ -97,10 +97,10 @@ def _leave_out_inner(found: Found, lines: dict[str, list[tuple[int, ...]]], memb
         if len(inner) == len(own):
             del lines[name]
             found.points.setdefault(name, []).extend(dict.fromkeys(node for line in own for node in line))
-            message = f"its {len(inner)} lines lie inside a body, or between bodies that share nodes, and are no sides: it is a group of nodes"
+            message = f"its {len(inner)} lines lie inside a body, or between bodies that share nodes, and are not sides: it is a group of nodes"
         else:
             lines[name] = [line for line in own if line not in inner]
-            message = f"{len(inner)} of its {len(own)} lines lie inside a body, or between bodies that share nodes, and are no sides: they are left out"
+            message = f"{len(inner)} of its {len(own)} lines lie inside a body, or between bodies that share nodes, and are not sides: they are left out"
         warnings.warn(f"{found.file}: {name}: {message}", stacklevel=5)
 
 
@@ -191,7 +191,7 @@ def _exodus(path: str) -> Found:
     try:
         return _exodus_found(path, netcdf)
     except (AttributeError, IndexError, KeyError, OSError, ValueError) as error:
-        raise refused(path, "", f"is no complete Exodus file: {type(error).__name__}: {error}") from None
+        raise refused(path, "", f"is not a complete Exodus file: {type(error).__name__}: {error}") from None
 
 
 def _exodus_found(path: str, netcdf: ModuleType) -> Found:
@@ -236,7 +236,7 @@ def _exodus_found(path: str, netcdf: ModuleType) -> Found:
                 # The first two sides of a shell are its faces.
                 edge = int(side) - (2 if shells[int(cell)] else 0)
                 if found.dimensions[cell] != 2 or not 1 <= edge <= corners:
-                    raise refused(path, name, f"side {side} of element {cell + 1} is no edge in the plane")
+                    raise refused(path, name, f"side {side} of element {cell + 1} is not an edge in the plane")
                 found.sides.setdefault(name, []).append((nodes_of[edge - 1], nodes_of[edge % corners]))
     return found
 
@@ -270,7 +270,7 @@ def _other(path: str, bodies: Sequence[str] | str | None) -> tuple[Found, Sequen
         if block.dim < 3 and block.type not in _MESHIO and not simple:
             raise refused(path, "", f"has cells of the type `{block.type}`, which are not read, only {', '.join(_MESHIO)}")
         if not _is_whole(np.ravel(block.data)):
-            raise refused(path, "", f"has cells of the type `{block.type}` whose nodes are no whole numbers")
+            raise refused(path, "", f"has cells of the type `{block.type}` whose nodes are not whole numbers")
         blocks.append([found.add(cell, block.dim) for cell in block.data])
     if Path(path).suffix.lower() == ".vtu":
         _complete(found)
@@ -331,7 +331,7 @@ def _by_array(
     names = ", ".join(f"`{name}`" for name in possible) or "none"
     if asked in arrays and asked is not None:
         if not all(_is_whole(values) for values in arrays[asked]):
-            text = f"the array `{asked}` has not one whole number a cell: name the array of the bodies; there are {names}"
+            text = f"the array `{asked}` does not have one whole number per cell: name the array of the bodies; there are {names}"
             raise refused(found.file, "bodies", text)
         name = asked
     elif found.sets or not possible:

@@ -28,7 +28,7 @@ def value_at(case: Case, place: str) -> tuple[str, float]:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise refused(case._path, place, f"is {shown(value)}: only a number can be fitted")
     if value == 0:
-        raise refused(case._path, place, "is 0: values are varied by shares of them: give another in the case")
+        raise refused(case._path, place, "is 0, and values are varied by a fraction of themselves: give another value in the case")
     return written, float(value)
 
 

@@ -132,7 +132,7 @@ class Run:
             raise ValueError("sigma: is given for some of what was measured: give it for all, to the record and to its fields")
         self.sigma, self.weight = noise_of(np.concatenate(noises) if all(known) else None, weight, self.measured.size)
         if self.sigma is None and len(self._kinds) > 1:
-            raise ValueError("sigma: several columns need it: how large their noise is says what each counts for")
+            raise ValueError("sigma: several columns need it: the size of their noise determines the weight of each")
 
     @staticmethod
     def _noise_of(column: str, sigma: Any, size: int) -> Array:

@@ -40,7 +40,7 @@ def read(path: str | os.PathLike[str]) -> pd.DataFrame:
         first = next((k for k, (_, line) in enumerate(lines) if _numbers(line, separator) is not None), None)
         if first is not None and (len(_fields(lines[first][1], separator)) > 1 or separator == SEPARATORS[-1]):
             return _table(path, lines, first, separator)
-    raise ValueError(f"{os.fspath(path)}: no line is a row of numbers: columns are separated by commas, semicolons, tabs or spaces")
+    raise ValueError(f"{os.fspath(path)}: no line consists of numbers: columns are separated by commas, semicolons, tabs or spaces")
 
 
 def _table(path: str | os.PathLike[str], lines: list[tuple[int, str]], first: int, separator: str) -> pd.DataFrame:
@@ -51,7 +51,7 @@ def _table(path: str | os.PathLike[str], lines: list[tuple[int, str]], first: in
             continue
         row = _numbers(line, separator)
         if row is None or len(row) != width:
-            raise ValueError(f"{os.fspath(path)}: line {number}: {line[:60]!r} is no row of {width} numbers, as the lines before are")
+            raise ValueError(f"{os.fspath(path)}: line {number}: {line[:60]!r} is not a row of {width} numbers, as the lines before are")
         rows.append(row)
     return pd.DataFrame(rows, columns=_names(lines[:first], separator, width))
 

@@ -100,7 +100,7 @@ def _first(problem: _Problem, start: Mapping[str, float], point: Array) -> Array
     space, point = problem.space, point.copy()
     for name, value in start.items():
         if name not in space.names:
-            raise ValueError(f"start: {name} is no free parameter; there are {', '.join(space.names)}")
+            raise ValueError(f"start: {name} is not a free parameter; there are {', '.join(space.names)}")
         low, high = space.ranges[name]
         if not (isinstance(value, Real) and low <= value <= high):
             raise ValueError(f"start: {name}: {value!r} is not within its range, {low:g} to {high:g}")
@@ -220,7 +220,7 @@ class Fit:
         )  # fmt: skip
         self.runs = problem.runs if isinstance(problem, RunProblem) else 0
         if self.runs and not best.converged:
-            self.words.append(f"the search was not at its end after {MOST_RUNS} trials: go on from here with start, or narrow the ranges")
+            self.words.append(f"the search had not converged after {MOST_RUNS} trials: continue from here with start, or narrow the ranges")
 
     @property
     def standardized(self) -> list[Array]:
@@ -317,7 +317,7 @@ class Fit:
             ValueError: it is not a free parameter.
         """
         if name not in self.table.index:
-            raise ValueError(f"name: {name} is no free parameter; there are {', '.join(self.table.index)}")
+            raise ValueError(f"name: {name} is not a free parameter; there are {', '.join(self.table.index)}")
         excess = self._quantile**2 * (1.0 if self._sigma else self.noise**2) / self._independent
         step = float(self._std[list(self.table.index).index(name)])
         return _profile(self._problem, self._best, name, step, excess, max(2, points))

@@ -293,7 +293,7 @@ def _put(document: dict[str, Any], place: str, value: Any, file: str) -> None:
         keys.append(name)
         for number in numbers:
             if not number.endswith("]") or not (number[:-1].isascii() and number[:-1].isdigit()):
-                raise refused(file, place, "is no place: write it like steps[1].duration")
+                raise refused(file, place, "is not a place: write it like steps[1].duration")
             keys.append(int(number[:-1]))
     at: Any = document
     for k, key in enumerate(keys):

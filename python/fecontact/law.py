@@ -61,7 +61,7 @@ class Law:
             self.shape: tuple[int, ...] = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         except ValueError:
             shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-            raise refused("law", "", f"the shapes of the parameters do not go together: {shapes}") from None
+            raise refused("law", "", f"the shapes of the parameters do not match: {shapes}") from None
         if 0 in self.shape:
             raise refused("law", "", f"the parameters have the shape {self.shape}: give one set of them or more")
         self.parameters = dict(parameters)
@@ -195,7 +195,7 @@ class Law:
         listed = names(by, "by", "law")
         for name in listed:
             if name not in known:
-                raise refused("law", "by", f"the law is not differentiated by {name}; it is by {', '.join(known) or 'nothing'}")
+                raise refused("law", "by", f"there is no derivative of the law by {name}; there are derivatives by {', '.join(known) or 'nothing'}")
         return listed
 
     def sensitivities(self) -> list[str]:

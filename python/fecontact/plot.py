@@ -169,7 +169,7 @@ def _component(values: NDArray[np.float64], field: str, component: str | None) -
     spoken = _quantities.spoken(field)
     if values.ndim == 1:
         if component is not None:
-            raise ValueError(f"component: {field} is one number a node")
+            raise ValueError(f"component: {field} is one number per node")
         return values, spoken
     names = _COMPONENTS.get(values.shape[1], tuple(str(k + 1) for k in range(values.shape[1])))
     if component is None and values.shape[1] == 3 and not field.startswith("principal"):

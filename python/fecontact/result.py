@@ -65,7 +65,7 @@ class Result:
         except ValueError as error:
             raise ValueError(f"{path}: is damaged ({error}); resume the run, or run it again") from None
         if not isinstance(summary, dict):
-            raise ValueError(f"{path}: is damaged (no JSON object); resume the run, or run it again")
+            raise ValueError(f"{path}: is damaged (not a JSON object); resume the run, or run it again")
         return summary
 
     @property

@@ -125,7 +125,7 @@ def study(
     """
     rows = parameters.reset_index(drop=True) if isinstance(parameters, pd.DataFrame) else grid(parameters)
     if taken := [name for name in rows if name in OWN]:
-        raise ValueError(f"parameters: {taken[0]} is no place of a case")
+        raise ValueError(f"parameters: {taken[0]} is not a place in a case")
     if client is not None and workers is not None:
         raise ValueError("workers: the cluster of the client has its own")
     runs = Path(out).resolve() / "runs"

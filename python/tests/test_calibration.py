@@ -274,7 +274,7 @@ def test_a_law_that_cannot_follow_says_so() -> None:
     noise = 1e-3 * np.random.default_rng(5).normal(size=q.size)
     found = fc.fit(Interface(time, slip, 1.0, q + noise, sigma=1e-3), free=["mu_s", "mu_k", "r", "kappa", "xi"], alpha_t=2e3, starts=2)
     assert found.noise > 2.0 and found.memory > 0.5
-    assert any("the residuals are no noise" in text and "does not follow" in text for text in found.words)
+    assert any("the residuals are not noise" in text and "does not follow" in text for text in found.words)
     assert any("times as large as sigma" in text and "does not follow" in text for text in found.words)
     # Its own law does.
     own = fc.fit(
@@ -393,7 +393,7 @@ def test_profiles() -> None:
     record = Interface(time, 2.0 * time, 1.0, traction(time, 2.0 * time) + NOISE * np.random.default_rng(1).normal(size=200))
     found = fc.fit(record, free=around("mu_k", "xi", by=10.0), mu_s=0.6, kappa=40.0, r=400.0, alpha_t=2e3)
     assert found.profile("xi", points=4).attrs["low"] == 0.0
-    with pytest.raises(ValueError, match="name: r is no free parameter; there are mu_k, xi"):
+    with pytest.raises(ValueError, match="name: r is not a free parameter; there are mu_k, xi"):
         found.profile("r")
 
 
@@ -415,7 +415,7 @@ def test_eight_parameters_take_seconds() -> None:
         ({"starts": 0}, "starts: is 0: must be at least 1"),
         ({"starts": 1.5}, "starts: is 1.5: must be a whole number"),
         ({"start": 3}, "start: is a int: give values of free parameters by name"),
-        ({"start": {"m": 3}}, "start: m is no free parameter; there are mu_s, mu_k, r, kappa, xi"),
+        ({"start": {"m": 3}}, "start: m is not a free parameter; there are mu_s, mu_k, r, kappa, xi"),
         ({"start": {"mu_s": 1e3}}, "start: mu_s: 1000.0 is not within its range, 0.2"),
         ({"free": ["mu_s"], "mu_k": [0.3, 0.4]}, r"law: mu_k: is \[0.3, 0.4\]: must be a finite number"),
         ({"free": ["mu_s"], "mu_k": "low"}, "law: mu_k: is 'low': must be a number"),

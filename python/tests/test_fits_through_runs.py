@@ -195,7 +195,7 @@ def test_a_profile_agrees_with_the_interval() -> None:
         ([FRICTION + "kapa"], {}, "kapa.*did you mean `kappa`"),
         (["mu_k"], {}, "free: mu_k: runs are fitted by places"),
         ([FRICTION + "law"], {}, "friction.law: is 'super_subloading': only a number can be fitted"),
-        (["steps[0].supports[0].ux"], {}, "ux: is 0: values are varied by shares"),
+        (["steps[0].supports[0].ux"], {}, "ux: is 0, and values are varied by a fraction"),
         (["steps.pusch.duration"], {}, "there is no `pusch` in steps; there is 0 to 1, press, push"),
         (["steps.push.duration"], {}, "`duration` determines the increments"),
         ([FRICTION + "mu_k", FRICTION + "mu_k"], {}, "given twice"),

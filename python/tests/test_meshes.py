@@ -84,7 +84,7 @@ QUADRATIC = [[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1]]
 @pytest.mark.parametrize(
     ("piece", "replacement", "words"),
     [
-        ("type=CPE4R", "type=C3D8R", ["TYPE=C3D8R", "no plane element"]),
+        ("type=CPE4R", "type=C3D8R", ["TYPE=C3D8R", "neither a plane element"]),
         ("type=CPE4R", "type=CPE8R", ["a number and 8 nodes"]),
         ("1, 1, 2, 3, 4\n", "1, 1, 2, 3, 40\n", ["element 1 has node 40"]),
         ("2, 1., 0.\n", "2, one, 0.\n", ["*NODE", "cannot be understood"]),
@@ -97,7 +97,7 @@ QUADRATIC = [[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1]]
         ("*MATERIAL", "*ELSET, ELSET=all\n1, 2, 3\n*MATERIAL", ["in the sets `left` and `all`", "name the sets that are bodies"]),
         ("*MATERIAL", "*PART, NAME=A\n*PART, NAME=B\n*MATERIAL", ["stands within *PART, which does not end before it"]),
         ("*MATERIAL", "*INCLUDE, INPUT=nowhere.inp\n*MATERIAL", ["nowhere.inp", "no such mesh file"]),
-        ("3, 11, 13, 14", "1, 11, 13, 14", ["element 1 stands in the file twice"]),
+        ("3, 11, 13, 14", "1, 11, 13, 14", ["element 1 appears in the file twice"]),
     ],
 )
 def test_what_a_deck_cannot_mean_is_told(tmp_path: pathlib.Path, piece: str, replacement: str, words: list[str]) -> None:
@@ -140,7 +140,7 @@ def test_an_exodus_file_keeps_blocks_side_sets_and_node_sets(tmp_path: pathlib.P
         assert document == expected(), shell
     with netcdf.Dataset(file, "a") as data:
         data["side_ss1"][:] = 1
-    with pytest.raises(fc.CaseError, match="joint: side 1 of element 1 is no edge in the plane"):
+    with pytest.raises(fc.CaseError, match="joint: side 1 of element 1 is not an edge in the plane"):
         fc.Mesh.read(file)
     # An element that is not there, and no file of this kind.
     with netcdf.Dataset(file, "a") as data:
@@ -148,7 +148,7 @@ def test_an_exodus_file_keeps_blocks_side_sets_and_node_sets(tmp_path: pathlib.P
     with pytest.raises(fc.CaseError, match="joint: has the element 0, which the file does not have"):
         fc.Mesh.read(file)
     file.write_text("no mesh")
-    with pytest.raises(fc.CaseError, match="is no complete Exodus file"):
+    with pytest.raises(fc.CaseError, match="is not a complete Exodus file"):
         fc.Mesh.read(file)
 
 
@@ -211,7 +211,7 @@ def vtu(cells: dict[str, str], kind: str = "Int32", material: str = "1 2 2") -> 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (vtu({"connectivity": "0 1 2 3.5 4 5 6 4 6 7"}), "cells of the type `quad` whose nodes are no whole numbers"),
+        (vtu({"connectivity": "0 1 2 3.5 4 5 6 4 6 7"}), "cells of the type `quad` whose nodes are not whole numbers"),
         (vtu({"connectivity": "0 1 2 3 4 5 6 4 6 70"}), "a cell has the node 71, and the file has 8 nodes"),
         (vtu({"connectivity": "0 1 2 -1 4 5 6 4 6 7"}), "a cell has the node 0, and the file has 8 nodes"),
         (vtu({"types": "6 5 5"}), "has 3 cells, of which 2 can be read"),
@@ -240,7 +240,7 @@ def test_bodies_are_whole_numbers_in_whatever_type_they_are_stored(tmp_path: pat
     for values in ("1.5 2.0 2.0", "1.0 nan 2.0"):
         file.write_text(vtu({}, "Float64", values))
         assert set(fc.Mesh.read(file).groups) == {"body"}
-        with pytest.raises(fc.CaseError, match="the array `material` has not one whole number a cell"):
+        with pytest.raises(fc.CaseError, match="the array `material` does not have one whole number per cell"):
             fc.Mesh.read(file, bodies="material")
     # Sets that are named are those that are bodies.
     file.write_text(vtu({}))
@@ -388,7 +388,7 @@ def test_the_instances_of_an_assembly_are_bodies_where_they_are_placed(tmp_path:
         ("part=Plate", "part=Plates", "there is no part `Plates` before it is used; the parts are `Block`, `Plate`"),
         ("instance=Plate-1\n 1, 2, 5", "instance=Plate-2\n 1, 2, 5", "there is no instance `Plate-2`"),
         ("instance=Plate-1\n 1, 2, 5", "instance=Plate-1\n 1, 2, 9", "has 9, which the file does not have"),
-        ("name=Block-2", "name=Block-1", "*INSTANCE Block-1: stands in the file twice"),
+        ("name=Block-2", "name=Block-1", "*INSTANCE Block-1: appears in the file twice"),
         ("           2.,           1.,          90.", "           2.,           0.,          90.", "its axis of rotation has no direction"),
     ]:
         assert piece in ASSEMBLY, piece

@@ -97,7 +97,7 @@ def test_derivatives_where_the_coefficients_meet() -> None:
 def test_what_is_not_differentiated() -> None:
     assert fc.law({**{k: v for k, v in SUPER.items() if k != "tolerance"}, "integration": "backward_euler"}).sensitivities() == []
     assert fc.law("frictionless").sensitivities() == []
-    with pytest.raises(fc.CaseError, match="not differentiated by mass; it is by mu, alpha_t"):
+    with pytest.raises(fc.CaseError, match="no derivative of the law by mass; there are derivatives by mu, alpha_t"):
         fc.law(LAWS["coulomb"]).drive([0, 1], [0, 1], 1.0, by=["mass"])
 
 

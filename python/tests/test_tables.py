@@ -40,7 +40,7 @@ def test_what_is_missing_and_latin_letters(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("time,force\n", "no line is a row of numbers"), ("t,f\n0,1\n1\n", "line 3: '1' is no row of 2 numbers"), ("t,f\n0,1\n1,x\n", "line 3: '1,x'")],
+    [("time,force\n", "no line consists of numbers"), ("t,f\n0,1\n1\n", "line 3: '1' is not a row of 2 numbers"), ("t,f\n0,1\n1,x\n", "line 3: '1,x'")],
 )
 def test_other_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
     file = tmp_path / "record.csv"
