@@ -65,7 +65,7 @@ def test_what_cannot_be_refined_is_refused() -> None:
     case = fc.Case(tube()[0])
     with pytest.raises(ValueError, match="levels: is 2"):
         fc.converge(case, "bore.ux:end", levels=2)
-    with pytest.raises(ValueError, match="is no measure"):
+    with pytest.raises(ValueError, match="is not a measure"):
         fc.converge(case, "bore.ux")
     with pytest.raises(ValueError, match="has no column"):
         fc.converge(case, "bor.ux:end")

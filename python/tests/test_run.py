@@ -238,7 +238,7 @@ def test_replace(document: dict[str, Any]) -> None:
         case.replace({"contacts.base.friktion.mu_s": 0.5})
     with pytest.raises(fc.CaseError, match=r"steps\[7\].duration.*0 to 1"):
         case.replace({"steps[7].duration": 2})
-    with pytest.raises(fc.CaseError, match=r"steps\[²\].duration: is no place"):
+    with pytest.raises(fc.CaseError, match=r"steps\[²\].duration: is not a place"):
         case.replace({"steps[²].duration": 2})
     with pytest.raises(fc.CaseError, match="mu_S.*did you mean `mu_s`"):
         case.replace({"contacts.base.friction.mu_S": 0.5})

@@ -148,7 +148,7 @@ def test_runs_that_have_ended_are_not_begun_again(tmp_path: Path, monkeypatch: p
 
 
 def test_what_no_study_can_be(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="status is no place"):
+    with pytest.raises(ValueError, match="status is not a place"):
         studies.study(slider(), {"status": [1]}, out=tmp_path)
     with pytest.warns(fc.RunWarning, match="1 unmeasured"):
         table = studies.study(slider(0.1), {MU_S: [0.4]}, named_as_parameter, tmp_path, workers=1, progress=False)

@@ -68,7 +68,7 @@ impl FromStr for Measure {
         });
         measure.ok_or_else(|| match text.rsplit_once(':') {
             Some((_, other)) => format!("`{other}` is not max, min, end or mean: {FORM}"),
-            None => format!("`{text}` is no measure: {FORM}"),
+            None => format!("`{text}` is not a measure: {FORM}"),
         })
     }
 }

@@ -90,7 +90,8 @@ fn text(path: &Path) -> Result<String, ModelError> {
     let limit = LARGEST << 20;
     File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
     if bytes.len() as u64 > limit {
-        let message = format!("is larger than {LARGEST} MiB, so it is no case; a large mesh belongs in a .msh file");
+        let message =
+            format!("is larger than {LARGEST} MiB, too large for a case; a large mesh belongs in a .msh file");
         return Err(complain(&message));
     }
     let text = String::from_utf8(bytes).map_err(|_| complain("is not a text file; cases are JSON"))?;

@@ -98,7 +98,8 @@ impl<'a> Units<'a> {
                     }
                     _ => "",
                 };
-                let message = format!("is {label:?}, which is no unit of {}, as {example:?} would be{whole}", of.name);
+                let message =
+                    format!("is {label:?}, which is not a unit of {}, as {example:?} would be{whole}", of.name);
                 return Err(ModelError::new(format!("units.{}", of.name), message));
             }
         }

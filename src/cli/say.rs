@@ -25,7 +25,7 @@ pub fn log_to(folder: &Path, goes_on: bool) -> io::Result<()> {
     let path = folder.join(LOG);
     let is_there = path.symlink_metadata().is_ok();
     if is_there && !files::bears(&path, HEAD) {
-        return Err(io::Error::other("is no log of this program: move it, and the next run is logged"));
+        return Err(io::Error::other("is not a log of this program: move it, and the next run is logged"));
     }
     let mut file = if is_there && goes_on { files::open(&path)? } else { files::create(&path)? };
     if file.seek(SeekFrom::End(0))? == 0 {

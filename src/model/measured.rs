@@ -129,7 +129,7 @@ impl MeasuredTable {
             let cells = line.split([',', ';', '\t']).map(str::trim).enumerate().skip(skip);
             let number = |(column, cell): (usize, &str)| {
                 let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-                value.ok_or_else(|| format!("line {}, column {}: `{cell}` is no number", k + 1, column + 1))
+                value.ok_or_else(|| format!("line {}, column {}: `{cell}` is not a number", k + 1, column + 1))
             };
             cells.map(number).collect::<Result<Vec<f64>, String>>()
         };

@@ -284,8 +284,8 @@ fn facets_of_a_fit(model: &Model, pair: &ContactPair) -> Option<String> {
     let share = added / (mean - added);
     (mean > 0.0 && share.abs() > OF_OVERLAP).then(|| {
         format!(
-            "straight edges that stand for curves make the overlap of its shrink fit {:.0} % {} in the mean, and the pressure with it: take \
-             quadratic elements, edges of equal length on both sides, or shorter ones",
+            "straight edges that approximate curves make the overlap of its shrink fit {:.0} % {} in the mean, and the \
+             pressure with it: take quadratic elements, edges of equal length on both sides, or shorter ones",
             100.0 * share.abs(),
             if share > 0.0 { "larger" } else { "smaller" }
         )

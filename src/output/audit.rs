@@ -470,8 +470,9 @@ impl Give {
         let what = if *chords < 0.0 { "leave a gap" } else { "make an overlap" };
         (share > BY_CHORDS).then(|| {
             format!(
-                "contact `{contact}`: straight edges that stand for curves {what} of {:.3e} in the mean, so that displacements, or forces where \
-                 these are prescribed, are off by some {:.0} %; take quadratic elements, edges of equal length on both sides, or shorter ones",
+                "contact `{contact}`: straight edges that approximate curves {what} of {:.3e} in the mean, so that \
+                 displacements, or forces where these are prescribed, are off by some {:.0} %; take quadratic \
+                 elements, edges of equal length on both sides, or shorter ones",
                 chords.abs(),
                 100.0 * share
             )

@@ -70,8 +70,8 @@ fn warning(pair: &ContactPair, step: &Step, states: &[ContactState], time: f64, 
         .filter(|stretch| stretch.length * stretch.per_edge < FEW * stretch.edge)?;
     let both = if matches!(pair.master, Master::Mesh(_)) { " on both sides" } else { "" };
     Some(format!(
-        "contact `{}` at {}, t = {}: closed on {} of edges of {edge:.2e}, where it is about {length:.2e} long: its resultant may be right, its \
-         pressure and shear are not; take edges of {:.1e} there{both}",
+        "contact `{}` at {}, t = {}: closed over {} with edges of {edge:.2e}, where the contact is about {length:.2e} \
+         long: its resultant may be right, but its pressure and shear are not; take edges of {:.1e} there{both}",
         pair.name,
         text::vector(at),
         time_text(time),

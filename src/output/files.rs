@@ -66,7 +66,7 @@ fn plain(path: &Path) -> io::Result<()> {
     match (kind.is_file(), kind.is_symlink()) {
         (true, _) => Ok(()),
         (_, true) => Err(io::Error::other("is a link, which is neither written nor removed")),
-        _ => Err(io::Error::other("is no plain file")),
+        _ => Err(io::Error::other("is not a plain file")),
     }
 }
 

@@ -324,8 +324,8 @@ fn softer_in_bending(model: &Model, pair: &ContactPair, node: usize) -> Option<S
     let sides = [(&both.own, slave), (&both.nodes, master)];
     let (times, edge, thickness) = sides.into_iter().filter_map(bends).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
-        "alpha_t = {} of contact `{}` is {:.0} times the stiffness with which a body behind it bends, which is {} thick beside edges of {}: \
-         lower it, to {:.1e} say",
+        "alpha_t = {} of contact `{}` is {:.0} times the bending stiffness of a body behind it, which is {} thick, \
+         with edges of {}: lower it, to {:.1e} say",
         number(alpha_t),
         pair.name,
         times,

@@ -266,9 +266,9 @@ fn numbers_are_taken_of_columns_ratios_and_steps() {
         assert_eq!(of(measure), Ok(expected), "{measure}");
     }
     for (measure, told) in [
-        ("a/b.q/c:max.q:max", "`a/b.q/c:max.q` is no number"),
-        ("a/b.q/a/b.p:mean", "is no number"),
-        ("a/b.q:max@off", "is no number in the step `off`"),
+        ("a/b.q/c:max.q:max", "`a/b.q/c:max.q` is not a number"),
+        ("a/b.q/a/b.p:mean", "is not a number"),
+        ("a/b.q:max@off", "is not a number in the step `off`"),
         ("a/b.q/step:max", "the column `step` does not hold numbers"),
         ("a/b.r:max", "has no column `a/b.r`"),
     ] {
@@ -328,7 +328,7 @@ fn a_number_that_a_run_does_not_have_is_told() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("stopped: level 0: ") && said.contains("history.csv: `kinetic/kinetic` is no number"),
+        said.contains("stopped: level 0: ") && said.contains("history.csv: `kinetic/kinetic` is not a number"),
         "{said}"
     );
     let output = fecontact(&["converge", "tube.json", "--measure", "bore.ux:end", "--threads", "0"], folder.path());
@@ -385,7 +385,7 @@ fn bad_studies_are_refused() {
             2,
             "point_masses.bore: is at every node of the group",
         ),
-        (["good.json", "--measure", "bore.ux", "--levels", "3"], 2, "`bore.ux` is no measure: give COLUMN:max"),
+        (["good.json", "--measure", "bore.ux", "--levels", "3"], 2, "`bore.ux` is not a measure: give COLUMN:max"),
         (["good.json", "--measure", "bore.ux:last", "--levels", "3"], 2, "`last` is not max, min, end or mean"),
         (["good.json", "--measure", "bor.ux:end", "--levels", "3"], 2, "the history has no column `bor.ux`; there are"),
         (["good.json", "--measure", "step:end", "--levels", "3"], 2, "does not hold numbers"),

@@ -67,6 +67,6 @@ fn an_error_is_the_last_line_of_the_log_and_a_file_of_a_user_is_left_alone() {
     let mine = folder.path().join("out/case/run.log");
     fs::write(&mine, "my own notes").unwrap();
     let told = fecontact(folder.path(), &["run", "case.json", "--quiet"]);
-    assert!(stderr(&told).contains("run.log: is no log of this program"), "{}", stderr(&told));
+    assert!(stderr(&told).contains("run.log: is not a log of this program"), "{}", stderr(&told));
     assert_eq!(fs::read_to_string(&mine).unwrap(), "my own notes");
 }

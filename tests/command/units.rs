@@ -96,7 +96,7 @@ fn a_label_that_contradicts_is_refused_with_what_it_would_be() {
         ),
         (json!({"length": "mm", "force": "N/mm", "stress": "MPa"}), &plate, vec!["units.force", "whole thickness"]),
         (json!({"length": "mm", "force": "N", "energy": "mJ/mm"}), &plate, vec!["units.energy", "\"N·mm\""]),
-        (json!({"force": "kg"}), &plane, vec!["units.force", "\"kg\"", "no unit of force"]),
+        (json!({"force": "kg"}), &plane, vec!["units.force", "\"kg\"", "not a unit of force"]),
         (json!({"angle": "deg"}), &plane, vec!["units.angle", "rad"]),
     ];
     for (units, section, fragments) in all {

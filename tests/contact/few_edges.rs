@@ -24,7 +24,7 @@ const LARGEST: f64 = MODULUS / (2.0 * R);
 fn told(case: &Value) -> (Vec<String>, f64) {
     let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(case)));
     let end = fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
-    let told: Vec<String> = warnings.list.into_iter().filter(|told| told.contains(": closed on ")).collect();
+    let told: Vec<String> = warnings.list.into_iter().filter(|told| told.contains(": closed over ")).collect();
     for told in &told {
         assert!(common::warnings::is_listed(told), "docs/reference/warnings.md has no entry for: {told}");
     }
@@ -73,7 +73,7 @@ fn a_contact_on_few_edges_is_told_and_its_remedy_resolves_it() {
             let (coarse, largest) = told(&cylinder(columns, kind, method));
             let what = format!("{columns} {kind}, {method}: {coarse:?}");
             assert!(coarse.len() == 1 && coarse[0].starts_with("contact `c` at ("), "{what}");
-            common::close(&what, number(&coarse[0], "where it is about "), 2.0, 0.1);
+            common::close(&what, number(&coarse[0], "where the contact is about "), 2.0, 0.1);
             let edge = number(&coarse[0], "take edges of ");
             common::close(&what, edge, quadratic * 2.0 / 6.0, 0.06 * edge);
             let finer = 2 * (5.0 / edge).ceil() as usize;
@@ -100,7 +100,7 @@ fn a_contact_at_a_line_of_symmetry_is_told() {
     for (what, case) in [("half of a cylinder", half), ("sphere", sphere)] {
         let (coarse, _) = told(&case);
         assert_eq!(coarse.len(), 1, "{what}: {coarse:?}");
-        common::close(what, number(&coarse[0], "where it is about "), 2.0, 0.16);
+        common::close(what, number(&coarse[0], "where the contact is about "), 2.0, 0.16);
     }
 }
 
@@ -128,7 +128,7 @@ fn the_coarser_side_of_two_bodies_counts() {
     for (block, die) in [(14, 14), (56, 14), (14, 56)] {
         let coarse = pressed(block, die);
         assert!(coarse.len() == 1 && coarse[0].ends_with(" on both sides"), "{block} {die}: {coarse:?}");
-        common::close("length", number(&coarse[0], "where it is about "), 2.0, 0.3);
+        common::close("length", number(&coarse[0], "where the contact is about "), 2.0, 0.3);
     }
     assert_eq!(pressed(60, 60), Vec::<String>::new());
 }

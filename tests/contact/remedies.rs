@@ -79,7 +79,7 @@ fn inwards(run: &Finished) -> f64 {
 /// 1 ≤ r ≤ 3, u = (1 + ν)/E p b²/(b² − a²) ((1 − 2ν) b + a²/b) = 1.25e-3 · 9/8 · (3/2 + 1/3) = 2.578e-3 at its outside.
 #[test]
 fn edges_that_leave_a_gap_between_curves_are_told() {
-    let words = "straight edges that stand for curves";
+    let words = "straight edges that approximate curves";
     let closed_form = 2.578e-3;
     let quadratic = common::finish(&rings([12, 16], "Q8", 0.0));
     common::close("quadratic edges", inwards(&quadratic), closed_form, 0.002 * closed_form);
@@ -227,7 +227,7 @@ fn a_stop_of_a_thin_belt_names_an_alpha_t_that_runs() {
     };
     let model = Arc::new(common::model(&belt(None)));
     let message = fecontact::run::run(&model, &mut []).1.expect_err("it goes round in circles").to_string();
-    let words = "of contact `drum` is 24134 times the stiffness with which a body behind it bends, which is 0.0219";
+    let words = "of contact `drum` is 24134 times the bending stiffness of a body behind it, which is 0.0219";
     assert!(message.contains(words), "{message}");
     let advised = message
         .split_once("lower it, to ")

@@ -386,7 +386,7 @@ fn what_is_wrong_is_named() {
         ),
         (
             small().step(step().load(Load::force(Place::Near([f64::NAN, 7.0]), [1.0, 0.0]))),
-            "steps[1].loads[0].on: near (NaN, 7) is no place: give finite numbers",
+            "steps[1].loads[0].on: near (NaN, 7) is not a position: give finite numbers",
         ),
         (
             small().step(step().load(Load::total_force(Place::Near([0.0, 0.0]), [1.0, 0.0]))),

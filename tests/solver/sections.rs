@@ -280,7 +280,7 @@ fn what_a_section_cannot_be_is_refused() {
         ),
         (
             with("/steps/0/supports", json!([{"on": "body_right", "rotation": {"about": [0, 0], "angle": 1}}])),
-            "a rotation in the plane is no motion of axisymmetric bodies",
+            "axisymmetric bodies cannot rotate in the plane",
         ),
         (with("/steps/0/supports", json!([])), "can move freely along y"),
         (spun, "along which they cannot move as a whole"),

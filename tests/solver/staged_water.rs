@@ -221,7 +221,7 @@ fn a_step_ends_at_a_degree_of_consolidation() {
     assert!(message.contains("bodies that come or go"), "{message}");
     for (until, expected) in [
         (json!({"on": "low", "consolidation": 1.5}), "must be above 0 and below 1"),
-        (json!({"on": "high", "consolidation": 0.5}), "is no body whose water flows in this step"),
+        (json!({"on": "high", "consolidation": 0.5}), "is not a body whose water flows in this step"),
         (json!({"on": "low"}), "exactly one of fx, fy, force and consolidation"),
     ] {
         let mut wrong = case.clone();

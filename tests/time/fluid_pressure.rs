@@ -141,7 +141,7 @@ fn a_measured_pressure_is_linear_between_times_and_places() {
         );
     };
     says("t, 0, 6\n0, 1\n", "line 2 has 2 numbers: a time and 2 pressures were expected");
-    says("t, 0, 6\n0, 1, a\n", "line 2, column 3: `a` is no number");
+    says("t, 0, 6\n0, 1, a\n", "line 2, column 3: `a` is not a number");
     says("t, 0, 6\n1, 0, 0\n1, 0, 0\n", "the times must increase: 1 follows 1");
     says("t, 6, 0\n1, 0, 0\n", "the places must increase: 0 follows 6");
     says("\n", "is empty");

@@ -143,7 +143,7 @@ impl Grid {
         let mut elements = self.elements();
         elements.iter_mut().flatten().for_each(|slot| *slot -= self.first);
         let node = nearest(&self.nodes, elements.iter().map(Vec::as_slice), point).map_err(|not_one| match not_one {
-            NotOne::NoPlace | NotOne::NoNodes => format!("({x}, {y}) is no place: give finite numbers"),
+            NotOne::NoPlace | NotOne::NoNodes => format!("({x}, {y}) is not a position: give finite numbers"),
             NotOne::Several(both) => {
                 let [one, other] = both.map(|node| self.nodes[node]);
                 format!(

@@ -469,7 +469,7 @@ pub fn check_ties(pair: &ContactPair, place: &str) -> Checked<()> {
 /// Surfaces of two bodies can be tied, and what moves or presses them otherwise is refused.
 pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
     let fails = contact.master_group().is_none() || contact.is_own();
-    let message = "is no other group of edges, to which a surface can be tied: constrain it by supports instead";
+    let message = "is not another group of edges, to which a surface could be tied: constrain it by supports instead";
     refuse_if(fails, format!("{place}.master"), message)?;
     let adjacent = [
         ("area", contact.area.is_some()),

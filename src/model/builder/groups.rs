@@ -73,7 +73,7 @@ fn nearest(mesh: &Mesh, point: [f64; 2], place: &str) -> Checked<usize> {
     let at = vector(point);
     let elements = mesh.elements.iter().map(|element| element.nodes.as_slice());
     let message = |not_one| match not_one {
-        NotOne::NoPlace => format!("near {at} is no place: give finite numbers"),
+        NotOne::NoPlace => format!("near {at} is not a position: give finite numbers"),
         NotOne::NoNodes => "the mesh has no nodes".into(),
         NotOne::Several(both) => {
             let [tag, other] = both.map(|node| mesh.node_tags[node]);

@@ -561,7 +561,10 @@ fn needs_stiffness(contact: &Contact, model: &Model, regime: Regime) -> String {
     let stiffness = |k: usize| model.body_of(k).material.description().p_wave_modulus / model.solids[k].area().sqrt();
     let softest = (0..model.solids.len()).filter(is_adjacent).map(stiffness).fold(f64::INFINITY, f64::min);
     let advice = match softest.is_finite() {
-        true => format!("give {}, the default of element sides there", number(default_over(contact, None, regime) * softest)),
+        true => format!(
+            "give {}, the default of element sides there",
+            number(default_over(contact, None, regime) * softest)
+        ),
         false => "give 100 times the stiffness of what holds the points, over their area".into(),
     };
     format!("is missing: points have no sides to choose it by, and get a spring of alpha_n × area each; {advice}")

@@ -154,8 +154,7 @@ pub fn check_fluid(law: &dyn Material, fluid: &PoreFluid, element: Formulation, 
     let message = "is f_bar, which is not for a body whose water flows: leave it out (the pressures of Q4 do not alternate there, and the water keeps \
                    the volume), or take Q8 with \"element\": \"reduced\"";
     refuse_if(element == Formulation::FBar, format!("{body}.element"), message)?;
-    let message =
-        "has no shear stiffness, by which the pressures of neighbours are kept from alternating: take another law";
+    let message = "has no shear stiffness, which keeps the pressures of neighbours from alternating: take another law";
     refuse_if(law.description().shear_modulus <= 0.0, format!("{body}.material"), message)
 }
 

@@ -173,7 +173,7 @@ pub fn check_rows(model: &Model) -> Checked<()> {
         true => Ok(()),
         false => {
             let message = format!(
-                "is {interval:e}: that makes {rows:.1e} rows of results, at most {MOST_INCREMENTS:e} are allowed"
+                "is {interval:e}: this makes {rows:.1e} rows of results, at most {MOST_INCREMENTS:e} are allowed"
             );
             Err(ModelError::new("output.interval", message))
         }

@@ -338,8 +338,8 @@ pub fn angle(support: &Support, place: &str, span: Span, model: &Model) -> Check
         on => Err(format!("is for a rigid body, and {on} is a node: name the body")),
     };
     let body = body.map_err(|message| ModelError::new(&place, message))?;
-    let message = "a rotation in the plane is no motion of axisymmetric bodies, and a rigid body there moves along y alone: \
-                   leave it out";
+    let message = "axisymmetric bodies cannot rotate in the plane, and a rigid body there moves along y only: leave it \
+                   out";
     refuse_if(model.mesh.section.is_axisymmetric(), &place, message)?;
     let Some(drive) = change.given() else { return Ok(Some((2 * body.turning, None))) };
     drive.check().map_err(|message| ModelError::new(&place, message))?;

@@ -349,7 +349,7 @@ fn consolidation(place: &str, on: &Place, value: f64, step: &Step, model: &Model
     let body = groups::body(model, &on.to_string(), &place)?;
     let flowing = model.flow.iter().flat_map(|flow| &flow.bodies);
     let number = flowing.copied().position(|other| other == body).filter(|_| step.has(body));
-    let message = format!("`{on}` is no body whose water flows in this step: give pore_fluid.permeability of it");
+    let message = format!("`{on}` is not a body whose water flows in this step: give pore_fluid.permeability of it");
     number.map(Goal::Consolidation).ok_or_else(|| ModelError::new(place, message))
 }
 

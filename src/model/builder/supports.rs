@@ -186,7 +186,7 @@ impl SupportsInForce {
             return Ok(());
         }
         let turns = |support: &&Prescribed| matches!(support.motion, Motion::Rotation { .. });
-        let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
+        let message = "axisymmetric bodies cannot rotate in the plane: prescribe ux and uy";
         refuse_if(self.dofs.values().any(|support| turns(&support)), format!("{place}.supports"), message)?;
         let rigid = model.mesh.rigid_bodies.iter().map(|body| body.reference);
         let axis = axis(&model.mesh);

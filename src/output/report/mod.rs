@@ -74,7 +74,7 @@ pub fn write(folders: &[PathBuf], file: &Path) -> Result<(), ReportError> {
         return Err(failed(file, &"is a folder: give the name of the page").into());
     }
     if file.symlink_metadata().is_ok() && !is_page(file) {
-        let cause = "is in the way: it is no page written by fecontact; move it, or choose another --out";
+        let cause = "is in the way: it was not written by fecontact; move it, or choose another --out";
         return Err(failed(file, &cause).into());
     }
     let page = page(folders)?;
@@ -95,7 +95,7 @@ pub fn page(folders: &[PathBuf]) -> Result<String, ReportError> {
             return Err(unreadable(folder, "is not a folder; give a folder of results"));
         }
         if !["history.csv", "law.csv", "summary.json"].iter().any(|file| folder.join(file).is_file()) {
-            let cause = "has neither history.csv nor law.csv nor summary.json: it is no folder of results";
+            let cause = "has neither history.csv nor law.csv nor summary.json: it is not a folder of results";
             return Err(unreadable(folder, cause));
         }
     }

@@ -103,8 +103,7 @@ impl<'a> Run<'a> {
         let shown = table.spread(self.fit(0.2, table.count()).min(ROWS));
         if shown.len() < all {
             let shown = shown.len();
-            self.notes
-                .push(format!("{file}: {shown} of {all} rows are shown, the extremes of every column among them"));
+            self.notes.push(format!("{file}: {shown} of {all} rows are shown, including the extremes of every column"));
         }
         table.sheet(&shown, pack)
     }
