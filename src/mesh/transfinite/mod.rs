@@ -37,7 +37,7 @@ pub enum BlockKind {
     Q4,
     /// Serendipity, 8 nodes: the mid-side nodes lie on the arcs
     Q8,
-    /// Two quadratic triangles, 6 nodes, to each quadrilateral; its diagonals run to and fro in turn
+    /// Two quadratic triangles, 6 nodes, to each quadrilateral; its diagonals alternate
     T6,
 }
 
