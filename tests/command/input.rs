@@ -220,15 +220,21 @@ fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
     );
     refused_edits(&[("/contacts/base/clearance", json!(1e300))], &["contacts.base.clearance: "]);
     refused_edits(&[("/contacts/base/interference", json!(1e-3))], &["here that is `clearance`"]);
-    refused_edits(
-        &[
-            ("/mesh/points", json!({"corner": [6]})),
-            ("/contacts/base/slave", json!("corner")),
-            ("/contacts/base/area", json!(1)),
-            ("/contacts/base/normal", json!({})),
-        ],
-        &["contacts.base.normal.alpha_n: ", "sides of elements like those there take"],
-    );
+    // 300 and 10 (λ + 2G)/h of the elements there, of size 1: λ + 2G = E (1 − ν)/((1 + ν)(1 − 2ν)) = 1346.15.
+    for (scheme, number) in [(json!("static"), "give 403846,"), (json!({"hht": {"alpha": -0.1}}), "give 13461.5,")] {
+        refused_edits(
+            &[
+                ("/mesh/points", json!({"corner": [6]})),
+                ("/contacts/base/slave", json!("corner")),
+                ("/contacts/base/area", json!(1)),
+                ("/contacts/base/normal", json!({})),
+                ("/bodies/ground/material/density", json!(1)),
+                ("/bodies/block/material/density", json!(1)),
+                ("/steps/0/scheme", scheme),
+            ],
+            &["contacts.base.normal.alpha_n: ", number, "the default of element sides there"],
+        );
+    }
     refused_edits(
         &[("/contacts/base/normal", json!({"penetration": 0}))],
         &["contacts.base.normal.penetration: ", "positive"],
@@ -267,22 +273,6 @@ fn point() -> Value {
 
 fn refused_point(edits: &[(&str, Value)], fragments: &[&str]) {
     refused_case(edited(point(), edits).to_string(), fragments);
-}
-
-/// Nodes of a body as points: α_n is 300 (λ + 2G)/h of elements of size 1, λ + 2G = E (1 − ν)/((1 + ν)(1 − 2ν)) = 1346.15, and 10 in dynamics.
-#[test]
-fn points_on_a_body_are_told_their_stiffness() {
-    for (scheme, number) in [(json!("static"), "403846"), (json!({"hht": {"alpha": -0.1}}), "13461.5")] {
-        let mut case = good();
-        case["groups"] = json!({"foot": {"of": "block_bottom", "nodes": true}});
-        for body in ["ground", "block"] {
-            case["bodies"][body]["material"]["density"] = json!(1);
-        }
-        let base = &mut case["contacts"]["base"];
-        (base["slave"], base["area"], base["normal"]) = (json!("foot"), json!(1), json!({}));
-        case["steps"][0]["scheme"] = scheme;
-        refused_case(case.to_string(), &["contacts.base.normal.alpha_n: ", &format!("give {number}")]);
-    }
 }
 
 #[test]
