@@ -1,18 +1,18 @@
 //! Runs by which a factor of safety is found: the case itself, then one trial after another ([`Search`]).
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::job::{Callbacks, Ends, Failed, Job, Outcome, Refused};
 use super::safety::{Reduced, Search, Trial, table};
 use super::{Opened, Written, warnings};
 use crate::model::Model;
 use crate::output::report::{self, ReportError};
-use crate::run::error::{Error, IncrementFailure};
+use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 
-/// Growth of the displacement over the elastic one above which a trial without an equilibrium has failed, and has not merely stopped.
-const GROWTH: f64 = 10.0;
+/// Growth of the displacement over the elastic one above which a trial has failed, whether a new equilibrium follows or not.
+pub const GROWTH: f64 = 10.0;
 
 /// Displacements that count as none, as a fraction of the mesh.
 const NO_MOTION: f64 = 1e-9;
@@ -114,10 +114,7 @@ impl Trials {
         let mesh = &job.model.mesh;
         let least = NO_MOTION * mesh.size_of(0..mesh.nodes.len());
         let course = Arc::new(Mutex::new(Course { begun, least, ..Course::default() }));
-        let watch = Watch(course.clone());
-        let ends = self.ends.clone();
-        let Outcome { ended, written, .. } =
-            job.run(Callbacks { warn: Arc::new(|_| ()), ends, progress: Some(Box::new(watch)) })?;
+        let Outcome { ended, written, .. } = job.run(self.callbacks(&course))?;
         written?;
         if job.opened.case.output.report {
             let folders = std::slice::from_ref(&job.folder.path);
@@ -126,29 +123,37 @@ impl Trials {
                 ReportError::Unreadable { .. } => Error::Ended(error.to_string()),
             })?;
         }
-        let course = course.lock().unwrap_or_else(PoisonError::into_inner);
-        let ([reached, displacement], growth) = (course.last, course.growth(course.last));
+        let course = locked(&course);
         let stands = match ended {
+            _ if course.growth() > GROWTH => false,
             Ok(()) => true,
-            Err(Failed::Stopped(error)) if error.cause().is_some() => {
-                if !course.is_unbounded(&error) {
-                    return Err(Error::Ended(format!(
-                        "F = {factor}: {error}. That is not a failure of the strengths, since no displacement had grown \
-                         to more than {GROWTH} times the elastic one; make the case easier to solve (finer increments \
-                         or elements, softer penalties), and try again"
-                    ))
-                    .into());
-                }
-                false
-            }
+            Err(Failed::Stopped(Error::IncrementTooSmall { .. } | Error::Unsolvable { .. })) => false,
             Err(failed) => return Err(failed.into()),
         };
-        Ok(Trial { factor, stands, reached, displacement, growth })
+        let [reached, displacement] = course.last;
+        Ok(Trial { factor, stands, reached, displacement, growth: course.growth() })
+    }
+
+    /// The caller ends a run, and so does a displacement that has grown beyond question.
+    fn callbacks(&self, course: &Arc<Mutex<Course>>) -> Callbacks<'static> {
+        let (asked, watched) = (self.ends.clone(), course.clone());
+        let ends = move || {
+            let fails = (locked(&watched).growth() > GROWTH).then(|| {
+                Error::Ended(format!(
+                    "displacements have grown to more than {GROWTH} times the elastic ones: the strengths fail"
+                ))
+            });
+            asked().or(fails)
+        };
+        Callbacks { warn: Arc::new(|_| ()), ends: Arc::new(ends), progress: Some(Box::new(Watch(course.clone()))) }
     }
 }
 
-/// Largest displacement of a trial, and the fraction of the step there: after the first increment, after the last, and in the iterates
-/// of the attempt after it that was rejected.
+fn locked(course: &Mutex<Course>) -> MutexGuard<'_, Course> {
+    course.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Largest displacement of a trial, and the fraction of the step there, after the first increment and the last.
 #[derive(Debug, Default)]
 struct Course {
     begun: Vec<f64>,
@@ -156,24 +161,18 @@ struct Course {
     least: f64,
     first: Option<[f64; 2]>,
     last: [f64; 2],
-    rejected: [f64; 2],
 }
 
 impl Course {
-    /// A displacement over that of the first increment, carried on to the same fraction of the step.
-    fn growth(&self, [reached, displacement]: [f64; 2]) -> f64 {
-        let [share, first] = self.first.unwrap_or([reached, 0.0]);
-        match displacement > self.least {
-            true => displacement / (first.max(self.least) * reached / share),
-            false => 1.0,
+    /// The displacement over that of the first increment, carried on to the same fraction of the step.
+    fn growth(&self) -> f64 {
+        let [reached, displacement] = self.last;
+        match self.first {
+            Some([share, first]) if displacement > self.least => {
+                displacement / (first.max(self.least) * reached / share)
+            }
+            _ => 1.0,
         }
-    }
-
-    /// Whether the strengths fail: there is no equilibrium, and either nothing resists the motion or displacements have grown, if only in
-    /// the iterates, as those of a block that slides as a whole.
-    fn is_unbounded(&self, error: &Error) -> bool {
-        let is_free = matches!(error.cause(), Some(IncrementFailure::Floating(_) | IncrementFailure::ContactLost(_)));
-        is_free || [self.last, self.rejected].into_iter().any(|moved| self.growth(moved) > GROWTH)
     }
 }
 
@@ -181,19 +180,12 @@ struct Watch(Arc<Mutex<Course>>);
 
 impl Observer for Watch {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
-        let mut course = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let share = |time: f64| attempt.step.span.share(time);
-        let Some(state) = attempt.accepted.filter(|_| !course.begun.is_empty()) else {
-            let corrections = attempt.iterations.iter().map(|iteration| iteration.newton.correction);
-            let farthest = corrections.fold(0.0, f64::max);
-            course.rejected = [share(attempt.old.time + attempt.dt), course.last[1] + farthest];
-            return Ok(());
-        };
+        let mut course = locked(&self.0);
+        let Some(state) = attempt.accepted.filter(|_| !course.begun.is_empty()) else { return Ok(()) };
         let moved = state.displacement.iter().zip(&course.begun).map(|(now, begun)| (now - begun).abs());
-        let now = [share(state.time), moved.fold(0.0, f64::max)];
+        let now = [attempt.step.span.share(state.time), moved.fold(0.0, f64::max)];
         course.first.get_or_insert(now);
         course.last = now;
-        course.rejected = [0.0; 2];
         Ok(())
     }
 }

@@ -10,7 +10,7 @@ use super::say::print;
 use super::threads::use_threads;
 use crate::case::Written;
 use crate::case::safety::{Reduced, Trial};
-use crate::case::safety_trials::{Trials, Unfound};
+use crate::case::safety_trials::{GROWTH, Trials, Unfound};
 use crate::run::error::Error;
 
 /// Options of `fecontact safety`.
@@ -49,6 +49,7 @@ pub fn safety(path: &Path, stability: Stability) -> Result<(), Failure> {
     while let Some(Trial { factor, stands, reached, growth, .. }) = trials.next_trial()? {
         let found = match stands {
             true => "stands".into(),
+            false if growth > GROWTH => format!("fails at {:.1} % of the step", 100.0 * reached),
             false => format!("fails, without an equilibrium from {:.1} % of the step on", 100.0 * reached),
         };
         print(&format!("F = {factor}: {found}; displacement {growth:.1} times the elastic one\n"))?;
