@@ -368,7 +368,7 @@ fn bad_studies_are_refused() {
         (
             ["force.json", "--measure", "bore.ux:end", "--levels", "3"],
             2,
-            "steps[0].loads[0].force: acts at every node of `bore`, and a mesh",
+            "steps[0].loads[0].force: acts at every node of `bore`, and a refined mesh",
         ),
         (
             ["spring.json", "--measure", "bore.ux:end", "--levels", "3"],

@@ -115,7 +115,7 @@ fn what_a_bond_alone_cannot_be_is_refused() {
         (with("/bond/opening", Value::Null), "bond.opening: is missing"),
         (with("/bond/strength", Value::Null), "bond.strength: is missing"),
         (with("/friction", json!({"law": "adhesion", "strength": 1, "alpha_t": 1})), "bond.strength: is given by the friction law"),
-        (with("/wear", json!(1e-3)), "bond: follows the opening of the path"),
+        (with("/wear", json!(1e-3)), "bond: follows the opening given by the path"),
         (with("/initial", json!({"pressure": 0, "traction": 11})), "initial.traction: is 10 for the bond"),
         (with("/path/0", json!({"duration": 1, "opening": "1+t"})), "path[0].opening: jumps from 0 to 1"),
         (law(&json!({"friction": {"law": "frictionless"}, "initial": {"pressure": 1}, "bond": bond, "path": [slide(1.0)]})).expect_err("refused"), "normal.alpha_n: is missing"),
