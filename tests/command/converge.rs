@@ -378,7 +378,7 @@ fn bad_studies_are_refused() {
         (
             ["tag.json", "--measure", "bore.ux:end", "--levels", "3"],
             2,
-            "steps[0].supports[1].on: is a node by its tag, and a mesh",
+            "steps[0].supports[1].on: is a node by its tag, and a refined mesh",
         ),
         (
             ["mass.json", "--measure", "bore.ux:end", "--levels", "3"],

@@ -177,7 +177,7 @@ fn interfaces_that_cannot_be_are_refused() {
             sand(),
             json!({"interface": {"reduction": 0.5, "of": "wall"}}),
             "interface.reduction",
-            "of no strength: `wall` does not yield",
+            "is a fraction, but `wall` does not yield",
         ),
         (steel(), sand(), json!({"interface": {"reduction": 1.5}}), "interface.reduction", "between 0 and 1"),
         (steel(), sand(), json!({"interface": {"reduction": 0.5, "cohesion": 1}}), "interface.cohesion", "leave one"),

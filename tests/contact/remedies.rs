@@ -315,7 +315,7 @@ fn what_is_told_before_the_run_says_what_helps() {
     });
     wet["bodies"]["ground"]["pore_fluid"] = json!({"bulk_modulus": 2e5, "porosity": 0.4});
     wet["bodies"]["ground"]["element"] = json!("f_bar");
-    let words = "body `ground` bears: make it the slave and take that part from the pores of the slave";
+    let words = "carried by the fluid in the pores of body `ground`: make it the slave and take that part from the pores of the slave";
     assert!(has(&common::model(&wet).warnings(), words));
     let base = &mut wet["contacts"]["base"];
     (base["slave"], base["master"], base["fluid_pressure"]) =

@@ -130,7 +130,7 @@ fn laws_that_heal_are_refused() {
     wet["bodies"]["block"]["pore_fluid"] =
         json!({"bulk_modulus": 1e6, "porosity": 0.5, "permeability": 1, "unit_weight": 1});
     wet["contacts"]["base"]["fluid_pressure"] = json!(0);
-    refused(&wet, &[], "bodies.block.pore_fluid.permeability: the trials of a factor of safety do not follow");
+    refused(&wet, &[], "bodies.block.pore_fluid.permeability: a factor of safety is not available with flowing water");
     let mut damped = case(coulomb.clone());
     damped["contacts"]["base"]["radiation_damping"] = json!(true);
     refused(&damped, &[], "contacts.base.radiation_damping: carries load as long as anything moves");

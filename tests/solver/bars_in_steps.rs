@@ -221,7 +221,7 @@ fn bad_bars_are_refused_by_name() {
     cases.push((case, "steps[0].add[0]: bars cannot be added or removed in the first step"));
     let mut case = with(json!({}));
     case["bars"]["soil"] = case["bars"]["bar"].clone();
-    cases.push((case, "bars.soil: is a group of the mesh as well"));
+    cases.push((case, "bars.soil: is also the name of a group of the mesh"));
     let mut case = bar(json!({"start": {"on": "soil"}, "end": {"on": "soil"}, "ei": 1}));
     case["steps"][0]["scheme"] = json!({"newmark": {}});
     cases.push((case, "bars.bar.mass: is 0, but the dynamic step `step` (steps[0]) needs a mass"));
