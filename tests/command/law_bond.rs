@@ -125,5 +125,5 @@ fn what_a_bond_alone_cannot_be_is_refused() {
     let mut without = test(&bond, &[open(1.0)]);
     without.as_object_mut().expect("keys").remove("bond");
     let refused = law(&without).expect_err("it is refused");
-    assert!(refused.contains("path[0].opening: is for a `bond`"), "{refused}");
+    assert!(refused.contains("path[0].opening: belongs to a `bond`"), "{refused}");
 }

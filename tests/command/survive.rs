@@ -323,7 +323,7 @@ fn a_case_begins_where_another_has_ended() {
     open["begin_with"] = json!("open");
     written(folder.path(), &open);
     let text = told(&run(folder.path(), "refused", &[]), 2);
-    assert!(text.contains("contacts.base.normal.alpha_n: is left open") && text.contains("has inertia"), "{text}");
+    assert!(text.contains("contacts.base.normal.alpha_n: is not given") && text.contains("has inertia"), "{text}");
 
     whole["contacts"]["base"]["normal"] = json!({"alpha_n": 1e4});
     let pressed = first(&whole);
@@ -340,7 +340,7 @@ fn a_case_begins_where_another_has_ended() {
     explicit["steps"][0]["scheme"] = json!({"explicit": {"safety": 0.9}});
     written(folder.path(), &explicit);
     let text = told(&run(folder.path(), "refused", &[]), 2);
-    assert!(text.contains("contacts.base.method: is left open") && text.contains("explicit"), "{text}");
+    assert!(text.contains("contacts.base.method: is not given") && text.contains("explicit"), "{text}");
     for source in ["pressed", "pressed/checkpoint.bin"] {
         drags["begin_with"] = json!(source);
         written(folder.path(), &drags);
