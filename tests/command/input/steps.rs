@@ -210,7 +210,7 @@ fn endless_runs_are_refused_and_long_ones_told() {
         ("/steps/0/dt", json!({"initial": 1})),
         ("/output", json!({"interval": 1e-3})),
     ];
-    refused_edits(&explicit, &["output.interval: is 1e-3: that makes 1.0e9 rows of results"]);
+    refused_edits(&explicit, &["output.interval: is 1e-3: this makes 1.0e9 rows of results"]);
     let mut explicit = explicit;
     explicit[5].1 = json!({"interval": 1e4});
     // c_p = √(E (1 − ν)/((1 + ν)(1 − 2ν) ρ)) = √1346.15 along the shortest side, 1 [L].

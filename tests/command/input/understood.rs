@@ -118,7 +118,7 @@ fn check_tells_what_was_understood() {
         "neo_hookean: E 1000",
         "mortar, averaged around each node (chosen because the master is a mesh): 4 contact points",
         "alpha_n 4.03183e5 (300 (λ + 2G)/h of the softer body, h the depth of the slave's elements)",
-        "alpha_t 6719.72 (5 (λ + 2G)/h): of the law, whose slip is elastic at first",
+        "alpha_t 6719.72 (5 (λ + 2G)/h): parameter of the law, whose slip is elastic at first",
         "surfaces overlap by up to 0.006667",
         "dt: initial 0.5, min 0.01, max 0.5",
         "support block_top: uy = -0.001",
