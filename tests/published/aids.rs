@@ -280,7 +280,7 @@ fn case(name: &str) -> &'static Case {
 /// An aid, and how to switch it off.
 type Switch = (&'static str, fn(&mut Aids));
 
-const SWITCHES: [Switch; 14] = [
+const SWITCHES: [Switch; 12] = [
     ("start", |aids| aids.start = false),
     ("prediction", |aids| aids.prediction = false),
     ("limit", |aids| aids.limit = false),
@@ -289,8 +289,6 @@ const SWITCHES: [Switch; 14] = [
     ("carried", |aids| aids.carried = false),
     ("touch", |aids| aids.touch = false),
     ("stick", |aids| aids.stick = false),
-    ("stick_again", |aids| aids.stick_again = false),
-    ("valley", |aids| aids.valley = false),
     ("old_tangents", |aids| aids.old_tangents = false),
     ("downhill", |aids| aids.downhill = false),
     ("stiffening", |aids| aids.stiffening = false),
@@ -437,8 +435,6 @@ fn every_aid_saves_solves_or_a_failure() {
         ("carried", "ridge"),
         ("touch", "slab_touch_once"),
         ("stick", "slab_gap"),
-        ("stick_again", "ridge"),
-        ("valley", "off_an_end"),
         ("old_tangents", "valley"),
         ("downhill", "ridge"),
         ("stiffening", "greco augmented"),
