@@ -16,7 +16,6 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{Matrix2, Vector2};
 
-use super::blocks::BlockLu;
 use super::dense::DenseLu;
 use super::{LinearFailure, LinearSolver, SparseMatrix};
 
@@ -138,20 +137,15 @@ fn subtract_products(m: &[f64], x: &[f64], b: &mut [f64], size: usize) {
 #[derive(Default)]
 pub struct HalvedLu {
     lu: DenseLu,
-    whole: BlockLu,
+    whole: DenseLu,
     /// c_tt and c_tn of a matrix factorized by halves
     varying: Option<Vec<[f64; 2]>>,
 }
 
 impl HalvedLu {
-    /// Returns a solver for matrices with the constant part `eliminated`; others may be factorized as a whole if the first
-    /// unknowns of the `parts` are given that the constant part does not couple.
-    pub fn with<'a>(
-        &'a mut self,
-        eliminated: Option<&'a Eliminated>,
-        parts: Option<&'a [usize]>,
-    ) -> impl LinearSolver + 'a {
-        Halving { eliminated, parts, own: self }
+    /// Returns a solver for matrices with the constant part `eliminated`; others may be factorized as a whole if that pays.
+    pub fn with<'a>(&'a mut self, eliminated: Option<&'a Eliminated>, whole_pays: bool) -> impl LinearSolver + 'a {
+        Halving { eliminated, whole_pays, own: self }
     }
 
     /// Whether the last matrix had the form.
@@ -162,21 +156,18 @@ impl HalvedLu {
 
 struct Halving<'a> {
     eliminated: Option<&'a Eliminated>,
-    parts: Option<&'a [usize]>,
+    whole_pays: bool,
     own: &'a mut HalvedLu,
 }
 
 impl LinearSolver for Halving<'_> {
     fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure> {
         self.own.varying = self.eliminated.and_then(|eliminated| eliminated.varying(matrix));
-        match (self.eliminated, &self.own.varying, self.parts) {
-            (Some(eliminated), Some(varying), _) => {
+        match (self.eliminated, &self.own.varying) {
+            (Some(eliminated), Some(varying)) => {
                 self.own.lu.factorize_columns(varying.len(), eliminated.halved(varying))
             }
-            (_, _, Some(parts)) => {
-                self.own.whole.divide(matrix.size(), parts);
-                self.own.whole.factorize(matrix)
-            }
+            _ if self.whole_pays => self.own.whole.factorize(matrix),
             _ => Err(LinearFailure::Varies),
         }
     }

@@ -1,6 +1,5 @@
 //! Sparse matrices of two unknowns per node, and the linear solvers with a common trait.
 
-mod blocks;
 mod dense;
 mod halved;
 mod lu;
@@ -9,7 +8,6 @@ mod multifrontal;
 mod sparse;
 pub mod system;
 
-pub use blocks::BlockLu;
 pub use dense::DenseLu;
 pub use halved::{Eliminated, HalvedLu, Steady};
 pub use lu::SparseLu;

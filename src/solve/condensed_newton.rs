@@ -63,8 +63,6 @@ struct Rung {
     bodies: Condensed,
     /// Condensed further on the equations that vary
     eliminated: Option<Eliminated>,
-    /// First unknowns of the parts of S that are not coupled, if LU of all equations pays
-    parts: Option<Vec<usize>>,
 }
 
 /// All data of a step that affect the constant part of its equations.
@@ -154,13 +152,12 @@ impl CondensedNewton {
         // Memory already used counts as available.
         let most = (held + free).min(MOST_MEMORY) / one.max(1);
         self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
-        let Self { nodes, whole, bodies, system, pattern, condensation, .. } = self;
+        let Self { nodes, bodies, system, pattern, condensation, .. } = self;
         bodies.assemble(trial, &trial.old.displacement, &[], Request::Tangent, system)?;
         let matrix = nodes.counted(bodies.model(), trial.step, &system.tangent, pattern);
         let rung = |condensed: Condensed| {
             let eliminated = nodes.eliminated(bodies.model(), trial.step, &condensed);
-            let parts = whole.then(|| condensed.parts());
-            Arc::new(Rung { bodies: condensed, eliminated, parts })
+            Arc::new(Rung { bodies: condensed, eliminated })
         };
         Ok(condensation.condense(&matrix).map(rung))
     }
@@ -186,7 +183,7 @@ pub(super) fn solve(
     work: &mut Workspace,
 ) -> Option<Result<Vec<f64>, NewtonFailure<TrialFailure>>> {
     let rung = work.interface.as_mut()?.bodies(model, trial).ok()??;
-    let Rung { bodies, eliminated, parts } = &*rung;
+    let Rung { bodies, eliminated } = &*rung;
     let mut u = start.to_vec();
     if watch.begins {
         if is_unaided(trial) {
@@ -197,7 +194,7 @@ pub(super) fn solve(
     }
     for _ in 0..MOST_ROUNDS {
         let Workspace { assembler, iteration, system, interface, .. } = &mut *work;
-        let CondensedNewton { nodes, solver, condensed, .. } = interface.as_mut()?;
+        let CondensedNewton { nodes, whole, solver, condensed, .. } = interface.as_mut()?;
         assembler.assemble(trial, &u, &[], Request::Residual, system).ok()?;
         let forwarded = bodies.forward(&nodes.balanced(model, trial.step, &system.residual));
         let equations = CondensedEquations::new(nodes, bodies, trial, &u, forwarded.right.clone(), assembler, system);
@@ -208,7 +205,7 @@ pub(super) fn solve(
             &mut on_contacts,
             from.clone(),
             settings(model, trial),
-            &mut solver.with(eliminated.as_ref(), parts.as_deref()),
+            &mut solver.with(eliminated.as_ref(), *whole),
             condensed,
             &mut iterations,
         );

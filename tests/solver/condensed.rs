@@ -7,8 +7,8 @@ use crate::grids::{Grids, noise};
 use crate::simulation::check;
 use fecontact::equations::condensed::ContactNodes;
 use fecontact::linear::{
-    BlockLu, Condensation, DenseLu, Eliminated, HalvedLu, LinearFailure, LinearSolver, Pattern, SparseLu, SparseMatrix,
-    Steady, norm,
+    Condensation, DenseLu, Eliminated, HalvedLu, LinearFailure, LinearSolver, Pattern, SparseLu, SparseMatrix, Steady,
+    norm,
 };
 use fecontact::model::Model;
 use fecontact::model::state::State;
@@ -94,55 +94,15 @@ fn equations_that_do_not_vary_are_eliminated_once() {
         dense.factorize(&matrix).expect("regular");
         dense.solve(&mut whole);
         {
-            let mut halving = lu.with(Some(&eliminated), Some(&[0]));
+            let mut halving = lu.with(Some(&eliminated), true);
             halving.factorize(&matrix).expect("regular");
             halving.solve(&mut halves);
         }
         assert_eq!(lu.halved(), open.is_none());
-        let not_whole = lu.with(Some(&eliminated), None).factorize(&matrix);
+        let not_whole = lu.with(Some(&eliminated), false).factorize(&matrix);
         assert_eq!(not_whole, open.map_or(Ok(()), |_| Err(LinearFailure::Varies)));
         let off: Vec<f64> = whole.iter().zip(&halves).map(|(a, b)| a - b).collect();
         assert!(norm(&off) < 1e-13 * norm(&whole), "{:e} of {:e}", norm(&off), norm(&whole));
-    }
-}
-
-/// Two dense parts of 75 and 60 nodes, which couple nodes that face each other: the solution by blocks is that of LU of the
-/// whole, also where a pivot is zero, in the corner of a block, or the largest of its column lies in another block.
-#[test]
-fn blocks_that_are_zero_stay_zero() {
-    const NODES: [usize; 2] = [75, 60];
-    let all: Vec<usize> = (0..NODES[0] + NODES[1]).collect();
-    let pattern = Arc::new(Pattern::new(all.len(), std::iter::once(&all[..])));
-    let (first, size) = (2 * NODES[0], 2 * all.len());
-    let mut matrix = SparseMatrix::zero(pattern);
-    let faces = |a: usize, b: usize| a < first && b >= first && (5 * (b - first)).abs_diff(4 * a) < 30;
-    for (k, value) in noise(size * size).into_iter().enumerate() {
-        let (row, column) = (k % size, k / size);
-        if (row < first) == (column < first) || faces(row, column) || faces(column, row) {
-            matrix.values[k] = value / (1.0 + row.abs_diff(column) as f64);
-        }
-    }
-    (0..size).for_each(|k| matrix.values[k * size + k] += 4.0);
-    let regular = matrix.clone();
-    for (what, row, column, value, by_blocks) in [
-        ("regular", 0, 0, 4.0, true),
-        ("a zero pivot", 0, 0, 0.0, true),
-        ("a large entry far below", first - 1, 0, 1e4, false),
-        ("a large entry in the other part", first, 0, 1e4, false),
-    ] {
-        matrix.values.copy_from_slice(&regular.values);
-        matrix.values[column * size + row] = value;
-        let mut blocks = BlockLu::default();
-        blocks.divide(size, &[0, first]);
-        blocks.factorize(&matrix).expect("regular");
-        assert_eq!(blocks.serves(), by_blocks, "{what}");
-        let (mut whole, mut parts) = (noise(size), noise(size));
-        let mut dense = DenseLu::default();
-        dense.factorize(&matrix).expect("regular");
-        dense.solve(&mut whole);
-        blocks.solve(&mut parts);
-        let off: Vec<f64> = whole.iter().zip(&parts).map(|(a, b)| a - b).collect();
-        assert!(norm(&off) < 1e-12 * norm(&whole), "{what}: {:e} of {:e}", norm(&off), norm(&whole));
     }
 }
 

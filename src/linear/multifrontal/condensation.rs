@@ -102,18 +102,6 @@ impl Condensed {
         }
     }
 
-    /// First unknowns of the parts of S that it does not couple with each other.
-    pub fn parts(&self) -> Vec<usize> {
-        let (mut parts, mut end) = (Vec::new(), 0);
-        for (k, reach) in self.reach.iter().enumerate() {
-            if end <= k && self.reach[k..].iter().all(|reach| reach.is_empty() || reach.start >= k) {
-                parts.push(k);
-            }
-            end = end.max(reach.end);
-        }
-        parts
-    }
-
     /// S from that of the scaled matrix. The scales are powers of two: not a bit is lost.
     fn unscaled(&self, kept: usize) -> Vec<f64> {
         let scaled = &self.factors.values[self.factors.values.len() - kept * kept..];

@@ -29,7 +29,6 @@ use std::sync::Arc;
 use super::memory::{NoRoom, available_memory, gibibytes, room_for};
 use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
 pub use condensation::{Condensation, Condensed, Forwarded};
-pub(super) use dense::{largest, subtract};
 use factor::Factors;
 use scale::Scaling;
 use symbolic::{Entry, Symbolic};
