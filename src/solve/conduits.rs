@@ -206,28 +206,19 @@ impl Flowing<'_> {
             return Err(self.failure(why));
         }
         let mut uncertainty = 0.0;
-        if self.is_coupled() && trial.old.last_increment.is_some() {
+        if trial.settles && self.is_coupled() && trial.old.last_increment.is_some() {
             let bent = self.march(trial, Some(&old.rates))?;
             let difference =
                 bent.pressure.iter().zip(&new.pressure).map(|(bent, p)| (bent - p).abs()).fold(0.0, f64::max);
             let round_off = ROUND_OFF * new.pressure.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
             uncertainty = if difference <= round_off { 0.0 } else { difference / (self.conduit.error * self.scale()) };
         }
-        let rate = 1.0 / trial.dt;
         // The water has reckoned with surfaces that follow it from p_k to p̂, which is what the next increment goes on from.
         let mut walls = self.walls.clone();
         let followed = self.compliance.iter().zip(new.pressure.iter().zip(&self.pressure));
         walls.iter_mut().zip(followed).for_each(|(wall, (c, (found, p)))| wall.opening += c * (found - p));
-        let rates = walls.iter().zip(&old.walls).map(|(new, old)| new.combined(rate, *old, -rate)).collect();
-        let volume = self.conduit.gained([&old.pressure, &new.pressure], [&old.walls, &walls]);
-        Ok(ConduitState {
-            pressure: new.pressure.clone(),
-            walls,
-            rates,
-            amounts: old.amounts.combined(1.0, new.amounts, 1.0),
-            mass_error: old.mass_error + volume - new.amounts.injected + new.amounts.leaked,
-            uncertainty,
-        })
+        let state = self.conduit.after(old, trial.dt, new.pressure.clone(), walls, new.amounts);
+        Ok(ConduitState { uncertainty, ..state })
     }
 }
 
@@ -328,6 +319,23 @@ impl<'a> Water<'a> {
         }
         courses
     }
+}
+
+/// The water at the end of an explicit increment, in which the surfaces come to be what is told of each contact.
+///
+/// # Errors
+/// Returns [`IncrementFailure`] if its pressures are impossible.
+pub fn flow(
+    model: &Model,
+    trial: Trial,
+    walls: impl Fn(usize, &Conduit) -> Vec<Wall>,
+) -> Result<Arrived, IncrementFailure> {
+    let mut flowing = flowing(model, trial.step, trial.old);
+    for flowing in &mut flowing {
+        flowing.walls = walls(flowing.number, flowing.conduit);
+        flowing.found = flowing.march(trial, None)?;
+    }
+    arrive(&flowing, model, trial)
 }
 
 /// The water at the end of the increment.
@@ -464,11 +472,19 @@ impl History {
     }
 }
 
+/// Gives the contacts the pressures of the water that has arrived.
+pub fn press_by(model: &Model, arrived: &Arrived, state: &mut State) {
+    for ((pair, new), states) in model.contacts.iter().zip(arrived).zip(&mut state.contacts) {
+        if let (Some(conduit), Some(new)) = (&pair.conduit, new) {
+            press(conduit, &new.pressure, &new.walls, states);
+        }
+    }
+}
+
 /// Gives a state the water that has arrived with it.
 pub fn receive(model: &Model, arrived: Arrived, state: &mut State) {
-    for (number, new) in arrived.into_iter().enumerate() {
-        let (Some(new), Some(conduit)) = (new, &model.contacts[number].conduit) else { continue };
-        press(conduit, &new.pressure, &new.walls, &mut state.contacts[number]);
-        state.conduits[number] = new;
+    press_by(model, &arrived, state);
+    for (old, new) in state.conduits.iter_mut().zip(arrived) {
+        *old = new.unwrap_or_else(|| std::mem::take(old));
     }
 }

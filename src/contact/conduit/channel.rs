@@ -246,8 +246,28 @@ impl Conduit {
         Fluid::flowing(move |node| known.get(&copies(node)).copied().unwrap_or(0.0))
     }
 
+    /// The state after an increment, with what its wells and leaks have moved.
+    pub fn after(
+        &self,
+        old: &ConduitState,
+        dt: f64,
+        pressure: Vec<f64>,
+        walls: Vec<Wall>,
+        amounts: Amounts,
+    ) -> ConduitState {
+        let (volume, rate) = (self.gained([&old.pressure, &pressure], [&old.walls, &walls]), 1.0 / dt);
+        ConduitState {
+            rates: walls.iter().zip(&old.walls).map(|(new, old)| new.combined(rate, *old, -rate)).collect(),
+            amounts: old.amounts.combined(1.0, amounts, 1.0),
+            mass_error: old.mass_error + volume - amounts.injected + amounts.leaked,
+            uncertainty: 0.0,
+            pressure,
+            walls,
+        }
+    }
+
     /// Change of the volume in the contact, S p + w, integrated [L³].
-    pub fn gained(&self, [p0, p1]: [&[f64]; 2], [from, to]: [&[Wall]; 2]) -> f64 {
+    fn gained(&self, [p0, p1]: [&[f64]; 2], [from, to]: [&[Wall]; 2]) -> f64 {
         let pressures = p0.iter().zip(p1).map(|(p0, p1)| p1 - p0);
         let openings = from.iter().zip(to).map(|(from, to)| to.opening - from.opening);
         let volumes = pressures.zip(openings).zip(self.line.lengths().iter().zip(&self.holds));

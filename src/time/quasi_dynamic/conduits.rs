@@ -106,17 +106,7 @@ impl<'a> Conduits<'a> {
         for flowing in &mut self.flowing {
             let Some((pressure, amounts)) = flowing.stages.pop() else { continue };
             let walls = flowing.walls(slips, rates, 0.0);
-            let ways = walls.iter().zip(&flowing.state.walls);
-            let old = &flowing.state;
-            let volume = flowing.conduit.gained([&old.pressure, &pressure], [&old.walls, &walls]);
-            flowing.state = ConduitState {
-                rates: ways.map(|(new, old)| new.combined(1.0 / h, *old, -1.0 / h)).collect(),
-                pressure,
-                walls,
-                amounts: flowing.state.amounts.combined(1.0, amounts, 1.0),
-                mass_error: flowing.state.mass_error + volume - amounts.injected + amounts.leaked,
-                uncertainty: 0.0,
-            };
+            flowing.state = flowing.conduit.after(&flowing.state, h, pressure, walls, amounts);
         }
     }
 
