@@ -184,7 +184,7 @@ impl Assembler {
         self.linearization = solids.map_or(Linearization::None, Linearization::Given);
         let evaluated = self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             assembler.set_out(trial.step, trial.old, responses, None);
-            assembler.add(&Term::OF_PLACE_AND_MOTION, trial, Motion { u, v: None }, responses, false, None)?;
+            assembler.add(Term::OF_PLACE_AND_MOTION, trial, Motion { u, v: None }, responses, false, None)?;
             assembler.conclude(trial, u, responses, false, system)
         });
         self.linearization = Linearization::None;
@@ -231,7 +231,7 @@ impl Assembler {
         let (clock, tangent) = (Instant::now(), request == Request::Tangent);
         self.magnitudes.fill(0.0);
         let matrix = self.set_out(trial.step, trial.old, responses, tangent.then_some(&mut system.tangent));
-        self.add(&Term::OF_PLACE_AND_MOTION, trial, Motion { u, v: None }, responses, true, matrix)?;
+        self.add(Term::OF_PLACE_AND_MOTION, trial, Motion { u, v: None }, responses, true, matrix)?;
         self.model.ties.gather(2, &mut self.magnitudes);
         self.model.linkage.gather_magnitudes(&mut self.magnitudes);
         self.conclude(trial, u, responses, tangent, system)?;
@@ -320,7 +320,7 @@ impl Assembler {
             let clock = Instant::now();
             assembler.attend(trial.step, trial.old);
             assembler.solids.retard(trial.step);
-            assembler.add(&Term::OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
+            assembler.add(Term::OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
             if let Some(v) = v {
                 assembler.add_viscous([u, v]);
             }

@@ -43,19 +43,10 @@ impl Term {
     ];
 
     /// Terms that depend on the displacements only, in every scheme.
-    pub const OF_PLACE: [Self; 5] = [Self::Solids, Self::PoreFlow, Self::Interfaces, Self::Bars, Self::Loads];
+    pub const OF_PLACE: &[Self] = Self::ALL.split_at(5).0;
 
     /// Terms that also depend on velocities, which in implicit schemes follow from the displacements.
-    pub const OF_PLACE_AND_MOTION: [Self; 8] = [
-        Self::Solids,
-        Self::PoreFlow,
-        Self::Interfaces,
-        Self::Bars,
-        Self::Loads,
-        Self::Dampers,
-        Self::Stabilization,
-        Self::Damping,
-    ];
+    pub const OF_PLACE_AND_MOTION: &[Self] = Self::ALL.split_at(8).0;
 
     /// Dependence of its tangent in a step of a model.
     pub fn dependence(self, model: &Model, step: &Step) -> Dependence {
