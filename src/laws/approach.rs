@@ -13,7 +13,7 @@ use crate::laws::dual::{Dual, Number};
 /// dR/dλ = U(R),   y = (R − R_e)/(1 − R_e),   λ = (1 − R_e)/r T(ζ)
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SlidingCurve {
+pub struct SlidingCurve {
     pub approach: Approach,
     pub elastic_core: f64,
     pub r: f64,
@@ -25,7 +25,7 @@ pub(super) struct SlidingCurve {
 
 /// A point of the curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CurvePoint {
+pub struct CurvePoint {
     /// ζ, or the plastic slip itself if R = 1
     pub coordinate: f64,
     /// Plastic slip up to here, from y = 0 or from where R = 1 was reached [L]
@@ -49,13 +49,13 @@ const LEAST_Y: f64 = 1e-100;
 const SHORT: f64 = 1e-3;
 
 impl SlidingCurve {
-    pub(super) fn new(approach: Approach, elastic_core: f64, r: f64) -> Self {
+    pub fn new(approach: Approach, elastic_core: f64, r: f64) -> Self {
         Self { approach, elastic_core, r, length: (1.0 - elastic_core) / r, per_range: 1.0 / (1.0 - elastic_core) }
     }
 
     /// The point at which plastic slip starts from a ratio R.
     #[inline]
-    pub(super) fn start(&self, ratio: f64) -> CurvePoint {
+    pub fn start(&self, ratio: f64) -> CurvePoint {
         let y = self.progress(ratio).max(LEAST_Y);
         if y < 1.0 {
             let (zeta, here) = self.approach.locate(y);
@@ -72,7 +72,7 @@ impl SlidingCurve {
 
     /// The point at a coordinate of the curve that starts at `start`.
     #[inline(always)]
-    pub(super) fn at(&self, coordinate: f64, start: &CurvePoint) -> CurvePoint {
+    pub fn at(&self, coordinate: f64, start: &CurvePoint) -> CurvePoint {
         if start.full {
             CurvePoint { coordinate, slip: coordinate, ..*start }
         } else {
@@ -81,7 +81,7 @@ impl SlidingCurve {
     }
 
     /// Plastic slip from `start` over a step of the coordinate, without cancellation where it is short; `None` where it is not.
-    pub(super) fn short_slip(&self, start: &CurvePoint, step: f64) -> Option<f64> {
+    pub fn short_slip(&self, start: &CurvePoint, step: f64) -> Option<f64> {
         if start.full {
             return Some(step);
         }
@@ -182,7 +182,7 @@ pub enum Approach {
 /// cotangent:    y = (2/π) atan(e^ζ),     T = ln(1 + e^(2ζ))/π,       dT/dζ = (2/π)/(1 + e^(−2ζ))
 /// ```
 /// so that no inverse function is needed, and T is nearly linear in ζ where sliding is nearly full.
-pub(super) struct Progress {
+pub struct Progress {
     /// y = (R − R_e)/(1 − R_e) [-]
     pub y: f64,
     /// T [-]
@@ -198,7 +198,8 @@ pub(super) struct Progress {
 impl Approach {
     /// y, T and their derivatives at ζ.
     #[inline(always)]
-    pub(super) fn at(self, zeta: f64) -> Progress {
+    #[doc(hidden)]
+    pub fn at(self, zeta: f64) -> Progress {
         match self {
             Self::Logarithmic => {
                 let w = (-zeta).exp();
@@ -225,7 +226,8 @@ impl Approach {
     /// logarithmic:  w² − w,  w³ − 3 w² + w
     /// cotangent:    4 z (z − s),  8 z (z² − 4 z s + s²)      s = 1/(1 + w²), z = 1 − s
     /// ```
-    fn higher(self, w: f64) -> [f64; 2] {
+    #[doc(hidden)]
+    pub fn higher(self, w: f64) -> [f64; 2] {
         match self {
             Self::Logarithmic => [w * (w - 1.0), w * (w * (w - 3.0) + 1.0)],
             Self::Cotangent => {
@@ -238,7 +240,8 @@ impl Approach {
 
     /// ζ, T and their derivatives at y, 0 < y < 1.
     #[inline(always)]
-    pub(super) fn locate(self, y: f64) -> (f64, Progress) {
+    #[doc(hidden)]
+    pub fn locate(self, y: f64) -> (f64, Progress) {
         match self {
             Self::Logarithmic => {
                 let w = -y.ln();
@@ -255,7 +258,8 @@ impl Approach {
     }
 
     /// The point at a distance beyond y, 0 < y < 1. T is convex in ζ: Newton's method comes down to the root from a ζ that is too large.
-    pub(super) fn after(self, y: f64, distance: f64) -> Progress {
+    #[doc(hidden)]
+    pub fn after(self, y: f64, distance: f64) -> Progress {
         let (zeta, start) = self.locate(y);
         let target = start.distance + distance;
         let mut zeta = (zeta + distance / start.stretch).min(self.beyond(target));
@@ -278,7 +282,8 @@ impl Approach {
     /// cotangent:    y T − ∫ T dy,   T = −(2/π) ln sin(π z/2),   z = 1 − y
     ///               ln sin(π z/2) = ln(π z/2) − Σ ζ(2k) (z/2)^(2k)/k
     /// ```
-    fn area(self, zeta: f64, y: f64, distance: f64) -> f64 {
+    #[doc(hidden)]
+    pub fn area(self, zeta: f64, y: f64, distance: f64) -> f64 {
         match self {
             Self::Logarithmic => e1(2.0 * (-zeta).exp(), LN_2 - zeta, y * y),
             Self::Cotangent => {
@@ -346,7 +351,7 @@ const EULER: f64 = 0.577_215_664_901_532_9;
 ///
 /// Source: Abramowitz & Stegun, section 5.1.
 #[inline(always)]
-fn e1(w: f64, ln_w: f64, exp_of_minus_w: f64) -> f64 {
+pub fn e1(w: f64, ln_w: f64, exp_of_minus_w: f64) -> f64 {
     if w <= SPLIT { w * rational(w, &ENTIRE) - ln_w - EULER } else { exp_of_minus_w / w * rational(1.0 / w, &TAIL) }
 }
 
@@ -387,94 +392,3 @@ const TAIL: [(f64, f64); 12] = [
     (762.532_231_883_804_8, 5_650.468_135_947_691),
     (3.330_039_552_536_742_5, 208.384_415_178_490_45),
 ];
-
-#[cfg(test)]
-mod approach_tests {
-    use super::{Approach, SlidingCurve};
-
-    /// Short slips by their series are the differences of long ones, where these have digits left.
-    #[test]
-    fn short_slips_are_differences() {
-        for approach in [Approach::Logarithmic, Approach::Cotangent] {
-            for ratio in [0.05, 0.3, 0.8, 0.999] {
-                let curve = SlidingCurve::new(approach, 0.02, 100.0);
-                let start = curve.start(ratio);
-                let step = 0.9e-3 / (1.0 + (-start.coordinate).exp() + start.bend / start.stretch);
-                let found = curve.short_slip(&start, step).expect("short");
-                let exact = curve.at(start.coordinate + step, &start).slip - start.slip;
-                assert!((found / exact - 1.0).abs() < 1e-10, "{approach:?} {ratio}: {found:e} {exact:e}");
-                let third = curve.approach.higher((-start.coordinate).exp())[0] * start.stretch;
-                let bends = [1e-4, -1e-4].map(|h| curve.at(start.coordinate + h, &start).bend);
-                assert!(((bends[0] - bends[1]) / 2e-4 - third).abs() < 1e-6 * start.stretch, "{approach:?} {ratio}");
-                assert_eq!(curve.short_slip(&start, 1.0), None);
-            }
-        }
-    }
-
-    /// What is found at a distance is at that distance, from anywhere on the curve.
-    #[test]
-    fn a_point_after_a_distance_is_at_that_distance() {
-        for approach in [Approach::Logarithmic, Approach::Cotangent] {
-            for y in [1e-60, 1e-3, 0.2, 0.7, 0.999] {
-                for distance in [1e-12, 1e-4, 0.03, 1.0, 20.0] {
-                    let here = approach.after(y, distance);
-                    let target = approach.locate(y).1.distance + distance;
-                    let error = (here.distance - target).abs();
-                    assert!(error < 1e-14 * target.max(1.0) && here.y >= y, "{approach:?} {y} {distance}: {error}");
-                }
-            }
-        }
-    }
-
-    /// Simpson's rule between points of the curve, in ζ, where the integrand is smooth.
-    #[test]
-    fn area_is_the_integral_of_y_over_the_distance() {
-        for approach in [Approach::Logarithmic, Approach::Cotangent] {
-            for (from, to) in [(-4.0, -3.0), (-3.0, 0.0), (0.0, 5.0), (-2.0, 30.0), (30.0, 60.0)] {
-                let area = |zeta: f64| {
-                    let here = approach.at(zeta);
-                    approach.area(zeta, here.y, here.distance)
-                };
-                let steps = 4000;
-                let h = (to - from) / f64::from(steps);
-                let sum: f64 = (0..=steps)
-                    .map(|i| {
-                        let here = approach.at(from + f64::from(i) * h);
-                        let weight = if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-                        weight * here.y * here.stretch * h / 3.0
-                    })
-                    .sum();
-                let error = area(to) - area(from) - sum;
-                assert!(error.abs() < 1e-12 * (1.0 + sum), "{approach:?} from {from} to {to}: {error:e} in {sum}");
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod exponential_integral_tests {
-    use super::e1;
-
-    /// Abramowitz & Stegun, tables 5.1 and 5.2, continued to 20 digits with mpmath.
-    #[test]
-    fn e1_agrees_with_tables() {
-        let table = [
-            (1e-12, 27.053_805_451_028_015),
-            (0.01, 4.037_929_576_538_114),
-            (0.5, 0.559_773_594_776_160_8),
-            (1.0, 0.219_383_934_395_520_28),
-            (1.5, 0.100_019_582_406_632_65),
-            (1.500_01, 0.100_018_094_884_627_7),
-            (2.0, 0.048_900_510_708_061_12),
-            (5.0, 0.001_148_295_591_275_325_8),
-            (20.0, 9.835_525_290_649_882e-11),
-            (100.0, 3.683_597_761_682_032e-46),
-            (500.0, 1.422_076_782_253_638_4e-220),
-        ];
-        for (w, expected) in table {
-            let w: f64 = w;
-            let error: f64 = e1(w, w.ln(), (-w).exp()) / expected - 1.0;
-            assert!(error.abs() < 4e-15, "E1({w}): relative error {error:e}");
-        }
-    }
-}

@@ -1,6 +1,7 @@
 //! Constitutive laws: friction of interfaces, stress of bodies.
 
-mod approach;
+#[doc(hidden)]
+pub mod approach;
 pub mod bulk;
 mod dual;
 pub mod friction;

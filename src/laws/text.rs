@@ -36,27 +36,3 @@ fn to_digits(value: f64, digits: usize) -> String {
         value => format!("{value:e}"),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{at_least, distinct, number};
-
-    #[test]
-    fn numbers_are_short_and_told_apart() {
-        assert_eq!([number(0.1 + 0.2), number(-1e300), number(2.0 / 3e9)], ["0.3", "-1e300", "6.66667e-10"]);
-        assert_eq!(distinct([1.0, 2.0]), ["1", "2"]);
-        assert_eq!(distinct([50.0, 50.000_000_3]), ["50", "50.0000003"]);
-        assert_eq!(distinct([1.0, 1.0 + f64::EPSILON]), ["1", "1.0000000000000002"]);
-        assert_eq!(distinct([1.0, 1.0]), ["1", "1"]);
-    }
-
-    #[test]
-    fn a_number_to_be_reached_is_rounded_up() {
-        for (value, text) in
-            [(50.000_01, "50.0001"), (50.0, "50"), (1e-9 / 3.0, "3.33334e-10"), (-0.123_456_7, "-0.123456")]
-        {
-            assert_eq!(at_least(value), text);
-            assert!(text.parse::<f64>().unwrap() >= value);
-        }
-    }
-}

@@ -103,26 +103,3 @@ fn divide(boxes: &mut [(Box2, usize)], part: usize, around: &mut [Option<Box2>])
     divide(first, 2 * part + 1, around);
     divide(second, 2 * part + 2, around);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The tree finds the same boxes as a search through all of them, for pseudo-random boxes.
-    #[test]
-    fn none_is_missed() {
-        let boxes: Vec<Box2> = (0..200u32)
-            .map(|k| {
-                let at = |m: u32| f64::from(k * m % 211) / 211.0;
-                let low = Vector2::new(at(97), at(53));
-                Box2 { low, high: low + 0.1 * Vector2::new(at(31), at(17)) }
-            })
-            .collect();
-        let tree = Tree::new(boxes.iter().copied());
-        for own in &boxes {
-            let all: Vec<usize> = (0..boxes.len()).filter(|k| boxes[*k].meets(own)).collect();
-            assert_eq!(tree.meeting(own), all);
-        }
-        assert!(Tree::new(std::iter::empty()).meeting(&boxes[0]).is_empty());
-    }
-}

@@ -16,7 +16,10 @@ use fecontact::model::Model;
 use fecontact::model::builder::{Gauge, LoadStep};
 use fecontact::output::bodies::BodyMeans;
 use fecontact::output::quantities;
-use fecontact::output::store::{codec, read};
+use fecontact::output::store::codec::{
+    self, BITS, QUICK, RELATIVE_ERROR, THOROUGH, packed, rounded, shuffled, unpacked,
+};
+use fecontact::output::store::read;
 use nalgebra::{Rotation2, Vector2};
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -514,4 +517,36 @@ fn absent_bodies_are_hidden() {
     }
     let stress = &table(out.join("probes.csv"))["gauge.stress_yy"];
     assert!(stress[0].is_finite() && stress[1..].iter().all(|stress| stress.is_nan()), "{stress:?}");
+}
+
+/// The bound of the error over sixty decades, and values that must not change.
+#[test]
+fn rounding_is_relative() {
+    let mut most = 0.0f64;
+    for k in 0..200_000 {
+        let value = 10f64.powf(-30.0 + 3e-4 * f64::from(k)) * if k % 2 == 0 { 1.0 } else { -1.0 };
+        most = most.max((f64::from(rounded(value, BITS)) - value).abs() / value.abs());
+        assert_eq!(f64::from(rounded(value, BITS)).to_bits() & ((1 << (52 - BITS)) - 1), 0);
+    }
+    assert!(most <= RELATIVE_ERROR && most > 0.99 * RELATIVE_ERROR, "{most}");
+    for same in [0.0, 1.0, -2.0, 1.5, f64::INFINITY] {
+        assert_eq!(f64::from(rounded(same, BITS)), same);
+    }
+    assert!(rounded(f64::NAN, BITS).is_nan());
+    // A tie is rounded to the even neighbour.
+    let near = |halves: f64| rounded(1.0 + halves * 2f64.powi(-16), BITS);
+    assert_eq!((near(1.0), near(3.0)), (1.0, 1.0 + 2f32.powi(-14)));
+    assert_eq!(rounded(f32::MAX.into(), 11), f32::MAX, "what would be infinite stays");
+}
+
+#[test]
+fn what_is_packed_comes_back() {
+    let bytes: Vec<u8> = (0..4096u32).flat_map(|k| (k * k).to_le_bytes()).collect();
+    for (size, level) in [(4, QUICK), (8, THOROUGH)] {
+        assert_eq!(unpacked(&packed(&bytes, size, level), size, bytes.len()).as_ref(), Ok(&bytes));
+    }
+    assert_eq!(shuffled(&[1, 2, 3, 4, 5, 6], 2), [1, 3, 5, 2, 4, 6]);
+    let mut damaged = packed(&bytes, 4, THOROUGH);
+    damaged.truncate(damaged.len() / 2);
+    assert!(unpacked(&damaged, 4, bytes.len()).is_err() && unpacked(&damaged, 4, 8).is_err());
 }

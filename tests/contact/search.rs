@@ -6,6 +6,7 @@ use fecontact::contact::search::{Index, KeptSearch};
 use fecontact::contact::segment_search::SegmentSearch;
 use fecontact::contact::segment_tree::SegmentTree;
 use fecontact::contact::surface::{MasterPoint, SlavePoint, Surface, gauss_points, lone_point};
+use fecontact::mesh::boxes::{Box2, Tree};
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -150,4 +151,22 @@ proptest! {
         prop_assert_eq!(&question.ask::<SegmentTree>(&configurations), &expected);
         prop_assert_eq!(&question.ask::<SegmentGrid>(&configurations), &expected);
     }
+}
+
+/// The tree finds the same boxes as a search through all of them, for pseudo-random boxes.
+#[test]
+fn none_is_missed() {
+    let boxes: Vec<Box2> = (0..200u32)
+        .map(|k| {
+            let at = |m: u32| f64::from(k * m % 211) / 211.0;
+            let low = Vector2::new(at(97), at(53));
+            Box2 { low, high: low + 0.1 * Vector2::new(at(31), at(17)) }
+        })
+        .collect();
+    let tree = Tree::new(boxes.iter().copied());
+    for own in &boxes {
+        let all: Vec<usize> = (0..boxes.len()).filter(|k| boxes[*k].meets(own)).collect();
+        assert_eq!(tree.meeting(own), all);
+    }
+    assert!(Tree::new(std::iter::empty()).meeting(&boxes[0]).is_empty());
 }

@@ -18,6 +18,7 @@ mod common;
 mod strokes;
 
 mod adhesion;
+mod approach;
 mod bond;
 mod bulk;
 mod cam_clay;

@@ -557,3 +557,53 @@ fn a_homogeneous_stretch_of_rings_passes_the_patch_test() {
         }
     }
 }
+
+#[test]
+fn shape_functions_sum_to_one_and_derivatives_match_differences() {
+    for kind in KINDS {
+        let (at, h) = ([0.21, 0.34], 1e-6);
+        assert!((kind.values(at).iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        let d = kind.derivatives(at);
+        for axis in 0..2 {
+            let (mut hi, mut lo) = (at, at);
+            hi[axis] += h;
+            lo[axis] -= h;
+            for (a, (p, m)) in kind.values(hi).iter().zip(kind.values(lo)).enumerate() {
+                assert!(((p - m) / (2.0 * h) - d[a][axis]).abs() < 1e-9, "{kind:?} node {a}");
+            }
+        }
+    }
+}
+
+#[test]
+fn rules_integrate_monomials_of_their_degree_exactly() {
+    let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
+    for (kind, rule, degree) in [
+        (ElementKind::T6, ElementKind::T6.quadrature(), 2),
+        (ElementKind::T6, ElementKind::T6.mass_quadrature(), 4),
+        (ElementKind::Q4, ElementKind::Q4.quadrature(), 3),
+        (ElementKind::Q9, ElementKind::Q9.quadrature(), 5),
+    ] {
+        for i in 0..=degree {
+            for j in 0..=degree - i {
+                let sum: f64 = rule.iter().map(|p| p.weight * p.at[0].powi(i) * p.at[1].powi(j)).sum();
+                let exact = if kind.corners() == 3 {
+                    factorial(i) * factorial(j) / factorial(i + j + 2)
+                } else {
+                    let line = |k: i32| {
+                        if k % 2 == 0 { 2.0 / f64::from(k + 1) } else { 0.0 }
+                    };
+                    line(i) * line(j)
+                };
+                assert!((sum - exact).abs() < 1e-13, "{kind:?} x^{i} y^{j}: {sum} for {exact}");
+            }
+        }
+    }
+    for n in 1..=4 {
+        for k in 0..2 * n as i32 {
+            let sum: f64 = gauss(n).iter().map(|(x, w)| w * x.powi(k)).sum();
+            let exact = if k % 2 == 0 { 2.0 / f64::from(k + 1) } else { 0.0 };
+            assert!((sum - exact).abs() < 1e-14);
+        }
+    }
+}
