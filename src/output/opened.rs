@@ -17,7 +17,7 @@ const BY_WATER: f64 = 0.5;
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Opened {
     found: BTreeMap<usize, String>,
-    reported: bool,
+    told: bool,
 }
 
 impl Opened {
@@ -56,7 +56,7 @@ impl Opened {
 
     /// The warnings, each of which is reported once.
     pub fn warnings(&mut self) -> impl Iterator<Item = String> {
-        let reported = std::mem::replace(&mut self.reported, true);
-        self.found.clone().into_values().filter(move |_| !reported)
+        let told = std::mem::replace(&mut self.told, true);
+        self.found.clone().into_values().filter(move |_| !told)
     }
 }
