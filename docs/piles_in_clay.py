@@ -1,9 +1,10 @@
-"""Tables of the slow tier: a pile in clay, its base on finer meshes, and its shaft, with the opening of its bond halved and doubled; and the same
-of a wall that holds a dig.
+"""Tables of the slow tier: a pile in clay, its base on finer meshes, and its shaft, with the opening of its bond halved and doubled; the same
+of a wall that holds a dig; and clay that is undrained, by water that is trapped or by water that flows and has no time to.
 
     python3 docs/piles_in_clay.py target/release/fecontact pile_bases
     python3 docs/piles_in_clay.py target/release/fecontact pile_openings
     python3 docs/piles_in_clay.py target/release/fecontact wall_openings
+    python3 docs/piles_in_clay.py target/release/fecontact trapped_and_flowing
 
 Every function runs cases and returns rows, the head first. Needs numpy.
 """
@@ -13,6 +14,7 @@ from math import pi
 
 import numpy as np
 
+from limit_loads import FINE, cam_clay, footing_case
 from results import Run, table, text_of
 
 LONG, RADIUS, STRENGTH, ADHESION, WEIGHT = 8, 0.5, 40, 0.8, 18
@@ -141,7 +143,50 @@ def wall_openings(program):
     return rows
 
 
-SLOW_PILES = {"pile_bases": pile_bases, "pile_openings": pile_openings, "wall_openings": wall_openings}
+def both_ways(program, case, body, elements):
+    """Runs of a case in which the water of a body is trapped, and in which it flows with hardly any permeability."""
+    trapped, flows = ({**case, "bodies": {**case["bodies"], body: {**case["bodies"][body], "element": kind}}} for kind in elements)
+    fluid = flows["bodies"][body]["pore_fluid"]
+    flows["bodies"][body] = {**flows["bodies"][body], "pore_fluid": {**fluid, "permeability": 1e-15, "unit_weight": 10, "weighs": "pressure" in fluid}}
+    return Run(program, trapped), Run(program, flows)
+
+
+def trapped_and_flowing(program):
+    rows = [["problem", "elements", "quantity", "trapped", "flowing", "difference"]]
+    kinds = {"Q8 reduced": ("Q8", "reduced", ["reduced", "reduced"]), "T6": ("T6", "displacement", ["displacement", "displacement"]),
+             "Q4 F-bar, Q4": ("Q4", "f_bar", ["f_bar", "displacement"])}
+
+    def add(problem, elements, quantity, values):
+        one, other = values
+        rows.append([problem, elements, quantity, f"{one:.4g}", f"{other:.4g}", f"{100 * (other / one - 1):+.1f} %"])
+
+    for name, (kind, element, elements) in kinds.items():
+        for half, told in ((2, "half as many"), (1, "")):
+            body, strength = cam_clay(100)
+            near, far, deep = FINE[kind][0][0], FINE[kind][0][1], FINE[kind][1]
+            columns, across = [[n // half, grading] for n, grading in (near, far)], [deep[0] // half, deep[1]]
+            case = footing_case({**body, "element": element}, kind, columns, across, 2.5, 0.001, 100, dt={"initial": 0.02, "max": 0.02, "min": 1e-6})
+            runs = both_ways(program, case, "ground", elements)
+            add("footing on Cam-clay", f"{name} {told}".strip(), "N_c", [(-run.last("footing.fy") / 0.5 - 100) / strength for run in runs])
+    for name, (kind, element, elements) in kinds.items():
+        for finer in (1, 2):
+            case = pile(kind, element, 0.3, finer, down=0.1)
+            soil = case["bodies"]["soil"]
+            soil["initial_stress"] = {"geostatic": {"surface": 0, "weight": WEIGHT - 10, "K0": 1}}
+            soil["pore_fluid"] = {"bulk_modulus": 2.2e6, "porosity": 0.4, "pressure": "-10*y"}
+            # Means of mortar leave a point at the ground surface less than its water.
+            case["contacts"] = {name: {**one, "method": "gauss_to_segment"} for name, one in case["contacts"].items()}
+            ends = []
+            for run in both_ways(program, case, "soil", elements):
+                water = run.history.get("base.fluid_force")
+                ends.append([abs(run.last("shaft.tangential_force")), abs(run.last("base.normal_force")) + (0 if water is None else water[-1]) - WEIGHT * LONG * pi * RADIUS**2])
+            across = (6 if kind == "Q4" else 3) * finer
+            add(f"pile, {across} across the radius", name, "shaft", [shaft for shaft, _ in ends])
+            add("", name, "base at 10 % of D", [base for _, base in ends])
+    return rows
+
+
+SLOW_PILES = {"pile_bases": pile_bases, "pile_openings": pile_openings, "wall_openings": wall_openings, "trapped_and_flowing": trapped_and_flowing}
 
 if __name__ == "__main__":
     print(text_of(SLOW_PILES[sys.argv[2]](sys.argv[1])))

@@ -25,13 +25,20 @@ from .errors import CaseError
 from .result import Result
 
 # Where the constants of the law stand in the case.
-MATERIAL = "bodies.sample.material."
+SAMPLE = "bodies.sample."
+MATERIAL = SAMPLE + "material."
 # Columns of the history that quantities are made of.
 COLUMNS = ("top.uy", "top.fy", "right.ux", "right.fx")
 # Increments of a triaxial test, unless its largest strain increment is given.
 INCREMENTS = 400
 # Increments from a pressure of 0 on, where steps in proportion to it begin nowhere.
 FROM_NOTHING = 50
+# What begins with this is of the water in the pores, and else of the material.
+FLUID = "pore_fluid."
+# Elements of a sample through which water flows: along the way that it takes, and their heights at its end over those at its start.
+ALONG, GRADING = 12, 0.1
+# Increments before the first reading under a pressure, and the time since it came at the end of an increment over that at its start after this.
+BEFORE_READING, RATIO = 5, 1.1
 # Imaginary step of derivatives of quantities by columns, which is exact as long as its square is nothing.
 IMAGINARY = 1e-30
 
@@ -49,6 +56,9 @@ class ElementTest:
             raise ValueError(f"increment: is {shown(increment)}: must be positive")
         self.increment: float = float(increment)
         self.weight: float = noise_of(None, weight, 1)[1]
+        # Times of the rows behind the first.
+        self._stops: list[float] = []
+        self.times: Array = np.arange(1.0, next(iter(measured.values())).size)
         names = list(measured)
         if isinstance(sigma, Mapping):
             if unknown := [name for name in sigma if name not in names]:
@@ -75,6 +85,10 @@ class ElementTest:
         """Initial stress of the case, and its steps."""
         raise NotImplementedError
 
+    def _sample(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Block of the sample, and what its body has beside the material."""
+        return {"corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "elements": [1, 1]}, {"element": "f_bar"}
+
     def case(self, law: Mapping[str, Any]) -> Case:
         """The case of the test with a law.
 
@@ -83,22 +97,22 @@ class ElementTest:
             ValueError: it cannot be tested so.
         """
         initial, steps = self._parts()
-        corners = [[0, 0], [1, 0], [1, 1], [0, 1]]
-        block = {"body": "sample", "corners": corners, "elements": [1, 1], "sides": ["bottom", "right", "top", "left"]}
-        body = {"material": _checked(law), "element": "f_bar"}
+        block, body = self._sample()
+        block = {"body": "sample", "sides": ["bottom", "right", "top", "left"], **block}
+        body = {"material": _checked(law, "pore_fluid" in body), **body}
         if any(initial.values()):
             body["initial_stress"] = {"components": initial}
         try:
             return Case(
                 {
-                    "title": f"{type(self).__name__} test of one element",
+                    "title": f"{type(self).__name__} test of a sample",
                     "section": "axisymmetric",
                     "mesh": {"blocks": [block]},
                     "bodies": {"sample": body},
                     "steps": steps,
                     "watch": ["top", "right"],
                     "newton": {"tolerance": 1e-10},
-                    "output": {"fields": False},
+                    "output": {"fields": False, "times": self._stops},
                 }
             )
         except CaseError as error:
@@ -190,16 +204,22 @@ class Triaxial(ElementTest):
 class Oedometer(ElementTest):
     """A test in a ring: a sample that cannot widen is loaded, and unloaded, along its axis.
 
-    Compression is positive, strains are engineering strains, ΔH/H₀ from the first row on.
+    Compression is positive, strains are engineering strains, ΔH/H₀ from the first row on. With ``time`` water flows out of the sample while it is
+    pressed, which tells its permeability: the free value ``pore_fluid.permeability``.
 
     Args:
-        pressure: vertical effective stress, shape (n,), 0 or more. The first row is the start of the test [F/L²].
+        pressure: vertical effective stress, shape (n,), 0 or more. The first row is the start of the test. With ``time`` that of the load: what a row has
+            acts from the time of the row before on [F/L²].
         strain: shape (n,), counted from its first value, ... [-]
         void_ratio: ... or the void ratio e, shape (n,): e = e₀ − (1 + e₀) ε, e₀ its first value [-].
+        time: when the rows were read, ascending, shape (n,); without it the water has all the time to flow [T].
+        drainage: with ``time``: longest way of the water out of the sample, half its height where it drains at both ends [L].
+        pore_fluid: with ``time``: the water, as ``pore_fluid`` of a body, ``{"permeability": 1e-9, "unit_weight": 9810, "bulk_modulus": 2.2e9,
+            "porosity": 0.5}``.
         K0: ratio of the lateral to the vertical effective stress at the first pressure; needed unless that is 0 [-].
         sigma: standard deviation of the noise of what was measured: a number or shape (n,), or by its name; by default estimated by the fit.
         weight: weight of this record relative to others.
-        increment: largest change of ln pressure within an increment of the run. The error is of first order in it.
+        increment: largest change of ln pressure within an increment of the run, without ``time``. The error is of first order in it.
     """
 
     def __init__(
@@ -208,6 +228,9 @@ class Oedometer(ElementTest):
         strain: ArrayLike | None = None,
         *,
         void_ratio: ArrayLike | None = None,
+        time: ArrayLike | None = None,
+        drainage: float | None = None,
+        pore_fluid: Mapping[str, Any] | None = None,
         K0: float | None = None,
         sigma: Any = None,
         weight: float = 1.0,
@@ -230,23 +253,62 @@ class Oedometer(ElementTest):
             values = _rows("strain", strain, self.pressure.size)
             measured = {"strain": values - values[0]}
         super().__init__(measured, sigma, weight, increment)
+        self._water: dict[str, Any] = {}
+        self._way = 1.0
+        if time is None:
+            if drainage is not None or pore_fluid is not None:
+                raise ValueError("time: give it as well: drainage and pore_fluid are those of a record in time")
+            return
+        at = _rows("time", time, self.pressure.size)
+        if not (np.diff(at) > 0).all():
+            raise ValueError("time: must be ascending")
+        if not isinstance(pore_fluid, Mapping) or "permeability" not in pore_fluid:
+            raise ValueError('pore_fluid: give the water of a record in time, with its permeability: {"permeability": 1e-9, "unit_weight": 9810, …}')
+        if drainage is None or not _finite("drainage", drainage) > 0:
+            raise ValueError("drainage: give the longest way of the water out of the sample, half its height where it drains at both ends")
+        self.times, self._water, self._way = at[1:] - at[0], dict(pore_fluid), float(drainage)
+
+    def _sample(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        if not self._water:
+            return super()._sample()
+        corners = [[0, 0], [1, 0], [1, self._way], [0, self._way]]
+        block = {"corners": corners, "elements": [1, ALONG], "grading": [1, GRADING], "kind": "Q8"}
+        return block, {"element": "reduced", "pore_fluid": self._water}
 
     def _quantities(self, columns: Mapping[str, Any]) -> dict[str, Any]:
-        strain = -columns["top.uy"]
+        strain = -columns["top.uy"] / self._way
         if "strain" in self._measured:
             return {"strain": strain}
         first = float(self._measured["void_ratio"][0])
         return {"void_ratio": first - (1.0 + first) * strain}
 
     def _parts(self) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-        steps = []
-        for k, (before, after) in enumerate(zip(self.pressure[:-1].tolist(), self.pressure[1:].tolist())):
+        steps = self._stages() if self._water else []
+        in_turn = [] if self._water else zip(self.pressure[:-1].tolist(), self.pressure[1:].tolist())
+        for k, (before, after) in enumerate(in_turn):
             even = before > 0 and after > 0
             share = abs(math.log(after / before)) / self.increment if even else FROM_NOTHING
             steps.append(_step(k, share, [], [{"on": "top", "pressure": f"{before!r}*{after / before!r}^(t - {k})" if even else after}]))
         steps[0]["supports"] = [*HELD, {"on": "right", "ux": 0}]
         axial, radial = -float(self.pressure[0]), -self.K0 * float(self.pressure[0])
         return {"xx": radial, "yy": axial, "zz": radial}, steps
+
+    def _stages(self) -> list[dict[str, Any]]:
+        """A step for every pressure, which acts at once, and until the last row that has it; increments end at the rows, and between them."""
+        ends = np.append(0.0, self.times)
+        starts = [0, *(np.flatnonzero(np.diff(self.pressure[1:])) + 1).tolist()]
+        steps: list[dict[str, Any]] = []
+        self._stops = []
+        for start, last in zip(starts, [*starts[1:], ends.size - 1]):
+            since = ends[start + 1 : last + 1] - ends[start]
+            parts = np.ceil(np.log(since[1:] / since[:-1]) / math.log(RATIO)).astype(int)
+            between = [np.geomspace(*pair, n + 1)[:-1] for *pair, n in zip(since[:-1], since[1:], parts)]
+            self._stops += (ends[start] + np.concatenate([*between, since[-1:]])).tolist()
+            dt = {"initial": since[0] / BEFORE_READING, "max": since[-1], "min": 1e-4 * since[0]}
+            loads = [{"on": "top", "dead_pressure": repr(float(self.pressure[start + 1]))}]
+            steps.append({"name": f"from row {start + 1}", "duration": since[-1], "dt": dt, "loads": loads})
+        steps[0]["drainage"] = [{"on": "top", "pressure": 0}]
+        return steps
 
 
 class ElementRun(Run):
@@ -255,21 +317,21 @@ class ElementRun(Run):
     _fitted = "law"
 
     def __init__(self, test: ElementTest, law: Mapping[str, Any], measured: Mapping[str, Array], **options: Any) -> None:
-        steps = np.arange(1.0, next(iter(measured.values())).size)
+        times = test.times
         if isinstance(options["sigma"], Mapping):
-            options["sigma"] = {name: _noise(name, sigma, steps.size) for name, sigma in options["sigma"].items()}
-        super().__init__(test.case(law), {name: (steps, values[1:]) for name, values in measured.items()}, **options)
+            options["sigma"] = {name: _noise(name, sigma, times.size) for name, sigma in options["sigma"].items()}
+        super().__init__(test.case(law), {name: (times, values[1:]) for name, values in measured.items()}, **options)
         self._test = test
 
     def _place(self, name: str) -> str:
-        return MATERIAL + name
+        return SAMPLE + name if name.startswith(FLUID) else MATERIAL + name
 
     def _value(self, name: str) -> tuple[str, float]:
         try:
-            written, value = value_at(self.case, MATERIAL + name)
+            written, value = value_at(self.case, self._place(name))
         except CaseError as error:
             raise _of_law(error) from None
-        return written.removeprefix(MATERIAL), value
+        return written.removeprefix(MATERIAL).removeprefix(SAMPLE), value
 
     def solved(self, values: Mapping[str, float], by: Sequence[str], threads: int | None) -> tuple[Array, Array]:
         try:
@@ -299,18 +361,18 @@ def _step(k: int, increments: float, supports: list[dict[str, Any]], loads: list
     return {**step, "loads": loads} if loads else step
 
 
-def _checked(law: Any) -> dict[str, Any]:
+def _checked(law: Any, timed: bool) -> dict[str, Any]:
     """A law that can be tested.
 
     Raises:
-        ValueError: it is none, or needs times, which these records have not, or is one of small strains.
+        ValueError: it is none, or needs times, which this record has not, or is one of small strains.
     """
     if not isinstance(law, Mapping) or "model" not in law:
         raise ValueError(f'law: is {shown(law)}: give the material of a body with its constants, such as {{"model": "mohr_coulomb", "E": 5e7, …}}')
     if law["model"] == "linear":
         raise ValueError("law: `linear` is for small strains, which tests of samples exceed: give `hencky`, which has the same constants")
-    if law["model"] == "viscoelastic" or law.get("viscosity"):
-        raise ValueError("law: its answer depends on the rate, but these records have no times: leave viscosity out, or fit a case by Run")
+    if not timed and (law["model"] == "viscoelastic" or law.get("viscosity")):
+        raise ValueError("law: its answer depends on the rate, but this record has no times: leave viscosity out, or fit a case by Run")
     return dict(law)
 
 

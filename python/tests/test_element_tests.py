@@ -172,6 +172,38 @@ def test_an_oedometer_gives_the_void_ratio_of_its_strain() -> None:
     np.testing.assert_allclose(void_ratio, 0.9 - 1.9 * strain, rtol=1e-12)
 
 
+# M of 5e8, c_v = k M/γ_w: the water, which is nearly incompressible, and readings under two pressures in the order of a laboratory.
+MODULUS, WAY, WATER = 5e8, 0.01, {"permeability": 1e-11, "unit_weight": 9810, "bulk_modulus": 1e14, "porosity": 0.5}
+STIFF = {"model": "hencky", "E": MODULUS * 1.3 * 0.4 / 0.7, "nu": 0.3}
+READ = np.array([6, 15, 30, 60, 120, 240, 480, 900, 1800, 3600, 14400, 86400.0])
+
+
+def consolidated(seed: int | None = None, **water: float) -> Oedometer:
+    """Two pressures, 1e4 and 2e4: Terzaghi's degrees of consolidation one after the other, with noise of half a per cent of the strain under each."""
+    m = 0.5 * np.pi * (2 * np.arange(2000)[:, None] + 1)
+    degree = lambda t: np.where(t > 0, 1 - (2 / m**2 * np.exp(-(m**2) * np.maximum(t, 0))).sum(axis=0), 0)  # noqa: E731
+    time = np.concatenate([[0], READ, 86400 + READ])
+    rate = WATER["permeability"] * MODULUS / WATER["unit_weight"] / WAY**2
+    strain = 1e4 / MODULUS * (degree(rate * time) + degree(rate * (time - 86400)))
+    if seed is not None:
+        strain[1:] += 1e-7 * np.random.default_rng(seed).normal(size=time.size - 1)
+    pressure = np.repeat([0, 1e4, 2e4], [1, READ.size, READ.size])
+    return Oedometer(pressure, strain, time=time, drainage=WAY, pore_fluid={**WATER, **water})
+
+
+def test_an_oedometer_in_time_consolidates_as_terzaghi_says() -> None:
+    test = consolidated()
+    np.testing.assert_allclose(answers(test, STIFF)[0], test.of(STIFF).measured, atol=2.5e-3 * 1e4 / MODULUS)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_hidden_truth_of_consolidation(seed: int) -> None:
+    found = fc.fit(consolidated(seed, permeability=4e-12), {**STIFF, "E": 2 * STIFF["E"]}, ["E", "pore_fluid.permeability"])
+    holds(found, {"E": STIFF["E"], "pore_fluid.permeability": WATER["permeability"]})
+    assert found.table["std"]["pore_fluid.permeability"] < 0.01 and found.runs <= 10 and found.words == []
+    assert found.noise == pytest.approx(1e-7, rel=0.4)
+
+
 STRAIN = np.concatenate([[0], np.linspace(0.0025, 0.12, 30)])
 
 
@@ -308,11 +340,15 @@ def test_records_that_are_none(arguments: dict[str, Any], message: str) -> None:
         (([10, 20], [0, 0.1]), "K0: give the ratio"),
         (([0, -20], [0, 0.1]), "pressure: is -20: must not be negative"),
         (([0, 20],), "strain: give strain or void_ratio"),
+        (([0, 20], [0, 0.1], {"drainage": 1}), "time: give it as well"),
+        (([0, 20], [0, 0.1], {"time": [0, 0]}), "time: must be ascending"),
+        (([0, 20], [0, 0.1], {"time": [0, 1], "drainage": 1}), "pore_fluid: give the water of a record in time"),
+        (([0, 20], [0, 0.1], {"time": [0, 1], "pore_fluid": WATER}), "drainage: give the longest way"),
     ],
 )
 def test_oedometers_that_are_none(arguments: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        Oedometer(*arguments)
+        Oedometer(*arguments[:2], **dict(*arguments[2:]))
 
 
 @pytest.mark.parametrize(
@@ -335,6 +371,13 @@ def test_oedometers_that_are_none(arguments: Any, message: str) -> None:
 def test_what_cannot_be_fitted(law: Any, free: Any, options: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         fc.fit(triaxial(STRAIN, CLAY, cell_pressure=100, drained=False), law, free, **options)
+
+
+def test_water_of_a_sample_is_checked() -> None:
+    with pytest.raises(ValueError, match="pore_fluid.permeability.*-1"):
+        consolidated(permeability=-1.0).of(STIFF).predicted({})
+    with pytest.raises(ValueError, match="pore_fluid.permeabilty"):
+        fc.fit(consolidated(), STIFF, ["pore_fluid.permeabilty"])
 
 
 def test_records_of_other_sorts_are_apart() -> None:

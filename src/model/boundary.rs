@@ -204,6 +204,12 @@ impl Drive {
         table.map_or(Ok(()), |(table, argument)| check_table(table, argument))
     }
 
+    /// Times of a table.
+    pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
+        let table = if let Self::Table(table) = self { &table[..] } else { &[] };
+        table.iter().map(|row| row[0])
+    }
+
     /// Whether it varies in space.
     pub fn depends_on_position(&self) -> bool {
         match self {
@@ -479,7 +485,17 @@ pub struct Loads {
 #[doc(hidden)]
 impl Loads {
     /// All time-dependent amplitudes.
-    pub fn amplitudes(&mut self) -> impl Iterator<Item = &mut Amplitude> {
+    pub fn amplitudes(&self) -> impl Iterator<Item = &Amplitude> {
+        let dead = self.dead.iter().map(|load| &load.amplitude);
+        let pressures = self.pressures.iter().map(|load| &load.amplitude);
+        let springs = self.springs.iter().filter_map(|spring| spring.driver.as_ref());
+        let dashpots = self.dashpots.iter().filter_map(|dashpot| dashpot.driver.as_ref());
+        let moments = self.moments.iter().map(|moment| &moment.amplitude);
+        dead.chain(pressures).chain(springs).chain(dashpots).chain(moments)
+    }
+
+    /// The same, to be changed.
+    pub fn amplitudes_mut(&mut self) -> impl Iterator<Item = &mut Amplitude> {
         let dead = self.dead.iter_mut().map(|load| &mut load.amplitude);
         let pressures = self.pressures.iter_mut().map(|load| &mut load.amplitude);
         let springs = self.springs.iter_mut().filter_map(|spring| spring.driver.as_mut());

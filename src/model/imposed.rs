@@ -102,7 +102,8 @@ pub struct PoreFluid {
     /// p_w at the start, by place; 0 for pressures that count from the start [F/L²]
     #[serde(default)]
     pub pressure: Profile,
-    /// Pressure below which the fluid cavitates and p_w does not fall; −100 kPa of water below the atmosphere. No limit unless given [F/L²]
+    /// Pressure below which the fluid cavitates and p_w does not fall; −100 kPa of water below the atmosphere; a fluid
+    /// that flows is not limited, and a warning is reported. No limit unless given [F/L²]
     pub cavitation: Option<f64>,
     /// k: speed at which the fluid seeps under a gradient of head of 1, k > 0; given, the fluid flows [L/T]
     pub permeability: Option<f64>,

@@ -1,8 +1,10 @@
 //! Warnings about water that flows, before the run starts.
 
-use super::Model;
+use super::boundary::Profile;
+use super::coupled::CoupledParts;
 use super::pore_flow::{Drain, DrainKind, PoreFlow, WetElement};
 use super::text::number;
+use super::{Model, Step};
 use crate::mesh::ElementKind;
 
 /// What flows at the start into a corner that is no outlet, over all that passes it, above which water that weighs counts as not at rest [-]
@@ -14,7 +16,7 @@ const OVERSHOOTS: f64 = 0.5;
 /// Warnings about the water.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
     let Some(flow) = &model.flow else { return Vec::new() };
-    moves(model, flow).into_iter().chain(overshoots(model, flow)).collect()
+    moves(model, flow).into_iter().chain(overshoots(model, flow)).chain(unheld(model, flow)).collect()
 }
 
 /// Water that is driven by its weight, and does not start at rest.
@@ -93,5 +95,25 @@ fn overshoots(model: &Model, flow: &PoreFlow) -> Option<String> {
                 number(shortest)
             )
         })
+    })
+}
+
+/// A step in which water flows by a given flux into or out of bodies, and nothing holds their pressure.
+fn unheld(model: &Model, flow: &PoreFlow) -> Option<String> {
+    let is_given = |drain: &Drain| drain.kind == DrainKind::Flux && !matches!(drain.value, Profile::Constant(0.0));
+    let given = |step: &Step| step.drains.iter().any(is_given);
+    if !model.steps.iter().any(given) {
+        return None;
+    }
+    let part_of = CoupledParts::of(model).of_node;
+    let parts = |drain: &Drain| drain.corners.iter().map(|(k, ..)| part_of[flow.dof(*k) / 2]).collect::<Vec<_>>();
+    model.steps.iter().find_map(|step| {
+        let held: Vec<usize> = step.drains.iter().filter(|drain| drain.kind != DrainKind::Flux).flat_map(parts).collect();
+        let drain = step.drains.iter().find(|drain| is_given(drain) && parts(drain).iter().all(|part| !held.contains(part)))?;
+        Some(format!(
+            "step `{}`: water flows through `{}` by a given flux, and no pressure is prescribed: the flow changes the volume of the body, limited only by its \
+             stiffness; prescribe a `pressure`, `head` or `seepage` on another side, unless this is intended",
+            step.name, flow.outlets[drain.outlet]
+        ))
     })
 }

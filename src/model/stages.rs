@@ -82,10 +82,12 @@ impl Model {
         }
     }
 
-    /// Next time after a given one at which the rates of a well jump; increments end there.
-    pub fn next_corner(&self, after: f64) -> Option<f64> {
-        let corners = self.contacts.iter().filter_map(|pair| pair.conduit.as_ref()).flat_map(Conduit::corners);
-        corners.filter(|corner| *corner > after + 16.0 * f64::EPSILON * corner.abs()).reduce(f64::min)
+    /// Next time after a given one at which the rates of a well jump, or, where water flows through bodies, the rate of a support or load;
+    /// increments end there.
+    pub fn next_corner(&self, step: &Step, after: f64) -> Option<f64> {
+        let wells = self.contacts.iter().filter_map(|pair| pair.conduit.as_ref()).flat_map(Conduit::corners);
+        let tables = self.flow.iter().flat_map(|_| step.corners());
+        wells.chain(tables).filter(|corner| *corner > after + 16.0 * f64::EPSILON * corner.abs()).reduce(f64::min)
     }
 
     /// An element as it is in a state: without strain at the place where it came.

@@ -194,6 +194,23 @@ pub struct LastIncrement {
     pub ends_in_touch: bool,
 }
 
+#[doc(hidden)]
+impl LastIncrement {
+    /// What follows an increment shorter than this by much, as a load that has jumped in it, knows nothing of its rate: the formula of second order of
+    /// the water is stable up to this ratio of two lengths, 1 + √2. R. D. Grigorieff (1983), Numer. Math. 42, 359.
+    const LONGEST_BY_IT: f64 = 1.0 + std::f64::consts::SQRT_2;
+
+    /// Δt over that of this increment; `None` where the rate of this one says nothing of it.
+    pub fn ratio(&self, dt: f64) -> Option<f64> {
+        Some(dt / self.dt).filter(|ratio| *ratio <= Self::LONGEST_BY_IT)
+    }
+
+    /// The fraction of its motion by which an increment of Δt is expected to go on, in a model whose water flows or not.
+    pub fn goes_on(&self, dt: f64, flows: bool) -> Option<f64> {
+        if flows { self.ratio(dt) } else { Some(dt / self.dt) }
+    }
+}
+
 /// Displacements of the nodes of elements when they came, by element [L].
 pub type Births = BTreeMap<usize, Vec<[f64; 2]>>;
 

@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 
 use super::bars::BarsInStep;
 use super::body::Damping;
-use super::boundary::{Amplitude, Loads, Span};
+use super::boundary::{Amplitude, Drive, Loads, Span};
 use super::imposed::Temperature;
 use super::pore_flow::Drain;
 use super::scheme::Scheme;
@@ -203,7 +203,7 @@ impl Step {
                 Motion::Rotation { angle, .. } => amplitude(angle, to),
             }
         }
-        self.loads.amplitudes().for_each(|of| amplitude(of, to));
+        self.loads.amplitudes_mut().for_each(|of| amplitude(of, to));
         self.temperatures.iter_mut().for_each(|of| amplitude(&mut of.amplitude, to));
         if let Some(rupture) = &mut self.rupture {
             rupture.explicit = std::mem::take(&mut rupture.explicit).moved(to);
@@ -224,6 +224,12 @@ impl Step {
             Span { start: at(span.start), end: at(span.end) }
         };
         self.moved(&moved)
+    }
+
+    /// Times of the tables by which supports and loads go.
+    pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
+        let motions = self.supports.iter().flat_map(|support| support.motion.drives());
+        self.loads.amplitudes().map(|amplitude| &amplitude.drive).chain(motions).flat_map(Drive::corners)
     }
 
     /// The support that prescribes a dof: its own, or an inclined one of its node.

@@ -113,6 +113,18 @@ pub struct Inclined {
     pub span: Span,
 }
 
+impl Motion {
+    /// What it goes by.
+    pub fn drives(&self) -> impl Iterator<Item = &Drive> {
+        let (one, parts) = match self {
+            Self::Displacement(drive, _) => (Some(drive), &[][..]),
+            Self::Inclined(parts) => (None, &parts[..]),
+            Self::Rotation { angle, .. } => (Some(&angle.drive), &[][..]),
+        };
+        one.into_iter().chain(parts.iter().map(|part| &part.drive))
+    }
+}
+
 impl Prescribed {
     /// Creates a prescribed displacement of a dof.
     pub fn displacement(dof: usize, drive: Drive, span: Span) -> Self {

@@ -42,6 +42,8 @@ pub enum Kind {
     YieldsWork,
     /// A linear body has turned or stretched far
     FarFromLinear,
+    /// Water that flows would cavitate
+    Cavitates,
 }
 
 /// Warning about a pressure above the bound of uniqueness.

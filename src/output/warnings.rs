@@ -127,6 +127,7 @@ impl Observer for Warnings {
         self.unpressed.record(model, state);
         self.slid_bars.record(model, state);
         self.opened.record(model, attempt.old, state);
+        self.cavitating(model, state);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
             if !self.given.contains(&(number, Kind::DeepPenetration))
@@ -369,6 +370,32 @@ impl Warnings {
         for (number, (_, message)) in std::mem::take(&mut self.far) {
             self.given.insert((number, Kind::FarFromLinear));
             self.list.push(message);
+        }
+    }
+
+    /// Bodies whose water flows and is pulled further than it holds together.
+    fn cavitating(&mut self, model: &Model, state: &State) {
+        for (flow, &body) in model.flow.iter().flat_map(|flow| flow.bodies.iter().map(move |body| (flow, body))) {
+            let limit = model.bodies[body].flowing().and_then(|fluid| fluid.cavitation);
+            let Some(limit) = limit.filter(|_| state.has(body) && !self.given.contains(&(body, Kind::Cavitates)))
+            else {
+                continue;
+            };
+            let own = model.bodies[body].elements.iter().filter_map(|&e| flow.wet(e)).flat_map(|wet| &wet.pressures);
+            let all = own.map(|&k| (k, flow.pressure(k, Some(&state.displacement))));
+            let Some((k, least)) = all.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, least)| *least < limit) else {
+                continue;
+            };
+            self.given.insert((body, Kind::Cavitates));
+            self.list.push(format!(
+                "body `{}` at {}, t = {}: p_w is {}, below its `cavitation`, {}, to which water that flows is not limited: suction, and the strength that \
+                 follows from it, are overestimated",
+                model.bodies[body].name,
+                text::vector(flow.corners[k].map_or_else(Vector2::zeros, |node| model.mesh.nodes[node])),
+                time_text(state.time),
+                text::number(least),
+                text::number(limit)
+            ));
         }
     }
 

@@ -34,7 +34,8 @@ impl Simulation {
         let Self { model, step, state: old, work, control, .. } = self;
         let wanted = bounded(step, old.time, dt, None);
         let output = model.requests.next_time(old.time);
-        let stop = model.next_corner(old.time).map_or(output, |corner| Some(output.unwrap_or(corner).min(corner)));
+        let stop =
+            model.next_corner(step, old.time).map_or(output, |corner| Some(output.unwrap_or(corner).min(corner)));
         let dt = bounded(step, old.time, dt, stop);
         let Advanced { iterations, state: solved, foreseen, passes, coupling } = advance(model, step, old, dt, work);
         let (mut local_error, mut uncertainty, mut accepted) = (None, None, None);

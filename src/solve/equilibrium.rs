@@ -158,7 +158,7 @@ fn extrapolated(model: &Model, trial: Trial) -> Option<Vec<f64>> {
     let last = goes_on(old);
     if !(step.scheme.is_dynamic() && step.increments.error.is_some()) {
         let last = last?;
-        let share = dt / last.dt;
+        let share = last.goes_on(dt, model.flow.is_some())?;
         return Some(displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect());
     }
     let way = |dof: usize| match last {

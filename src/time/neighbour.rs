@@ -133,7 +133,7 @@ impl Neighbour {
         let water = NeighbourWater::new(&base.water(), state);
         let mut way = OnItsWay { u, of_run, old: None, water, arrived: None };
         if let (Some(own), Some(run)) = (&state.last_increment, &base.old.last_increment) {
-            let share = (base.new.time - base.old.time) / own.dt;
+            let share = own.goes_on(base.new.time - base.old.time, model.flow.is_some()).unwrap_or(0.0);
             let ahead = |u: &mut [f64], way: &[f64]| u.iter_mut().zip(way).for_each(|(u, way)| *u += share * way);
             ahead(&mut way.u, &own.displacement);
             ahead(&mut way.of_run, &run.displacement);

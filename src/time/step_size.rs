@@ -263,10 +263,11 @@ fn slip_error(model: &Model, step: &Step, [old, new]: [&State; 2]) -> LocalError
     worst
 }
 
-/// ½ Δt |ṗ₁ − ṗ₀| of the pressures of water that flows, with the rates in the increment and in the last one of the step; the first has none.
+/// ½ Δt |ṗ₁ − ṗ₀| of the pressures of water that flows, with the rates in the increment and in the last one of the step; the first has none, nor has
+/// one that begins anew.
 fn pressure_error(model: &Model, step: &Step, [old, new]: [&State; 2]) -> LocalError {
-    let (Some(allowed), Some(flow), Some(last)) = (step.increments.pore_pressure, &model.flow, &old.last_increment)
-    else {
+    let last = old.last_increment.as_ref().filter(|last| last.ratio(new.dt).is_some());
+    let (Some(allowed), Some(flow), Some(last)) = (step.increments.pore_pressure, &model.flow, last) else {
         return LocalError::NONE;
     };
     let of = |k: usize| {

@@ -76,7 +76,9 @@ pub const SLOTS: &[Slot] = &[
     ("tip", &[("no", 12), ("yes", 1)]),
     ("tractions", &[("no", 8), ("given", 1), ("balanced", 1), ("of_bodies", 1)]),
     ("stress", &[("no", 5), ("components", 2), ("geostatic", 1)]),
-    ("pores", &[("no", 6), ("full", 1), ("cavitating", 1), ("given", 1)]),
+    ("pores", &[("no", 6), ("full", 1), ("cavitating", 1), ("given", 1), ("flow", 2)]),
+    // where water that flows leaves the block, or enters it
+    ("drainage", &[("no", 12), ("held", 1), ("filter", 1), ("seepage", 1), ("flux", 1)]),
     ("heat", &[("no", 6), ("number", 1), ("table", 1), ("by_place", 1)]),
     (
         "scheme",
@@ -151,6 +153,12 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &["ground_law:cam_clay", "block_law:cam_clay", "ground_law:sys_cam_clay", "block_law:sys_cam_clay"],
         &["stress:no", "stress:geostatic", "scheme:quasi_dynamic"],
         "it lives of pressure, near the surface too",
+    ),
+    (&["pores:flow"], DYNAMIC, "water flows in static steps alone"),
+    (
+        &["pores:flow"],
+        &["ground_element:f_bar", "block_element:f_bar", "rupture", "heat", "periodic", "master:itself"],
+        "what water that flows through bodies is not for",
     ),
     (&["pores:cavitating"], &["ground_law:linear", "block_law:linear"], "that is not linear"),
     (&["ground_law:linear"], &["ground_element:f_bar"], "F-bar is for large strains"),
@@ -481,6 +489,7 @@ pub const NEEDED: &[(&str, &[(&str, &str)])] = &[
     ("tractions:balanced", &[("stress", "components")]),
     ("tractions:of_bodies", &[("stress", "components")]),
     ("fluid:of_bodies", &[("pores", "full")]),
+    ("drainage", &[("pores", "flow")]),
     ("interface", &[("friction", "coulomb")]),
     ("interface:reduced", &[("block_law", "mohr_coulomb")]),
     ("tip", &[("surfaces", "matching"), ("master", "deformable")]),

@@ -320,9 +320,10 @@ fn form(column: &str, header: &[&str]) -> Form {
         | "energy_error"
         | "radiated"
         | "frictional_heat" => Form::Scalar(Kind::Energy),
-        "injected" | "leaked" => Form::Scalar(Kind::Volume),
-        "mass_error" => Form::Skip,
-        "largest_fluid_pressure" => Form::Scalar(Kind::Stress),
+        "injected" | "leaked" | "water" | "outflow" => Form::Scalar(Kind::Volume),
+        "discharge" => Form::Scalar(Kind::Flow),
+        "mass_error" | "water_error" => Form::Skip,
+        "largest_fluid_pressure" | "excess_pore_pressure" => Form::Scalar(Kind::Stress),
         "largest_flow" => Form::Scalar(Kind::Flow),
         "largest_aperture" => Form::Scalar(Kind::Length),
         "normal_force" | "fluid_force" => Form::Scalar(Kind::Force),

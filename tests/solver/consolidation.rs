@@ -92,6 +92,60 @@ fn a_column_consolidates_as_terzaghi_says() {
     assert!(fine < 1.5e-3, "16 elements: {fine}");
 }
 
+/// A load that goes at T = 0.05, by a table or in a step of its own: the formula of second order begins anew after it. Of superposed series; a run that
+/// does not begin anew is off by 0.65 % of p₀, one that does by 0.08 % (a program of its own, with the same elements and increments).
+#[test]
+fn a_jump_within_a_step_is_as_one_between_two() {
+    let mut by_table = column("q8", 16, json!({"initial": 0.0025}));
+    by_table["steps"][0]["duration"] = json!(0.1);
+    let mut split = by_table.clone();
+    let table = json!([[0, 1], [0.05, 1], [0.050_000_000_1, 0]]);
+    by_table["steps"][0]["loads"] = json!([{"on": "soil_top", "dead_pressure": {"table": table}}]);
+    split["steps"][0]["duration"] = json!(0.05);
+    split["steps"].as_array_mut().expect("steps").push(json!({"name": "unload", "duration": 0.05,
+        "loads": [{"on": "soil_top", "dead_pressure": "0"}]}));
+    let [by_table, split] = [by_table, split].map(|case| finish(&case));
+    let mut worst = 0.0f64;
+    for corner in 0..=16 {
+        let place = [0.0, f64::from(corner) / 16.0];
+        let [found, beside] = [&by_table, &split].map(|run| pressure(run, run.last(), place));
+        close("p", found, beside, 1e-6);
+        let expected = terzaghi(1.0 - place[1], 0.1)[0] - terzaghi(1.0 - place[1], 0.05)[0];
+        worst = worst.max((found - expected).abs());
+    }
+    println!("after a jump: p off by {worst:.5} of p0");
+    assert!(worst < 1e-3, "{worst}");
+    assert_eq!(by_table.states.len(), split.states.len() + 1);
+}
+
+/// Increments end where a table has a corner, and error control meets a jump without an increment for each part of it.
+#[test]
+fn increments_end_at_the_corners_of_tables() {
+    let mut case = column("q8", 4, json!({"initial": 0.002, "max": 0.05, "pore_pressure": 0.01}));
+    let tables = [json!([[0, 1], [0.0313, 2]]), json!([[0, 0], [0.2, 0], [0.200_000_001, -0.1]])];
+    case["steps"][0]["loads"] = json!([{"on": "soil_top", "dead_pressure": {"table": tables[0]}}]);
+    case["steps"][0]["supports"] = json!([{"on": "soil_bottom", "ux": 0, "uy": {"table": tables[1]}},
+        {"on": "soil_left", "ux": 0}, {"on": "soil_right", "ux": 0}]);
+    let run = finish(&case);
+    for corner in [0.0313, 0.2, 0.200_000_001] {
+        assert!(run.states.iter().any(|state| (state.time - corner).abs() < 1e-14), "none ends at {corner}");
+    }
+    assert!(run.states.len() < 120, "{} increments", run.states.len());
+}
+
+/// A flux that only the volume of the body limits is reported, and not one beside a side whose pressure is prescribed.
+#[test]
+fn a_flux_without_a_prescribed_pressure_is_reported() {
+    let warned = |drainage: Value| {
+        let mut case = column("q4", 2, json!({"initial": 0.1}));
+        case["steps"][0]["drainage"] = drainage;
+        model(&case).warnings().join("\n").contains("water flows through `soil_top` by a given flux")
+    };
+    assert!(warned(json!([{"on": "soil_top", "flux": 0.1}])));
+    assert!(!warned(json!([{"on": "soil_top", "flux": 0}])));
+    assert!(!warned(json!([{"on": "soil_top", "flux": 0.1}, {"on": "soil_bottom", "pressure": 0}])));
+}
+
 /// What is stored and what has left add up to nothing, and the audit of energies closes.
 #[test]
 fn water_and_energy_are_in_balance() {
@@ -261,11 +315,6 @@ fn what_cannot_flow_is_refused() {
             fluid,
             json!({"bulk_modulus": 1, "porosity": 0.5, "permeability": 1, "unit_weight": 1, "biot": 0.4}),
             "at least the porosity",
-        ),
-        (
-            fluid,
-            json!({"bulk_modulus": 1, "porosity": 0.5, "permeability": 1, "unit_weight": 1, "cavitation": -1}),
-            "bodies.soil.pore_fluid.cavitation",
         ),
         (fluid, json!({"bulk_modulus": 1, "porosity": 0.5}), "steps[0].drainage[0]: is for bodies whose water flows"),
         ("/bodies/soil/element", json!("f_bar"), "bodies.soil.element: is f_bar"),

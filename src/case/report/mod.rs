@@ -41,7 +41,7 @@ pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
         ("section", vec![model.mesh.section.to_string()]),
         ("mesh", mesh(case, model)),
         ("groups", groups(model)),
-        ("bodies", bodies(case)),
+        ("bodies", bodies(case, model)),
         ("periodic", periodic(case, model)),
         ("plates", plates(case, model)),
         ("points", point_masses(case, model)),
@@ -139,7 +139,7 @@ fn damping([mass, retardation]: [f64; 2]) -> String {
     }
 }
 
-fn bodies(case: &Case) -> Vec<String> {
+fn bodies(case: &Case, model: &Model) -> Vec<String> {
     let row = |(name, input): (&String, &BodyInput)| {
         let element = match input.element {
             Formulation::Displacement => "",
@@ -149,7 +149,15 @@ fn bodies(case: &Case) -> Vec<String> {
         let damping = damping([input.damping.mass, input.damping.retardation]);
         let imposed = imposed(input);
         let slopes = slopes(&input.material);
-        [name.clone(), format!("{}{slopes}{element}{damping}{imposed}", parameters(&input.material, "model", &[]))]
+        let wet = model.flow.iter().flat_map(|flow| &flow.elements);
+        let diffusivity =
+            wet.into_iter().find(|wet| model.body_of(wet.element).name == *name).map(|wet| wet.diffusivity);
+        let consolidates =
+            diffusivity.map_or_else(String::new, |c| format!(", consolidates by c = k M/unit_weight = {}", number(c)));
+        [
+            name.clone(),
+            format!("{}{slopes}{element}{damping}{imposed}{consolidates}", parameters(&input.material, "model", &[])),
+        ]
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
     let velocities = case.initial_velocity.iter();

@@ -231,7 +231,8 @@ fn check_fluid(law: &dyn Material, fluid: &PoreFluid, nodes: &[usize], mesh: &Me
         }
     }
     let message = "is not for the material linear: take hencky, or leave it out";
-    refuse_if(law.description().is_linear && cavitation.is_some(), format!("{place}.cavitation"), message)?;
+    let follows = cavitation.is_some() && !fluid.flows();
+    refuse_if(law.description().is_linear && follows, format!("{place}.cavitation"), message)?;
     refuse_if(!law.description().sections.any_stretch(), place, NEEDS_STRETCH)
 }
 

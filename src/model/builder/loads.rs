@@ -129,7 +129,7 @@ impl LoadsInForce {
     pub fn change_within(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let on = load.on.in_words(&model.mesh);
         let before = self.all.get_mut(&(on, action(load, place)?.0));
-        for amplitude in before.into_iter().flat_map(|before| before.loads.amplitudes()) {
+        for amplitude in before.into_iter().flat_map(|before| before.loads.amplitudes_mut()) {
             *amplitude = amplitude.settled(span.start);
             if amplitude.chain().count() > MOST_REMEMBERED {
                 let message = "was changed too often for one that varies in space: give it as an expression in t";
@@ -261,7 +261,7 @@ impl Changing<'_> {
     }
 
     /// A load with a single amplitude.
-    fn scalar(mut self, kind: Kind, value: Option<Value>) -> Checked<Loads> {
+    fn scalar(self, kind: Kind, value: Option<Value>) -> Checked<Loads> {
         let Self { load: Load { on, .. }, place, span, model, .. } = self;
         let before = self.before.amplitudes().next().cloned();
         let given = value.and_then(|value| value.drives().into_iter().next());

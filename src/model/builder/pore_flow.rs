@@ -149,8 +149,6 @@ pub fn check_fluid(law: &dyn Material, fluid: &PoreFluid, element: Formulation, 
     let (biot, porosity) = (fluid.coefficient(), fluid.porosity);
     let message = format!("is {biot}: it must be at least the porosity, {porosity}, and at most 1, that of soil");
     refuse_if(!(biot >= porosity && biot <= 1.0), place("biot"), message)?;
-    let message = "is not for a fluid that flows: leave it out";
-    refuse_if(fluid.cavitation.is_some(), place("cavitation"), message)?;
     let message = "is f_bar, which is not for a body whose water flows: leave it out (the pressures of Q4 do not alternate there, and the water keeps \
                    the volume), or take Q8 with \"element\": \"reduced\"";
     refuse_if(element == Formulation::FBar, format!("{body}.element"), message)?;

@@ -374,12 +374,11 @@ fn check_ramps(place: &str, step: &Step, model: &Model) -> Checked<()> {
         Err(ModelError::new(place, message))
     };
     let is_new = |of: &Amplitude| of.span == step.span && matches!(of.drive, Drive::Constant(_) | Drive::ByPlace(..));
-    let mut loads = step.loads.clone();
     let mut turns = step.supports.iter().filter_map(|support| match &support.motion {
         Motion::Rotation { angle, .. } => Some(angle),
         _ => None,
     });
-    if loads.amplitudes().any(|amplitude| is_new(amplitude)) || turns.any(is_new) {
+    if step.loads.amplitudes().any(is_new) || turns.any(is_new) {
         return refused(
             "a load, driver or rotation given as a number (or ended by null)",
             "give it in the step before, or as a rate, table or expression",

@@ -9,14 +9,14 @@ use crate::mesh::{Edge, Group};
 use crate::model::Model;
 use crate::model::pore_flow::WetElement;
 
-/// κ between two bodies over what passes through an element adjacent to the contact under the same difference of pressures: the jump is a thousandth of
-/// what the pressure falls by in that element [-]
+/// κ between two bodies over what passes through the shortest element adjacent to the contact, of the less permeable body, under the same difference of
+/// pressures: the jump is a thousandth of what the pressure falls by in that element at most [-]
 const NEARLY_CONTINUOUS: f64 = 1e3;
 
 /// The water on both sides of a contact; `None` where none flows, or where its pressure is given.
 pub fn seam(place: &str, contact: &Contact, model: &Model) -> Checked<Option<Seam>> {
     let mut nodes = BTreeMap::new();
-    let mut least = f64::INFINITY;
+    let mut most = [0.0f64; 2];
     let mut sides = 0;
     let groups = [Some(contact.slave.as_str()), contact.master_group()];
     let (Some(flow), None, false) = (&model.flow, &contact.fluid_pressure, contact.is_own()) else {
@@ -34,7 +34,7 @@ pub fn seam(place: &str, contact: &Contact, model: &Model) -> Checked<Option<Sea
         sides += usize::from(!wet.is_empty());
         for (edge, wet) in wet {
             let mobility = wet.mobility[0].max(wet.mobility[1]);
-            least = least.min(mobility / wet.size);
+            most[side] = most[side].max(mobility / wet.size);
             let part = |node: usize, share: f64| {
                 let number = flow.of_node[node]?;
                 let (dof, initial, scale) = (flow.dof(number), flow.initial[number], flow.scales[number]);
@@ -54,7 +54,7 @@ pub fn seam(place: &str, contact: &Contact, model: &Model) -> Checked<Option<Sea
     if sides < 2 {
         without(place, contact)?;
     }
-    let given = contact.seal.unwrap_or(NEARLY_CONTINUOUS * least);
+    let given = contact.seal.unwrap_or(NEARLY_CONTINUOUS * most[0].min(most[1]));
     check_not_negative(&format!("{place}.seal"), given)?;
     Ok((sides > 0).then_some(Seam { nodes, conductance: if sides == 2 { given } else { 0.0 } }))
 }

@@ -30,7 +30,11 @@ impl Writer<'_> {
             bodies.insert(self.names.ground.into(), self.body("ground", 1500.0));
         }
         if self.ways.wide.is_some() && !self.is_rigid() {
-            bodies.insert(OUTSKIRTS.into(), json!({"material": self.material("linear", 1500.0, 0.3)}));
+            let mut outskirts = json!({"material": self.material("linear", 1500.0, 0.3)});
+            if self.is("pores", "flow") {
+                outskirts["pore_fluid"] = self.fluid();
+            }
+            bodies.insert(OUTSKIRTS.into(), outskirts);
         }
         if self.ways.strut.is_some() {
             bodies.insert(STRUT.into(), json!({"material": self.material("neo_hookean", 500.0, 0.3)}));
@@ -167,11 +171,7 @@ impl Writer<'_> {
             let pressure = self.frame.expression(Kind::Stress, &pressure, self.ways.load);
             body["pore_pressure"] = json!({"pressure": pressure, "biot": 0.8});
         } else if self.has("pores") {
-            let stress = |value: f64| json!(self.write(Kind::Stress, value));
-            body["pore_fluid"] = json!({"bulk_modulus": stress(900.0), "porosity": 0.4});
-            if self.is("pores", "cavitating") {
-                (body["pore_fluid"]["pressure"], body["pore_fluid"]["cavitation"]) = (stress(0.5), stress(-1.0));
-            }
+            body["pore_fluid"] = self.fluid();
         }
         if self.has("heat") {
             body["thermal"] = json!({"expansion": 1e-3, "reference": self.pick("reference", &[0.0, 2.0])});
@@ -180,6 +180,37 @@ impl Writer<'_> {
             body["damping"] = self.damping(1.0);
         }
         body
+    }
+
+    /// Water that is trapped in pores, or flows: through an element in some increments.
+    pub(super) fn fluid(&self) -> Value {
+        let stress = |value: f64| json!(self.write(Kind::Stress, value));
+        let mut fluid = json!({"bulk_modulus": stress(900.0), "porosity": 0.4});
+        if self.is("pores", "cavitating") {
+            (fluid["pressure"], fluid["cavitation"]) = (stress(0.5), stress(-1.0));
+        }
+        if self.is("pores", "flow") {
+            fluid["permeability"] = json!(self.write(Kind::Velocity, self.noisy(3e-4, "permeability")));
+            fluid["unit_weight"] = json!(3.0 * self.frame.stress / self.frame.length);
+            fluid["pressure"] = stress(self.pick("water at the start", &[0.0, 0.5]) * self.ways.load);
+            (fluid["biot"], fluid["kozeny_carman"]) =
+                (json!(self.pick("biot", &[0.7, 1.0])), json!(self.pick("follows the void ratio", &[0.0, 1.0]) == 1.0));
+        }
+        fluid
+    }
+
+    /// Where water leaves the block, or enters it.
+    pub(super) fn drainage(&self) -> Option<Value> {
+        let on = self.group("block_right");
+        let pressure = || self.frame.expression(Kind::Stress, "0.4*(1-0.5*T)", self.ways.load);
+        let conductance = 2e-4 * self.frame.unit(Kind::Velocity) / self.frame.stress;
+        Some(match self.draft.of("drainage") {
+            "held" => json!({"on": on, "pressure": pressure()}),
+            "filter" => json!({"on": on, "pressure": pressure(), "filter": conductance}),
+            "seepage" => json!({"on": on, "seepage": true}),
+            "flux" => json!({"on": on, "flux": self.frame.expression(Kind::Velocity, "1e-4*(1+Y)", self.ways.load)}),
+            _ => return None,
+        })
     }
 
     pub(super) fn damping(&self, share: f64) -> Value {

@@ -397,6 +397,9 @@ impl Writer<'_> {
 
     /// What a step changes at its beginning.
     pub(super) fn of_stage(&self, number: usize, step: &mut Map<String, Value>, loads: &mut Vec<Value>) {
+        if let Some(outlet) = self.drainage().filter(|_| number == 0) {
+            step.insert("drainage".into(), json!([outlet]));
+        }
         if number == 1 {
             if self.is("spring", "ends") {
                 let on = if self.stabilized_by_spring() { "block_top" } else { "block_right" };

@@ -68,6 +68,7 @@ pub(super) fn simple(draft: &Draft) -> Option<Draft> {
         "tractions",
         "stress",
         "pores",
+        "drainage",
         "heat",
         "plate",
         "spring",

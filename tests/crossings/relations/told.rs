@@ -26,7 +26,9 @@ pub(super) fn overstressed(base: &Base) -> Outcome {
 /// comes later, is told where the contact starts closed, and one that comes to the corner later is not.
 pub(super) fn watered(base: &Base) -> Outcome {
     let draft = base.draft;
-    if draft.has("fluid") || draft.is("scheme", "quasi_dynamic") || !base.has_ended_well() {
+    // Where water flows through bodies a contact with a pressure of its own is impervious.
+    if draft.has("fluid") || draft.is("pores", "flow") || draft.is("scheme", "quasi_dynamic") || !base.has_ended_well()
+    {
         return Outcome::Idle;
     }
     let with = |fluid: &str| Ways { fluid: Some(fluid.into()), ..base.ways.clone() };

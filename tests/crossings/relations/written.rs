@@ -169,6 +169,8 @@ pub(super) fn steps_in_two(base: &Base) -> Outcome {
         || draft.is("press", "rotation")
         || draft.is("scheme", "quasi_dynamic")
         || draft.has("rupture")
+        // Water is integrated by another formula where a step begins.
+        || draft.is("pores", "flow")
         || draft.has("plate");
     if idle {
         return Outcome::Idle;
@@ -182,9 +184,10 @@ pub(super) fn steps_in_two(base: &Base) -> Outcome {
 }
 
 /// What acts or moves from the start, or says by itself when something happens.
-pub(super) const SUDDEN: [&str; 13] = [
+pub(super) const SUDDEN: [&str; 14] = [
     "stress",
     "pores",
+    "drainage",
     "tractions",
     "heat",
     "fluid",
