@@ -128,11 +128,12 @@ impl<'a> PointEvaluation<'a> {
 
     /// Sets the pressure of a point that is closed by its gap or, with dilatancy, by its slip.
     fn close(&mut self) -> Result<(), LawFailure> {
-        let Prediction { kept, predicted, .. } = self.increment.prediction;
+        let Prediction { active_pressure, predicted, .. } = self.increment.prediction;
         let clearance = self.place.gap - self.old.friction.opening;
         if may_alternate(self.pair, self.slave, self.old) {
             self.lift = self.alpha_n * (self.parting()? - self.old.friction.opening);
-            self.place.closes = kept > 0.0 || !self.parts() || touches(self.pair, clearance, self.old, predicted);
+            self.place.closes =
+                active_pressure > 0.0 || !self.parts() || touches(self.pair, clearance, self.old, predicted);
         }
         if self.place.closes {
             let (lifted, before) = (self.free + self.lift, self.old.friction.pressure);
@@ -140,7 +141,7 @@ impl<'a> PointEvaluation<'a> {
             // The lift by slip alone far exceeds that limited by friction.
             let first = if self.lift > 0.0 && before > 0.0 { free.min(before) } else { free };
             // A tie pulls as well.
-            self.load(if self.pair.tied { free } else { carried(first, self.increment.prediction) });
+            self.load(if self.pair.tied { free } else { friction_pressure(first, self.increment.prediction) });
         }
         Ok(())
     }
@@ -213,10 +214,10 @@ impl<'a> PointEvaluation<'a> {
                 ..parted
             });
         }
-        let (pressure, carried) = (self.agree(&mut response)?, self.asked);
-        let (seen, [_, by_pressure]) = (self.effective(pressure)[0], self.effective(carried));
+        let (pressure, asked) = (self.agree(&mut response)?, self.asked);
+        let (seen, [_, by_pressure]) = (self.effective(pressure)[0], self.effective(asked));
         response.dtraction_dpressure *= by_pressure;
-        let counted = self.counted(carried);
+        let counted = self.counted(asked);
         let predicted_tractions = self.increment.prediction.predicted_tractions;
         let bond_answer = self.bond_answer();
         let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
@@ -227,10 +228,10 @@ impl<'a> PointEvaluation<'a> {
             response.dtraction_dpressure = 0.0;
         }
         let opening_rate = response.dopening_dpressure + response.dopening_dslip * counted.dslip_dpressure;
-        if carried > 0.0 {
+        if asked > 0.0 {
             let along = response.dtraction_dpressure + response.dtraction_dslip * counted.dslip_dpressure;
-            response.state.traction += along * (pressure - carried);
-            response.state.opening += opening_rate * (pressure - carried);
+            response.state.traction += along * (pressure - asked);
+            response.state.opening += opening_rate * (pressure - asked);
             response.state.pressure = seen;
         }
         let clearance = gap - response.state.opening;
@@ -286,7 +287,7 @@ impl<'a> PointEvaluation<'a> {
     /// Pressure consistent with the opening of the law, p = p̄ − α_n (g − d): iterated until both agree, or by the tangent of
     /// one response if a prediction prescribes the pressure of the law.
     fn agree(&mut self, response: &mut FrictionResponse) -> Result<f64, LawFailure> {
-        let is_predicted = self.increment.prediction.carried.is_some() || self.parts();
+        let is_predicted = self.increment.prediction.predicted_pressure.is_some() || self.parts();
         // p − p̄ + α_n (g − d) changes its sign in it.
         let mut bracket = Bracket::new();
         for _ in 0..MOST_ANSWERS {
@@ -335,8 +336,8 @@ fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<Counted>, clo
 
 /// Pressure of the friction response: for a point that is only predicted closed the predicted one, beyond which its
 /// response is extrapolated linearly.
-fn carried(pressure: f64, Prediction { carried, kept, .. }: Prediction) -> f64 {
-    carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
+fn friction_pressure(pressure: f64, Prediction { predicted_pressure, active_pressure, .. }: Prediction) -> f64 {
+    predicted_pressure.unwrap_or(if pressure > 0.0 { pressure } else { active_pressure })
 }
 
 /// Kinematics of a contact point at the end of an increment.
@@ -383,12 +384,12 @@ pub fn place(
 
 /// Whether a point with this gap carries pressure or is predicted to.
 pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactState, increment: PointIncrement) -> bool {
-    let kept = increment.prediction.kept > 0.0;
+    let is_active = increment.prediction.active_pressure > 0.0;
     let clearance = gap - old.friction.opening;
     let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
     let predicted = increment.prediction.predicted;
     pair.tied && old.master_point.is_some()
-        || kept
+        || is_active
         || pressure > 0.0
         || touches(pair, clearance, old, predicted)
         || may_alternate(pair, slave, old)

@@ -364,13 +364,13 @@ pub struct Prediction {
     pub predicted: PredictedStatus,
     /// Predicted tractions for the geometric tangent; those of the trial state if `None`
     pub predicted_tractions: Option<Tractions>,
-    /// Pressure of a point that is kept closed whatever its gap, also used by friction unless its own pressure is positive;
-    /// 0 if it is not kept
-    pub kept: f64,
+    /// Pressure of a point in the active set, which is closed whatever its gap, also used by friction unless its own pressure is positive;
+    /// 0 if it is not in it
+    pub active_pressure: f64,
     /// Pressure used by friction, beyond which its response is extrapolated linearly, at a point that has just closed: a stiff
     /// penalty gives far too high a pressure to a point that penetrates deeply in one iterate, and would make it stick where it
     /// is to slip.
-    pub carried: Option<f64>,
+    pub predicted_pressure: Option<f64>,
 }
 
 /// Prediction of the next linear solve about a point, for convergence; an accepted state has none.

@@ -14,11 +14,11 @@ pub struct Aids {
     /// At the start of an increment the predicted tractions are limited: [`crate::solve::contact_iteration`]
     pub limit: bool,
     /// Points with a predicted pressure are closed: [`crate::solve::contact_iteration`]
-    pub keep: bool,
+    pub active_set: bool,
     /// At the start of an increment, points that were closed are closed: [`crate::solve::contact_iteration`]
-    pub pull: bool,
-    /// Friction responds to a carried pressure: [`crate::solve::contact_iteration`]
-    pub carried: bool,
+    pub active_set_at_start: bool,
+    /// Friction responds to a predicted pressure: [`crate::solve::contact_iteration`]
+    pub predicted_pressure: bool,
     /// A zero gap at the start of an increment is taken as closed and sticking: [`crate::solve::contact_iteration`]
     pub touch: bool,
     /// A point whose slip alternates in direction sticks: [`crate::solve::contact_iteration`]
@@ -41,9 +41,9 @@ impl Default for Aids {
             start: true,
             prediction: true,
             limit: true,
-            keep: true,
-            pull: true,
-            carried: true,
+            active_set: true,
+            active_set_at_start: true,
+            predicted_pressure: true,
             touch: true,
             stick: true,
             condense: true,

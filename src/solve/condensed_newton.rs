@@ -51,14 +51,14 @@ pub struct CondensedNewton {
     /// Constant part of the equations, apart from the increment length, from which the condensed matrices follow
     constants: Option<Constants>,
     /// Condensed matrices by the bits of Δt, most recently used last; `None` where a pivot vanished
-    rungs: Vec<(u64, Option<Arc<Rung>>)>,
+    by_length: Vec<(u64, Option<Arc<OfLength>>)>,
     /// The condensed equations and their solver
     condensed: System,
     solver: HalvedLu,
 }
 
 /// The bodies condensed for one length of increments.
-struct Rung {
+struct OfLength {
     /// Condensed on the contact nodes
     bodies: Condensed,
     /// Condensed further on the equations that vary
@@ -115,8 +115,8 @@ impl CondensedNewton {
         let pattern = nodes.around(&system.tangent.pattern);
         let condensation = Condensation::new(pattern.clone(), &nodes.nodes).ok()?;
         let condensed = nodes.system();
-        let (constants, rungs, solver) = (None, Vec::new(), HalvedLu::default());
-        Some(Self { nodes, whole, bodies, system, pattern, condensation, constants, rungs, solver, condensed })
+        let (constants, by_length, solver) = (None, Vec::new(), HalvedLu::default());
+        Some(Self { nodes, whole, bodies, system, pattern, condensation, constants, by_length, solver, condensed })
     }
 
     /// Returns the bodies condensed for an increment; `None` if the step has nonlinearities other than contact, or a pivot
@@ -124,42 +124,42 @@ impl CondensedNewton {
     ///
     /// # Errors
     /// Returns [`TrialFailure`] if a load has no finite value.
-    fn bodies(&mut self, model: &Model, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
+    fn bodies(&mut self, model: &Model, trial: Trial) -> Result<Option<Arc<OfLength>>, TrialFailure> {
         if !is_linear(model, trial.step) {
             return Ok(None);
         }
         let constants = Constants::of(model, trial.step);
         if self.constants.as_ref() != Some(&constants) {
             self.constants = Some(constants);
-            self.rungs.clear();
+            self.by_length.clear();
         }
         let varies = depends_on_length(model, trial.step);
         let dt = if varies { without_jitter(trial.dt) } else { trial.dt };
         let length = if varies { dt.to_bits() } else { 0 };
-        let rung = match self.rungs.iter().position(|(own, _)| *own == length) {
-            Some(k) => self.rungs.remove(k).1,
+        let of_length = match self.by_length.iter().position(|(own, _)| *own == length) {
+            Some(k) => self.by_length.remove(k).1,
             None => self.condense(Trial { dt, ..trial })?,
         };
-        self.rungs.push((length, rung.clone()));
-        Ok(rung)
+        self.by_length.push((length, of_length.clone()));
+        Ok(of_length)
     }
 
     /// Condenses the bodies, replacing the least recently used lengths if memory requires it.
-    fn condense(&mut self, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
+    fn condense(&mut self, trial: Trial) -> Result<Option<Arc<OfLength>>, TrialFailure> {
         let one = self.condensation.memory() + Eliminated::memory(self.nodes.nodes.len());
         let free = available_memory().map_or(MOST_MEMORY, |free| (free / 2).min(MOST_MEMORY));
-        let held = self.rungs.len() * one;
+        let held = self.by_length.len() * one;
         // Memory already used counts as available.
         let most = (held + free).min(MOST_MEMORY) / one.max(1);
-        self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
+        self.by_length.drain(..(self.by_length.len() + 1).saturating_sub(most.max(1)));
         let Self { nodes, bodies, system, pattern, condensation, .. } = self;
         bodies.assemble(trial, &trial.old.displacement, &[], Request::Tangent, system)?;
         let matrix = nodes.counted(bodies.model(), trial.step, &system.tangent, pattern);
-        let rung = |condensed: Condensed| {
+        let of_length = |condensed: Condensed| {
             let eliminated = nodes.eliminated(bodies.model(), trial.step, &condensed);
-            Arc::new(Rung { bodies: condensed, eliminated })
+            Arc::new(OfLength { bodies: condensed, eliminated })
         };
-        Ok(condensation.condense(&matrix).map(rung))
+        Ok(condensation.condense(&matrix).map(of_length))
     }
 }
 
@@ -182,8 +182,8 @@ pub(super) fn solve(
     watch: &mut Watch,
     work: &mut Workspace,
 ) -> Option<Result<Vec<f64>, NewtonFailure<TrialFailure>>> {
-    let rung = work.interface.as_mut()?.bodies(model, trial).ok()??;
-    let Rung { bodies, eliminated } = &*rung;
+    let of_length = work.interface.as_mut()?.bodies(model, trial).ok()??;
+    let OfLength { bodies, eliminated } = &*of_length;
     let mut u = start.to_vec();
     if watch.begins {
         if is_unaided(trial) {

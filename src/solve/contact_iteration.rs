@@ -8,15 +8,15 @@
 //! | aid | prediction |
 //! |---|---|
 //! | `prediction` | the geometric tangent uses the tractions predicted by the last linear solve |
-//! | `keep` | points with a positive predicted pressure are closed |
-//! | `carried` | friction of a point that has just closed uses the pressure that remains after the bodies deform |
+//! | `active_set` | points with a positive predicted pressure are closed |
+//! | `predicted_pressure` | friction of a point that has just closed uses the pressure that remains after the bodies deform |
 //! | `touch` | a point with zero gap at the start of an increment is closed and sticks, in the first iterate |
 //! | `stick` | a point that slips in alternating directions sticks, and one that stuck sticks on |
 //!
 //! Aids unrelated to contact are in [`super::equilibrium`], [`super::passes`] and [`super::newton`]. Each has a switch in
 //! [`crate::model::aids::Aids`] and a column `aid_…` in `newton.csv`; `docs/aids.md` tabulates what each saves.
 //!
-//! # Promise, limit
+//! # Prediction, limit
 //!
 //! A stiff penalty turns every error of a displacement into a pressure far too high, and this into a geometric stiffness p δn ℓ
 //! that misleads the next iterate. The linearized prediction of the last linear solve, p + δp, has an error of second order in
@@ -30,11 +30,11 @@
 //! Source: the neglected term of p + δp is the second one of the expansion of the traction in the correction; its
 //! second order is tested (`tests/contact/contact.rs`). The limit is heuristic.
 //!
-//! # Keep, pull
+//! # The active set
 //!
 //! Where a correction lifts a point slightly off its stiff penalty, the point would open, carry no pressure in the
-//! next linear solve, and close again. It is kept closed in that solve as long as the predicted pressure is positive; its
-//! spring then pulls it back. Switch `keep`; `aid_keep` counts the points closed for this reason.
+//! next linear solve, and close again. It stays in the active set of that solve as long as the predicted pressure is positive; its
+//! spring then pulls it back. Switch `active_set`; `aid_active_set` counts the points closed for this reason.
 //!
 //! The first linear solve of an increment uses the committed state: a closed point stays closed unless the start value
 //! separates it by more than the bodies would rebound without its pressure plus the range of the penalty,
@@ -46,17 +46,17 @@
 //! The start value extrapolates linearly, so slender bodies that rotate while in contact are separated slightly by it, at
 //! very low pressures: without h/100 all their points would open at once, and the bodies would pass through each other.
 //!
-//! Switch `pull`, which requires `keep`, for points that are open in the start value; `aid_pull` counts them.
+//! Switch `active_set_at_start`, which requires `active_set`, for points that are open in the start value; `aid_active_set_at_start` counts them.
 //!
 //! Source: the choice of the active set from p + δp rather than from the gap as in primal–dual active set methods
 //! (Hintermüller, Ito & Kunisch 2002, doi:10.1137/S1052623401383558), where it is Newton's method for the kink of ⟨p⟩. The
 //! range is the displacement over which p₀ falls to zero; its factor 10 and the hundredth are heuristic.
 //!
-//! # Carried
+//! # The pressure of friction
 //!
 //! A stiff penalty gives a far too high pressure to a point that penetrates too deep in one iterate, which would then stick
 //! where it is to slip. Friction uses the pressure that remains after the bodies have taken their part of the
-//! penetration, p/(1 + α_n c), and is extrapolated linearly from there. Switch `carried`; `aid_carried` counts the points.
+//! penetration, p/(1 + α_n c), and is extrapolated linearly from there. Switch `predicted_pressure`; `aid_predicted_pressure` counts the points.
 //!
 //! Source: body and penalty are springs in series, 1/c and α_n, which share the penetration of an iterate. (The compliance d/p
 //! by which slip counts after closure, [`crate::contact::force`], is no aid but part of the law: it is the same in every
@@ -112,9 +112,9 @@ struct Point {
     /// Whether it was limited at the start of the increment
     limited: bool,
     /// Whether the committed state keeps it closed
-    pulled: bool,
+    active_at_start: bool,
     /// Pressure used by friction at a point that has just closed
-    carried: Option<f64>,
+    predicted_pressure: Option<f64>,
 }
 
 impl Point {
@@ -125,8 +125,8 @@ impl Point {
         Prediction {
             predicted: self.predicted,
             predicted_tractions: aids.prediction.then_some(self.predicted_tractions),
-            kept: if aids.keep { self.predicted_tractions.pressure } else { 0.0 },
-            carried: self.carried.filter(|_| aids.carried),
+            active_pressure: if aids.active_set { self.predicted_tractions.pressure } else { 0.0 },
+            predicted_pressure: self.predicted_pressure.filter(|_| aids.predicted_pressure),
         }
     }
 
@@ -152,9 +152,9 @@ impl Point {
         let prediction = self.prediction(aids);
         acted.prediction += usize::from(prediction_acts(&prediction, closed));
         acted.limit += usize::from(self.limited);
-        acted.keep += usize::from(keep_acts(&prediction, closed));
-        acted.pull += usize::from(self.pulled && keep_acts(&prediction, closed));
-        acted.carried += usize::from(prediction.carried.is_some());
+        acted.active_set += usize::from(closes_the_point(&prediction, closed));
+        acted.active_set_at_start += usize::from(self.active_at_start && closes_the_point(&prediction, closed));
+        acted.predicted_pressure += usize::from(prediction.predicted_pressure.is_some());
         acted.touch += usize::from(touch_acts(pair, &prediction, state, old));
         acted.stick += usize::from(self.predicted == PredictedStatus::Stick);
     }
@@ -227,17 +227,17 @@ impl ContactIteration {
             for (k, ((point, state), old)) in points.iter_mut().zip(states).zip(old).enumerate() {
                 let last = if first { None } else { self.linearized[number].closed(k) };
                 let was_closed = if first { old.friction.pressure > 0.0 } else { last.is_some() };
-                point.carried = carried(pair, was_closed, state, stiffening);
+                point.predicted_pressure = friction_pressure(pair, was_closed, state, stiffening);
                 point.predicted_tractions = match last {
                     Some(closed) => closed.prediction(|dof| u[dof] - at[dof]),
                     None if first && state.friction.pressure > 0.0 => predicted_at_start(state, old, aids.limit),
-                    None if first && aids.pull => kept_at_start(pair, state, old),
+                    None if first && aids.active_set_at_start => active_at_start(pair, state, old),
                     None => Tractions::default(),
                 };
                 point.tied = pair.tied;
                 let closed = state.friction.pressure > 0.0;
                 point.limited = first && closed && point.predicted_tractions.pressure < state.contact_pressure();
-                point.pulled = first && !closed && point.predicted_tractions.pressure > 0.0;
+                point.active_at_start = first && !closed && point.predicted_tractions.pressure > 0.0;
                 point.predicted = match first {
                     true if aids.stick && sticks_on(pair, &pair.points[k], old) => PredictedStatus::Stick,
                     true if aids.touch => PredictedStatus::Touch,
@@ -302,7 +302,7 @@ const MOST_PULL: f64 = 10.0;
 const MOST_LIFT: f64 = 1e7;
 
 /// Predicted traction, from the committed state, of a point that is open in the start value.
-fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
+fn active_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
     let reach = old.contact_pressure() * (pair.compliance + MOST_PULL / pair.alpha_n);
     let closed = old.friction.pressure > 0.0;
     if closed && state.clearance() <= reach.max(MOST_LIFT * pair.touch) {
@@ -313,12 +313,12 @@ fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -
 }
 
 /// Whether a point is closed only because of a predicted pressure.
-fn keep_acts(prediction: &Prediction, closed: &Closed) -> bool {
-    prediction.kept > 0.0 && closed.tractions.pressure <= 0.0
+fn closes_the_point(prediction: &Prediction, closed: &Closed) -> bool {
+    prediction.active_pressure > 0.0 && closed.tractions.pressure <= 0.0
 }
 
 /// Pressure used by friction at a point that has just closed; `None` at any other.
-fn carried(pair: &ContactPair, was_closed: bool, state: &ContactState, stiffening: f64) -> Option<f64> {
+fn friction_pressure(pair: &ContactPair, was_closed: bool, state: &ContactState, stiffening: f64) -> Option<f64> {
     let closes = !was_closed && state.friction.pressure > 0.0;
     closes.then(|| pair.shared(state.contact_pressure(), stiffening))
 }
@@ -384,11 +384,11 @@ counts! { 12;
     /// these were limited at the start of the increment
     limit
     /// closed by the prediction alone
-    keep
+    active_set
     /// closed because of the committed state
-    pull
+    active_set_at_start
     /// friction uses a carried pressure
-    carried
+    predicted_pressure
     /// closed and sticking because of zero gap
     touch
     /// sticks after slip in alternating directions

@@ -145,8 +145,8 @@ fn predicted_tractions(
     x: &Positions,
     predicted_tractions: Option<Tractions>,
 ) -> (ContactState, Option<Kept>) {
-    let kept = predicted_tractions.map_or(0.0, |predicted_tractions| predicted_tractions.pressure);
-    let prediction = Prediction { predicted_tractions, kept, ..Prediction::default() };
+    let active_pressure = predicted_tractions.map_or(0.0, |predicted_tractions| predicted_tractions.pressure);
+    let prediction = Prediction { predicted_tractions, active_pressure, ..Prediction::default() };
     let increment = PointIncrement { during: INCREMENT, prediction };
     answer(pair, k, old, x, increment)
 }
@@ -357,8 +357,10 @@ fn a_carried_pressure_is_where_the_answer_is_exact() {
     let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
     for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
         let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].law.initial_state(0.0, 0.0), gap);
-        let increment =
-            |carried| PointIncrement { during: INCREMENT, prediction: Prediction { carried, ..Prediction::default() } };
+        let increment = |predicted_pressure| PointIncrement {
+            during: INCREMENT,
+            prediction: Prediction { predicted_pressure, ..Prediction::default() },
+        };
         let (deep, closed) = answer(&pair, 0, &old, &at(-0.04), increment(Some(5.0)));
         assert!((deep.friction.pressure - 40.0).abs() < 1e-12);
         let prediction = closed.expect("a closed point").prediction(|dof| if dof % 2 == 1 { 0.035 } else { 0.0 });
