@@ -47,7 +47,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`model`] | [`model::Model::builder`] and its input: bodies, [`model::builder::Contact`], [`model::builder::LoadStep`], supports and loads |
-//! | [`run`] | [`run::Simulation`], increment by increment; [`run::observer`]s of a whole run; [`run::law`], a friction law along a path |
+//! | [`run`] | [`run::Simulation`], increment by increment; [`run::observer`]s of a whole run; [`run::law`], a friction law along a path, or behind the spring of a slider |
 //! | [`laws`] | friction and bulk laws, and the traits for user-defined ones: [`laws::friction::FrictionLaw`], [`laws::bulk::BulkLaw`] |
 //! | [`mesh`] | meshes from gmsh ([`mesh::gmsh`]), from blocks ([`mesh::Blocks`]), from code ([`mesh::InlineMesh`]) |
 //! | [`output::results`] | frames of a results folder, as plain numbers |

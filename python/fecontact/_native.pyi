@@ -112,17 +112,6 @@ def drive(
     pressure: NDArray[np.float64],
     opening: NDArray[np.float64] | None,
     interface: str,
-    by: list[str],
-    threads: int | None,
-) -> list[tuple[str, NDArray[np.float64]]]: ...
-def ride(
-    parameters: list[str],
-    machine: NDArray[np.float64],
-    time: NDArray[np.float64],
-    load_point: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    start: tuple[float, float],
-    by: list[str],
     threads: int | None,
 ) -> list[tuple[str, NDArray[np.float64]]]: ...
 def sensitivities(parameters: str) -> list[str]: ...

@@ -120,18 +120,11 @@ class Law:
         """
         times = _times(time)
         courses = {name: self._course(name, given, times.size) for name, given in (("slip", slip), ("pressure", pressure))}
-        by = self._checked(by, self.sensitivities())
-        if by and normal is not None:
-            raise refused("law", "by", "the traction is differentiated at given pressures: leave out normal")
         besides = {"dilatancy": dilatancy, "wear": wear, "normal": normal}
         given = {name: value for name, value in besides.items() if value is not None}
+        interface = {"initial": {"traction": number(traction, "traction", "law")}, **given}
         opened = None if opening is None else self._course("opening", opening, times.size)
-        interface = json.dumps(plain({"initial": {"traction": number(traction, "traction", "law")}, **given}, file="law"))
-        path = (times, courses["slip"], courses["pressure"], opened)
-        arrays = _native.drive(self._sets, *path, interface, by, count(threads, "threads"))
-        answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
-        slips = np.broadcast_to(courses["slip"], (len(self._sets), times.size)).reshape(*self.shape, times.size)
-        return Drive({"time": times, "slip": slips, **answers})
+        return self._drive(self._sets, times, courses, opened, interface, by, threads)
 
     def ride(
         self,
@@ -165,38 +158,38 @@ class Law:
             threads: number of threads; default: all cores.
 
         Returns:
-            ``time``, ``load_point``, ``pressure``, ``force`` [F/L²], ``slip`` [L], ``slip_rate`` [L/T], shape (..., n).
+            what :meth:`drive` returns, with ``load_point`` [L], ``force`` [F/L²] and ``slip_rate`` [L/T]; ``slip`` is that of the mass.
 
         Raises:
             CaseError: a parameter or the path is wrong.
             Stopped: the law has no answer somewhere.
         """
-        times = _times(time)
-        if any(name.startswith("bond.") for name in self.parameters):
-            raise refused("law", "bond", "a spring-slider has friction alone: leave it out, or drive the law along the measured slip")
-        if known := self.sensitivities():
-            known += ["stiffness", "mass"]
-        by, machine = self._checked(by, known), []
-        for name, given in (("stiffness", stiffness), ("mass", mass), ("tolerance", tolerance)):
-            if not ((values := _finite(name, given)) > 0).all():
-                raise refused("law", name, f"is {values.min()}: must be positive")
-            if values.shape not in ((), self.shape):
+        times, machine = _times(time), {}
+        for name, given in (("stiffness", stiffness), ("mass", mass)):
+            if (values := _finite(name, given)).shape not in ((), self.shape):
                 raise refused("law", name, f"has the shape {values.shape}: must be {self.shape}, as the parameters")
-            machine.append(np.broadcast_to(values, self.shape).reshape(-1))
-        course = {name: self._course(name, given, times.size) for name, given in (("load_point", load_point), ("pressure", pressure))}
-        start = (number(force, "force", "law"), number(tolerance, "tolerance", "law"))
-        springs = np.stack(machine[:2], axis=1)
-        arrays = _native.ride(self._sets, springs, times, course["load_point"], course["pressure"], start, by, count(threads, "threads"))
-        answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
-        led = {name: np.broadcast_to(given, (len(self._sets), times.size)).reshape(*self.shape, -1) for name, given in course.items()}
-        return Drive({"time": times, **led, **answers})
+            machine[name] = np.broadcast_to(values, self.shape).reshape(-1).tolist()
+        machine["tolerance"] = [number(tolerance, "tolerance", "law")] * len(self._sets)
+        sliders = [dict(zip(machine, values)) for values in zip(*machine.values())]
+        sets = [json.dumps({**json.loads(one), "slider": slider}) for one, slider in zip(self._sets, sliders)]
+        courses = {name: self._course(name, given, times.size) for name, given in (("load_point", load_point), ("pressure", pressure))}
+        return self._drive(sets, times, courses, None, {"initial": {"traction": number(force, "force", "law")}}, by, threads)
 
-    def _checked(self, by: Sequence[str], known: list[str]) -> list[str]:
-        listed = names(by, "by", "law")
-        for name in listed:
-            if name not in known:
-                raise refused("law", "by", f"there is no derivative of the law by {name}; there are derivatives by {', '.join(known) or 'nothing'}")
-        return listed
+    def _drive(
+        self,
+        sets: list[str],
+        times: Array,
+        courses: dict[str, Array],
+        opening: Array | None,
+        interface: dict[str, Any],
+        by: Sequence[str],
+        threads: int | None,
+    ) -> Drive:
+        document = json.dumps(plain({**interface, "by": names(by, "by", "law")}, file="law"))
+        arrays = _native.drive(sets, times, *courses.values(), opening, document, count(threads, "threads"))
+        answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
+        led = {name: np.broadcast_to(given, (len(sets), times.size)).reshape(*self.shape, -1) for name, given in courses.items()}
+        return Drive({"time": times, **led, **answers})
 
     def sensitivities(self) -> list[str]:
         """Parameters by which :meth:`drive` can differentiate: those of Coulomb friction, adhesion, slip weakening, rate-and-state friction,

@@ -10,7 +10,6 @@ mod pool;
 mod python_law;
 mod run;
 mod simulation;
-mod slider;
 
 use pyo3::prelude::*;
 
@@ -34,6 +33,5 @@ fn _native(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run::report, module)?)?;
     module.add_function(wrap_pyfunction!(law::drive, module)?)?;
     module.add_function(wrap_pyfunction!(law::sensitivities, module)?)?;
-    module.add_function(wrap_pyfunction!(slider::ride, module)?)?;
     module.add_function(wrap_pyfunction!(python_law::register_law, module)?)
 }

@@ -47,6 +47,11 @@ impl Raised {
         self.set.load(Ordering::Relaxed)
     }
 
+    /// What is set as soon as something was raised.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        self.set.clone()
+    }
+
     /// Of the pool that this thread belongs to.
     pub fn of_this_pool() -> Self {
         OF_THIS_POOL.with_borrow(|raised| raised.clone().unwrap_or_default())
@@ -69,6 +74,12 @@ impl Raised {
             })
         })
     }
+}
+
+/// Does what enters the interpreter often: the thread keeps the state that every entry would make and drop again otherwise, which
+/// takes as long as a short function.
+pub fn attached<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    Python::attach(|py| py.detach(work))
 }
 
 /// Threads of one run or simulation.
@@ -138,7 +149,7 @@ impl Pool {
     }
 
     /// Do something that borrows what it works on, while signals are looked for: what they raise, [`Raised`] has, and the work,
-    /// which looks at [`Raised::is_set`] and ends soon then, is waited for.
+    /// which looks at [`Raised::flag`] and ends soon then, is waited for.
     pub fn watched<T: Send>(&self, py: Python, work: impl FnOnce() -> T + Send) -> PyResult<T> {
         self.check_process()?;
         let (sender, receiver) = channel();

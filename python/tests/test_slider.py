@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -110,6 +112,45 @@ def test_two_states_are_those_of_scipy(evolution: str) -> None:
     np.testing.assert_allclose(ride.force, exact, atol=5e-5)
 
 
+def test_a_law_in_python_is_asked_about_once_a_step() -> None:
+    # LuGre: q = p (σ₀ z + σ₁ ż), ż = v − σ₀ |v| z/g(v); the mass sticks, breaks loose and sticks again.
+    from scipy.integrate import solve_ivp
+
+    sigma_0, sigma_1, mu_s, mu_k, v_s = 1e3, 0.3, 0.4, 0.3, 1e-2
+    pressure, stiffness, mass, rate, asked = 10.0, 20.0, 1.0, 0.05, [0]
+
+    @fc.friction_law("lugre", {"z": 0.0})
+    def lugre(old: Any, slip: Any, pressure: Any, dt: Any, *, alpha_t: float) -> dict[str, Any]:
+        asked[0] += 1
+        dt = np.maximum(dt, 1e-9)
+        v = slip / dt
+        fall = (mu_s - mu_k) * np.exp(-((v / v_s) ** 2))
+        g, dg = mu_k + fall, -2.0 * fall * v / v_s**2
+        a, da = sigma_0 * abs(slip) / g, sigma_0 * (np.sign(slip) / g - abs(slip) / g**2 * dg / dt)
+        z = (old["z"] + slip) / (1.0 + a)
+        dz = (1.0 - z * da) / (1.0 + a)
+        mu = sigma_0 * z + sigma_1 * (z - old["z"]) / dt
+        return {
+            "traction": pressure * mu,
+            "dtraction_dslip": pressure * (sigma_0 + sigma_1 / dt) * dz,
+            "dtraction_dpressure": mu,
+            "plastic_increment": slip - (z - old["z"]),
+            "z": z,
+        }
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        u, v, z = y
+        dz = v - sigma_0 * abs(v) * z / (mu_k + (mu_s - mu_k) * np.exp(-((v / v_s) ** 2)))
+        return [v, (stiffness * (rate * t - u) - pressure * (sigma_0 * z + sigma_1 * dz)) / mass, dz]
+
+    time = np.linspace(0.0, 4.0, 41)
+    ride = fc.law("registered", name="lugre", alpha_t=1e4).ride(time, rate * time, pressure, stiffness=stiffness, mass=mass, tolerance=1e-9)
+    exact = solve_ivp(rates, (0.0, 4.0), [0.0, 0.0, 0.0], "LSODA", t_eval=time, rtol=1e-10, atol=1e-13).y
+    # The law is an implicit Euler method in z, whose error goes with the step: 10 000 of them here, and twice as many calls would be two a step.
+    np.testing.assert_allclose(ride.force, stiffness * (rate * time - exact[0]), atol=2e-4)
+    assert 10_000 < asked[0] < 14_000
+
+
 def test_mass_and_stiffness_of_a_machine_are_found(scipys: np.ndarray) -> None:
     noise = 2e-3 * np.random.default_rng(6).normal(size=TIME.size)
     free = {name: (LAW[name] / 3.0, LAW[name] * 3.0) for name in ("mu_s", "mu_k", "kappa", "xi")}
@@ -149,7 +190,7 @@ def test_a_record_that_begins_under_a_force() -> None:
 
 def test_what_cannot_be_ridden() -> None:
     law = fc.law("super_subloading", **LAW)
-    with pytest.raises(fc.CaseError, match=r"mass: is 0.0: must be positive"):
+    with pytest.raises(fc.CaseError, match=r"slider.mass: is 0: must be positive"):
         law.ride([0, 1], [0, 1], 1.0, stiffness=1.0, mass=0.0)
     with pytest.raises(fc.CaseError, match=r"stiffness: has the shape \(2,\): must be \(\)"):
         law.ride([0, 1], [0, 1], 1.0, stiffness=[1.0, 2.0], mass=1.0)

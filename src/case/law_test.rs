@@ -11,14 +11,14 @@ use super::error::CaseError;
 use super::schema::schema_of;
 use super::units;
 use crate::laws::friction::{
-    BondParameters, BondSurfaces, Confinement, ContactLaw, Dilatancy, FrictionLaw, FrictionParameters, FrictionState,
-    Offsets, observables,
+    BondParameters, BondSurfaces, Cohesion, Confinement, ContactLaw, Dilatancy, FrictionLaw, FrictionParameters,
+    FrictionState, Offsets, observables,
 };
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::section::Section;
 use crate::model::boundary::{Drive, Span};
 use crate::model::builder::{Checked, ModelError, check_line, check_positive, refuse_if};
-use crate::run::law::{LawTest, PathDrive, Phase, Undefined};
+use crate::run::law::{LawTest, OF_MACHINE, PathDrive, Phase, Slider, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure along which it is driven.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -43,6 +43,13 @@ pub struct LawTestInput {
     /// How the pressure answers to the opening of the interface by dilatancy and wear; constant normal load by default
     #[serde(default)]
     pub normal: ConfinementInput,
+    /// Machine that pulls a mass with the law by its spring: the slip of the path is the way of its load point. Friction alone acts on the
+    /// mass, without a `bond`
+    pub slider: Option<Slider>,
+    /// Parameters of the law, and of a slider `stiffness` and `mass`, by which the traction is differentiated, of a slider the force: a column
+    /// `dtraction_d…` or `dforce_d…` each, of the computed values at fixed steps; not with `normal`
+    #[serde(default)]
+    pub by: Vec<String>,
     /// State at the start
     #[serde(default)]
     pub initial: StartInput,
@@ -141,12 +148,41 @@ pub fn from_text(text: &str, path: &Path) -> Result<LawTestInput, CaseError> {
 /// # Errors
 /// Returns [`CaseError`] with file, key, value and remedy if the test is invalid.
 pub fn build(input: &LawTestInput, path: &Path) -> Result<LawTest, CaseError> {
-    test(input).map_err(|complaint| complaint.in_file(path))
+    test(input).and_then(|test| differentiated(input, test)).map_err(|complaint| complaint.in_file(path))
+}
+
+fn check_slider(&Slider { stiffness, mass, tolerance, .. }: &Slider, bonded: bool) -> Checked<()> {
+    for (key, value) in [("stiffness", stiffness), ("mass", mass), ("tolerance", tolerance)] {
+        check_positive(&format!("slider.{key}"), value, "")?;
+    }
+    refuse_if(bonded, "bond", "is for a given slip, and a slider has friction alone: leave one of them out")
+}
+
+/// A test with its derivatives.
+fn differentiated(input: &LawTestInput, test: LawTest) -> Checked<LawTest> {
+    let known = sensitivities(&test.law, input.slider.is_some());
+    for (k, name) in input.by.iter().enumerate() {
+        let all = if known.is_empty() { "nothing".into() } else { known.join(", ") };
+        let message = format!("there is no derivative of the law by {name}; there are derivatives by {all}");
+        refuse_if(!known.contains(&name.as_str()), format!("by[{k}]"), message)?;
+        refuse_if(input.by[..k].contains(name), format!("by[{k}]"), format!("is {name} once more: leave it out"))?;
+    }
+    let message = "the traction is differentiated at given pressures: leave out `normal`";
+    refuse_if(!input.by.is_empty() && test.confinement != Confinement::default(), "by", message)?;
+    Ok(LawTest { slider: input.slider, by: input.by.clone(), ..test })
+}
+
+/// Parameters by which a test can be differentiated.
+pub fn sensitivities(law: &ContactLaw, slides: bool) -> Vec<&'static str> {
+    let known = law.law.sensitivities().filter(|_| !matches!(law.cohesion, Some(Cohesion::Parallel(_))));
+    let of_machine = OF_MACHINE.into_iter().filter(|_| slides);
+    known.map_or(Vec::new(), |known| known.parameters().iter().copied().chain(of_machine).collect())
 }
 
 fn test(input: &LawTestInput) -> Checked<LawTest> {
     check_line("title", &input.title)?;
     units::check(&input.units, Section::PlaneStrain)?;
+    input.slider.as_ref().map_or(Ok(()), |slider| check_slider(slider, input.bond.is_some()))?;
     let law = law(&input.friction)?;
     let confinement = confinement(&input.normal)?;
     let path = match (&input.path, &input.table) {
@@ -177,7 +213,7 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
         let place = opens.map_or("opening".into(), |k| format!("path[{k}].opening"));
         let message = "belongs to a `bond` in addition to friction, and there is none: leave it out";
         refuse_if(opens.is_some() || input.opening.is_some(), place, message)?;
-        return Ok(LawTest { law, start, path, of_bond: 0.0, confinement });
+        return Ok(LawTest { start, confinement, ..LawTest::of(law, path) });
     };
     let law = bonded(law, bond, input)?;
     let of_bond = law.share_of_bond(start.pressure, input.initial.traction);
@@ -187,7 +223,7 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     );
     refuse_if((input.initial.traction - of_bond).abs() > of_friction * (1.0 + WRITTEN), "initial.traction", message)?;
     let start = law.law.initial_state(start.pressure, input.initial.traction - of_bond);
-    Ok(LawTest { law, start, path, of_bond, confinement })
+    Ok(LawTest { start, of_bond, confinement, ..LawTest::of(law, path) })
 }
 
 /// A law with a bond in parallel with it.

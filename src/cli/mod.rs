@@ -84,7 +84,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     let begun =
         LawSummary { ending: Ending::running(&folder.files), about: about.clone(), report: LawReport::default() };
     summary::write(&begun, &folder.path)?;
-    let mut table = LawTable::create(&folder.path, &test.law)?;
+    let mut table = LawTable::create(&folder.path, &test)?;
     let (mut report, result) = test.run(|row| table.write(row));
     report.warnings.extend(units::concerns(&input.units, Section::PlaneStrain));
     let result = result.and(table.finish());

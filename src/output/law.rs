@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::csv::Table;
-use super::quantities::{BONDED, LAW, OPENED, names};
+use super::quantities::{BONDED, LAW, MACHINE, OPENED, names};
 use crate::laws::friction::{Cohesion, ContactLaw, FrictionResponse, observables};
 use crate::run::error::Error;
-use crate::run::law::LawRow;
+use crate::run::law::{LawMachine, LawRow, LawTest};
 
 /// Writes `law.csv`.
 #[derive(Debug)]
@@ -16,16 +16,19 @@ pub struct LawTable<'a> {
 }
 
 impl<'a> LawTable<'a> {
-    /// Creates `law.csv` of a law in `folder`; its further observables have columns at the end, and so have the gap of one
-    /// that opens, and the opening and the rest of a bond.
+    /// Creates `law.csv` of a test in `folder`; further observables of its law have columns at the end, and so have the gap of one
+    /// that opens, the opening and the rest of a bond, a slider and derivatives.
     ///
     /// # Errors
     /// Returns [`Error::Output`] if it cannot be written.
-    pub fn create(folder: &Path, law: &'a ContactLaw) -> Result<Self, Error> {
+    pub fn create(folder: &Path, test: &'a LawTest) -> Result<Self, Error> {
+        let law = &test.law;
         let further = further(law).map(String::from);
         let gap = (!law.description.opening.is_empty()).then(|| OPENED.name.into());
         let bond = names(&BONDED).filter(|_| is_bonded(law));
-        let header = names(&LAW).chain(further).chain(gap).chain(bond).collect();
+        let machine = names(&MACHINE).filter(|_| test.slider.is_some());
+        let header = names(&LAW).chain(further).chain(gap).chain(bond).chain(machine).chain(test.derivatives());
+        let header = header.collect();
         Ok(Self { table: Table::create(&folder.join("law.csv"), header)?, law })
     }
 
@@ -35,7 +38,7 @@ impl<'a> LawTable<'a> {
     /// Returns [`Error::Output`] if it cannot be written.
     pub fn write(&mut self, row: &LawRow) -> Result<(), Error> {
         let Self { table, law } = self;
-        let LawRow { time, slip, response, gap, bond, .. } = row;
+        let LawRow { time, slip, response, gap, bond, machine, derivatives, .. } = row;
         let FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations, .. } = response;
         let observed = |name: &str| law.observe(name, state);
         let mut write = |numbers: &[f64]| numbers.iter().for_each(|number| table.number(*number));
@@ -53,6 +56,10 @@ impl<'a> LawTable<'a> {
         if let Some(bond) = bond {
             table.numbers([bond.opening, bond.intact]);
         }
+        if let Some(LawMachine { load_point, force, slip_rate, .. }) = *machine {
+            table.numbers([load_point, force, slip_rate]);
+        }
+        table.numbers(derivatives.iter().copied());
         table.end_row()
     }
 

@@ -351,6 +351,13 @@ pub const BONDED: [Quantity; 2] = [
     ),
 ];
 
+/// Columns of `law.csv` for the machine of a slider, behind those of its law; `slip` is that of the mass.
+pub const MACHINE: [Quantity; 3] = [
+    q("load_point", LENGTH, "w: way of the load point, as on the path"),
+    q("force", STRESS, "F: force of the spring, per area"),
+    q("slip_rate", VELOCITY, "u̇ of the mass"),
+];
+
 /// Columns of `newton.csv`; those of the convergence aids stand before `verdict` and `reason`.
 pub const NEWTON: [Quantity; 15] = [
     q("step", NONE, "name of the step"),
@@ -541,5 +548,14 @@ pub const ALL: [(&str, &[Group]); 14] = [
         "newton.csv",
         &[("", &NEWTON), ("", &[q("aid_…", NONE, "points on which each convergence aid acted")]), ("", &VERDICT)],
     ),
-    ("law.csv", &[("", &LAW), ("", &[OF_SOME[0], OF_SOME[1], OF_SOME[2], OPENED, BONDED[0], BONDED[1]])]),
+    (
+        "law.csv",
+        &[
+            ("", &LAW),
+            ("", &[OF_SOME[0], OF_SOME[1], OF_SOME[2], OPENED, BONDED[0], BONDED[1]]),
+            ("", &MACHINE),
+            ("", &[q("dtraction_d…", NONE, "derivative of the traction by a parameter, in units of both")]),
+            ("", &[q("dforce_d…", NONE, "derivative of a slider's force by a parameter")]),
+        ],
+    ),
 ];

@@ -73,6 +73,15 @@ pub enum Error {
         /// failure reported by the law
         cause: LawFailure,
     },
+    /// The slider of a law test takes more steps than anybody waits for.
+    #[error(
+        "the slider takes too many steps at the time {}: check mass and stiffness, or raise the tolerance",
+        time_text(*time)
+    )]
+    TooManySteps {
+        /// time reached
+        time: f64,
+    },
     /// A run whose step was changed by its caller does not follow from its model alone and cannot be saved in a file.
     #[error("step `{step}` was changed by its caller: such a run can be saved in this process, but not in a file")]
     StepChanged {

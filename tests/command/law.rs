@@ -51,7 +51,7 @@ fn stderr(output: &Output) -> String {
 }
 
 /// What a test leaves behind.
-struct Done {
+pub struct Done {
     columns: Columns,
     summary: Value,
     message: String,
@@ -64,14 +64,14 @@ impl Done {
         Self { columns: table(folder.join("law.csv")), summary, message }
     }
 
-    fn of(test: &Value) -> Self {
+    pub fn of(test: &Value) -> Self {
         let folder = TempDir::new().expect("a temporary folder");
         let output = law(folder.path(), test);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         Self::read(&folder.path().join("out/test"), stderr(&output))
     }
 
-    fn column(&self, name: &str) -> &[f64] {
+    pub fn column(&self, name: &str) -> &[f64] {
         &self.columns[name]
     }
 
@@ -87,7 +87,7 @@ impl Done {
 }
 
 #[track_caller]
-fn close(what: &str, actual: f64, expected: f64, tolerance: f64) {
+pub fn close(what: &str, actual: f64, expected: f64, tolerance: f64) {
     assert!((actual - expected).abs() <= tolerance, "{what}: {actual} instead of {expected} ± {tolerance:e}");
 }
 
@@ -460,7 +460,7 @@ fn with(pointer: &str, value: Option<Value>) -> Value {
     test
 }
 
-fn refused(test: &Value, fragments: &[&str]) {
+pub fn refused(test: &Value, fragments: &[&str]) {
     let folder = TempDir::new().unwrap();
     let output = law(folder.path(), test);
     let message = stderr(&output);

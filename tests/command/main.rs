@@ -26,6 +26,7 @@ mod resolved;
 mod results;
 mod run_log;
 mod schema;
+mod slider;
 mod surface;
 mod survive;
 mod units;
