@@ -10,13 +10,19 @@
 //! The forces of p_w and (4) are derivatives of −p_w g ℓ: where normals and lengths do not change the coupling is symmetric. A node in the
 //! middle of an edge has the mean pressure of its ends. Open surfaces are filled with water, whose volume is that of the gap.
 //!
+//! Where water flows along the contact it has a pressure of its own, p_c, linear or quadratic between the nodes of the slave:
+//!
+//! ```text
+//! p_w = p_c;   Q_s = κ ℓ (p_c − p_s),   Q_m = κ ℓ (p_c − p_m)                  into the bodies, in place of (3)                  (5)
+//! ```
+//!
 //! The weights w_a, and ℓ in (3), are those of the start of the increment, as the permeability and the place of what flows through bodies are: κ is
 //! so large that the motion of the weights within an increment would govern its convergence. A point that faced nothing then has the water
 //! of its own side alone.
 
 use std::collections::BTreeMap;
 
-use super::between::Between;
+use super::between::{ACROSS, Between};
 use super::kinematics::Kinematics;
 use super::point::Weights;
 use crate::mesh::configuration::Configuration;
@@ -26,8 +32,12 @@ use crate::mesh::configuration::Configuration;
 pub struct Seam {
     /// Side of each node, 0 of the slave, and the pressures that it is made of; nodes of sides without flowing water are left out
     pub nodes: BTreeMap<usize, (usize, Vec<PressurePart>)>,
-    /// κ between two sides whose water flows; 0 beside any other [L³/(F T)]
+    /// Pressure of every node of the slave along which water flows
+    pub channel: BTreeMap<usize, PressurePart>,
+    /// κ between two sides whose water flows, or between what flows along the contact and each of them; 0 beside any other [L³/(F T)]
     pub conductance: f64,
+    /// What passes through an element beside the contact, at most [L³/(F T)]
+    pub beside: f64,
 }
 
 /// Part of the pressure of a node.
@@ -46,12 +56,20 @@ pub struct PressurePart {
 impl Seam {
     /// Nodes that stand for the pressures of some nodes.
     pub fn behind<'a>(&'a self, nodes: impl Iterator<Item = usize> + 'a) -> impl Iterator<Item = usize> + 'a {
-        nodes.filter_map(|node| self.nodes.get(&node)).flat_map(|(_, parts)| parts).map(|part| part.dof / 2)
+        nodes.flat_map(|node| {
+            let pores = self.nodes.get(&node).into_iter().flat_map(|(_, parts)| parts);
+            pores.chain(self.channel.get(&node)).map(|part| part.dof / 2)
+        })
     }
 
     /// Nodes that stand for all its pressures, possibly repeated.
     pub fn all_behind(&self) -> impl Iterator<Item = usize> + '_ {
-        self.behind(self.nodes.keys().copied())
+        self.behind(self.nodes.keys().chain(self.channel.keys()).copied())
+    }
+
+    /// Most that passes into the bodies per length from what flows along the contact [L³/(F T)].
+    pub fn most(&self) -> f64 {
+        self.conductance.min(self.beside)
     }
 
     /// The water at a point with these weights of x_s − x_m, and the nodes of its pressures; `seeps` is ℓ Δt/β.
@@ -61,24 +79,32 @@ impl Seam {
         behind.dedup();
         let count = 2 * behind.len();
         let local = |dof: usize| 2 * behind.binary_search(&(dof / 2)).unwrap_or_default() + dof % 2;
-        let found = || weights.iter().filter_map(|(node, w)| Some((self.nodes.get(node)?, *w)));
-        let wet = [0, 1].map(|side| found().any(|((own, _), _)| *own == side));
-        let sides = wet.iter().filter(|wet| **wet).count().max(1) as f64;
+        let pores = weights.iter().filter_map(|(node, w)| {
+            let (side, parts) = self.nodes.get(node)?;
+            Some((*side, &parts[..], if *side == 0 { *w } else { -w }))
+        });
+        let along = weights.iter().filter_map(|(node, w)| Some((2, std::slice::from_ref(self.channel.get(node)?), *w)));
         let mut water = Between {
             scales: vec![0.0; count],
-            means: wet.map(|wet| f64::from(wet) / sides),
-            shares: [vec![0.0; count], vec![0.0; count]],
-            passes: if wet == [true; 2] { seeps * self.conductance } else { 0.0 },
+            shares: std::array::from_fn(|_| vec![0.0; count]),
             ..Between::default()
         };
-        for ((side, parts), w) in found() {
-            let weight = if *side == 0 { w } else { -w };
-            water.pressures[*side] += weight * pressure(parts, x);
+        let mut wet = [false; 3];
+        for (place, parts, weight) in pores.chain(along) {
+            wet[place] = true;
+            water.pressures[place] += weight * pressure(parts, x);
             for part in parts {
                 water.scales[local(part.dof)] = part.scale;
-                water.shares[*side][local(part.dof)] += weight * part.share;
+                water.shares[place][local(part.dof)] += weight * part.share;
             }
         }
+        let sides = f64::from(u8::from(wet[0]) + u8::from(wet[1])).max(1.0);
+        water.means = if wet[2] { [0.0, 0.0, 1.0] } else { wet.map(|wet| f64::from(u8::from(wet)) / sides) };
+        // Where water flows along the contact, it comes from one body to the other through that.
+        water.passes = ACROSS.map(|places| {
+            let passes = places.iter().all(|place| wet[*place]) && places.contains(&2) == wet[2];
+            if passes { seeps * self.conductance } else { 0.0 }
+        });
         (water, behind)
     }
 

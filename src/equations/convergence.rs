@@ -112,6 +112,9 @@ impl ConvergenceCriterion {
                 stiffness[node][1] += modulus * modulus;
             }
         }
+        let channels =
+            model.flow.iter().flat_map(|flow| flow.channels.values().flatten().map(|(_, &k)| flow.dof(k) / 2));
+        channels.for_each(|node| lone[node] = false);
         bars::stiffness(model, step, |node, [strained, moved]| {
             let node = model.ties.original(node);
             stiffness[node][0] += strained;

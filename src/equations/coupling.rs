@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::conduit::Conduit;
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
@@ -12,6 +13,7 @@ use crate::contact::surface::Path;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::mesh::rigid::RigidBody;
 use crate::model::Model;
+use crate::model::pore_flow::PoreFlow;
 use crate::model::state::State;
 
 /// Maximum number of segments ahead of a projection for which the pattern has room.
@@ -46,6 +48,22 @@ pub(super) struct Unsymmetric {
     pub nodes: Vec<usize>,
     /// Nodes whose equations are not those of their forces, or no more: these and all they couple with
     pub around: Vec<usize>,
+}
+
+/// Nodes that stand for two pressures.
+pub(super) fn joined(flow: &PoreFlow, pressures: [usize; 2]) -> Vec<usize> {
+    let mut nodes = pressures.map(|k| flow.dof(k) / 2).to_vec();
+    nodes.dedup();
+    nodes
+}
+
+/// Nodes that stand for pressures of neighbours along contacts where water flows beside that of bodies.
+fn channels(model: &Model, flow: &PoreFlow) -> Vec<Vec<usize>> {
+    let conduits = model.contacts.iter().filter_map(|pair| pair.conduit.as_ref()).filter(|conduit| conduit.is_wet());
+    let of = |conduit: &Conduit| -> Vec<Vec<usize>> {
+        conduit.line.pieces().map(|(a, b)| joined(flow, [conduit.pressures[a], conduit.pressures[b]])).collect()
+    };
+    conduits.flat_map(of).collect()
 }
 
 /// Pattern of a model's tangent, and the position of each element in it.
@@ -118,7 +136,8 @@ impl Layout {
         let others =
             edges.map(|edge| &edge[..]).chain(of_bars.iter().copied()).chain(groups.iter().map(|group| &group[..]));
         let wet = model.flow.iter().flat_map(|flow| &flow.elements).map(|wet| &wet.nodes[..]);
-        let all = elements.chain(wet).chain(others);
+        let joined: Vec<Vec<usize>> = model.flow.iter().flat_map(|flow| channels(model, flow)).collect();
+        let all = elements.chain(wet).chain(joined.iter().map(|nodes| &nodes[..])).chain(others);
         let tied = self.tied(all.clone());
         let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
         let unsymmetric = self.all_unsymmetric(&pattern);

@@ -27,6 +27,7 @@
 
 pub mod assembler;
 pub mod bars;
+mod channels;
 pub mod condensed;
 pub mod contacts;
 mod convergence;
@@ -44,6 +45,7 @@ pub mod sums;
 pub mod supports;
 pub mod term;
 pub mod trial;
+mod water_balances;
 
 pub use assembler::Assembler;
 pub use coupling::Coupling;

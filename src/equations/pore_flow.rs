@@ -16,8 +16,10 @@
 use nalgebra::{Matrix2, Vector2};
 use rayon::prelude::*;
 
+use super::channels;
 use super::sums::{Dependence, Sums, TrialFailure};
 use super::trial::Trial;
+use super::water_balances::{Balances, Times};
 use crate::laws::bulk::{MaterialFailure, cofactor};
 use crate::mesh::configuration::vector;
 use crate::model::pore_flow::{PoreFlow, WetElement, WetPoint};
@@ -27,20 +29,6 @@ use crate::model::{Activated, Model};
 /// The flow goes by the state at the start of the increment, and the volume by the displacement.
 pub(super) fn dependence(model: &Model) -> Dependence {
     if model.flow.is_some() { Dependence::Displacement } else { Dependence::Nothing }
-}
-
-/// Coefficients of (2) and (4): ω²/(1 + 2ω), Δt/β.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Times {
-    memory: f64,
-    span: f64,
-}
-
-impl Times {
-    fn of(trial: Trial) -> Self {
-        let ratio = trial.old.last_increment.as_ref().and_then(|last| last.ratio(trial.dt)).unwrap_or(0.0);
-        Self { memory: ratio * ratio / (1.0 + 2.0 * ratio), span: trial.dt * (1.0 + ratio) / (1.0 + 2.0 * ratio) }
-    }
 }
 
 /// Δt/β of an increment [T].
@@ -68,31 +56,25 @@ pub(super) fn add(
     let wet = flow.elements.iter().filter(|wet| trial.step.has(model.body_of_element[wet.element]));
     let elements: Vec<&WetElement> = wet.collect();
     let answers: Vec<Result<Answer, TrialFailure>> = elements.par_iter().map(of).collect();
-    let mut is_wet = vec![false; flow.count()];
-    let mut change = vec![0.0; flow.count()];
-    let mut all = vec![[0.0; 2]; flow.count()];
+    let mut balances = Balances::new(flow);
     for (answer, wet) in answers.into_iter().zip(elements) {
         let answer = answer?;
         for (a, &k) in wet.pressures.iter().enumerate() {
-            is_wet[k] = true;
-            change[k] += answer.change[a];
-            all[k][0] += answer.change[a] + times.span * answer.flow[a];
-            all[k][1] += answer.size[a];
+            balances.take(k, answer.change[a], answer.size[a]);
+            balances.let_out(k, times.span * answer.flow[a], 0.0);
         }
         if wanted {
             sums.couple(&wet.nodes, &answer.tangent);
         }
     }
-    for (k, [sum, size]) in all.iter_mut().enumerate() {
-        let before = times.memory * old.change[k];
-        *sum -= before;
-        *size += before.abs();
+    for (k, before) in old.change.iter().enumerate() {
+        balances.let_out(k, -times.memory * before, (times.memory * before).abs());
     }
     water.outlets.clone_from(&old.outlets);
     water.between = old.between;
     // A case that goes on from the end of another may have further ones.
     water.outlets.resize(flow.outlets.len(), Outflow::default());
-    water.outlets.iter_mut().for_each(|outlet| (outlet.rate, outlet.change) = (0.0, times.memory * outlet.change));
+    water.outlets.iter_mut().for_each(|outlet| outlet.go_on(times.memory));
     for drain in &trial.step.drains {
         let outlet = &mut water.outlets[drain.outlet];
         for &(k, at, area) in &drain.corners {
@@ -101,29 +83,14 @@ pub(super) fn add(
                 let node = flow.corners[k].unwrap_or_default();
                 return Err(TrialFailure::Undefined { node: model.mesh.node_tags[node], time: trial.time });
             }
-            outlet.rate += area * q;
-            outlet.change += times.span * area * q;
-            all[k][0] += times.span * area * q;
-            all[k][1] += times.span * area * q.abs();
+            outlet.let_out(area * q, times.span);
+            balances.let_out(k, times.span * area * q, times.span * area * q.abs());
             let (scale, dof) = (flow.scales[k], flow.dof(k));
             sums.stiffen(dof, dof, -scale * scale * times.span * area * slope);
         }
     }
-    water.outlets.iter_mut().for_each(|outlet| outlet.volume += outlet.change);
-    for (k, [sum, size]) in all.into_iter().enumerate() {
-        let (dof, scale) = (flow.dof(k), flow.scales[k]);
-        // It stands for none, or for one that only absent bodies have.
-        if !is_wet[k] {
-            sums.force[dof] -= flow.spare() * u[dof];
-            sums.stiffen(dof, dof, -flow.spare());
-            continue;
-        }
-        sums.force[dof] -= scale * sum;
-        if let Some(magnitudes) = &mut sums.magnitudes {
-            magnitudes[dof] += scale * size;
-        }
-    }
-    water.change = change;
+    channels::add(model, trial, u, times, water, &mut balances, sums)?;
+    water.change = balances.end(flow, u, sums);
     water.peaks.clone_from(&old.peaks);
     water.excess.clone_from(&old.excess);
     water.brought.clone_from(&old.brought);

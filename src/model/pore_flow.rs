@@ -7,13 +7,16 @@
 //! p = p₀ + s û        s = M/h: stiffness of the skeleton over the size of an element, so that û is a length and its equation a force
 //! ```
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::boundary::Profile;
 use super::element::SolidElement;
+use super::imposed::PoreFluid;
 use super::state::{Outflow, State, Water};
 use super::{Body, Model};
-use crate::laws::bulk::GIVEN_PRESSURE;
+use crate::laws::bulk::{GIVEN_PRESSURE, MaterialDescription};
 use crate::mesh::Mesh;
 use crate::mesh::configuration::vector;
 
@@ -37,6 +40,8 @@ pub struct PoreFlow {
     pub of_element: Vec<Option<usize>>,
     /// Bodies
     pub bodies: Vec<usize>,
+    /// Number of the pressure of each node of the slaves along which water flows, by contact
+    pub channels: BTreeMap<String, BTreeMap<usize, usize>>,
     /// Names of the outlets, over all steps
     pub outlets: Vec<String>,
     /// of the stiffest body [F/L]
@@ -99,6 +104,10 @@ pub struct WetPoint {
     pub volume: f64,
 }
 
+/// Flow through what holds a pressure, in multiples of that through an element beside it under the same difference: the pressure is held to the
+/// inverse of this [-]
+pub const PRESCRIBED: f64 = 1e6;
+
 /// An outlet in a step: where water may leave the bodies, or enter them.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
@@ -145,16 +154,24 @@ impl Drain {
 #[doc(hidden)]
 impl PoreFlow {
     /// The water of the bodies in which it flows, if there is any; adds its nodes to the mesh.
-    pub fn new(bodies: &[Body], solids: &[SolidElement], mesh: &mut Mesh) -> Option<Self> {
+    pub fn new(
+        bodies: &[Body],
+        solids: &[SolidElement],
+        channels: &BTreeMap<String, Vec<(usize, f64)>>,
+        mesh: &mut Mesh,
+    ) -> Option<Self> {
         let wet: Vec<usize> = (0..bodies.len()).filter(|&body| bodies[body].flowing().is_some()).collect();
         if wet.is_empty() {
             return None;
         }
         let pairs = paired(wet.iter().flat_map(|&body| bodies[body].elements.iter().copied()), mesh);
         let first = mesh.nodes.len();
-        let corners: Vec<Option<usize>> = pairs.into_iter().flatten().collect();
+        let mut corners: Vec<Option<usize>> = pairs.into_iter().flatten().collect();
         let mut of_node = vec![None; first];
         corners.iter().enumerate().for_each(|(k, node)| node.iter().for_each(|&node| of_node[node] = Some(k)));
+        let count = corners.len();
+        corners.extend(channels.values().flatten().map(|(node, _)| Some(*node)));
+        corners.resize(corners.len().next_multiple_of(2), None);
         let tag = mesh.node_tags.iter().max().map_or(0, |tag| tag.saturating_add(1));
         for (k, pair) in corners.chunks_exact(2).enumerate() {
             mesh.nodes.push(pair[0].map_or_else(Vector2::zeros, |node| mesh.nodes[node]));
@@ -170,6 +187,7 @@ impl PoreFlow {
             of_node,
             elements: Vec::new(),
             bodies: wet.clone(),
+            channels: BTreeMap::new(),
             outlets: Vec::new(),
             stiffness: 0.0,
         };
@@ -187,6 +205,16 @@ impl PoreFlow {
                 }
                 flow.elements.push(element);
             }
+        }
+        let largest = flow.scales.iter().copied().fold(0.0, f64::max);
+        let mut numbers = count..;
+        for (contact, nodes) in channels {
+            let own: BTreeMap<usize, usize> = nodes.iter().map(|(node, _)| *node).zip(&mut numbers).collect();
+            for &(node, initial) in nodes {
+                flow.scales[own[&node]] = flow.of_node[node].map_or(largest, |k| flow.scales[k]);
+                flow.initial[own[&node]] = initial;
+            }
+            flow.channels.insert(contact.clone(), own);
         }
         flow.scales.iter_mut().filter(|scale| **scale == 0.0).for_each(|scale| *scale = 1.0);
         Some(flow)
@@ -238,7 +266,7 @@ impl PoreFlow {
 
 /// Pairs of neighbouring corners of some elements, the last one alone if they are odd.
 fn paired(elements: impl Iterator<Item = usize>, mesh: &Mesh) -> Vec<[Option<usize>; 2]> {
-    let mut adjacent: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
+    let mut adjacent: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for e in elements {
         let element = &mesh.elements[e];
         for edge in 0..element.kind.corners() {
@@ -247,7 +275,7 @@ fn paired(elements: impl Iterator<Item = usize>, mesh: &Mesh) -> Vec<[Option<usi
             adjacent.entry(b).or_default().push(a);
         }
     }
-    let mut taken = std::collections::BTreeSet::new();
+    let mut taken = BTreeSet::new();
     let (mut pairs, mut alone) = (Vec::new(), Vec::new());
     for (&node, others) in &adjacent {
         if !taken.insert(node) {
@@ -333,9 +361,7 @@ impl WetElement {
         let spread = &mass - &volumes * volumes.transpose() / volume;
         let is_equal = kind.nodes() == corners;
         let biot = fluid.coefficient();
-        // 1/Q = n/K_w + (b − n)/K_s,  K_s = K/(1 − b)
-        let bulk = law.p_wave_modulus - 4.0 / 3.0 * law.shear_modulus;
-        let storage = 1.0 / fluid.modulus() + (biot - fluid.porosity) * (1.0 - biot) / bulk;
+        let storage = storage(fluid, &law);
         let (along_x, weight) = (fluid.permeability?, fluid.unit_weight?);
         let mobility = [along_x, fluid.permeability_y.unwrap_or(along_x)].map(|k| k / weight);
         Some(Self {
@@ -358,6 +384,12 @@ impl WetElement {
             size: solid.area().sqrt(),
         })
     }
+}
+
+/// 1/Q = n/K_w + (b − n)/K_s,  K_s = K/(1 − b) [L²/F].
+fn storage(fluid: &PoreFluid, law: &MaterialDescription) -> f64 {
+    let bulk = law.p_wave_modulus - 4.0 / 3.0 * law.shear_modulus;
+    1.0 / fluid.modulus() + (fluid.coefficient() - fluid.porosity) * (1.0 - fluid.coefficient()) / bulk
 }
 
 /// Least permeability of ground above a free surface, and of pores that close, over that at the start [-]
@@ -396,6 +428,7 @@ impl Model {
         self.flow.as_ref().map_or_else(Water::default, |flow| Water {
             change: vec![0.0; flow.count()],
             outlets: vec![Outflow::default(); flow.outlets.len()],
+            channels: vec![[Outflow::default(); 2]; flow.channels.len()],
             peaks: vec![0.0; flow.bodies.len()],
             excess: vec![0.0; flow.bodies.len()],
             brought: vec![0.0; flow.bodies.len()],
@@ -408,7 +441,7 @@ impl Model {
     pub fn balance_of_water(&self, state: &State) -> Option<[f64; 2]> {
         let flow = self.flow.as_ref()?;
         let taken = flow.bodies.iter().filter_map(|&body| self.water_of(body, state)).map(|[taken, _]| taken);
-        let left = state.water.outlets.iter().map(|outlet| outlet.volume);
+        let left = (state.water.outlets.iter()).chain(state.water.channels.as_flattened()).map(|outlet| outlet.volume);
         Some(
             taken
                 .chain(left)

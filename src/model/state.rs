@@ -151,6 +151,8 @@ pub struct Water {
     pub change: Vec<f64>,
     /// Flow through each outlet of the model
     pub outlets: Vec<Outflow>,
+    /// Flow out of each contact along which water flows beside that of bodies, in order: through wells and sources, and by a leak
+    pub channels: Vec<[Outflow; 2]>,
     /// Largest mean pressure so far that each body has in excess of the one at the start [F/L²]
     pub peaks: Vec<f64>,
     /// The mean pressure itself in excess of that at the start [F/L²]
@@ -167,6 +169,22 @@ impl Water {
     pub fn consolidation(&self, number: usize) -> f64 {
         let peak = self.peaks[number];
         if peak == 0.0 { 0.0 } else { 1.0 - self.excess[number] / peak }
+    }
+}
+
+#[doc(hidden)]
+impl Outflow {
+    /// Goes on to an increment, with the share of the last one that the formula of the balance carries over.
+    pub fn go_on(&mut self, memory: f64) {
+        (self.rate, self.change) = (0.0, memory * self.change);
+        self.volume += self.change;
+    }
+
+    /// Lets a flow out over the span of the formula.
+    pub fn let_out(&mut self, flow: f64, span: f64) {
+        self.rate += flow;
+        self.change += span * flow;
+        self.volume += span * flow;
     }
 }
 

@@ -204,20 +204,17 @@ impl History {
 /// Water of the bodies in which it flows, flow through its outlets, and their balance.
 fn water_row(model: &Model, state: &State) -> Vec<f64> {
     let Some(flow) = &model.flow else { return Vec::new() };
-    let (mut row, mut balance) = (Vec::new(), 0.0);
+    let mut row = Vec::new();
     for (k, &body) in flow.bodies.iter().enumerate() {
         let [taken, excess] = model.water_of(body, state).unwrap_or_default();
         let degree = if state.has(body) { state.water.consolidation(k) } else { f64::NAN };
         row.extend([excess, degree, taken]);
-        balance += taken;
     }
     for k in 0..flow.outlets.len() {
         let outlet = state.water.outlets.get(k).copied().unwrap_or_default();
         row.extend([outlet.rate, outlet.volume]);
-        balance += outlet.volume;
     }
-    balance += state.water.between;
-    row.push(balance);
+    row.extend(model.balance_of_water(state).map(|[error, _]| error));
     row
 }
 

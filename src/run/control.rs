@@ -107,6 +107,7 @@ pub fn is_of(state: &State, model: &Model) -> bool {
         && state.contacts.iter().zip(&model.contacts).all(contact)
         && state.water.change.len() == model.saddle()
         && state.water.outlets.len() <= model.flow.as_ref().map_or(0, |flow| flow.outlets.len())
+        && state.water.channels.len() == model.flow.as_ref().map_or(0, |flow| flow.channels.len())
         && state.water.peaks.len() == model.flow.as_ref().map_or(0, |flow| flow.bodies.len())
         && state.bars.len() == model.bars.len()
         && state.bars.iter().zip(&model.bars).all(|(own, bar)| own.fits(bar))

@@ -17,11 +17,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::failure::IncrementFailure;
-use crate::contact::conduit::{Conduit, ConduitState, Course, Reached, TooFast, Wall, WaterStep};
+use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Reached, TooFast, Wall, WaterStep};
 use crate::contact::pair::ContactPair;
 use crate::contact::point::ContactState;
 use crate::equations::Trial;
-use crate::model::state::State;
+use crate::model::state::{State, Water as BodyWater};
 use crate::model::{Model, Step};
 
 /// |p̂ − p| that is left, over the largest pressure: that of equilibrium within these bounds [-]
@@ -93,7 +93,8 @@ fn pressed<'a>(model: &Model, old: &State, pressures: impl Iterator<Item = Optio
 /// Contacts in which water flows in a step.
 fn flowing<'a>(model: &'a Model, step: &Step, old: &'a State) -> Vec<Flowing<'a>> {
     let pairs = model.contacts.iter().enumerate().filter(|(_, pair)| step.joins(pair));
-    let with_water = pairs.filter_map(|(number, pair)| Some((number, pair, pair.conduit.as_ref()?)));
+    let dry = |pair: &'a ContactPair| pair.conduit.as_ref().filter(|conduit| !conduit.is_wet());
+    let with_water = pairs.filter_map(|(number, pair)| Some((number, pair, dry(pair)?)));
     let new = |(number, pair, conduit): (usize, &'a ContactPair, &'a Conduit)| Flowing {
         number,
         pair,
@@ -486,5 +487,28 @@ pub fn receive(model: &Model, arrived: Arrived, state: &mut State) {
     press_by(model, &arrived, state);
     for (old, new) in state.conduits.iter_mut().zip(arrived) {
         *old = new.unwrap_or_else(|| std::mem::take(old));
+    }
+}
+
+/// Gives a state, whose last increment is that from `old`, the water of contacts that is solved with that of the bodies beside them.
+pub fn receive_with_bodies(model: &Model, step: &Step, dt: f64, old: &BodyWater, state: &mut State) {
+    let Some(flow) = &model.flow else { return };
+    for (number, pair) in model.contacts.iter().enumerate().filter(|(_, pair)| step.joins(pair)) {
+        let Some(conduit) = pair.conduit.as_ref().filter(|conduit| conduit.is_wet()) else { continue };
+        let place = flow.channels.keys().position(|name| *name == pair.name).unwrap_or_default();
+        let before = &mut state.conduits[number];
+        before.pressure = conduit.pressures.iter().map(|&k| flow.pressure(k, Some(&state.displacement))).collect();
+        let walls = conduit.walls(&state.contacts[number]);
+        before.rates =
+            walls.iter().zip(&before.walls).map(|(new, old)| new.combined(1.0 / dt, *old, -1.0 / dt)).collect();
+        let volume =
+            |water: &BodyWater| water.channels.get(place).map_or([0.0; 2], |channel| channel.map(|flow| flow.volume));
+        let [wells, leaked] = [0, 1].map(|k| volume(&state.water)[k] - volume(old)[k]);
+        let taken: f64 = conduit.pressures.iter().map(|&k| state.water.change[k]).sum();
+        let amounts =
+            Amounts { injected: -wells, leaked: -wells - taken, throughput: wells.abs() + leaked.abs() + taken.abs() };
+        before.amounts = before.amounts.combined(1.0, amounts, 1.0);
+        press(conduit, &before.pressure, &walls, &mut state.contacts[number]);
+        before.walls = walls;
     }
 }

@@ -5,6 +5,7 @@ use crate::equations::evaluation::Flows;
 use crate::equations::{Evaluation, bars, contacts};
 use crate::model::state::State;
 use crate::model::{Model, Step};
+use crate::solve::conduits::receive_with_bodies;
 
 /// Sets `state` to `time` and the displacement `u`, with forces, reactions, damping, contacts and internal variables as `found`
 /// there. The caller, who knows the scheme, sets velocities and accelerations; see [`take_stock`] for the stored energies. The
@@ -32,6 +33,7 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     std::mem::swap(&mut state.water, &mut found.water);
     (state.dt, state.time) = (time - state.time, time);
     model.note_water(state);
+    receive_with_bodies(model, step, state.dt, &found.water, state);
     state.increment += 1;
 }
 

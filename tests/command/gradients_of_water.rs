@@ -163,6 +163,18 @@ fn by_times_and_held_places_are_refused() {
     }
 }
 
+/// Water along a contact that is solved with that of the bodies beside it has none.
+#[test]
+fn beside_bodies_whose_water_flows_are_refused() {
+    let mut case = block(2, json!({"storage": 1, "transmissivity": 1, "viscosity": 1}), 1.0, [0.5, 0.5]);
+    case["bodies"]["block"]["pore_fluid"] =
+        json!({"bulk_modulus": 50, "porosity": 0.4, "permeability": 1, "unit_weight": 1});
+    case["contacts"]["base"]["initial"] = json!({"pressure": 100});
+    case["gradients"] = json!(places(&["storage"]));
+    let told = refused(&case);
+    assert!(told.contains("gradients: are not available of water that flows along a contact beside bodies"), "{told}");
+}
+
 /// A column of soil whose water flows out at the top, under a load.
 fn column(material: Value, drain: Value) -> Value {
     json!({

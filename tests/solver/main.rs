@@ -41,5 +41,6 @@ mod stressed;
 mod symmetry;
 mod terms;
 mod turning;
+mod wet_conduits;
 mod wet_contacts;
 mod yielding;

@@ -90,7 +90,7 @@ pub struct Transmissivity {
 
 impl Transmissivity {
     /// T at a node.
-    pub(super) fn at(&self, node: usize, wall: Wall) -> f64 {
+    pub fn at(&self, node: usize, wall: Wall) -> f64 {
         let whole = match self.aperture {
             Some(aperture) => (aperture + wall.opening).max(0.0).powi(3) / 12.0,
             None => self.at_rest[node] + self.per_slip * wall.slip.abs(),
@@ -129,7 +129,7 @@ pub struct Well {
 
 impl Well {
     /// Whether it is open at a time.
-    pub(super) fn is_open(&self, time: f64) -> bool {
+    pub fn is_open(&self, time: f64) -> bool {
         self.span[0] <= time && time < self.span[1]
     }
 }
@@ -172,6 +172,8 @@ pub struct Conduit {
     pub leak: Option<Leak>,
     /// Error of the pressure by what the surfaces do within an increment that is allowed, over its largest change [-]
     pub error: f64,
+    /// Number of the pressure of every node among those of the bodies' water, with which it is solved; empty between dry bodies
+    pub pressures: Vec<usize>,
 }
 
 impl fmt::Debug for Conduit {
@@ -181,6 +183,11 @@ impl fmt::Debug for Conduit {
 }
 
 impl Conduit {
+    /// Whether it is solved with the water of the bodies.
+    pub fn is_wet(&self) -> bool {
+        !self.pressures.is_empty()
+    }
+
     /// The surfaces at every node.
     pub fn walls(&self, states: &[ContactState]) -> Vec<Wall> {
         self.averaged(states.iter().map(Wall::of))

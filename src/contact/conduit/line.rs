@@ -94,7 +94,7 @@ impl Line {
     }
 
     /// Neighbours, with width over length between them.
-    pub(super) fn joints(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+    pub fn joints(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         self.chains.iter().flat_map(move |chain| {
             let after = move |k: usize| if k + 1 < chain.end { k + 1 } else { chain.first };
             let joined = (chain.first..chain.end).filter(move |&k| k + 1 < chain.end || chain.is_ring);

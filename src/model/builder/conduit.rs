@@ -1,5 +1,7 @@
 //! The conduit along a contact that is built from the input of its water.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Vector2;
 
 use super::conduit_input::FlowWell;
@@ -12,10 +14,10 @@ use crate::contact::conduit::{Conduit, Gives, Leak, Line, Piece, SourceAt, Trans
 use crate::contact::fluid::Fluid;
 use crate::contact::point::{Weights, linear_shares};
 use crate::contact::surface::{SlavePoint, in_order};
-use crate::mesh::Group;
-use crate::model::Model;
+use crate::mesh::{Group, Mesh};
 use crate::model::boundary::Profile;
 use crate::model::text::{number, vector};
+use crate::model::{Body, Model};
 
 /// Water along the slave of a contact, if it flows there.
 pub fn conduit(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) -> Checked<Option<Conduit>> {
@@ -75,6 +77,7 @@ pub fn conduit(place: &str, contact: &Contact, points: &[SlavePoint], model: &Mo
         shares.iter().for_each(|&(node, share)| holds[node] += share * length);
     }
     Ok(Some(Conduit {
+        pressures: pressures(place, contact, &line, model)?,
         shares,
         lengths,
         holds,
@@ -93,6 +96,35 @@ pub fn conduit(place: &str, contact: &Contact, points: &[SlavePoint], model: &Mo
         error: flow.error,
         line,
     }))
+}
+
+/// Numbers of its pressures, beside bodies whose water flows.
+fn pressures(place: &str, contact: &Contact, line: &Line, model: &Model) -> Checked<Vec<usize>> {
+    let Some(own) = model.flow.as_ref().and_then(|flow| flow.channels.get(&contact.name)) else {
+        return Ok(Vec::new());
+    };
+    let found: Option<Vec<usize>> = line.nodes.iter().map(|node| own.get(node).copied()).collect();
+    let message = "is along nodes that are tied to others, and the water of the bodies would not follow: leave it out";
+    found.ok_or_else(|| ModelError::new(place, message))
+}
+
+/// Contacts along which water flows beside bodies in which it flows, with the nodes of their slaves and their pressures at the start.
+pub fn channels(contacts: &[Contact], bodies: &[Body], mesh: &Mesh) -> BTreeMap<String, Vec<(usize, f64)>> {
+    let flowing = bodies.iter().filter(|body| body.flowing().is_some());
+    let wet: BTreeSet<usize> = flowing.flat_map(|body| body.elements.iter().copied()).collect();
+    let sides = |group: Option<&str>| match group.and_then(|name| mesh.groups.get(name)) {
+        Some(Group::Edges(edges)) => &edges[..],
+        _ => &[],
+    };
+    let of = |contact: &Contact| {
+        let Some(FluidPressure::Flow(flow)) = &contact.fluid_pressure else { return None };
+        let slave = sides(Some(&contact.slave));
+        let beside = slave.iter().chain(sides(contact.master_group())).any(|edge| wet.contains(&edge.element));
+        let nodes: BTreeSet<usize> = slave.iter().flat_map(|edge| edge.nodes.iter().copied()).collect();
+        let at = |node: usize| (node, flow.initial.value(mesh.nodes[node]));
+        beside.then(|| (contact.name.clone(), nodes.into_iter().map(at).collect()))
+    };
+    contacts.iter().filter_map(of).collect()
 }
 
 /// Nodes along the slave.

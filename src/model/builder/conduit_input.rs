@@ -39,7 +39,7 @@ pub struct Flow {
     /// Flow through the walls into the bodies; default: none
     pub leak: Option<FlowLeak>,
     /// Error of the pressure that is allowed by what the surfaces do within an increment, over its largest change in the run so far: it
-    /// takes part in the choice of static and implicit increments; default 0.01
+    /// takes part in the choice of static and implicit increments, but not beside bodies whose water flows, where `dt.pore_pressure` does; default 0.01
     #[serde(default = "Flow::error")]
     pub error: f64,
 }

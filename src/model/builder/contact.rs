@@ -111,7 +111,8 @@ pub struct Contact {
     #[schemars(with = "Option<FluidForms>")]
     pub fluid_pressure: Option<FluidPressure>,
     /// κ: water flows from one body to the other across the contact, closed or open, by κ times the difference of its pressures, κ ≥ 0; default 1000 times
-    /// what passes through an element adjacent to it, so that the pressure has no jump. Of two bodies whose water flows (`permeability`) [L³/(F T)]
+    /// what passes through an element adjacent to it, so that the pressure has no jump. Of two bodies whose water flows (`permeability`); where water flows along the
+    /// contact, from there into each of the bodies whose water flows [L³/(F T)]
     pub seal: Option<f64>,
     /// Friction parameters that vary along the slave and in time
     #[serde(default)]

@@ -300,7 +300,8 @@ impl Builder {
         let laid = bars::lay(&self.bars, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
-        let mut flow = pore_flow::flow(&bodies, &solids, &mut self.mesh)?;
+        let channels = conduit::channels(&self.contacts, &bodies, &self.mesh);
+        let mut flow = pore_flow::flow(&bodies, &solids, &channels, &mut self.mesh)?;
         flow.iter_mut().for_each(|flow| {
             flow.outlets = pore_flow::outlets(self.steps.iter().flat_map(|step| &step.drainage), &self.mesh)
         });

@@ -123,6 +123,8 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     let given = fluid::fluid(&place, contact.fluid_pressure.as_ref(), &slaves, &model.mesh)?;
     let conduit = conduit::conduit(&place, contact, &points, model)?;
     let pores = if of_bodies.is_some() { None } else { pores::pores(&place, contact, &points, model)? };
+    let seam = seam::seam(&place, contact, conduit.as_ref(), model)?;
+    let dry = conduit.as_ref().filter(|conduit| !conduit.is_wet());
     let mut pair = ContactPair {
         name: contact.name.clone(),
         tied: contact.tied,
@@ -136,10 +138,10 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
         penetration: contact.normal.penetration,
         stick: contact.stick,
         radiation: radiation(&place, contact, model)?,
-        fluid: of_bodies.or(given).or_else(|| conduit.as_ref().map(|conduit| conduit::at_start(conduit, model))),
+        fluid: of_bodies.or(given).or_else(|| dry.map(|conduit| conduit::at_start(conduit, model))),
         conduit,
         pores,
-        seam: seam::seam(&place, contact, model)?,
+        seam,
         laws,
         in_time,
         truncated,

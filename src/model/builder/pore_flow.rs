@@ -17,7 +17,7 @@ use crate::mesh::{Edge, Group, Mesh};
 use crate::model::boundary::Profile;
 use crate::model::element::{Formulation, SolidElement};
 use crate::model::imposed::PoreFluid;
-use crate::model::pore_flow::{Drain, DrainKind, PoreFlow, WetElement};
+use crate::model::pore_flow::{Drain, DrainKind, PRESCRIBED, PoreFlow, WetElement};
 use crate::model::scheme::Scheme;
 use crate::model::text::{number, vector};
 use crate::model::warnings::NO_FRICTION;
@@ -86,13 +86,14 @@ impl DrainageInput {
     }
 }
 
-/// Flow through what prescribes a pressure, in multiples of that through an element adjacent to it under the same difference: the pressure is held to the
-/// inverse of this [-]
-const PRESCRIBED: f64 = 1e6;
-
-/// The water of the bodies in which it flows.
-pub fn flow(bodies: &[Body], solids: &[SolidElement], mesh: &mut Mesh) -> Checked<Option<PoreFlow>> {
-    let Some(flow) = PoreFlow::new(bodies, solids, mesh) else { return Ok(None) };
+/// The water of the bodies in which it flows, and of the contacts along which it flows beside them.
+pub fn flow(
+    bodies: &[Body],
+    solids: &[SolidElement],
+    channels: &BTreeMap<String, Vec<(usize, f64)>>,
+    mesh: &mut Mesh,
+) -> Checked<Option<PoreFlow>> {
+    let Some(flow) = PoreFlow::new(bodies, solids, channels, mesh) else { return Ok(None) };
     for body in bodies {
         let Some(fluid) = body.flowing() else { continue };
         for wet in body.elements.iter().filter_map(|&e| flow.wet(e)) {

@@ -4,24 +4,38 @@ use std::collections::BTreeMap;
 
 use super::contact::Contact;
 use super::error::{Checked, check_not_negative, refuse_if};
+use super::fluid::FluidPressure;
+use crate::contact::conduit::Conduit;
 use crate::contact::seam::{PressurePart, Seam};
 use crate::mesh::{Edge, Group};
 use crate::model::Model;
 use crate::model::pore_flow::WetElement;
 
 /// κ between two bodies over what passes through the shortest element adjacent to the contact, of the less permeable body, under the same difference of
-/// pressures: the jump is a thousandth of what the pressure falls by in that element at most [-]
+/// pressures, and of the more permeable one into what is between them: the jump is a thousandth of what the pressure falls by in that element at most [-]
 const NEARLY_CONTINUOUS: f64 = 1e3;
 
-/// The water on both sides of a contact; `None` where none flows, or where its pressure is given.
-pub fn seam(place: &str, contact: &Contact, model: &Model) -> Checked<Option<Seam>> {
+/// The water on both sides of a contact, and along it; `None` where none flows in the bodies, or where its pressure is given.
+pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &Model) -> Checked<Option<Seam>> {
     let mut nodes = BTreeMap::new();
     let mut most = [0.0f64; 2];
     let mut sides = 0;
     let groups = [Some(contact.slave.as_str()), contact.master_group()];
-    let (Some(flow), None, false) = (&model.flow, &contact.fluid_pressure, contact.is_own()) else {
+    let (Some(flow), None | Some(FluidPressure::Flow(_)), false) =
+        (&model.flow, &contact.fluid_pressure, contact.is_own())
+    else {
         return without(place, contact);
     };
+    let part = |number: usize, share: f64| PressurePart {
+        dof: flow.dof(number),
+        initial: flow.initial[number],
+        scale: flow.scales[number],
+        share,
+    };
+    let channel: BTreeMap<usize, PressurePart> = (conduit.into_iter())
+        .flat_map(|conduit| conduit.line.nodes.iter().zip(&conduit.pressures))
+        .map(|(&node, &number)| (node, part(number, 1.0)))
+        .collect();
     for (side, group) in groups.into_iter().enumerate() {
         let Some(Group::Edges(edges)) = group.and_then(|name| model.mesh.groups.get(name)) else { continue };
         let wet: Vec<(&Edge, &WetElement)> =
@@ -35,11 +49,7 @@ pub fn seam(place: &str, contact: &Contact, model: &Model) -> Checked<Option<Sea
         for (edge, wet) in wet {
             let mobility = wet.mobility[0].max(wet.mobility[1]);
             most[side] = most[side].max(mobility / wet.size);
-            let part = |node: usize, share: f64| {
-                let number = flow.of_node[node]?;
-                let (dof, initial, scale) = (flow.dof(number), flow.initial[number], flow.scales[number]);
-                Some(PressurePart { dof, initial, scale, share })
-            };
+            let part = |node: usize, share: f64| Some(part(flow.of_node[node]?, share));
             let [start, end] = [edge.nodes[0], edge.nodes[1]];
             for &node in &edge.nodes {
                 let parts = if node == start || node == end {
@@ -51,17 +61,23 @@ pub fn seam(place: &str, contact: &Contact, model: &Model) -> Checked<Option<Sea
             }
         }
     }
-    if sides < 2 {
+    let passes = sides == 2 || sides == 1 && !channel.is_empty();
+    if !passes {
         without(place, contact)?;
     }
-    let given = contact.seal.unwrap_or(NEARLY_CONTINUOUS * most[0].min(most[1]));
+    let beside = most[0].max(most[1]);
+    // From body to body the less permeable one governs; into what is between them each drains by itself.
+    let governs = if channel.is_empty() { most[0].min(most[1]) } else { beside };
+    let given = contact.seal.unwrap_or(NEARLY_CONTINUOUS * governs);
     check_not_negative(&format!("{place}.seal"), given)?;
-    Ok((sides > 0).then_some(Seam { nodes, conductance: if sides == 2 { given } else { 0.0 } }))
+    let conductance = if passes { given } else { 0.0 };
+    Ok((sides > 0).then_some(Seam { nodes, channel, conductance, beside }))
 }
 
 /// Refuses a seal where nothing can flow across.
 fn without(place: &str, contact: &Contact) -> Checked<Option<Seam>> {
-    let message = "is for a contact of two bodies whose water flows, without a `fluid_pressure`: leave it out";
+    let message =
+        "is for a contact of two bodies whose water flows, without a `fluid_pressure` but `flow`: leave it out";
     refuse_if(contact.seal.is_some(), format!("{place}.seal"), message)?;
     Ok(None)
 }

@@ -1,0 +1,155 @@
+//! Water that flows along contacts beside bodies in which it flows: its pressures are solved with theirs.
+//!
+//! ```text
+//! Δm_a = ℓ_a S (p − p_n)_a, and what the surfaces open by (`contact/seam.rs`)                                                (1)
+//! Σ_b T/η b/ℓ (p_a − p_b) − ℓ_a Q + ℓ_a c (p_a − p̄) − wells                what flows out of a node, beside that into the bodies     (2)
+//! ```
+//! in the balance (4) of `pore_flow.rs`. T is that of the surfaces at the start of the increment, as the permeability of the bodies is. A well that
+//! holds a pressure does so to a millionth.
+
+use super::coupling::joined;
+use super::sums::{Sums, TrialFailure};
+use super::trial::Trial;
+use super::water_balances::{Balances, Times};
+use crate::contact::conduit::{Conduit, ConduitState, Gives};
+use crate::contact::seam::Seam;
+use crate::model::Model;
+use crate::model::pore_flow::{PRESCRIBED, PoreFlow};
+use crate::model::state::{Outflow, Water};
+
+/// A contact along which water flows, in an increment.
+struct Channel<'a> {
+    model: &'a Model,
+    flow: &'a PoreFlow,
+    conduit: &'a Conduit,
+    seam: &'a Seam,
+    old: &'a ConduitState,
+    trial: Trial<'a>,
+    u: &'a [f64],
+    span: f64,
+}
+
+/// Adds the balances of their pressures, and what these change by with them to the tangent.
+pub(super) fn add(
+    model: &Model,
+    trial: Trial,
+    u: &[f64],
+    times: Times,
+    water: &mut Water,
+    balances: &mut Balances,
+    sums: &mut Sums,
+) -> Result<(), TrialFailure> {
+    let Some(flow) = &model.flow else { return Ok(()) };
+    water.channels.clone_from(&trial.old.water.channels);
+    water.channels.as_flattened_mut().iter_mut().for_each(|outlet| outlet.go_on(times.memory));
+    for (pair, old) in model.contacts.iter().zip(&trial.old.conduits).filter(|(pair, _)| trial.step.joins(pair)) {
+        let (Some(conduit), Some(seam)) = (pair.conduit.as_ref().filter(|conduit| conduit.is_wet()), &pair.seam) else {
+            continue;
+        };
+        let number = flow.channels.keys().position(|name| *name == pair.name).unwrap_or_default();
+        let channel = Channel { model, flow, conduit, seam, old, trial, u, span: times.span };
+        water.between += channel.store(balances, sums);
+        channel.let_out(&mut water.channels[number], balances, sums)?;
+        channel.join(balances, sums);
+    }
+    Ok(())
+}
+
+impl Channel<'_> {
+    fn pressure(&self, node: usize) -> f64 {
+        self.flow.pressure(self.conduit.pressures[node], Some(self.u))
+    }
+
+    /// T/η b/ℓ of what joins two nodes [L⁵/(F T)].
+    fn joints(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let Conduit { line, transmissivity, viscosity, .. } = self.conduit;
+        let at = |node: usize| transmissivity.at(node, self.old.walls[node]);
+        line.joints().map(move |(a, b, joint)| (a, b, joint * 0.5 * (at(a) + at(b)) / viscosity))
+    }
+
+    /// Adds (1) without what the surfaces open by; returns it.
+    fn store(&self, balances: &mut Balances, sums: &mut Sums) -> f64 {
+        let mut all = 0.0;
+        for (node, length) in self.conduit.line.lengths().iter().enumerate() {
+            let k = self.conduit.pressures[node];
+            let takes = length * self.conduit.storage;
+            let part = takes * (self.pressure(node) - self.flow.pressure(k, Some(&self.trial.old.displacement)));
+            balances.take(k, part, part.abs());
+            self.stiffen(k, takes, sums);
+            all += part;
+        }
+        all
+    }
+
+    /// Lets water out by wells and sources, and by a leak.
+    fn let_out(
+        &self,
+        [wells, leaked]: &mut [Outflow; 2],
+        balances: &mut Balances,
+        sums: &mut Sums,
+    ) -> Result<(), TrialFailure> {
+        let Self { conduit, trial, span, .. } = self;
+        let mut passes: Vec<f64> = conduit.line.lengths().iter().map(|length| length * self.seam.most()).collect();
+        self.joints().for_each(|(a, b, joint)| [a, b].iter().for_each(|&node| passes[node] += joint));
+        let mut out = |node: usize, [flow, slope]: [f64; 2], outlet: &mut Outflow| {
+            let k = conduit.pressures[node];
+            if !flow.is_finite() {
+                let node = self.model.mesh.node_tags[conduit.line.nodes[node]];
+                return Err(TrialFailure::Undefined { node, time: trial.time });
+            }
+            outlet.let_out(flow, *span);
+            balances.let_out(k, span * flow, (span * flow).abs());
+            self.stiffen(k, span * slope, sums);
+            Ok(())
+        };
+        for (node, length) in conduit.line.lengths().iter().enumerate() {
+            if let Some(source) = &conduit.source {
+                out(node, [-length * source(conduit.line.nodes[node], trial.time), 0.0], wells)?;
+            }
+            if let Some(leak) = &conduit.leak {
+                let slope = length * leak.coefficient;
+                out(node, [slope * (self.pressure(node) - leak.pressure[node]), slope], leaked)?;
+            }
+        }
+        let middle = 0.5 * (trial.old.time + trial.time);
+        for well in conduit.wells.iter().filter(|well| well.is_open(middle)) {
+            for &(node, share) in &well.at {
+                let slope = PRESCRIBED * passes[node];
+                let flow = match &well.gives {
+                    Gives::Pressure(held) => [slope * (self.pressure(node) - held(trial.time)), slope],
+                    Gives::Rate(rate) => [-share * rate(trial.time), 0.0],
+                };
+                out(node, flow, wells)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds what flows between nodes.
+    fn join(&self, balances: &mut Balances, sums: &mut Sums) {
+        let (flow, pressures) = (self.flow, &self.conduit.pressures);
+        for (a, b, joint) in self.joints() {
+            let passes = self.span * joint;
+            let volume = passes * (self.pressure(a) - self.pressure(b));
+            let size = passes * (self.pressure(a).abs() + self.pressure(b).abs());
+            let [a, b] = [pressures[a], pressures[b]];
+            balances.let_out(a, volume, size);
+            balances.let_out(b, -volume, size);
+            let nodes = joined(flow, [a, b]);
+            let dofs = 2 * nodes.len();
+            let node = |k: usize| nodes.iter().position(|node| *node == flow.dof(k) / 2).unwrap_or_default();
+            let place = |k: usize| 2 * node(k) + flow.dof(k) % 2;
+            let mut tangent = vec![0.0; dofs * dofs];
+            for (row, column, sign) in [(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)] {
+                tangent[place(column) * dofs + place(row)] -= sign * flow.scales[row] * flow.scales[column] * passes;
+            }
+            sums.couple(&nodes, &tangent);
+        }
+    }
+
+    /// Subtracts what a balance takes up by its own pressure from the tangent.
+    fn stiffen(&self, k: usize, takes: f64, sums: &mut Sums) {
+        let (scale, dof) = (self.flow.scales[k], self.flow.dof(k));
+        sums.stiffen(dof, dof, -scale * scale * takes);
+    }
+}
