@@ -8,7 +8,7 @@ use super::safety::{Reduced, Search, Trial, table};
 use super::{Opened, Written, warnings};
 use crate::model::Model;
 use crate::output::report::{self, ReportError};
-use crate::run::error::Error;
+use crate::run::error::{Error, IncrementFailure};
 use crate::run::observer::{Attempt, Observer};
 
 /// Growth of the displacement over the elastic one above which a trial has failed, whether a new equilibrium follows or not.
@@ -124,21 +124,32 @@ impl Trials {
             })?;
         }
         let course = locked(&course);
+        let ([reached, displacement], growth) = (course.last, course.growth(course.last));
         let stands = match ended {
-            _ if course.growth() > GROWTH => false,
+            _ if growth > GROWTH => false,
             Ok(()) => true,
-            Err(Failed::Stopped(Error::IncrementTooSmall { .. } | Error::Unsolvable { .. })) => false,
+            Err(Failed::Stopped(error)) if error.cause().is_some() => {
+                if !course.is_unbounded(&error) {
+                    return Err(Error::Ended(format!(
+                        "F = {factor}: {error}. That is not a failure of the strengths, since no displacement had grown \
+                         to more than {GROWTH} times the elastic one; make the case easier to solve (finer increments \
+                         or elements, softer penalties), and try again"
+                    ))
+                    .into());
+                }
+                false
+            }
             Err(failed) => return Err(failed.into()),
         };
-        let [reached, displacement] = course.last;
-        Ok(Trial { factor, stands, reached, displacement, growth: course.growth() })
+        Ok(Trial { factor, stands, reached, displacement, growth })
     }
 
     /// The caller ends a run, and so does a displacement that has grown beyond question.
     fn callbacks(&self, course: &Arc<Mutex<Course>>) -> Callbacks<'static> {
         let (asked, watched) = (self.ends.clone(), course.clone());
         let ends = move || {
-            let fails = (locked(&watched).growth() > GROWTH).then(|| {
+            let course = locked(&watched);
+            let fails = (course.growth(course.last) > GROWTH).then(|| {
                 Error::Ended(format!(
                     "displacements have grown to more than {GROWTH} times the elastic ones: the strengths fail"
                 ))
@@ -153,7 +164,8 @@ fn locked(course: &Mutex<Course>) -> MutexGuard<'_, Course> {
     course.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Largest displacement of a trial, and the fraction of the step there, after the first increment and the last.
+/// Largest displacement of a trial, and the fraction of the step there: after the first increment, after the last, and in the iterates
+/// of the attempt after it that was rejected.
 #[derive(Debug, Default)]
 struct Course {
     begun: Vec<f64>,
@@ -161,18 +173,24 @@ struct Course {
     least: f64,
     first: Option<[f64; 2]>,
     last: [f64; 2],
+    rejected: [f64; 2],
 }
 
 impl Course {
-    /// The displacement over that of the first increment, carried on to the same fraction of the step.
-    fn growth(&self) -> f64 {
-        let [reached, displacement] = self.last;
-        match self.first {
-            Some([share, first]) if displacement > self.least => {
-                displacement / (first.max(self.least) * reached / share)
-            }
-            _ => 1.0,
+    /// A displacement over that of the first increment, carried on to the same fraction of the step.
+    fn growth(&self, [reached, displacement]: [f64; 2]) -> f64 {
+        let [share, first] = self.first.unwrap_or([reached, 0.0]);
+        match displacement > self.least {
+            true => displacement / (first.max(self.least) * reached / share),
+            false => 1.0,
         }
+    }
+
+    /// Whether the strengths fail: there is no equilibrium, and either nothing resists the motion or displacements have grown, if only in
+    /// the iterates, as those of a block that slides as a whole.
+    fn is_unbounded(&self, error: &Error) -> bool {
+        let is_free = matches!(error.cause(), Some(IncrementFailure::Floating(_) | IncrementFailure::ContactLost(_)));
+        is_free || self.growth(self.rejected) > GROWTH
     }
 }
 
@@ -181,11 +199,18 @@ struct Watch(Arc<Mutex<Course>>);
 impl Observer for Watch {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
         let mut course = locked(&self.0);
-        let Some(state) = attempt.accepted.filter(|_| !course.begun.is_empty()) else { return Ok(()) };
+        let share = |time: f64| attempt.step.span.share(time);
+        let Some(state) = attempt.accepted.filter(|_| !course.begun.is_empty()) else {
+            let corrections = attempt.iterations.iter().map(|iteration| iteration.newton.correction);
+            let farthest = corrections.fold(0.0, f64::max);
+            course.rejected = [share(attempt.old.time + attempt.dt), course.last[1] + farthest];
+            return Ok(());
+        };
         let moved = state.displacement.iter().zip(&course.begun).map(|(now, begun)| (now - begun).abs());
-        let now = [attempt.step.span.share(state.time), moved.fold(0.0, f64::max)];
+        let now = [share(state.time), moved.fold(0.0, f64::max)];
         course.first.get_or_insert(now);
         course.last = now;
+        course.rejected = [0.0; 2];
         Ok(())
     }
 }

@@ -78,12 +78,23 @@ fn a_block_on_a_slope_slides_at_its_factor() {
     }
 }
 
-/// A slope of 1:2 and φ = 20°, c/(γ H) = 0.05, ψ = 0 on a firm base at its toe: 1.38 by Bishop's method, 1.40 by others.
+/// A trial that is not solved is not a failure of the strengths: two iterations do not do in the first increment in which the slope yields
+/// by a factor of 1.3, below the 1.38 of its slices.
 #[test]
-fn a_slope_has_the_factor_of_its_slices() {
+fn a_trial_that_is_not_solved_is_not_a_failure() {
+    let mut hurried = slope();
+    hurried["newton"] = json!({"max_iterations": 2});
+    let output = safety(&hurried, &[]);
+    let [said, stopped] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
+    assert!(output.status.code() == Some(1) && !said.contains("fails"), "{said}{stopped}");
+    assert!(stopped.contains("F = 1.3: ") && stopped.contains("That is not a failure of the strengths"), "{stopped}");
+}
+
+/// A slope of 1:2 and φ = 20°, c/(γ H) = 0.05, ψ = 0 on a firm base at its toe.
+fn slope() -> Value {
     let part = |corners: Value, elements: [usize; 2], sides: Value| json!({"body": "soil", "kind": "Q8", "corners": corners, "elements": elements, "sides": sides});
     let centre = json!([20.0 / 3.0, 10.0 / 3.0]);
-    let case = json!({
+    json!({
         "mesh": {"blocks": [
             part(json!([[-20, 0], [0, 0], [0, 5], [-20, 5]]), [6, 4], json!(["base", null, null, "side"])),
             part(json!([[-20, 5], [0, 5], [0, 10], [-20, 10]]), [6, 4], json!([null, null, "top", "side"])),
@@ -94,8 +105,13 @@ fn a_slope_has_the_factor_of_its_slices() {
         "steps": [{"name": "weight", "duration": 1, "dt": {"initial": 0.25}, "supports": [{"on": "base", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}],
                    "loads": [{"on": "soil", "gravity": {"y": -10}}]}],
         "output": {"fields": false, "report": false}
-    });
-    let [stands, fails] = between(&case, &["--within", "0.02", "--threads", "1"]);
+    })
+}
+
+/// 1.38 by Bishop's method, 1.40 by others.
+#[test]
+fn a_slope_has_the_factor_of_its_slices() {
+    let [stands, fails] = between(&slope(), &["--within", "0.02", "--threads", "1"]);
     let factor = 0.5 * (stands + fails);
     assert!((factor - 1.38).abs() < 0.03, "{stands} to {fails}");
 }
