@@ -373,7 +373,7 @@ fn a_case_begins_where_another_has_ended() {
     drags["contacts"]["base"]["friction"]["kappa"] = json!(1000);
     assert!(slide(&drags) > 1.1 * usual, "friction is higher");
     for (pointer, value, expected) in [
-        ("/bodies/block/material/E", json!(200), "`bodies.block.material.E` is 200, and was 100"),
+        ("/bodies/block/material/E", json!(200), "`bodies.block.material.E` is now 200 and was 100"),
         ("/contacts/base/friction/mu_s", json!(0.35), "a point carries over mu = 0.38"),
         ("/steps/0/dt/initial", json!(-1), "steps[0].dt.initial"),
         ("/begin_with", json!("nowhere"), "begin_with: "),

@@ -27,9 +27,14 @@ fn a_run_goes_on_with_its_own_case_alone() {
     let case = dragged(json!("static"), 120);
     let folder = interrupted(&case);
     let changed: [(&str, &str, Value, &str); 5] = [
-        ("friction", "/contacts/base/friction/mu_k", json!(0.25), "`contacts.base.friction.mu_k` is 0.25, and was 0.2"),
-        ("support", "/steps/1/supports/0/ux/rate", json!(0.2), "`steps[1].supports[0].ux.rate` is 0.2, and was 0.1"),
-        ("past", "/steps/0/duration", json!(2), "`steps[0].duration` is 2, and was 1"),
+        (
+            "friction",
+            "/contacts/base/friction/mu_k",
+            json!(0.25),
+            "`contacts.base.friction.mu_k` is now 0.25 and was 0.2",
+        ),
+        ("support", "/steps/1/supports/0/ux/rate", json!(0.2), "`steps[1].supports[0].ux.rate` is now 0.2 and was 0.1"),
+        ("past", "/steps/0/duration", json!(2), "`steps[0].duration` is now 2 and was 1"),
         ("mesh", "/mesh/nodes/3/0", json!(0.8), "`mesh.nodes[3][0]`"),
         ("a step less", "/steps", json!([case["steps"][0]]), "`steps[1]` is not given"),
     ];
