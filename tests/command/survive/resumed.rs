@@ -36,7 +36,7 @@ fn a_run_goes_on_with_its_own_case_alone() {
         ("support", "/steps/1/supports/0/ux/rate", json!(0.2), "`steps[1].supports[0].ux.rate` is now 0.2 and was 0.1"),
         ("past", "/steps/0/duration", json!(2), "`steps[0].duration` is now 2 and was 1"),
         ("mesh", "/mesh/nodes/3/0", json!(0.8), "`mesh.nodes[3][0]`"),
-        ("a step less", "/steps", json!([case["steps"][0]]), "`steps[1]` is not given"),
+        ("a step less", "/steps", json!([case["steps"][0]]), "`steps[1]` is now not given"),
     ];
     for (name, pointer, value, expected) in changed {
         let mut other = case.clone();
