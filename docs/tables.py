@@ -50,7 +50,7 @@ LOOSE = {"cut_back", "drawing", "penalties"}
 SLOW = {
     "ironing": (PUBLISHED + "ironing", 0),
     "ablation": ("RAYON_NUM_THREADS=1 " + PUBLISHED + "ablation", 0),
-    "neighbours": ("RAYON_NUM_THREADS=1 AIDS=predicted_pressure,downhill " + PUBLISHED + "neighbours", 0),
+    "neighbours": ("RAYON_NUM_THREADS=1 AIDS=predicted_pressure,stick_again,valley,downhill " + PUBLISHED + "neighbours", 0),
     "healing": (PUBLISHED + "answers_converge", 0),
     "tpv3": (PUBLISHED + "tpv3_breaks", 0),
     "tpv205": (PUBLISHED + "tpv205_breaks", 0),

@@ -218,7 +218,11 @@ impl<'a> PointEvaluation<'a> {
         let (seen, [_, by_pressure]) = (self.effective(pressure)[0], self.effective(asked));
         response.dtraction_dpressure *= by_pressure;
         let counted = self.counted(asked);
-        let predicted_tractions = self.increment.prediction.predicted_tractions;
+        // To a node the point is held by α_n in either direction: where it was off the node by more than it goes in, no other
+        // tractions turn as its own do.
+        let at_node = master_point.is_some_and(|master_point| master_point.xi == 1.0)
+            && self.increment.prediction.alternating.is_some();
+        let predicted_tractions = self.increment.prediction.predicted_tractions.filter(|_| !at_node);
         let bond_answer = self.bond_answer();
         let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
         let stiffness = law.stiffness;

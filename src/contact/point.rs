@@ -371,6 +371,8 @@ pub struct Prediction {
     /// penalty gives far too high a pressure to a point that penetrates deeply in one iterate, and would make it stick where it
     /// is to slip.
     pub predicted_pressure: Option<f64>,
+    /// Two segments between which its projection alternates
+    pub alternating: Option<[usize; 2]>,
 }
 
 /// Prediction of the next linear solve about a point, for convergence; an accepted state has none.
@@ -383,7 +385,8 @@ pub enum PredictedStatus {
     Touch,
     /// The point sticks, q = q₀ + α_t Δu_t whatever its size. From one iterate to the next it slipped in opposite directions,
     /// past the narrow and stiff range of sticking in between: the tangents on both sides are soft, and Newton's method would
-    /// alternate indefinitely.
+    /// alternate indefinitely. It is predicted again if the point then slips although the predicted tractions would have held
+    /// it.
     Stick,
 }
 

@@ -218,7 +218,8 @@ impl<P> Question<'_, P> {
             }
             Locating::AveragedOnRigid(mortar, body) => mortar.meet_rigid(k, body, [before, x], kinematics, room),
             Locating::Projected(index) => {
-                let projection = index.project(slave, old.master_point, x);
+                let valley = increment.prediction.alternating.and_then(|segments| index.in_valley(slave, segments, x));
+                let projection = valley.or_else(|| index.project(slave, old.master_point, x));
                 return place(pair, slave, projection, old, increment, [before, x], kinematics);
             }
         };

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::master::{Master, Rigid};
 pub use super::projection::FACING;
-use super::projection::{Bound, Projection, normal_of, on_curve, on_segment};
+use super::projection::{Bound, Projection, at_node, normal_of, on_curve, on_segment};
 use super::segment_search::{Branch, SegmentSearch, bounding_box};
 use super::segment_tree::SegmentTree;
 use super::sight::{NormalTree, Sight};
@@ -93,6 +93,18 @@ impl<'a, S: SegmentSearch> Index<'a, S> {
             }
             _ => Some(nearest),
         }
+    }
+
+    /// Predicted projection of a point that alternates between two segments: their node, if they form a concave corner. The
+    /// closest point is the node only in a strip as narrow as the penetration times the change of the normal, which Newton's
+    /// method would step over from either side indefinitely.
+    pub fn in_valley(&self, slave: &SlavePoint, [a, b]: [usize; 2], x: &Configuration) -> Option<Projection> {
+        let Self::Mesh(surface, ..) = self else { return None };
+        let [first, second] = if surface.next(a) == Some(b) { [a, b] } else { [b, a] };
+        let direction = |segment: usize, xi: f64| x.combine(&surface.segments[segment].slope(xi));
+        let is_valley =
+            surface.next(first) == Some(second) && direction(first, 1.0).perp(&direction(second, 0.0)) > 0.0;
+        is_valley.then(|| at_node(slave, surface, first, second, 1.0, x)).filter(|at| at.gap < 0.0)
     }
 
     /// Projection on the nearest segment, which may be searched from the segment `near`.

@@ -23,6 +23,10 @@ pub struct Aids {
     pub touch: bool,
     /// A point whose slip alternates in direction sticks: [`crate::solve::contact_iteration`]
     pub stick: bool,
+    /// It is predicted to stick once more if the predicted tractions would have held it: [`crate::solve::contact_iteration`]
+    pub stick_again: bool,
+    /// A projection that alternates between two segments is placed at their node: [`crate::solve::contact_iteration`]
+    pub valley: bool,
     /// Increments of linear bodies are solved on the contact nodes: [`crate::solve::condensed_newton`]
     pub condense: bool,
     /// Factors of an earlier tangent are reused for corrections: [`crate::solve::newton`]
@@ -46,6 +50,8 @@ impl Default for Aids {
             predicted_pressure: true,
             touch: true,
             stick: true,
+            stick_again: true,
+            valley: true,
             condense: true,
             old_tangents: true,
             downhill: true,

@@ -12,6 +12,7 @@
 //! | `predicted_pressure` | friction of a point that has just closed uses the pressure that remains after the bodies deform |
 //! | `touch` | a point with zero gap at the start of an increment is closed and sticks, in the first iterate |
 //! | `stick` | a point that slips in alternating directions sticks, and one that stuck sticks on |
+//! | `valley` | a projection that alternates between two segments is the node between them |
 //!
 //! Aids unrelated to contact are in [`super::equilibrium`], [`super::passes`] and [`super::newton`]. Each has a switch in
 //! [`crate::model::aids::Aids`] and a column `aid_…` in `newton.csv`; `docs/aids.md` tabulates what each saves.
@@ -71,7 +72,7 @@
 //! Source: sticking is the response of the law to a pressure that grows with the slip as long as |q| < μ p, and the only
 //! branch with a regular tangent at p = 0.
 //!
-//! # Stick
+//! # Stick, stick again
 //!
 //! A point that slips in one direction and then in the other has passed the narrow and stiff range of sticking in
 //! between. The tangents on both sides are soft, and Newton's method would alternate indefinitely; predicted to stick, the point
@@ -81,8 +82,22 @@
 //! would stick in the first tangent, and the correction would throw the disk off. Points that stuck in the last increment stick in the first
 //! linear solve, where α_t is a penalty above 20 (λ + 2G)/h. Below that it gains nothing.
 //!
+//! A point that was predicted to stick but slips may have missed the range because of errors of its neighbours only. It is
+//! predicted to stick once more if the tractions predicted by that linear solve would have held it. Switch `stick_again`, which
+//! requires `stick`; `aid_stick_again` counts the points.
+//!
 //! Source: sticking is linear, so one solve shows whether the point ends in that range: the predictor of return
 //! mapping (Simo & Hughes 1998, Computational Inelasticity, ch. 3), applied between iterates instead of within one.
+//!
+//! # Valley
+//!
+//! Between two segments at a concave corner, a projection may alternate indefinitely, each tangent leading to the
+//! other segment. It is predicted to be the node between them. Switch `valley`; `aid_valley` counts the points.
+//!
+//! Source: in a concave corner the gap is the lesser of two, with a kink where they are the same. From the node the normal goes
+//! to the point, which lies between the normals of both sides, and Newton's method ends at the kink instead of crossing it. The force
+//! towards the node is that of a spring α_n in both directions, linear in the displacements with the tractions that the point has: predicted
+//! ones would hold it far too softly along the surface.
 //!
 //! # The record
 //!
@@ -105,8 +120,8 @@ use crate::model::state::State;
 struct Point {
     /// Nothing is predicted of what cannot open or slide
     tied: bool,
-    /// Plastic slip of the increment at the last linear solve [L]
-    slip: f64,
+    slipping: Slipping,
+    master_points: MasterPoints,
     predicted: PredictedStatus,
     predicted_tractions: Tractions,
     /// Whether it was limited at the start of the increment
@@ -127,13 +142,8 @@ impl Point {
             predicted_tractions: aids.prediction.then_some(self.predicted_tractions),
             active_pressure: if aids.active_set { self.predicted_tractions.pressure } else { 0.0 },
             predicted_pressure: self.predicted_pressure.filter(|_| aids.predicted_pressure),
+            alternating: self.master_points.alternating.filter(|_| aids.valley),
         }
-    }
-
-    /// Records the slip from which the next linear solve starts; returns whether it is opposite to that at the last one.
-    fn turns(&mut self, state: &ContactState) -> bool {
-        let slip = state.friction.plastic_increment;
-        std::mem::replace(&mut self.slip, slip) * slip < 0.0
     }
 
     /// Counts the aids that act on the point in a linear solve.
@@ -150,13 +160,16 @@ impl Point {
             return;
         }
         let prediction = self.prediction(aids);
+        let sticks = self.predicted == PredictedStatus::Stick;
         acted.prediction += usize::from(prediction_acts(&prediction, closed));
         acted.limit += usize::from(self.limited);
         acted.active_set += usize::from(closes_the_point(&prediction, closed));
         acted.active_set_at_start += usize::from(self.active_at_start && closes_the_point(&prediction, closed));
         acted.predicted_pressure += usize::from(prediction.predicted_pressure.is_some());
         acted.touch += usize::from(touch_acts(pair, &prediction, state, old));
-        acted.stick += usize::from(self.predicted == PredictedStatus::Stick);
+        acted.stick += usize::from(sticks && !self.slipping.stuck);
+        acted.stick_again += usize::from(sticks && self.slipping.stuck);
+        acted.valley += usize::from(valley_acts(&prediction, state));
     }
 }
 
@@ -238,6 +251,8 @@ impl ContactIteration {
                 let closed = state.friction.pressure > 0.0;
                 point.limited = first && closed && point.predicted_tractions.pressure < state.contact_pressure();
                 point.active_at_start = first && !closed && point.predicted_tractions.pressure > 0.0;
+                point.master_points.note(state);
+                point.slipping.stuck = aids.stick_again && point.predicted == PredictedStatus::Stick;
                 point.predicted = match first {
                     true if aids.stick && sticks_on(pair, &pair.points[k], old) => PredictedStatus::Stick,
                     true if aids.touch => PredictedStatus::Touch,
@@ -254,7 +269,7 @@ impl ContactIteration {
             let rough = pair.points.iter().map(|slave| pair.law(slave).description.stiffness > 0.0);
             let answers = points.iter_mut().zip(&response.states);
             for ((point, state), _) in answers.zip(rough).filter(|(_, rough)| *rough) {
-                if !point.tied && point.turns(state) {
+                if !point.tied && point.slipping.sticks(state, point.predicted_tractions) {
                     point.predicted = PredictedStatus::Stick;
                     any = true;
                 }
@@ -328,6 +343,9 @@ fn touch_acts(pair: &ContactPair, prediction: &Prediction, state: &ContactState,
     touches(pair, state.clearance(), old, prediction.predicted)
 }
 
+/// Ratio to the slip at the last solve below which the slip of a point counts as abating.
+const ABATES: f64 = 0.5;
+
 /// α_t c above which the start value is more than the range of sticking off, with the compliance c of the bodies [-]
 const STIFF: f64 = 20.0;
 
@@ -336,6 +354,67 @@ fn sticks_on(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool
     let Description { stiffness, stiffness_is_penalty, .. } = pair.law(slave).description;
     let stiff = stiffness_is_penalty && stiffness * pair.compliance > STIFF;
     stiff && old.friction.pressure > 0.0 && old.friction.regime == Regime::Stick
+}
+
+/// Fraction of the frictional strength of a slipping point below which tractions would hold it.
+const FAR_LOWER: f64 = 0.9;
+
+/// Slip history of a point over the linear solves of the increment.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slipping {
+    /// Plastic slip of the increment at the last solve [L]
+    slip: f64,
+    /// Whether it was predicted to stick in the last solve
+    stuck: bool,
+}
+
+impl Slipping {
+    /// Records the slip from which the next linear solve starts; returns whether the point is predicted to stick. It is if it
+    /// slips in the opposite direction to the last solve, or was predicted to stick and slips, but would not with the tractions
+    /// predicted by that solve: it missed the narrow range of sticking only because of its own error.
+    fn sticks(&mut self, state: &ContactState, predicted_tractions: Tractions) -> bool {
+        let friction = &state.friction;
+        let slip = friction.plastic_increment;
+        let slips = friction.regime == Regime::Slip;
+        // A point closed only by a prediction has a negative pressure.
+        let of_bond = state.bond.map_or(0.0, |bond| bond.traction.abs());
+        let strength =
+            (friction.traction / friction.pressure).abs() * (predicted_tractions.pressure - state.pores) + of_bond;
+        // A point that slips below its strength would also slip with these tractions, unless they are far lower or the slip
+        // abates.
+        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };
+        let sticks = match self.stuck {
+            true => slips && predicted_tractions.traction.abs() < held,
+            false => self.slip * slip < 0.0,
+        };
+        self.slip = slip;
+        sticks
+    }
+}
+
+/// Segments of a point's projections in the linear solves of the increment.
+#[derive(Clone, Copy, Debug, Default)]
+struct MasterPoints {
+    /// Projected segments at the last two solves
+    last: [Option<usize>; 2],
+    /// The two segments between which the projection alternates
+    alternating: Option<[usize; 2]>,
+}
+
+impl MasterPoints {
+    /// Records the segment from which the next linear solve starts.
+    fn note(&mut self, state: &ContactState) {
+        let segment = state.master_point.map(|master_point| master_point.segment);
+        let [last, before] = self.last;
+        self.alternating =
+            segment.zip(last).filter(|(segment, last)| segment != last && Some(*segment) == before).map(Into::into);
+        self.last = [segment, last];
+    }
+}
+
+/// Whether the projection of a point is predicted to be the node between two segments, and is.
+fn valley_acts(prediction: &Prediction, state: &ContactState) -> bool {
+    prediction.alternating.is_some() && state.master_point.is_some_and(|master_point| master_point.xi == 1.0)
 }
 
 /// Contact status of every point at the last two iterates.
@@ -376,7 +455,7 @@ macro_rules! counts {
     };
 }
 
-counts! { 12;
+counts! { 14;
     /// the start value extrapolates the last increment
     start
     /// the geometric part of the tangent uses predicted tractions
@@ -387,12 +466,16 @@ counts! { 12;
     active_set
     /// closed because of the committed state
     active_set_at_start
-    /// friction uses a carried pressure
+    /// friction uses a predicted pressure
     predicted_pressure
     /// closed and sticking because of zero gap
     touch
     /// sticks after slip in alternating directions
     stick
+    /// sticks once more
+    stick_again
+    /// its projection is the node between two segments
+    valley
     /// the iteration is on the contact nodes only
     condense
     /// the correction was shortened by a line search

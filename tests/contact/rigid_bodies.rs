@@ -439,7 +439,10 @@ fn rigid_bodies_that_are_refused() {
     };
     refused(tool().step(step().support(path().rotation([0.0, 0.0], 0.1))), "rotation");
     refused(tool().step(step().support(path())).rigid_body("tool", [0.0, 0.0]), "rigid_bodies.tool: is given twice");
-    refused(tool().step(step().support(path())).rigid_body("block", [0.0, 0.0]), "rigid_bodies.block: is a group");
+    refused(
+        tool().step(step().support(path())).rigid_body("block", [0.0, 0.0]),
+        "rigid_bodies.block: is also the name of a group",
+    );
     refused(tool().rigid_body("b", [f64::NAN, 0.0]).step(step()), "rigid_bodies.b.reference");
     let other = block(true, on(plane()).rigid_body("punch")).rigid_body("tool", [0.0, -1.0]);
     refused(other.step(step()), "contacts.base.rigid_body: there is no rigid body `punch`; there are tool");

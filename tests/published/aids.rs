@@ -280,7 +280,7 @@ fn case(name: &str) -> &'static Case {
 /// An aid, and how to switch it off.
 type Switch = (&'static str, fn(&mut Aids));
 
-const SWITCHES: [Switch; 12] = [
+const SWITCHES: [Switch; 14] = [
     ("start", |aids| aids.start = false),
     ("prediction", |aids| aids.prediction = false),
     ("limit", |aids| aids.limit = false),
@@ -289,6 +289,8 @@ const SWITCHES: [Switch; 12] = [
     ("predicted_pressure", |aids| aids.predicted_pressure = false),
     ("touch", |aids| aids.touch = false),
     ("stick", |aids| aids.stick = false),
+    ("stick_again", |aids| aids.stick_again = false),
+    ("valley", |aids| aids.valley = false),
     ("old_tangents", |aids| aids.old_tangents = false),
     ("downhill", |aids| aids.downhill = false),
     ("stiffening", |aids| aids.stiffening = false),
@@ -435,6 +437,8 @@ fn every_aid_saves_solves_or_a_failure() {
         ("predicted_pressure", "ridge"),
         ("touch", "slab_touch_once"),
         ("stick", "slab_gap"),
+        ("stick_again", "ridge"),
+        ("valley", "off_an_end"),
         ("old_tangents", "valley"),
         ("downhill", "ridge"),
         ("stiffening", "greco augmented"),

@@ -277,7 +277,7 @@ fn friction_left_in_doubt_by_touch_is_reported() {
         let model = Arc::new(model);
         let (report, result) = run(&model, &mut [&mut warnings]);
         assert!(result.is_ok() && (report.rejected == 0) == (min == 1.0));
-        warnings.list.into_iter().filter(|warning| warning.contains("uncertain by")).collect()
+        warnings.list.into_iter().filter(|warning| warning.contains("friction force uncertain by")).collect()
     };
     let single = message(1.0);
     let parts = ["step `in`", "contact closed within it: friction force uncertain by", "lower dt.min"];
