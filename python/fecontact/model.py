@@ -664,7 +664,8 @@ class PoreFluid(dict[str, Any]):
             the permeability falls by exp(p_w/(γ_w h)), to a ten-thousandth at least, as above a free surface.
             Unless given the ground stays saturated, and as permeable, under any suction [L]
         cavitation: Pressure below which the fluid cavitates and p_w does not fall; −100 kPa of water below the
-            atmosphere. No limit unless given [F/L²]
+            atmosphere; a fluid that flows is not limited, and a warning is reported. No limit unless given
+            [F/L²]
         kozeny_carman: Whether the permeability follows the void ratio e by Kozeny and Carman, k ~ e³/(1 + e),
             from that of the undeformed body at the porosity
         permeability: k: speed at which the fluid seeps under a gradient of head of 1, k > 0; given, the fluid
@@ -809,8 +810,9 @@ class Contact(dict[str, Any]):
         rigid_body: Moving rigid body to which a rigid master belongs: one of `rigid_bodies`; default: the
             master is fixed
         seal: κ: water flows from one body to the other across the contact, closed or open, by κ times the
-            difference of its pressures, κ ≥ 0; default 1000 times what passes through an element adjacent to it, so
-            that the pressure has no jump. Of two bodies whose water flows (`permeability`) [L³/(F T)]
+            difference of its pressures, κ ≥ 0; default 1000 times what passes through an element adjacent to
+            it, so that the pressure has no jump. Of two bodies whose water flows (`permeability`); where water
+            flows along the contact, from there into each of the bodies whose water flows [L³/(F T)]
         shrink_fit: Whether the initial overlap of the surfaces, or a negative `clearance`, is applied gradually
             over the first step (shrink fit) instead of at once
         sliding: Sliding range: finite, or small compared with the distance between nodes
@@ -1220,10 +1222,10 @@ class FlowWell(dict[str, Any]):
     """Well of a contact, which has either a pressure or a rate.
 
     Args:
-        at: Reference position [x, y] on the slave: a pressure is prescribed at the nearest node, a rate is shared by
-            the two beside it [L]
+        at: Reference position [x, y] on the slave: a pressure is prescribed at the nearest node, a rate is
+            shared by the two beside it [L]
         from_: Start; it is shut before. Default: that of the run [T]
-        pressure: Pressure that is held, from its start on [F/L²]
+        pressure: Pressure that is prescribed, from its start on [F/L²]
         rate: Volume that flows in, out if negative; over the thickness of the section, 1 unless given [L³/T]
         until: End; it is shut from then on. Default: never [T]
     """
@@ -1257,8 +1259,8 @@ class Flow(dict[str, Any]):
         closing: σ: T is multiplied by exp(−p′/σ), p′ the effective pressure of the contact; default: it does
             not depend on it [F/L²]
         error: Error of the pressure that is allowed by what the surfaces do within an increment, over its
-            largest change in the run so far: it takes part in the choice of static and implicit increments;
-            default 0.01
+            largest change in the run so far: it takes part in the choice of static and implicit increments, but
+            not beside bodies whose water flows, where `dt.pore_pressure` does; default 0.01
         initial: p_w at the start by place, zero or positive; default 0 [F/L²]
         leak: Flow through the walls into the bodies; default: none
         per_slip: k₁: T grows by k₁ |slip|; default 0 [L²]
@@ -1316,8 +1318,8 @@ class Initial(dict[str, Any]):
 
 
 class Interface(dict[str, Any]):
-    """Strength of an interface, c_i + p tan φ_i: a share of that of the adjacent soil, or by its own numbers. In
-    place of `friction`, and of the `strength` of a bond.
+    """Strength of an interface, c_i + p tan φ_i: a share of that of the adjacent soil, or by its own numbers. In place
+    of `friction`, and of the `strength` of a bond.
 
     Args:
         cohesion: c_i, c_i ≥ 0; default 0 where `friction_angle` is given [F/L²]
@@ -1561,7 +1563,7 @@ class Fronts(dict[str, Any]):
         slip_rate: Slip rate that marks the arrival of a front when it is exceeded; a slip event lasts while any
             point of the contact slips faster [L/T]
         arrival: Criterion for arrivals instead of the slip rate
-        seismic_rate: Slip rate from which slip counts as seismic, above `slip_rate`: `events.csv` then tells
+        seismic_rate: Slip rate from which slip counts as seismic, above `slip_rate`: `events.csv` then says
             when an event became seismic, and which share of its slip was [L/T]
     """
 
@@ -1784,8 +1786,8 @@ class Drainage(dict[str, Any]):
         head: Level of free water that stands there: p_w = γ_w (head − y) of the reference position, of water
             that `weighs` [L]
         impervious: true: ends what an earlier step has said of this place
-        pressure: p_w that is held there, by the reference position x, y and in expressions the run time t; 0
-            where water drains freely [F/L²]
+        pressure: p_w that is prescribed there, by the reference position x, y and in expressions the run time
+            t; 0 where water drains freely [F/L²]
         seepage: true: water leaves where its pressure is above 0, and none enters
     """
 
