@@ -302,7 +302,7 @@ class Oedometer(ElementTest):
         for start, last in zip(starts, [*starts[1:], ends.size - 1]):
             since = ends[start + 1 : last + 1] - ends[start]
             parts = np.ceil(np.log(since[1:] / since[:-1]) / math.log(RATIO)).astype(int)
-            between = [np.geomspace(*pair, n + 1)[:-1] for *pair, n in zip(since[:-1], since[1:], parts)]
+            between = [np.geomspace(a, b, n + 1)[:-1] for a, b, n in zip(since[:-1].tolist(), since[1:].tolist(), parts.tolist())]
             self._stops += (ends[start] + np.concatenate([*between, since[-1:]])).tolist()
             dt = {"initial": since[0] / BEFORE_READING, "max": since[-1], "min": 1e-4 * since[0]}
             loads = [{"on": "top", "dead_pressure": repr(float(self.pressure[start + 1]))}]

@@ -186,7 +186,8 @@ class Law:
         threads: int | None,
     ) -> Drive:
         document = json.dumps(plain({**interface, "by": names(by, "by", "law")}, file="law"))
-        arrays = _native.drive(sets, times, *courses.values(), opening, document, count(threads, "threads"))
+        along, pressure = courses.values()
+        arrays = _native.drive(sets, times, along, pressure, opening, document, count(threads, "threads"))
         answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
         led = {name: np.broadcast_to(given, (len(sets), times.size)).reshape(*self.shape, -1) for name, given in courses.items()}
         return Drive({"time": times, **led, **answers})
