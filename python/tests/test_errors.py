@@ -123,8 +123,8 @@ def test_arguments_that_are_of_another_kind_are_named(call: Any, message: str) -
 def test_arguments_of_a_simulation_are_named(document: dict[str, Any]) -> None:
     simulation = fc.Simulation(document)
     for call, message in (
-        (lambda: simulation.lead("block_top", ux="x", by=1.0), "lead: ux: is 'x': must be a number"),
-        (lambda: simulation.lead(3, ux=0.0, by=1.0), "lead: group: is 3: must be a name"),
+        (lambda: simulation.prescribe("block_top", ux="x", by=1.0), "prescribe: ux: is 'x': must be a number"),
+        (lambda: simulation.prescribe(3, ux=0.0, by=1.0), "prescribe: group: is 3: must be a name"),
         (lambda: simulation.load("block_top", pressure=1.0, by=[1, 2]), r"load: by: is \[1, 2\]: must be a finite number"),
         (lambda: simulation.increments(max="x"), "increments: max: is 'x': must be a number"),
         (lambda: simulation.reaction(3), "reaction: group: is 3: must be a name"),

@@ -252,7 +252,7 @@ def test_resume_goes_on_to_the_same_bits(document: dict[str, Any], result: fc.Re
     status, _, raised = _native.run(case._native, str(out), None, False, False, refuse)
     assert status in ("interrupted", "completed") and isinstance(raised, RuntimeError)
     same_files(result.folder, case.run(out, resume=True, progress=False).folder)
-    with pytest.raises(fc.CaseError, match="steps.0..duration` is 2, and was 1"):
+    with pytest.raises(fc.CaseError, match="steps.0..duration` is now 2 and was 1"):
         case.replace({"steps[0].duration": 2}).run(out, resume=True, progress=False)
 
 

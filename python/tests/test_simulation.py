@@ -89,9 +89,9 @@ def test_saved_runs_go_on_to_the_same_bits(document: dict[str, Any], result: fc.
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({"bodies.block.material.E": 5}, "`bodies.block.material.E` is 5, and was 100"),
-        ({"steps[1].supports[0].ux": {"rate": 0.2}}, "`steps[1].supports[0].ux.rate` is 0.2, and was 0.1"),
-        ({"contacts.base.friction.mu_s": 0.5, "newton": {"tolerance": 1e-6}}, "`contacts.base.friction.mu_s` is 0.5, and was 0.4"),
+        ({"bodies.block.material.E": 5}, "`bodies.block.material.E` is now 5 and was 100"),
+        ({"steps[1].supports[0].ux": {"rate": 0.2}}, "`steps[1].supports[0].ux.rate` is now 0.2 and was 0.1"),
+        ({"contacts.base.friction.mu_s": 0.5, "newton": {"tolerance": 1e-6}}, "`contacts.base.friction.mu_s` is now 0.5 and was 0.4"),
     ],
 )
 def test_a_changed_case_is_refused_in_the_words_of_the_command_line(
@@ -137,7 +137,7 @@ def test_what_is_to_come_may_have_changed(document: dict[str, Any]) -> None:
     assert again.displacement("block_top")[0] == pytest.approx(0.8, rel=1e-12)
     # Once it is led, what its caller has done to it holds, and so it is one that has begun.
     simulation.prescribe("block_top", ux=0.1, by=2.0)
-    with pytest.raises(fc.CaseError, match="steps.1..supports.0..ux.rate` is 0.2, and was 0.1"):
+    with pytest.raises(fc.CaseError, match="steps.1..supports.0..ux.rate` is now 0.2 and was 0.1"):
         fc.Simulation.resume(changed, simulation.save())
     # A step that comes behind the last one goes on from its end.
     list(simulation)
