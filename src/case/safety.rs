@@ -64,6 +64,9 @@ impl Reduced {
 
     /// A case with strengths divided by F.
     fn of(&self, document: &Value, factor: f64) -> Checked<Value> {
+        // After the first correction alone, overshoot cannot be told from growth.
+        let message = "is 1: a trial cannot tell a failure from a start of its iteration; give 2 or more";
+        refuse_if(document["newton"]["max_iterations"] == 1, "newton.max_iterations", message)?;
         for (name, body) in document["bodies"].as_object().into_iter().flatten() {
             let message = "a factor of safety is not available with flowing water: leave it out, and give the pressure \
                            of the water (pore_pressure)";

@@ -142,6 +142,9 @@ fn laws_that_heal_are_refused() {
     let coulomb = json!({"law": "coulomb", "mu": 0.5});
     refused(&case(coulomb.clone()), &["--body", "block"], "bodies.block.material: `linear` has no strength");
     refused(&case(coulomb.clone()), &["--contact", "bas"], "contacts: `bas` is not known here; did you mean `base`?");
+    let mut hurried = case(coulomb.clone());
+    hurried["newton"] = json!({"max_iterations": 1});
+    refused(&hurried, &[], "newton.max_iterations: is 1: a trial cannot tell a failure");
     let mut wet = case(coulomb.clone());
     wet["bodies"]["block"]["pore_fluid"] =
         json!({"bulk_modulus": 1e6, "porosity": 0.5, "permeability": 1, "unit_weight": 1});
