@@ -7,8 +7,13 @@
 mod check;
 mod divided;
 mod error;
+pub(crate) mod few;
 pub mod gmsh;
 mod inline;
+pub(crate) mod joined;
+pub(crate) mod names;
+pub(crate) mod nearest;
+pub(crate) mod outline;
 mod placed;
 mod several;
 mod transfinite;
@@ -18,11 +23,6 @@ cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
         pub mod boxes;
         pub mod configuration;
-        pub mod few;
-        pub mod joined;
-        pub mod names;
-        pub mod nearest;
-        pub mod outline;
         pub mod rigid;
         pub mod section;
         pub mod shape;
@@ -30,11 +30,6 @@ cfg_if::cfg_if! {
     } else {
         pub(crate) mod boxes;
         pub(crate) mod configuration;
-        pub(crate) mod few;
-        pub(crate) mod joined;
-        pub(crate) mod names;
-        pub(crate) mod nearest;
-        pub(crate) mod outline;
         pub(crate) mod rigid;
         pub(crate) mod section;
         pub(crate) mod shape;

@@ -5,48 +5,42 @@ mod bars;
 mod body;
 pub mod boundary;
 pub mod builder;
+pub(crate) mod coupled;
 mod expression;
 mod in_force;
+pub(crate) mod linkage;
+pub(crate) mod pore_flow;
 mod pore_flow_concerns;
 mod random;
 mod requests;
+pub(crate) mod resistance;
 mod stages;
+pub(crate) mod support;
 mod unfit;
+pub(crate) mod warnings;
 pub(crate) mod written;
 
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
         pub mod aids;
-        pub mod coupled;
         pub mod element;
         pub mod imposed;
-        pub mod linkage;
         pub mod measured;
         pub mod method;
-        pub mod pore_flow;
-        pub mod resistance;
         pub mod scheme;
         pub mod state;
         pub mod step;
-        pub mod support;
         pub mod text;
-        pub mod warnings;
     } else {
         pub(crate) mod aids;
-        pub(crate) mod coupled;
         pub(crate) mod element;
         pub(crate) mod imposed;
-        pub(crate) mod linkage;
         pub(crate) mod measured;
         pub(crate) mod method;
-        pub(crate) mod pore_flow;
-        pub(crate) mod resistance;
         pub(crate) mod scheme;
         pub(crate) mod state;
         pub(crate) mod step;
-        pub(crate) mod support;
         pub(crate) mod text;
-        pub(crate) mod warnings;
     }
 }
 

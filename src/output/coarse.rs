@@ -1,10 +1,7 @@
 //! Warning about friction that is integrated to first order in time, in increments too long for it: where slip is unstable they damp
 //! the instability away, and events are late, or never happen.
 
-use std::collections::BTreeMap;
-
-use serde::{Deserialize, Serialize};
-
+use super::worst::Worst;
 use crate::mesh::configuration::Configuration;
 use crate::model::builder::OF_CRITICAL_SLIP;
 use crate::model::scheme::time_text;
@@ -17,51 +14,38 @@ use crate::time::step_size::error_of_slip;
 /// Error of slip in an increment that causes a warning, as a fraction of D_c.
 const COARSE: f64 = 0.1;
 
-/// The largest error of slip of each contact, over its D_c, if it is not small, and what is to be said of it.
-#[derive(Clone, Default, Serialize, Deserialize)]
-pub struct Coarse {
-    largest: BTreeMap<usize, (f64, String)>,
-}
-
-impl Coarse {
-    /// Looks at an accepted implicit or static increment; others come without iterations.
-    pub fn record(&mut self, model: &Model, attempt: &Attempt, state: &State, x: &Configuration) {
-        let (step, old) = (attempt.step, attempt.old);
-        // What exceeds the allowed error is reported as such.
-        let is_reported = attempt.local_error.is_some_and(|error| error.is_excessive());
-        if attempt.iterations.is_empty() || is_reported || step.increments.slip.is_some() {
-            return;
-        }
-        for (k, pair) in model.contacts.iter().enumerate().filter(|(_, pair)| !pair.tied && step.joins(pair)) {
-            for (point, (before, after)) in pair.points.iter().zip(old.contacts[k].iter().zip(&state.contacts[k])) {
-                let critical = pair.ask_law(point, [state.time; 2], |law| law.description.critical_slip);
-                let Some(critical) = critical.ok().flatten() else { continue };
-                let error = error_of_slip([before, after], [old.last_dt(), state.dt]);
-                let so_far = self.largest.get(&k).map_or(COARSE, |(share, _)| *share);
-                if error > so_far * critical {
-                    let [slip, last] = [after, before].map(|state| state.friction.plastic_increment.abs());
-                    let at = point.at(x);
-                    let message = format!(
-                        "contact `{}` at ({:.6}, {:.6}), t = {}: slip of {slip:.3e} in an increment of {:.3e}, after {last:.3e} in \
+/// Enters the largest error of slip of each contact, over its D_c, of an accepted implicit or static increment; others come without iterations.
+pub fn record(worst: &mut Worst, model: &Model, attempt: &Attempt, state: &State, x: &Configuration) {
+    let (step, old) = (attempt.step, attempt.old);
+    // What exceeds the allowed error is reported as such.
+    let is_reported = attempt.local_error.is_some_and(|error| error.is_excessive());
+    if attempt.iterations.is_empty() || is_reported || step.increments.slip.is_some() {
+        return;
+    }
+    for (k, pair) in model.contacts.iter().enumerate().filter(|(_, pair)| !pair.tied && step.joins(pair)) {
+        for (point, (before, after)) in pair.points.iter().zip(old.contacts[k].iter().zip(&state.contacts[k])) {
+            let critical = pair.ask_law(point, [state.time; 2], |law| law.description.critical_slip);
+            let Some(critical) = critical.ok().flatten() else { continue };
+            let error = error_of_slip([before, after], [old.last_dt(), state.dt]);
+            let so_far = worst.bound(k, COARSE);
+            if error > so_far * critical {
+                let [slip, last] = [after, before].map(|state| state.friction.plastic_increment.abs());
+                let at = point.at(x);
+                let message = format!(
+                    "contact `{}` at ({:.6}, {:.6}), t = {}: slip of {slip:.3e} in an increment of {:.3e}, after {last:.3e} in \
                          the last one, is wrong by about {:.1} D_c: its friction is integrated to first order in time, and increments this long damp \
                          stick-slip away; {}",
-                        pair.name,
-                        at.x,
-                        at.y,
-                        time_text(state.time),
-                        state.dt,
-                        error / critical,
-                        remedy(step, critical)
-                    );
-                    self.largest.insert(k, (error / critical, message));
-                }
+                    pair.name,
+                    at.x,
+                    at.y,
+                    time_text(state.time),
+                    state.dt,
+                    error / critical,
+                    remedy(step, critical)
+                );
+                worst.enter(k, error / critical, message);
             }
         }
-    }
-
-    /// The warnings, each of which is reported once.
-    pub fn warnings(&mut self) -> impl Iterator<Item = String> {
-        std::mem::take(&mut self.largest).into_values().map(|(_, message)| message)
     }
 }
 

@@ -44,6 +44,8 @@ pub enum Kind {
     FarFromLinear,
     /// Water that flows would cavitate
     Cavitates,
+    /// Water opens the surfaces along which it flows
+    OpenedByWater,
 }
 
 /// Warning about a pressure above the bound of uniqueness.

@@ -1,13 +1,24 @@
 //! Output of a run: observers of every attempt, and the files they write.
 
+mod coarse;
+pub(crate) mod concerns;
 mod csv;
 mod depths;
+mod few_edges;
+pub(crate) mod folder;
 mod frames;
+pub(crate) mod friction_history;
+mod instability;
+pub(crate) mod law;
 mod opened;
 pub mod results;
+mod scattered;
 mod slid_bars;
+pub(crate) mod summary;
 mod units;
 mod unpressed;
+mod vtu;
+mod worst;
 
 // The writers of these files are internal to the program.
 cfg_if::cfg_if! {
@@ -15,21 +26,13 @@ cfg_if::cfg_if! {
         pub mod audit;
         pub mod bodies;
         pub mod checkpoint;
-        pub mod coarse;
-        pub mod concerns;
         pub mod events;
-        pub mod few_edges;
         pub mod fields;
         pub mod files;
-        pub mod folder;
-        pub mod friction_history;
         pub mod fronts;
         pub mod gradients;
         pub mod history;
-        pub mod instability;
-        pub mod scattered;
         pub mod store;
-        pub mod law;
         pub mod named;
         pub mod newton_log;
         pub mod probes;
@@ -37,28 +40,18 @@ cfg_if::cfg_if! {
         pub mod recovery;
         pub mod report;
         pub mod sections;
-        pub mod summary;
-        pub mod vtu;
         pub mod warnings;
     } else {
         pub(crate) mod audit;
         pub(crate) mod bodies;
         pub(crate) mod checkpoint;
-        pub(crate) mod coarse;
-        pub(crate) mod concerns;
         pub(crate) mod events;
-        pub(crate) mod few_edges;
         pub(crate) mod fields;
         pub(crate) mod files;
-        pub(crate) mod folder;
-        pub(crate) mod friction_history;
         pub(crate) mod fronts;
         pub(crate) mod gradients;
         pub(crate) mod history;
-        pub(crate) mod instability;
-        pub(crate) mod scattered;
         pub(crate) mod store;
-        pub(crate) mod law;
         pub(crate) mod named;
         pub(crate) mod newton_log;
         pub(crate) mod probes;
@@ -66,8 +59,6 @@ cfg_if::cfg_if! {
         pub(crate) mod recovery;
         pub(crate) mod report;
         pub(crate) mod sections;
-        pub(crate) mod summary;
-        pub(crate) mod vtu;
         pub(crate) mod warnings;
     }
 }

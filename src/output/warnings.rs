@@ -11,16 +11,17 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::audit::Audit;
-use super::coarse::Coarse;
+use super::coarse;
 use super::concerns::{Kind, concerns, left};
 use super::csv;
 use super::depths;
 use super::few_edges::FewEdges;
 use super::instability::Instability;
-use super::opened::Opened;
-use super::scattered::Scattered;
-use super::slid_bars::SlidBars;
+use super::opened::by_water;
+use super::scattered;
+use super::slid_bars;
 use super::unpressed::Unpressed;
+use super::worst::Worst;
 use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Shape};
 use crate::contact::pair::ContactPair;
@@ -56,7 +57,7 @@ pub struct Warnings {
     /// How far each linear body had been strained in this step when it was looked at, as [`most_strained`] estimates it
     strained: BTreeMap<usize, f64>,
     /// Linear bodies beyond their range in this step, with the largest norm of a displacement gradient
-    far: BTreeMap<usize, (f64, String)>,
+    far: Worst,
     /// Contacts that have not closed yet, with name and smallest gap
     open: BTreeMap<usize, (String, Option<f64>)>,
     /// Contacts that have closed once
@@ -66,17 +67,15 @@ pub struct Warnings {
     /// Unstable equilibria that were accepted
     unstable: Instability,
     /// Friction in increments that are too long for it
-    coarse: Coarse,
+    coarse: Worst,
     /// Contacts whose tractions alternate from point to point
-    scattered: Scattered,
+    scattered: Worst,
     /// Contacts that are closed on few edges
     few_edges: FewEdges,
     /// Shear that open points carry
     unpressed: Unpressed,
     /// Bars that have slipped far
-    slid_bars: SlidBars,
-    /// Contacts that water has opened
-    opened: Opened,
+    slid_bars: Worst,
     /// Energy balance so far
     pub audit: Audit,
     /// How far each linear body may be strained by now, once looked at, by the ways that its nodes have gone since
@@ -121,21 +120,17 @@ impl Observer for Warnings {
         let way = self.audit.record(model, attempt.step, attempt.old, state);
         self.linear_bodies(model, state, way, attempt.ends_step(state));
         let x = model.configuration(&state.displacement);
-        self.coarse.record(model, attempt, state, &x);
-        self.scattered.record(model, attempt, state);
+        coarse::record(&mut self.coarse, model, attempt, state, &x);
+        scattered::record(&mut self.scattered, model, attempt, state);
         self.few_edges.record(model, attempt, state, &x);
         self.unpressed.record(model, state);
-        self.slid_bars.record(model, state);
-        self.opened.record(model, attempt.old, state);
+        slid_bars::record(&mut self.slid_bars, model, state);
         self.cavitating(model, state);
         let pairs = model.contacts.iter().zip(&state.contacts).enumerate();
         for (number, (pair, states)) in pairs.filter(|(_, (pair, _))| attempt.step.joins(pair)) {
-            if !self.given.contains(&(number, Kind::DeepPenetration))
-                && let Some((at, message)) = depths::penetrates(pair, states, &x)
-            {
-                self.given.insert((number, Kind::DeepPenetration));
-                self.list.push(format!("{}: {message}", place(pair, at, state.time)));
-            }
+            self.once(number, Kind::DeepPenetration, pair, state.time, || depths::penetrates(pair, states, &x));
+            let both = [&attempt.old.contacts[number][..], states];
+            self.once(number, Kind::OpenedByWater, pair, state.time, || by_water(pair, both, &x));
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
             for (point, (old, contact)) in points.filter(|(_, (_, new))| new.is_closed()) {
                 for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {
@@ -152,17 +147,15 @@ impl Observer for Warnings {
             self.explicit |= explicit;
             self.never_closed(number, pair, states);
             if !explicit || attempt.ends_step(state) {
-                self.deep_unseen(number, pair, state.time, &x);
-                let kind = Kind::RigidInside;
-                let deep = if self.given.contains(&(number, kind)) { None } else { depths::rigid_inside(pair, &x) };
-                if let Some((at, message)) = deep.filter(|_| self.given.insert((number, kind))) {
-                    self.list.push(format!("{}: {message}", place(pair, at, state.time)));
-                }
+                self.once(number, Kind::DeepUnseen, pair, state.time, || deep_unseen(pair, &x));
+                self.once(number, Kind::RigidInside, pair, state.time, || depths::rigid_inside(pair, &x));
             }
             let elsewhere = pair.comes_stressed || pair.initial.is_some() || pair.points.iter().any(|p| p.touch != 0.0);
             if !(fading || explicit || elsewhere) {
-                self.deep_master_node(number, pair, state, &x);
-                self.deep_slave_node(number, pair, state, &x);
+                // Gaps differ from those of the surfaces under initial tractions and while a shrink fit is applied; explicit increments are
+                // too many.
+                self.once(number, Kind::DeepMasterNode, pair, state.time, || deep_master_node(pair, states, &x));
+                self.once(number, Kind::DeepSlaveNode, pair, state.time, || deep_slave_node(pair, states, &x));
             }
         }
         self.report();
@@ -179,12 +172,11 @@ impl Observer for Warnings {
             self.list.push(format!("contact `{name}` has never closed{where_seen}: {near}"));
         }
         self.list.extend(self.unstable.message());
-        self.list.extend(self.coarse.warnings());
-        self.list.extend(self.scattered.warnings());
+        for worst in [&mut self.coarse, &mut self.scattered, &mut self.slid_bars] {
+            self.list.extend(worst.take().map(|(_, message)| message));
+        }
         self.list.extend(self.few_edges.warnings());
         self.list.extend(self.unpressed.warnings());
-        self.list.extend(self.slid_bars.warnings());
-        self.list.extend(self.opened.warnings());
         self.list.extend(self.audit.concerns());
         self.report();
         self.audit.check()
@@ -201,6 +193,23 @@ impl Warnings {
         self.list[self.reported..].iter_mut().for_each(|warning| *warning = readable(warning));
         self.warn.iter().for_each(|warn| self.list[self.reported..].iter().for_each(|warning| warn(warning)));
         self.reported = self.list.len();
+    }
+
+    /// A warning of a kind about a contact at a place, where there was none before.
+    fn once(
+        &mut self,
+        number: usize,
+        kind: Kind,
+        pair: &ContactPair,
+        time: f64,
+        found: impl FnOnce() -> Option<(Vector2<f64>, String)>,
+    ) {
+        if !self.given.contains(&(number, kind))
+            && let Some((at, message)) = found()
+        {
+            self.given.insert((number, kind));
+            self.list.push(format!("{}: {message}", place(pair, at, time)));
+        }
     }
 
     /// Points that have left the range of small sliding, closed or not: an open one may miss a contact.
@@ -230,45 +239,6 @@ impl Warnings {
         }
     }
 
-    /// Master nodes that penetrate the slave between its points, where contact is not checked. (Excluded where gaps differ from
-    /// those of the surfaces: under initial tractions and while a shrink fit is applied; and explicit increments, which are too
-    /// many.)
-    fn deep_master_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
-        if self.given.contains(&(number, Kind::DeepMasterNode)) {
-            return;
-        }
-        let deepest = pair.deepest_master_node(&state.contacts[number], x);
-        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP_BETWEEN) else { return };
-        self.given.insert((number, Kind::DeepMasterNode));
-        // A stiffer penalty helps only where the points of the contact give way by as much.
-        let gives = state.contacts[number].iter().filter(|contact| contact.is_closed());
-        let gives = gives.map(|contact| -contact.clearance()).fold(0.0, f64::max);
-        let remedy = if gives > OF_DEPTH * depth {
-            "refine both sides there, make the finer one the slave, or raise alpha_n"
-        } else {
-            "the edges there are too long for the shapes of both surfaces: refine both sides, or make the finer one the slave"
-        };
-        self.list.push(format!(
-            "{}: a master node penetrates the slave by {depth:.3e}, {:.1} % of its edge; {remedy}",
-            place(pair, at, state.time),
-            100.0 * share
-        ));
-    }
-
-    /// Slave nodes inside a mesh master that the averages around them do not press on.
-    fn deep_slave_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
-        let seen = self.given.contains(&(number, Kind::DeepSlaveNode));
-        let deepest = if seen { None } else { pair.deepest_slave_node(&state.contacts[number], x) };
-        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > UNSEEN) else { return };
-        self.given.insert((number, Kind::DeepSlaveNode));
-        self.list.push(format!(
-            "{}: a slave node is inside the master by {depth:.3e}, {:.1} % of its edge, and the means around it are open: refine the slave \
-             there, or take \"method\": \"node_to_segment\"",
-            place(pair, at, state.time),
-            100.0 * share
-        ));
-    }
-
     /// Tracks contacts that have never closed. (Self-contact need not close.)
     fn never_closed(&mut self, number: usize, pair: &ContactPair, states: &[ContactState]) {
         if self.closed.contains(&number) || pair.is_own() {
@@ -282,28 +252,6 @@ impl Warnings {
         let gaps = states.iter().filter(|state| state.master_point.is_some()).map(ContactState::clearance);
         let (_, least) = self.open.entry(number).or_insert_with(|| (pair.name.clone(), None));
         *least = gaps.chain(*least).min_by(f64::total_cmp);
-    }
-
-    /// Nodes outside the slave that penetrate a rigid master, which acts only on slave points.
-    fn deep_unseen(&mut self, number: usize, pair: &ContactPair, time: f64, x: &Configuration) {
-        let Master::Rigid(rigid) = &pair.master else { return };
-        if pair.unseen.is_empty() || self.given.contains(&(number, Kind::DeepUnseen)) {
-            return;
-        }
-        let longest = pair.points.iter().filter_map(|point| point.edge_length(x)).fold(0.0, f64::max);
-        // What is deeper behind a line than an edge is beyond the other side of its tool.
-        let most = if matches!(rigid.shape, Shape::Polyline(_)) { longest } else { f64::INFINITY };
-        let depths = pair.unseen.iter().filter_map(|node| Some((node, -rigid.project(node, x)?.gap)));
-        let within = depths.filter(|(_, depth)| *depth < most);
-        let Some((node, depth)) = within.max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
-        if depth > UNSEEN * longest {
-            self.given.insert((number, Kind::DeepUnseen));
-            self.list.push(format!(
-                "{}: a node outside the slave group penetrates the rigid master by {depth:.3e}; the master acts only on slave \
-                 nodes: add the touching sides to the slave group",
-                place(pair, node.at(x), time)
-            ));
-        }
     }
 
     /// Linear bodies that have turned or stretched too far for one: told at the end of the step, with what was the farthest, to 2 %
@@ -350,7 +298,7 @@ impl Warnings {
         };
         let own = (0..model.solids.len()).filter(|&element| model.body_of_element[element] == number);
         let farthest = own.map(|e| (e, largest(e))).max_by(|a, b| a.1.total_cmp(&b.1));
-        let so_far = self.far.get(&number).map_or(FAR_FROM_LINEAR, |(gradient, _)| *gradient);
+        let so_far = self.far.bound(number, FAR_FROM_LINEAR);
         let Some((element, gradient)) = farthest.filter(|(_, gradient)| *gradient > so_far) else { return };
         let nodes = &model.mesh.elements[element].nodes;
         let at = nodes.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / nodes.len() as f64;
@@ -363,11 +311,11 @@ impl Warnings {
             time_text(state.time),
             100.0 * gradient
         );
-        self.far.insert(number, (gradient, message));
+        self.far.enter(number, gradient, message);
     }
 
     fn tell_far(&mut self) {
-        for (number, (_, message)) in std::mem::take(&mut self.far) {
+        for (number, message) in self.far.take() {
             self.given.insert((number, Kind::FarFromLinear));
             self.list.push(message);
         }
@@ -453,6 +401,48 @@ impl Warnings {
             self.list.push(shortest(attempt, &found));
         }
     }
+}
+
+/// The deepest master node in the slave between its points, where contact is not checked, with a warning.
+fn deep_master_node(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, String)> {
+    let (at, depth, share) = pair.deepest_master_node(states, x).filter(|(.., share)| *share > DEEP_BETWEEN)?;
+    // A stiffer penalty helps only where the points of the contact give way by as much.
+    let gives = states.iter().filter(|contact| contact.is_closed());
+    let gives = gives.map(|contact| -contact.clearance()).fold(0.0, f64::max);
+    let remedy = if gives > OF_DEPTH * depth {
+        "refine both sides there, make the finer one the slave, or raise alpha_n"
+    } else {
+        "the edges there are too long for the shapes of both surfaces: refine both sides, or make the finer one the slave"
+    };
+    let percent = 100.0 * share;
+    Some((at, format!("a master node penetrates the slave by {depth:.3e}, {percent:.1} % of its edge; {remedy}")))
+}
+
+/// The deepest slave node in a mesh master that the averages around it do not press on, with a warning.
+fn deep_slave_node(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, String)> {
+    let (at, depth, share) = pair.deepest_slave_node(states, x).filter(|(.., share)| *share > UNSEEN)?;
+    let message = format!(
+        "a slave node is inside the master by {depth:.3e}, {:.1} % of its edge, and the means around it are open: refine the slave \
+         there, or take \"method\": \"node_to_segment\"",
+        100.0 * share
+    );
+    Some((at, message))
+}
+
+/// The deepest node outside the slave in a rigid master, which acts only on slave points, with a warning.
+fn deep_unseen(pair: &ContactPair, x: &Configuration) -> Option<(Vector2<f64>, String)> {
+    let Master::Rigid(rigid) = &pair.master else { return None };
+    let longest = pair.points.iter().filter_map(|point| point.edge_length(x)).fold(0.0, f64::max);
+    // What is deeper behind a line than an edge is beyond the other side of its tool.
+    let most = if matches!(rigid.shape, Shape::Polyline(_)) { longest } else { f64::INFINITY };
+    let depths = pair.unseen.iter().filter_map(|node| Some((node, -rigid.project(node, x)?.gap)));
+    let within = depths.filter(|(_, depth)| *depth < most);
+    let (node, depth) = within.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, depth)| *depth > UNSEEN * longest)?;
+    let message = format!(
+        "a node outside the slave group penetrates the rigid master by {depth:.3e}; the master acts only on slave \
+         nodes: add the touching sides to the slave group"
+    );
+    Some((node.at(x), message))
 }
 
 /// Describes place and time.

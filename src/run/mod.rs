@@ -1,5 +1,6 @@
 //! Runs: steps, increments, cut-back, and observers of every attempt.
 
+mod access;
 mod attempt;
 pub mod error;
 pub mod law;
@@ -7,11 +8,9 @@ pub mod observer;
 
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
-        pub mod access;
         pub mod control;
         pub mod simulation;
     } else {
-        pub(crate) mod access;
         pub(crate) mod control;
         pub(crate) mod simulation;
     }
