@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use fecontact::case;
-use fecontact::equations::sums::TrialFailure;
-use fecontact::equations::{Assembler, Trial};
+use fecontact::equations::{Assembler, Trial, TrialFailure};
 use fecontact::laws::bulk::MaterialParameters;
 use fecontact::linear::Multifrontal;
 use fecontact::linear::system::Request;

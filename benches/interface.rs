@@ -16,11 +16,9 @@ use std::time::Instant;
 use fecontact::laws::bulk::{ElasticConstants, Linear};
 use fecontact::laws::friction::SuperSubloadingParameters;
 use fecontact::mesh::InlineMesh;
-use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Contact, LoadStep, Support};
-use fecontact::model::method::Method;
-use fecontact::model::scheme::Scheme;
+use fecontact::model::{Method, Model, Scheme};
 use fecontact::run::Simulation;
 
 /// Columns of elements in the rows of the table.

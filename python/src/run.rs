@@ -8,8 +8,7 @@ use fecontact::equations::ContactCounts;
 use fecontact::model::Model;
 use fecontact::model::text::readable;
 use fecontact::output::report as page;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
+use fecontact::run::{Attempt, Error, Observer};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 

@@ -25,8 +25,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::mesh::section::Section;
-use crate::mesh::{Mesh, MeshError, gmsh};
+use crate::mesh::{Mesh, MeshError, Section, gmsh};
 use crate::model::builder::{
     Builder, Checked, Contact, FluidPressure, Gauge, ModelError, SectionsInput, check_name, refuse_if,
 };

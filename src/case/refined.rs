@@ -17,10 +17,9 @@ use super::resolved::keep_opening;
 use super::{CaseError, Written, build, build_on, mesh, with_groups};
 use crate::mesh::{Block, Blocks, Grading, Group, MOST_ELEMENTS, Mesh};
 use crate::model::builder::{Checked, Load, LoadStep, ModelError, Place, nodes_at, refuse_if};
-use crate::model::scheme::Scheme;
 use crate::model::step::SHORTEST_INCREMENT;
 use crate::model::text::vector;
-use crate::model::{Increments, Model, Step};
+use crate::model::{Increments, Model, Scheme, Step};
 
 /// Most halvings of a mesh: 65 536 elements for one along a side are more than any mesh may have.
 const MOST: u32 = 16;

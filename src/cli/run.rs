@@ -15,13 +15,11 @@ use super::say::{LOG, log_to};
 use super::threads::use_threads;
 use crate::case::job::{Callbacks, Job, Outcome};
 use crate::case::{Opened, Written, warnings};
-use crate::model::Model;
 use crate::model::scheme::time_text;
-use crate::model::state::Energy;
+use crate::model::{Energy, Model};
 use crate::output::report;
 use crate::output::summary::Summary;
-use crate::run::error::Error;
-use crate::run::observer::Observer;
+use crate::run::{Error, Observer};
 
 /// Options of `fecontact run`.
 #[derive(Clone, Debug, Default)]

@@ -38,3 +38,8 @@ pub mod sight;
 pub mod small_sliding;
 pub mod stretch;
 pub mod surface;
+
+pub use master::Master;
+pub use pair::ContactPair;
+pub use point::ContactState;
+pub use surface::SlavePoint;

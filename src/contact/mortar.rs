@@ -39,9 +39,8 @@ use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, lone_point};
 use super::projection::{Projection, tangent_of};
 use super::search::{Index, KeptSearch};
 use super::surface::{Segment, Surface};
-use crate::mesh::configuration::Configuration;
-use crate::mesh::section::Section;
 use crate::mesh::shape;
+use crate::mesh::{Configuration, Section};
 
 /// The slave side: its edges, and the edges at each contact point.
 #[derive(Clone, Debug, PartialEq)]

@@ -17,10 +17,9 @@ use super::dual::{DualVector, Number};
 use super::projection::{FACING, normal_of};
 use super::search::Index;
 use super::surface::{Segment, Surface};
-use crate::mesh::configuration::Configuration;
 use crate::mesh::few::Few;
-use crate::mesh::section::Section;
 use crate::mesh::shape;
+use crate::mesh::{Configuration, Section};
 
 /// Largest distance of a master segment from a slave edge, in lengths of the edge: large enough for the deep penetrations of
 /// first iterates, which must not count as lost contact.

@@ -22,8 +22,7 @@ use crate::equations::trial::Trial;
 use crate::equations::{bars, contacts, damping, links, loads, pore_flow, supports};
 use crate::linear::system::{Request, System};
 use crate::linear::{SparseMatrix, norm};
-use crate::model::state::State;
-use crate::model::{Activated, Model, Step};
+use crate::model::{Activated, Model, State, Step};
 
 /// Assembles a model; owns the pattern and reused buffers.
 pub struct Assembler {

@@ -17,16 +17,14 @@
 
 use super::trial::Trial;
 use super::{bars, links, supports};
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
+use crate::contact::{ContactPair, ContactState};
 use crate::linear::SparseMatrix;
 use crate::mesh::configuration::Configuration;
 use crate::model::boundary::Absorber;
 use crate::model::coupled::{CoupledPart, CoupledParts};
 use crate::model::pore_flow::PoreFlow;
-use crate::model::state::State;
-use crate::model::{Body, Damping, Model, Step};
+use crate::model::{Body, Damping, Model, State, Step};
 
 /// Error of a force in units of ε: every element adds a few to each node.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;

@@ -5,16 +5,14 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::conduit::Conduit;
-use crate::contact::master::Master;
-use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
 use crate::contact::seam::Seam;
 use crate::contact::surface::Path;
+use crate::contact::{ContactPair, Master};
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::mesh::rigid::RigidBody;
-use crate::model::Model;
 use crate::model::pore_flow::PoreFlow;
-use crate::model::state::State;
+use crate::model::{Model, State};
 
 /// Maximum number of segments ahead of a projection for which the pattern has room.
 const FARTHEST: usize = 8;

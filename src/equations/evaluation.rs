@@ -14,8 +14,7 @@ use std::ops::Range;
 
 use super::{bars, contacts, damping, links};
 use crate::bars::BarState;
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
+use crate::contact::{ContactPair, ContactState};
 use crate::laws::friction::Regime;
 use crate::model::state::{State, Water};
 use crate::model::support::Direction;

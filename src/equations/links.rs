@@ -37,10 +37,9 @@ use super::trial::Trial;
 use crate::linear::SparseMatrix;
 use crate::linear::system::System;
 use crate::mesh::configuration::vector;
-use crate::model::Model;
 use crate::model::linkage::Follower;
 use crate::model::scheme::Coefficients;
-use crate::model::state::State;
+use crate::model::{Model, State};
 
 /// e of a rigid platen initially, and its change by the displacements `u`.
 fn arms(model: &Model, [a, b]: [usize; 2], u: &[f64]) -> [Vector2<f64>; 2] {

@@ -51,4 +51,5 @@ pub use assembler::Assembler;
 pub use coupling::Coupling;
 pub use evaluation::{ContactCounts, Evaluation, Seconds, regimes};
 pub use solids::{LinearizedSolids, SolidForces};
+pub use sums::TrialFailure;
 pub use trial::Trial;

@@ -4,9 +4,8 @@ use nalgebra::Vector2;
 
 use crate::mesh::configuration::vector;
 use crate::model::boundary::Moment;
-use crate::model::state::State;
 use crate::model::support::Prescribed;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 
 /// One increment to be solved: initial state, end time and step.
 #[derive(Clone, Copy, Debug)]

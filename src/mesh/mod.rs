@@ -41,9 +41,11 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use crate::mesh::boxes::Box2;
-use crate::mesh::configuration::{Configuration, vector};
+use boxes::Box2;
 
+#[doc(hidden)]
+pub use configuration::Configuration;
+use configuration::vector;
 pub use error::MeshError;
 pub use inline::InlineMesh;
 pub use names::UnknownGroup;

@@ -16,8 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::master::Master;
 use crate::contact::search::Index;
 use crate::contact::surface::{CORNER, MasterPoint, SlavePoint, Surface, in_order, nodal_points};
-use crate::mesh::configuration::Configuration;
-use crate::mesh::{Group, Mesh};
+use crate::mesh::{Configuration, Group, Mesh};
 use crate::model::scheme::Regime;
 
 /// Contact method: evaluation points of contact.

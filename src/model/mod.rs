@@ -52,9 +52,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::bars::Bar;
 use crate::contact::pair::ContactPair;
-use crate::mesh::configuration::Configuration;
 use crate::mesh::ties::Ties;
-use crate::mesh::{Element, Mesh};
+use crate::mesh::{Configuration, Element, Mesh};
 use aids::Aids;
 #[doc(hidden)]
 pub use bars::BarsInStep;

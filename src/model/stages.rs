@@ -23,8 +23,7 @@ use super::pore_flow::WetElement;
 use super::state::{Births, State};
 use super::step::Step;
 use crate::contact::conduit::Conduit;
-use crate::contact::pair::ContactPair;
-use crate::contact::point::ContactState;
+use crate::contact::{ContactPair, ContactState};
 
 /// Share of its size in the mesh at a point of an element below which it does not come: other nodes have moved away from its own.
 const LEAST_SHARE: f64 = 0.5;

@@ -32,16 +32,14 @@
 
 use nalgebra::Vector2;
 
-use crate::contact::master::Master;
 use crate::contact::pair::{BothSurfaces, ContactPair};
-use crate::contact::point::ContactState;
+use crate::contact::{ContactState, Master};
 use crate::equations::contacts::Springs;
 use crate::mesh::configuration::vector;
 use crate::model::balance;
 use crate::model::coupled::{CoupledPart, CoupledParts};
 use crate::model::scheme::{Scheme, time_text};
-use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 use crate::run::error::Error;
 use serde::{Deserialize, Serialize};
 

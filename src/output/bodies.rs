@@ -14,8 +14,7 @@
 use nalgebra::Vector2;
 
 use crate::mesh::configuration::vector;
-use crate::model::state::State;
-use crate::model::{Body, Model};
+use crate::model::{Body, Model, State};
 
 /// Constants of a body for its mean values.
 #[derive(Clone, Debug)]

@@ -17,8 +17,7 @@ use thiserror::Error;
 use super::csv::failed;
 use super::files;
 use crate::mesh::{Group, Mesh};
-use crate::run::RunBytes;
-use crate::run::error::Error;
+use crate::run::{Error, RunBytes};
 
 /// File of the last checkpoint.
 pub const NEWEST: &str = "checkpoint.bin";

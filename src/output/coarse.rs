@@ -5,9 +5,8 @@ use super::worst::Worst;
 use crate::mesh::configuration::Configuration;
 use crate::model::builder::OF_CRITICAL_SLIP;
 use crate::model::scheme::time_text;
-use crate::model::state::State;
 use crate::model::text::number;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 use crate::run::observer::Attempt;
 use crate::time::step_size::error_of_slip;
 

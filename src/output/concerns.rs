@@ -3,10 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN};
-use crate::contact::surface::SlavePoint;
+use crate::contact::{ContactPair, ContactState, SlavePoint};
 use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
 use crate::model::text::distinct;

@@ -13,8 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::files;
 use crate::model::Model;
-use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer, Row};
+use crate::run::{Attempt, Error, Observer, Row};
 
 /// Time within which rows are written to the system together: a call costs as much as a row.
 const BLINK: Duration = Duration::from_millis(50);

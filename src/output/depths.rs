@@ -3,10 +3,8 @@
 use nalgebra::Vector2;
 
 use crate::contact::depth::{Depth, Inside};
-use crate::contact::force::ContactState;
 use crate::contact::master::{Master, Rigid, Shape};
-use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
+use crate::contact::{ContactPair, ContactState, SlavePoint};
 use crate::mesh::configuration::Configuration;
 use crate::model::text::distinct;
 

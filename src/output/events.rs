@@ -25,12 +25,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
+use crate::contact::{ContactPair, ContactState};
 use crate::laws::bulk::Material;
-use crate::model::Model;
 use crate::model::builder::{ModelError, check_positive};
-use crate::model::state::State;
+use crate::model::{Model, State};
 
 /// A slip event, complete or in progress.
 #[derive(Clone, Debug, Serialize, Deserialize)]

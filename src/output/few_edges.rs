@@ -5,15 +5,12 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::force::ContactState;
-use crate::contact::master::Master;
-use crate::contact::pair::ContactPair;
 use crate::contact::stretch::Stretch;
+use crate::contact::{ContactPair, ContactState, Master};
 use crate::mesh::configuration::Configuration;
 use crate::model::scheme::{Scheme, time_text};
-use crate::model::state::State;
 use crate::model::text::{self, count};
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 use crate::run::observer::Attempt;
 
 /// Number of tractions along a contact below which a warning is given: on four linear edges the largest pressure of Hertz's problem is right to a

@@ -17,11 +17,9 @@ use super::recovery::NodalRecovery;
 use super::vtu::Grid;
 use super::{csv, files, named};
 use crate::linear::memory::room_for;
-use crate::model::Model;
 use crate::model::boundary::Span;
-use crate::model::state::State;
-use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer, Row};
+use crate::model::{Model, State};
+use crate::run::{Attempt, Error, Observer, Row};
 
 /// Writes frames of the solids and of the interfaces, in the background while the run continues.
 #[derive(Debug)]

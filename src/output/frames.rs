@@ -7,14 +7,11 @@ use super::quantities::WATER_FLUX;
 use super::recovery::{NodalRecovery, shown_names};
 use super::vtu::{CellType, Grid, cell_type};
 use crate::bars::fields::{AT_POINTS, OF_SEGMENTS};
-use crate::contact::force::ContactState;
 use crate::contact::pair;
-use crate::contact::pair::ContactPair;
+use crate::contact::{ContactPair, ContactState};
 use crate::laws::bulk::{CauchyStress, principal_values};
-use crate::mesh::Element;
-use crate::mesh::configuration::Configuration;
-use crate::model::Model;
-use crate::model::state::State;
+use crate::mesh::{Configuration, Element};
+use crate::model::{Model, State};
 
 /// Content of a frame: a state and the quantities computed from it before the frame is written. The search for contacts uses
 /// all threads, which may be waiting for the writer of frames.

@@ -31,10 +31,8 @@ use super::csv::Table;
 pub use super::events::{ArrivalInput, FrontsInput};
 use super::events::{ContactPoints, Energies, Mark, Measures, Passing, WaveSpeeds};
 use super::quantities::{EVENTS, FRONTS, names};
-use crate::model::Model;
-use crate::model::state::State;
-use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::model::{Model, State};
+use crate::run::{Attempt, Error, Observer};
 
 /// Observer that writes `fronts.csv` and `events.csv` at the end of the run.
 #[derive(Debug)]

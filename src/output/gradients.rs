@@ -26,11 +26,9 @@ use super::store::derivatives::{self, DerivativeStore};
 use super::warnings::Warn;
 use crate::equations::regimes;
 use crate::laws::friction::Regime;
-use crate::model::Model;
-use crate::model::state::State;
+use crate::model::{Model, State};
 use crate::run::control::is_of;
-use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::{Attempt, Error, Observer};
 use crate::solve::neighbour::Tangent;
 use crate::time::neighbour::{BaseIncrement, Neighbour, follow};
 

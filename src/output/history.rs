@@ -17,18 +17,15 @@ use super::quantities::{
 use crate::bars::fields::Summary;
 use crate::bars::{Bar, BarState};
 use crate::contact::conduit::ConduitState;
-use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
-use crate::contact::pair::ContactPair;
 use crate::contact::scatter::Course;
+use crate::contact::{ContactPair, ContactState};
 use crate::equations::contacts;
 use crate::laws::friction::{Regime, observables};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;
-use crate::model::state::{Energy, State};
-use crate::model::{Model, WatchedSet};
-use crate::run::error::Error;
-use crate::run::observer::Attempt;
+use crate::model::{Energy, Model, State, WatchedSet};
+use crate::run::{Attempt, Error};
 
 /// Observer that writes `history.csv`.
 pub type History = Sheet<HistoryRows>;

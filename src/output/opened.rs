@@ -2,8 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::contact::pair::ContactPair;
-use crate::contact::point::ContactState;
+use crate::contact::{ContactPair, ContactState};
 use crate::mesh::configuration::Configuration;
 use crate::model::text::number;
 

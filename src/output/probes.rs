@@ -8,10 +8,8 @@ use super::csv::{Rows, Sheet, Table};
 use super::quantities::{HOOP, PROBE, names};
 use super::recovery::{ElementValues, Recovery, Stencil};
 use crate::laws::bulk::CauchyStress;
-use crate::model::state::State;
-use crate::model::{Model, Probe};
-use crate::run::error::Error;
-use crate::run::observer::Attempt;
+use crate::model::{Model, Probe, State};
+use crate::run::{Attempt, Error};
 
 /// Columns of all probes of a model.
 fn readings(model: &Model) -> impl Iterator<Item = String> {

@@ -36,9 +36,8 @@ use nalgebra::{Rotation2, Vector2};
 
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::shape::{ElementKind, QuadraturePoint};
-use crate::model::Model;
 use crate::model::element::SolidElement;
-use crate::model::state::State;
+use crate::model::{Model, State};
 
 /// The largest sum of magnitudes of the weights of samples: above it errors of the samples would be amplified.
 const AMPLIFIED: f64 = 10.0;

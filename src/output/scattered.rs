@@ -3,10 +3,8 @@
 use super::worst::Worst;
 use crate::contact::master::Master;
 use crate::contact::scatter::Course;
-use crate::model::Model;
-use crate::model::method::Method;
 use crate::model::scheme::{Scheme, time_text};
-use crate::model::state::State;
+use crate::model::{Method, Model, State};
 use crate::run::observer::Attempt;
 
 /// Scatter of tractions at the end of a step that causes a warning, over the mean pressure.

@@ -17,10 +17,8 @@ use super::csv::{Rows, Sheet, Table};
 use super::quantities::{SECTION, names};
 use crate::mesh::configuration::Configuration;
 use crate::model::element::Memory;
-use crate::model::state::State;
-use crate::model::{Axis, Model, Station};
-use crate::run::error::Error;
-use crate::run::observer::Attempt;
+use crate::model::{Axis, Model, State, Station};
+use crate::run::{Attempt, Error};
 
 /// Observer that writes `sections.csv`.
 pub type Sections = Sheet<SectionRows>;

@@ -1,10 +1,9 @@
 //! Warning about bars that have slipped far along the body that they lie in: their bond acts where they were.
 
 use super::worst::Worst;
-use crate::model::Model;
 use crate::model::scheme::time_text;
-use crate::model::state::State;
 use crate::model::text::{self, number};
+use crate::model::{Model, State};
 
 /// Slip of a bar over the diagonal of the element that it lies in, above which a warning is given [-]
 const FAR: f64 = 0.5;

@@ -14,9 +14,8 @@ use super::gradients::Account;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::model::text::readable;
-use crate::run::control::RunReport;
-use crate::run::error::Error;
 use crate::run::law::LawReport;
+use crate::run::{Error, RunReport};
 
 /// File that every folder of results has.
 pub const SUMMARY: &str = "summary.json";

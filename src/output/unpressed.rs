@@ -4,10 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::pair::ContactPair;
-use crate::contact::point::ContactState;
-use crate::model::Model;
-use crate::model::state::State;
+use crate::contact::{ContactPair, ContactState};
+use crate::model::{Model, State};
 
 /// Share of the shear of a contact on open points that is worth a warning [-]
 const ON_OPEN_POINTS: f64 = 0.01;

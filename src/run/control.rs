@@ -9,15 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use super::error::Error;
 use super::observer::Verdict;
-use crate::contact::force::ContactState;
-use crate::contact::master::Master;
-use crate::contact::pair::ContactPair;
+use crate::contact::{ContactPair, ContactState, Master};
 use crate::equations::Coupling;
 use crate::model::boundary::Span;
-use crate::model::state::{Energy, State};
-use crate::model::{Model, Step};
-use crate::solve::failure::IncrementFailure;
-use crate::solve::{IterationRecord, Pass};
+use crate::model::{Energy, Model, State, Step};
+use crate::solve::{IncrementFailure, IterationRecord, Pass};
 use crate::time::explicit::Explicit;
 use crate::time::step_size::LocalError;
 use crate::time::touching::Touching;

@@ -22,10 +22,10 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Model, State};
-use crate::run::error::Error;
-use crate::run::observer::Observer;
 pub use access::{Axis, Unknown};
 pub use control::{Candidate, Increment, RunReport, WallSeconds};
+pub use error::Error;
+pub use observer::{Attempt, Observer, Row};
 pub use simulation::{NotResumable, Pause, Saved, Simulation};
 
 pub use crate::equations::ContactCounts;

@@ -41,14 +41,11 @@
 //! ```
 
 use crate::laws::friction::Regime;
-use crate::model::scheme::Scheme;
-use crate::model::state::State;
 use crate::model::step::{Until, UntilStatus};
 use crate::model::text::{count, number};
-use crate::model::{Model, Step};
+use crate::model::{Model, Scheme, State, Step};
 use crate::run::error::Error;
-use crate::solve::failure::IncrementFailure;
-use crate::solve::{IterationRecord, Pass};
+use crate::solve::{IncrementFailure, IterationRecord, Pass};
 use crate::time::step_size::LocalError;
 
 /// An attempt at one increment, accepted or not.

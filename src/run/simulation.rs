@@ -22,10 +22,8 @@ use super::control::{
 use super::error::Error;
 use super::observer::{Attempt, Row};
 use crate::linear::Multifrontal;
-use crate::model::state::{Energy, State};
-use crate::model::{Model, Step};
-use crate::solve::Workspace;
-use crate::solve::failure::IncrementFailure;
+use crate::model::{Energy, Model, State, Step};
+use crate::solve::{IncrementFailure, Workspace};
 use crate::time::explicit::{Explicit, ExplicitMemory};
 use crate::time::quasi_dynamic::QuasiDynamic;
 

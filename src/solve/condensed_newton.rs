@@ -20,16 +20,14 @@ use super::floating::null_motion;
 use super::newton::{self, Equations, NewtonFailure};
 use super::watch::{Watch, in_trial, is_unaided, settings, tolerance};
 use crate::equations::condensed::{CondensedEquations, ContactNodes, depends_on_length, is_linear};
-use crate::equations::sums::TrialFailure;
 use crate::equations::supports;
-use crate::equations::{Assembler, Trial};
+use crate::equations::{Assembler, Trial, TrialFailure};
 use crate::linear::memory::available_memory;
 use crate::linear::system::{Request, System};
 use crate::linear::{Condensation, Condensed, Eliminated, HalvedLu, LinearFailure, Pattern};
 use crate::model::boundary::{Absorber, Dashpot, Spring};
-use crate::model::scheme::Scheme;
 use crate::model::support::Direction;
-use crate::model::{Damping, Model, Step};
+use crate::model::{Damping, Model, Scheme, Step};
 
 /// Upper bound of the memory of condensed matrices of all increment lengths [bytes].
 pub const MOST_MEMORY: usize = 2 << 30;

@@ -18,8 +18,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::failure::IncrementFailure;
 use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Reached, TooFast, Wall, WaterStep};
-use crate::contact::pair::ContactPair;
-use crate::contact::point::ContactState;
+use crate::contact::{ContactPair, ContactState};
 use crate::equations::Trial;
 use crate::model::state::{State, Water as BodyWater};
 use crate::model::{Model, Step};

@@ -107,13 +107,11 @@ use crate::contact::force::{Closed, ContactState, PredictedStatus, Tractions, to
 use crate::contact::pair::ContactPair;
 use crate::contact::point::{Prediction, SlavePoint};
 use crate::contact::response::PairResponse;
-use crate::equations::sums::TrialFailure;
-use crate::equations::{Assembler, Trial};
+use crate::equations::{Assembler, Trial, TrialFailure};
 use crate::laws::friction::{Description, Regime};
 use crate::linear::system::Request;
-use crate::model::Model;
 use crate::model::aids::Aids;
-use crate::model::state::State;
+use crate::model::{Model, State};
 
 /// Data of one contact point from the linear solves of the increment so far.
 #[derive(Clone, Debug, Default)]

@@ -8,18 +8,15 @@ use thiserror::Error;
 
 use super::Workspace;
 use super::newton::NewtonFailure;
-use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
+use crate::contact::{ContactPair, SlavePoint};
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::free;
 use crate::linear::LinearFailure;
 use crate::mesh::configuration::Configuration;
 use crate::model::builder::thickness::Outline;
 use crate::model::element::Formulation;
-use crate::model::method::Method;
-use crate::model::state::State;
 use crate::model::text::{number, vector};
-use crate::model::{Body, Model, Step};
+use crate::model::{Body, Method, Model, State, Step};
 
 /// Reason why an increment failed; a smaller one may succeed.
 #[derive(Clone, Debug, PartialEq, Error)]

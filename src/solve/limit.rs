@@ -4,15 +4,12 @@
 use nalgebra::Vector2;
 
 use super::failure::IncrementFailure;
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
+use crate::contact::{ContactPair, ContactState, SlavePoint};
 use crate::laws::friction::{Cohesion, Regime};
 use crate::linear::norm;
-use crate::model::state::State;
 use crate::model::text::number;
 use crate::model::warnings::fragile;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 
 /// Growth of the rate of displacement over its mean in the step, from which it has begun to run away.
 const RUNS_AWAY: f64 = 2.0;

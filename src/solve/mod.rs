@@ -23,6 +23,7 @@ use crate::model::Model;
 use condensed_newton::CondensedNewton;
 use conduits::WaterCourse;
 use contact_iteration::{Acted, ContactIteration};
+pub use failure::IncrementFailure;
 use newton::Iteration;
 
 /// Buffers reused from one increment to the next to save work. What an increment has found is in what is returned of it; nothing

@@ -37,13 +37,11 @@ use super::failure::IncrementFailure;
 use super::newton::NewtonFailure;
 use super::passes::multiply;
 use super::{Pass, Workspace};
-use crate::equations::sums::TrialFailure;
-use crate::equations::{Assembler, LinearizedSolids, SolidForces, Trial, regimes};
+use crate::equations::{Assembler, LinearizedSolids, SolidForces, Trial, TrialFailure, regimes};
 use crate::laws::friction::Regime;
 use crate::linear::system::System;
 use crate::linear::{LinearSolver, Multifrontal};
-use crate::model::Model;
-use crate::model::state::State;
+use crate::model::{Model, State};
 
 /// Required ‖r‖/‖f‖ of every part of a neighbour's solution [-]
 pub const TOLERANCE: f64 = 1e-12;

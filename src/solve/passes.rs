@@ -37,9 +37,7 @@ use super::failure::IncrementFailure;
 use super::{IterationRecord, Pass, Workspace, newton};
 use crate::contact::force::ContactState;
 use crate::equations::Trial;
-use crate::model::Model;
-use crate::model::scheme::Scheme;
-use crate::model::state::State;
+use crate::model::{Model, Scheme, State};
 
 /// Passes of an increment so far, and what the next one solves.
 pub struct Passes<'a> {

@@ -3,8 +3,7 @@
 
 use crate::equations::evaluation::Flows;
 use crate::equations::{Evaluation, bars, contacts};
-use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 use crate::solve::conduits::receive_with_bodies;
 
 /// Sets `state` to `time` and the displacement `u`, with forces, reactions, damping, contacts and internal variables as `found`

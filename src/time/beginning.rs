@@ -11,17 +11,14 @@ use std::sync::Arc;
 
 use super::accept::{heat, take_stock};
 use super::increment::kinetic;
-use crate::equations::Trial;
-use crate::equations::sums::TrialFailure;
 use crate::equations::supports::{constrain, tie, turn};
+use crate::equations::{Trial, TrialFailure};
 use crate::equations::{bars, contacts, links};
 use crate::linear;
 use crate::model::scheme::{Scheme, start_acceleration, start_velocity};
-use crate::model::state::State;
 use crate::model::support::{Direction, Prescribed};
-use crate::model::{Model, Step};
-use crate::solve::Workspace;
-use crate::solve::failure::IncrementFailure;
+use crate::model::{Model, State, Step};
+use crate::solve::{IncrementFailure, Workspace};
 
 /// Starts a step: stores displacements and reactions, and computes the initial forces and accelerations of a run or of a
 /// dynamic step.

@@ -11,10 +11,9 @@ use crate::model::state::{LastIncrement, State};
 use crate::model::{Model, Step};
 use crate::solve::conduits::receive;
 use crate::solve::equilibrium::{Found, equilibrium};
-use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
 use crate::solve::passes::Passes;
-use crate::solve::{IterationRecord, Pass, Workspace};
+use crate::solve::{IncrementFailure, IterationRecord, Pass, Workspace};
 
 /// What one increment came to.
 #[derive(Debug)]

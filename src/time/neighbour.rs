@@ -20,14 +20,12 @@ use super::beginning::begin;
 use super::increment::arrive;
 use crate::equations::Trial;
 use crate::linear::Multifrontal;
-use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 use crate::solve::conduits::{Arrived, NeighbourWater, RunWater};
 use crate::solve::equilibrium::Found;
-use crate::solve::failure::IncrementFailure;
 use crate::solve::neighbour::{Seeker, Tangent, solve_neighbours};
 use crate::solve::passes::multiply;
-use crate::solve::{Pass, Workspace};
+use crate::solve::{IncrementFailure, Pass, Workspace};
 
 /// An accepted increment of the run.
 #[derive(Clone, Copy)]

@@ -45,8 +45,7 @@
 
 use crate::contact::force::ContactState;
 use crate::laws::friction::Regime;
-use crate::model::state::State;
-use crate::model::{Increments, Model, Step};
+use crate::model::{Increments, Model, State, Step};
 
 /// Number of tangents, in every augmentation, up to which an increment counts as easy and the next one may be longer.
 const EASY: usize = 4;

@@ -4,8 +4,7 @@
 //! holds, with a residual of zero. Such an increment is not accepted. Shorter ones find the way on which it tears bit by bit, or none.
 
 use crate::laws::friction::Cohesion;
-use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 use crate::solve::failure::IncrementFailure;
 
 /// Share of the length of a contact over which its bond may tear within one increment [-]

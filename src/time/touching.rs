@@ -18,8 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::step_size::{Judgement, LEAST_SHARE, can_shorten};
 use crate::contact::force::ContactState;
 use crate::contact::pair::Arrival;
-use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 
 /// Largest uncertain fraction of a contact's force in a static increment in which points closed.
 pub const UNCERTAINTY: f64 = 0.02;

@@ -16,9 +16,7 @@ use fecontact::mesh::{InlineMesh, Mesh};
 use fecontact::model::boundary::{Drive, Expression};
 use fecontact::model::builder::{Builder, MasterSide};
 use fecontact::model::{Model, State};
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
-use fecontact::run::{RunReport, run};
+use fecontact::run::{Attempt, Error, Observer, RunReport, run};
 use nalgebra::{Rotation2, Vector2};
 use serde_json::{Value, json};
 

@@ -8,8 +8,7 @@ use std::path::Path;
 
 use fecontact::case;
 use fecontact::contact::pair::field_values;
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use serde_json::{Value, json};
 
 use crate::common::{self, Finished, built, close};

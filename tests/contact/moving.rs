@@ -10,8 +10,7 @@ use fecontact::contact::force::ContactState;
 use fecontact::laws::friction::Regime;
 use fecontact::model::state::State;
 use fecontact::output::warnings::Warnings;
-use fecontact::run::error::Error;
-use fecontact::run::{Simulation, run};
+use fecontact::run::{Error, Simulation, run};
 use serde_json::{Value, json};
 
 /// Area, penalty stiffnesses, friction coefficient and normal load of the rigid box.

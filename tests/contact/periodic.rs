@@ -7,8 +7,7 @@ use fecontact::laws::friction::CoulombParameters;
 use fecontact::mesh::ties::Ties;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, Place, Support};
-use fecontact::model::scheme::Scheme;
-use fecontact::model::{Damping, Model};
+use fecontact::model::{Damping, Model, Scheme};
 
 const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };
 const EXPLICIT: Scheme = Scheme::Explicit { safety: 0.9 };

@@ -8,15 +8,13 @@ use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, close, distance, finish, model, turned};
 use fecontact::laws::friction::{FrictionParameters, FrictionState, Sliding};
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::output::fields::{Fields, Frames, Selection};
 use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::warnings::Warnings;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
+use fecontact::run::{Attempt, Error, Observer};
 use nalgebra::{Matrix2, Vector2};
 use serde_json::{Value, json};
 

@@ -12,9 +12,7 @@ use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{
     Builder, Change, Contact, IncrementSettings, Load, LoadStep, MasterSide, Place, Support,
 };
-use fecontact::model::method::Method;
-use fecontact::model::scheme::Scheme;
-use fecontact::model::{Model, NewtonSettings, State};
+use fecontact::model::{Method, Model, NewtonSettings, Scheme, State};
 use fecontact::output::history::History;
 use fecontact::run::run;
 use nalgebra::{Rotation2, Vector2};

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use crate::common::{self, Blocks, Finished, close, floor, linear, neo_hookean, run_through};
 use fecontact::laws::friction::{CoulombParameters, Frictionless};
 use fecontact::mesh::InlineMesh;
-use fecontact::model::Model;
 use fecontact::model::builder::{Builder, Change, Components, Contact, IncrementSettings, Load, LoadStep, MasterSide};
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::run::run;
 
 const PRESSURE: f64 = 2.0;

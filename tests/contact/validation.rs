@@ -9,12 +9,11 @@ use std::sync::Arc;
 
 use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, half_way_round, model, quadratic};
 use crate::contact::INCREMENT;
-use fecontact::contact::force::ContactState;
-use fecontact::contact::master::Master;
 use fecontact::contact::pair::{ContactIncrement, Prediction};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{SlavePoint, Surface, nodal_points};
+use fecontact::contact::{ContactState, Master};
 use fecontact::laws::friction::FrictionState;
 use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;

@@ -5,16 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fecontact::case;
-use fecontact::contact::pair::ContactPair;
-use fecontact::contact::surface::SlavePoint;
+use fecontact::contact::{ContactPair, SlavePoint};
 use fecontact::model::Model;
 use fecontact::output::events::wave_speeds;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::probes::Probes;
 use fecontact::output::warnings::Warnings;
-use fecontact::run::observer::Observer;
-use fecontact::run::{RunBytes, RunReport, SavedRun, Simulation, watch};
+use fecontact::run::{Observer, RunBytes, RunReport, SavedRun, Simulation, watch};
 use serde_json::Value;
 
 use crate::frame::{Frame, Kind};

@@ -8,12 +8,10 @@ use std::sync::Arc;
 
 use fecontact::contact::force::ContactState;
 use fecontact::equations::{Assembler, Trial};
-use fecontact::model::Model;
 use fecontact::model::aids::Aids;
-use fecontact::model::state::State;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
+use fecontact::model::{Model, State};
 use fecontact::run::run;
+use fecontact::run::{Attempt, Error, Observer};
 use fecontact::solve::contact_iteration::Acted;
 use serde_json::{Value, json};
 

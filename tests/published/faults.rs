@@ -8,9 +8,8 @@ use std::sync::Arc;
 
 use crate::common::{self, Blocks};
 use fecontact::model::Model;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
+use fecontact::run::{Attempt, Error, Observer};
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 

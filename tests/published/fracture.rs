@@ -23,9 +23,8 @@ use crate::common::{self, Blocks, close};
 use fecontact::laws::friction::{FrictionParameters, Sliding};
 use fecontact::model::Model;
 use fecontact::output::fronts::{ArrivalInput, Fronts, FrontsInput};
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
+use fecontact::run::{Attempt, Error, Observer};
 use serde_json::{Value, json};
 
 /// E/ρ, ν: c_s = 1 for ρ = 1

@@ -5,8 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::sync::Arc;
 
 use fecontact::model::Model;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
+use fecontact::run::{Attempt, Error, Observer};
 use serde_json::{Value, json};
 
 use super::limit_loads::relative;

@@ -7,9 +7,8 @@ use std::sync::Arc;
 
 use crate::common::{self, Blocks};
 use fecontact::model::Model;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
+use fecontact::run::{Attempt, Error, Observer};
 use serde_json::{Value, json};
 
 /// Slip rate of an arrival [m/s]

@@ -8,10 +8,8 @@ use std::sync::Arc;
 
 use crate::common::{close, model_at};
 use fecontact::model::Model;
-use fecontact::run::control::RunReport;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
+use fecontact::run::{Attempt, Error, Observer, RunReport};
 use serde_json::{Value, json};
 
 /// One accepted increment of a block.

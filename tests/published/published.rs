@@ -8,10 +8,8 @@ mod quadratic;
 
 use crate::common::{Finished, finish_at};
 use fecontact::laws::friction::{FrictionState, Regime};
-use fecontact::mesh::Group;
-use fecontact::mesh::configuration::Configuration;
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::mesh::{Configuration, Group};
+use fecontact::model::{Model, State};
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 

@@ -5,8 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::common::{self, Blocks, model, refusal};
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::output::events::WaveSpeeds;
 use fecontact::output::fronts::{Fronts, FrontsInput};
 use fecontact::run::error::Error;

@@ -16,17 +16,13 @@ use fecontact::laws::friction::{
     Coulomb, CoulombParameters, Description, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure,
     Sliding, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
 };
-use fecontact::mesh::section::Section;
-use fecontact::mesh::{Mesh, gmsh};
+use fecontact::mesh::{Mesh, Section, gmsh};
 use fecontact::model::boundary::{Drive, Profile};
 use fecontact::model::builder::{
     Builder, Change, Checked, Components, Contact, DashpotLoad, Friction, IncrementSettings, Load, LoadStep,
     MasterSide, Place, SpringLoad, Support,
 };
-use fecontact::model::imposed::{InitialStress, Thermal};
-use fecontact::model::method::Method;
-use fecontact::model::scheme::Scheme;
-use fecontact::model::{Damping, Model, NewtonSettings};
+use fecontact::model::{Damping, InitialStress, Method, Model, NewtonSettings, Scheme, Thermal};
 use serde_json::{Value, json};
 
 fn committed(case: &str) -> (PathBuf, Value) {

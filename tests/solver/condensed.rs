@@ -10,8 +10,7 @@ use fecontact::linear::{
     Condensation, DenseLu, Eliminated, HalvedLu, LinearFailure, LinearSolver, Pattern, SparseLu, SparseMatrix, Steady,
     norm,
 };
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::run::Simulation;
 use nalgebra::Vector2;
 use serde_json::{Value, json};

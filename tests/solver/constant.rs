@@ -13,15 +13,11 @@ use fecontact::laws::bulk::{
     ViscoelasticConstants,
 };
 use fecontact::linear::system::Request;
-use fecontact::mesh::section::Section;
-use fecontact::mesh::shape::ElementKind;
-use fecontact::mesh::{InlineMesh, Mesh};
+use fecontact::mesh::{ElementKind, InlineMesh, Mesh, Section};
 use fecontact::model::boundary::Profile;
 use fecontact::model::builder::{Builder, LoadStep};
 use fecontact::model::element::Memory;
-use fecontact::model::imposed::InitialStress;
-use fecontact::model::scheme::Scheme;
-use fecontact::model::{Damping, Model};
+use fecontact::model::{Damping, InitialStress, Model, Scheme};
 use nalgebra::{DMatrix, Matrix2, Vector2, Vector5};
 
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];

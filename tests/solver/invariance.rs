@@ -10,9 +10,7 @@ use fecontact::laws::friction::{Regime, SlipWeakeningParameters, SuperSubloading
 use fecontact::mesh::section::Section;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Contact, Friction, LoadStep, Support};
-use fecontact::model::method::Method;
-use fecontact::model::scheme::Scheme;
-use fecontact::model::{Model, NewtonSettings};
+use fecontact::model::{Method, Model, NewtonSettings, Scheme};
 use serde_json::json;
 
 /// A run, and how its model is given.

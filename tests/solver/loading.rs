@@ -13,11 +13,7 @@ use fecontact::laws::bulk::Material;
 use fecontact::laws::friction::CoulombParameters;
 use fecontact::model::boundary::{BodyTemperature, Drive, Expression};
 use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, MasterSide, Place, Support};
-use fecontact::model::imposed::Thermal;
-use fecontact::model::scheme::Scheme;
-use fecontact::model::state::State;
-use fecontact::model::step::ForceComponent;
-use fecontact::model::{Damping, Model, NewtonSettings};
+use fecontact::model::{Damping, ForceComponent, Model, NewtonSettings, Scheme, State, Thermal};
 use fecontact::run::run;
 use serde_json::json;
 

@@ -3,8 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fecontact::mesh::shape::ElementKind;
-use fecontact::mesh::{Edge, Element, Group, InlineMesh, Mesh, gmsh};
+use fecontact::mesh::{Edge, Element, ElementKind, Group, InlineMesh, Mesh, gmsh};
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde_json::{Value, json};
 

@@ -3,12 +3,10 @@
 
 use crate::common::{self, Blocks, Finished, close, expression, finish, linear, neo_hookean, run_through, turned};
 use fecontact::laws::friction::CoulombParameters;
-use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, MasterSide, Place, Support};
-use fecontact::model::scheme::Scheme;
-use fecontact::model::state::State;
 use fecontact::model::{Damping, NewtonSettings};
+use fecontact::model::{Model, Scheme, State};
 use serde_json::json;
 
 const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };

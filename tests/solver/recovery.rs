@@ -4,8 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::common::{self, Blocks, Finished, close, finish, half_way, quadratic};
 use fecontact::laws::bulk::CauchyStress;
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::output::recovery::NodalRecovery;
 use serde_json::{Value, json};
 

@@ -5,17 +5,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::common::{self, Blocks, close, finish_at, linear, with};
-use fecontact::model::Model;
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::output::fields::{Fields, Frames, Selection};
 use fecontact::output::fronts::{Fronts, FrontsInput};
 use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::warnings::Warnings;
-use fecontact::run::observer::Observer;
-use fecontact::run::{Axis, Saved, SavedRun, Simulation, watch};
+use fecontact::run::{Axis, Observer, Saved, SavedRun, Simulation, watch};
 use serde_json::{Value, json};
 
 /// Every increment is tried and dropped, the run stopped, resumed with nothing but the bytes of a checkpoint, and the increment

@@ -6,9 +6,7 @@ use crate::common::{Blocks, Finished, close, distance, expression, neo_hookean, 
 use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::builder::{Builder, Load, LoadStep, Place, Plate, Support};
-use fecontact::model::scheme::Scheme;
-use fecontact::model::state::State;
-use fecontact::model::{Damping, Model, NewtonSettings};
+use fecontact::model::{Damping, Model, NewtonSettings, Scheme, State};
 use nalgebra::{Rotation2, Vector2};
 
 const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };

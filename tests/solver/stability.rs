@@ -2,8 +2,7 @@
 
 use crate::common::{Finished, close, finish};
 use fecontact::output::warnings::Warnings;
-use fecontact::run::observer::Observer;
-use fecontact::run::simulation::Simulation;
+use fecontact::run::{Observer, Simulation};
 use serde_json::{Value, json};
 
 /// A beam of 20 × 0.5 whose middle is `raised`, both ends clamped, pushed together by `by`.

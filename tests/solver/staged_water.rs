@@ -6,8 +6,7 @@ use std::sync::Arc;
 use crate::common::{Finished, close, column, finish, model, refusal};
 use crate::terms::{arbitrary_displacement, tangent_error};
 use fecontact::equations::Trial;
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::run::{Saved, Simulation};
 use serde_json::{Value, json};
 

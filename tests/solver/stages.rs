@@ -5,8 +5,7 @@ use std::sync::Arc;
 use crate::common::{Blocks, close, column, distance, finish, model, refusal};
 use crate::terms::tangent_error;
 use fecontact::equations::Trial;
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::output::warnings::Warnings;
 use serde_json::{Value, json};
 

@@ -10,8 +10,7 @@ use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::linear::system::Request;
 use fecontact::mesh::section::Section;
-use fecontact::model::Model;
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use serde_json::{Value, json};
 
 /// w = 1 + 0.1 x

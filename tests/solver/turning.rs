@@ -7,9 +7,7 @@ use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Load, LoadStep, Place, Plate, Support};
-use fecontact::model::scheme::Scheme;
-use fecontact::model::state::State;
-use fecontact::model::{Model, NewtonSettings};
+use fecontact::model::{Model, NewtonSettings, Scheme, State};
 
 const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };
 

@@ -10,15 +10,12 @@ use fecontact::laws::friction::{
     Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding,
 };
 use fecontact::linear::SparseLu;
-use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Contact, IncrementSettings, LoadStep, Support};
-use fecontact::model::state::State;
+use fecontact::model::{Model, State};
 use fecontact::output::warnings::Warnings;
-use fecontact::run::Simulation;
-use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
+use fecontact::run::{Attempt, Error, Observer, Simulation};
 use fecontact::solve::Workspace;
 use fecontact::time::increment::advance;
 use fecontact::time::step_size::{EVENT_LOCATION, judge};

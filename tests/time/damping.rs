@@ -2,8 +2,7 @@
 
 use crate::common::{Blocks, Finished, close, distance, finish, refusal};
 use fecontact::laws::bulk::{Material, MaterialParameters};
-use fecontact::mesh::section::Section;
-use fecontact::mesh::shape::ElementKind;
+use fecontact::mesh::{ElementKind, Section};
 use fecontact::model::element::{Formulation, SolidElement};
 use fecontact::model::state::Energy;
 use nalgebra::{Complex, DMatrix, Rotation2, Vector2};

@@ -4,12 +4,10 @@ use std::sync::Arc;
 
 use crate::common::{Blocks, Finished, Record, close, finished, neo_hookean};
 use fecontact::laws::friction::Frictionless;
-use fecontact::mesh::section::Section;
-use fecontact::mesh::shape::ElementKind;
-use fecontact::model::Model;
+use fecontact::mesh::{ElementKind, Section};
 use fecontact::model::builder::{Contact, LoadStep, MasterSide, Support};
 use fecontact::model::element::{consistent_mass, redistributed};
-use fecontact::model::scheme::Scheme;
+use fecontact::model::{Model, Scheme};
 use fecontact::output::warnings::Warnings;
 use fecontact::run::error::Error;
 use fecontact::run::run;

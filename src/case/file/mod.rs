@@ -10,8 +10,7 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::mesh::section::Section;
-use crate::mesh::{InlineMesh, PlacedGroup};
+use crate::mesh::{InlineMesh, PlacedGroup, Section};
 use crate::model::NewtonSettings;
 use crate::model::builder::{
     BarInput, BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, Place, PointMassInput, RigidBodyInput,

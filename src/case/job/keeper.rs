@@ -9,10 +9,7 @@ use crate::case::again::Opened;
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::output::files::Lock;
-use crate::run::error::Error;
-use crate::run::observer::Observer;
-use crate::run::simulation::Pause;
-use crate::run::{Moment, RunBytes, SavedRun, Simulation};
+use crate::run::{Error, Moment, Observer, Pause, RunBytes, SavedRun, Simulation};
 
 /// Interval at which the existence of the folder is checked.
 const LOOK: Duration = Duration::from_secs(1);

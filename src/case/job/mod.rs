@@ -28,10 +28,7 @@ use crate::output::gradients::Account;
 use crate::output::summary::{self, About, Ending, Summary};
 pub use crate::output::warnings::Warn;
 use crate::output::warnings::Warnings;
-use crate::run::control::RunReport;
-use crate::run::error::Error;
-use crate::run::observer::Observer;
-use crate::run::{SavedRun, Simulation, watch_with};
+use crate::run::{Error, Observer, RunReport, SavedRun, Simulation, watch_with};
 use keeper::Keeper;
 use outputs::{Outputs, files};
 

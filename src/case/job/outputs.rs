@@ -22,9 +22,7 @@ use crate::output::sections::Sections;
 use crate::output::store::InterfaceStore;
 use crate::output::warnings::{Warn, Warnings};
 use crate::output::{checkpoint, report};
-use crate::run::SavedRun;
-use crate::run::error::Error;
-use crate::run::observer::Observer;
+use crate::run::{Error, Observer, SavedRun};
 
 /// Files written by a run in addition to `summary.json`; folders of frames end in `/`.
 pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {

@@ -12,12 +12,10 @@ use steps::{steps, watched};
 use super::file::{Case, MeshSource};
 use crate::bars::Bar;
 use crate::laws::bulk::MaterialParameters;
-use crate::mesh::Group;
-use crate::mesh::shape::ElementKind;
+use crate::mesh::{ElementKind, Group};
 use crate::model::builder::{BodyInput, BulkLaw, Formulation, LoadingPlateInput, Plate, RigidBodyInput};
-use crate::model::imposed::{InitialStress, PoreFluid, PorePressure, Thermal};
 use crate::model::text::{count, number, vector};
-use crate::model::{Model, PointMass};
+use crate::model::{InitialStress, Model, PointMass, PoreFluid, PorePressure, Thermal};
 use crate::output::fields::Selection;
 use crate::output::fronts::ArrivalInput;
 

@@ -110,9 +110,8 @@ pub use schedule::regime;
 pub use sections::SectionsInput;
 
 use crate::laws::bulk::Material;
-use crate::mesh::Mesh;
-use crate::mesh::section::Section;
 use crate::mesh::ties::Ties;
+use crate::mesh::{Mesh, Section};
 pub use crate::model::element::Formulation;
 use crate::model::imposed::{InitialStress, PoreFluid, PorePressure, Thermal};
 use crate::model::linkage::Linkage;

@@ -64,8 +64,7 @@ use crate::contact::surface::{
 };
 use crate::laws::bulk::Material;
 use crate::laws::friction::Offsets;
-use crate::mesh::section::Section;
-use crate::mesh::{Edge, Group, Mesh};
+use crate::mesh::{Edge, Group, Mesh, Section};
 use crate::model::Model;
 use crate::model::method::{Asked, Chosen, Method, Tool, choose, nodes_meet};
 use crate::model::scheme::Regime;

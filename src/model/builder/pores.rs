@@ -12,8 +12,7 @@ use super::friction::position;
 use crate::contact::pores::Pores;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::Offsets;
-use crate::mesh::configuration::Configuration;
-use crate::mesh::{Edge, Group};
+use crate::mesh::{Configuration, Edge, Group};
 use crate::model::Model;
 use crate::model::element::SolidElement;
 

@@ -23,10 +23,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::linear::system::Contribution;
-use crate::mesh::configuration::Configuration;
-use crate::mesh::section::Section;
 use crate::mesh::shape;
 use crate::mesh::shape::{ElementKind, QuadraturePoint};
+use crate::mesh::{Configuration, Section};
 pub use solid::{Memory, SolidElement};
 
 /// How the elements of a body are integrated.

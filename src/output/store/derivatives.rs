@@ -19,10 +19,8 @@ use super::arrays::{along, attributes, derivatives, of_nodes, prefixes, time};
 use super::zarr::{Saved, Store};
 use super::{Record, due};
 use crate::contact::pair;
-use crate::model::Model;
-use crate::model::state::State;
-use crate::run::error::Error;
-use crate::run::observer::Row;
+use crate::model::{Model, State};
+use crate::run::{Error, Row};
 
 /// Folder of the store in the results folder.
 pub const STORE: &str = "gradients.zarr";

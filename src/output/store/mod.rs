@@ -22,14 +22,11 @@ use self::arrays::{along, attributes, prefixes, quantity, time};
 use self::zarr::{Saved, Store};
 use super::csv;
 use super::quantities::IN_STORE;
-use crate::contact::force::ContactState;
 use crate::contact::pair;
-use crate::contact::pair::ContactPair;
+use crate::contact::{ContactPair, ContactState};
 use crate::laws::friction::observables;
-use crate::model::Model;
-use crate::model::state::State;
-use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer, Row};
+use crate::model::{Model, State};
+use crate::run::{Attempt, Error, Observer, Row};
 pub use zarr::{files_of, forget, is_own};
 
 /// Folder of the store in the results folder.

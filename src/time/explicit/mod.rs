@@ -36,12 +36,10 @@ use rayon::prelude::*;
 
 use super::accept::take_stock;
 use crate::equations::damping;
-use crate::equations::sums::TrialFailure;
-use crate::equations::{Assembler, Trial};
+use crate::equations::{Assembler, Trial, TrialFailure};
 use crate::model::boundary::Absorber;
-use crate::model::state::State;
 use crate::model::support::Prescribed;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 use crate::solve::failure::IncrementFailure;
 use motion::masses;
 use plates::Plates;

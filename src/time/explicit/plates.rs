@@ -22,9 +22,8 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3, Rotation2, RowVector3, Vector2, Vect
 use crate::equations::links::{give, perpendicular, relative};
 use crate::mesh::configuration::vector;
 use crate::model::boundary::Absorber;
-use crate::model::state::State;
 use crate::model::support::Direction;
-use crate::model::{Model, Step};
+use crate::model::{Model, State, Step};
 
 /// All platens of a model except those with two equal components.
 #[derive(Clone)]

@@ -25,8 +25,7 @@ use crate::equations::sums::TrialFailure;
 use crate::mesh::configuration::{Configuration, vector};
 use crate::mesh::rigid::RigidBody;
 use crate::model::element::Memory;
-use crate::model::state::State;
-use crate::model::{Body, Model, Step};
+use crate::model::{Body, Model, State, Step};
 use crate::solve::failure::IncrementFailure;
 
 /// Change of an element, as a fraction of its size, at which its bound is re-evaluated; this is also about its accuracy.

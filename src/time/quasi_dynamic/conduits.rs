@@ -4,11 +4,9 @@
 
 use super::slip_equations::Rates;
 use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Wall};
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
+use crate::contact::{ContactPair, ContactState};
 use crate::laws::tableau::{C, STAGES};
-use crate::model::Model;
-use crate::model::state::State;
+use crate::model::{Model, State};
 
 /// Water of all contacts along which it flows.
 pub struct Conduits<'a> {

@@ -25,14 +25,11 @@ use crate::contact::conduit::Conduit;
 use crate::contact::force::ContactState;
 use crate::contact::pair::{BadPressure, Fluid};
 use crate::equations::slip_operator::{NoSlipOperator, Shift, SlipOperator, Slips};
-use crate::equations::sums::TrialFailure;
 use crate::equations::supports::turn;
-use crate::equations::{Evaluation, Trial};
+use crate::equations::{Evaluation, Trial, TrialFailure};
 use crate::linear::system::Request;
 use crate::mesh::configuration::Configuration;
-use crate::model::scheme::Scheme;
-use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Model, Scheme, State, Step};
 use crate::solve::failure::IncrementFailure;
 
 /// Fraction of a step's length within which it ends at the end of the load step.

@@ -13,9 +13,7 @@
 
 use rayon::prelude::*;
 
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
+use crate::contact::{ContactPair, ContactState, SlavePoint};
 use crate::laws::friction::{BondState, Cohesion, PointLoad, RateLaw, States};
 use crate::mesh::configuration::Configuration;
 
