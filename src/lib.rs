@@ -132,9 +132,11 @@
 )]
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets: [L], [F]")]
 
+#[macro_use]
+pub mod laws;
+
 #[cfg(feature = "cli")]
 pub mod cli;
-pub mod laws;
 pub mod mesh;
 pub mod model;
 pub mod output;

@@ -64,8 +64,8 @@ def cycle(parameters: dict[str, Any], rate: float, cycles: int = 4) -> dict[str,
     longest = 2.0 * PRESSURE * fall / float(np.min(machine["stiffness"])) / rate
     start = PRESSURE * float(np.min(spread["mu_k"]) - fall)
     time = np.linspace(0.0, cycles * longest, cycles * SAMPLES)
-    ride = fc.law("super_subloading", **spread).ride(time, rate * time, PRESSURE, **machine, force=start, tolerance=1e-7)
-    flat = zip(ride.force.reshape(-1, time.size), ride.slip.reshape(-1, time.size))
+    slider = fc.law("super_subloading", **spread).slider(time, rate * time, PRESSURE, **machine, force=start, tolerance=1e-7)
+    flat = zip(slider.force.reshape(-1, time.size), slider.slip.reshape(-1, time.size))
     found = [_mean(time, force, slip, rate) for force, slip in flat]
     return {name: np.reshape([one[name] for one in found], sets) for name in ("before", "after", "slip", "interval")}
 

@@ -113,7 +113,7 @@ class Interface:
 class SpringSlider(Interface):
     """Load-point displacement and force of a machine, whose stiffness k is a parameter, ``stiffness``, and mass M may be one, ``mass``.
 
-    With a mass the record is simulated by :meth:`fecontact.law.Law.ride`, from rest: M ü = F − q, F = F₀ + k (w − u). Without, the machine
+    With a mass the record is simulated by :meth:`fecontact.law.Law.slider`, from rest: M ü = F − q, F = F₀ + k (w − u). Without, the machine
     and what the interface yields are springs in series: the load point drives a law with 1/α = 1/α_t + 1/k, of which the data tell no more
     than α, and a slip event is a jump.
 
@@ -153,7 +153,7 @@ class SpringSlider(Interface):
         whole = {**_of_law(parameters), "alpha_t": np.broadcast_to(parameters["alpha_t"], sets)}
         stiffness, mass = (np.broadcast_to(parameters[name], sets) for name in MACHINE)
         path = (self.time, self.slip, self.pressure)
-        return law(whole).ride(*path, stiffness=stiffness, mass=mass, force=self.initial, by=by, tolerance=self._tolerance, threads=threads)
+        return law(whole).slider(*path, stiffness=stiffness, mass=mass, force=self.initial, by=by, tolerance=self._tolerance, threads=threads)
 
     def _series(self, parameters: Parameters) -> tuple[Array, dict[str, Array]]:
         """α, and its derivatives by k and α_t."""

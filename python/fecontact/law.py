@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -126,7 +126,13 @@ class Law:
         opened = None if opening is None else self._course("opening", opening, times.size)
         return self._drive(self._sets, times, courses, opened, interface, by, threads)
 
-    def ride(
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            now = ": it is called `slider`" if name == "ride" else ""
+            raise AttributeError(f"`Law` has no `{name}`{now}", name=name, obj=self)
+
+    def slider(
         self,
         time: ArrayLike,
         load_point: ArrayLike,

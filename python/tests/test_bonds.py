@@ -58,6 +58,6 @@ def test_what_cannot_be():
     with pytest.raises(fc.CaseError, match="opening"):
         fc.law("coulomb", mu=0.5, alpha_t=1e6).drive(TIME, 0.0, 1.0, opening=TIME)
     with pytest.raises(fc.CaseError, match="bond"):
-        joint().ride(TIME, TIME, 1.0, stiffness=1.0, mass=1.0)
+        joint().slider(TIME, TIME, 1.0, stiffness=1.0, mass=1.0)
     with pytest.raises(ValueError, match="bond.strength"):
         fc.fit(Interface(TIME, TIME, 1.0, TIME), "coulomb", {"bond.strengt": (1.0, 2.0)}, mu=0.5, alpha_t=1e6)

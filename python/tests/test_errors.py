@@ -102,7 +102,7 @@ COULOMB = fc.law("coulomb", mu=0.4, alpha_t=1e3)
         (lambda: COULOMB.drive([0, 1], [0, 1], 1.0, traction=[1, 2]), r"law: traction: is \[1, 2\]: must be a finite number"),
         (lambda: COULOMB.drive([0, 1], [0, 1], 1.0, by=3), "law: by: is 3: must be a list of names"),
         (lambda: COULOMB.drive([0, 1], [0, 1], 1.0, threads=2.5), "threads: is 2.5: must be a whole number"),
-        (lambda: COULOMB.ride([0, 1], [0, 1], 1.0, stiffness=1.0, mass=None), "law: mass: is nan"),
+        (lambda: COULOMB.slider([0, 1], [0, 1], 1.0, stiffness=1.0, mass=None), "law: mass: is nan"),
         (lambda: fc.Case(3), "case: is a int: give the path of a case file, or a case as a dict"),
         (lambda: fc.Case({}, folder=3), "folder: is 3: must be a path"),
         (lambda: fc.Mesh(None, {}), "mesh: nodes: has the shape"),
@@ -236,7 +236,7 @@ law, t = fc.law("super_subloading", **parameters), np.linspace(0.0, 200.0, 20000
 path = 0.01 * t + 0.005 * np.sin(20.0 * t)
 print("begins", flush=True)
 try:
-    law.drive(t, path, 1.0, by=["mu_s", "kappa"]) if sys.argv[1] == "drive" else law.ride(t, path, 1.0, stiffness=10.0, mass=0.1)
+    law.drive(t, path, 1.0, by=["mu_s", "kappa"]) if sys.argv[1] == "drive" else law.slider(t, path, 1.0, stiffness=10.0, mass=0.1)
     print("done", flush=True)
 except KeyboardInterrupt:
     print("interrupted", flush=True)
@@ -246,7 +246,7 @@ except KeyboardInterrupt:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")
-@pytest.mark.parametrize("what", ["drive", "ride"])
+@pytest.mark.parametrize("what", ["drive", "slider"])
 def test_ctrl_c_ends_many_laws_at_their_next_step(what: str) -> None:
     """Sets of parameters that take minutes; the next drive of the process is answered as ever."""
     led = subprocess.Popen([sys.executable, "-c", LAWS, what], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -127,7 +127,7 @@ def test_steady_sliding_is_where_a_long_drive_ends(friction: dict[str, Any]) -> 
         (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=9.0), "traction: is 9, above the initial strength"),
         (lambda: fc.law("prescribed", slip_rate=1.0, alpha_t=1.0).steady(1.0), "has no steady sliding"),
         (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=np.nan), "law: traction: is nan: must be a finite number"),
-        (lambda: fc.law(PAPER).ride([0, 1], 0.0, 1.0, stiffness=1, mass=1, force=np.inf), "law: force: is inf: must be a finite number"),
+        (lambda: fc.law(PAPER).slider([0, 1], 0.0, 1.0, stiffness=1, mass=1, force=np.inf), "law: force: is inf: must be a finite number"),
         (lambda: fc.law(PAPER).drive([], [], 1.0), r"law: time: has the shape \(0,\): must be \(n,\), n ≥ 2"),
         (lambda: fc.law(PAPER).drive(1.0, 1.0, 1.0), r"law: time: has the shape \(\): must be \(n,\), n ≥ 2"),
         (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, normal={"stiffness": 1.0}, by=["mu_s"]), "by: the traction is differentiated at given"),

@@ -47,22 +47,22 @@ def test_a_slider_that_sticks_swings_on_two_springs() -> None:
     omega = np.sqrt((k + alpha_t) / mass)
     exact = k * rate / (k + alpha_t) * (time - np.sin(omega * time) / omega)
     for given, start in ((rate * time, 0.0), (rate * time + 7.0, 0.1)):
-        ride = fc.law("coulomb", mu=10.0, alpha_t=alpha_t).ride(
+        slider = fc.law("coulomb", mu=10.0, alpha_t=alpha_t).slider(
             time, given, 1.0, stiffness=k, mass=mass, force=start, by=["stiffness", "mass", "alpha_t", "mu"], tolerance=1e-11
         )
-        np.testing.assert_allclose(ride.slip, exact, atol=1e-6)
-        np.testing.assert_allclose(ride.force, start + k * (rate * time - exact), atol=3e-6)
+        np.testing.assert_allclose(slider.slip, exact, atol=1e-6)
+        np.testing.assert_allclose(slider.force, start + k * (rate * time - exact), atol=3e-6)
         # ∂u/∂M through ω alone: ∂ω/∂M = −ω/(2M)
         by_omega = k * rate / (k + alpha_t) * (np.sin(omega * time) / omega**2 - time * np.cos(omega * time) / omega)
-        np.testing.assert_allclose(ride.dforce_dmass, k * by_omega * omega / (2.0 * mass), atol=1e-4)
-        assert not ride.dforce_dmu.any() and ride.slip.shape == (101,)
+        np.testing.assert_allclose(slider.dforce_dmass, k * by_omega * omega / (2.0 * mass), atol=1e-4)
+        assert not slider.dforce_dmu.any() and slider.slip.shape == (101,)
 
 
 def test_a_slider_is_that_of_scipy(scipys: np.ndarray) -> None:
     errors = []
     for tolerance in (1e-6, 1e-8):
-        ride = fc.law("super_subloading", **LAW).ride(TIME, LOAD_POINT, 1.0, stiffness=STIFFNESS, mass=MASS, tolerance=tolerance)
-        errors.append(np.abs(ride.force - scipys).max())
+        slider = fc.law("super_subloading", **LAW).slider(TIME, LOAD_POINT, 1.0, stiffness=STIFFNESS, mass=MASS, tolerance=tolerance)
+        errors.append(np.abs(slider.force - scipys).max())
     # Steps go with the cube root of the tolerance, errors with their square.
     assert errors[1] < 2e-4 and errors[0] > 5.0 * errors[1], errors
 
@@ -107,9 +107,9 @@ def test_two_states_are_those_of_scipy(evolution: str) -> None:
     # 1e-6 of f₀ p, and a few of them one after another
     np.testing.assert_allclose(drive.traction, exact, atol=2e-6)
     assert abs(exact[34] - 0.6 - (a - b - b_2) * np.log(10.0)) < 2e-3, "and the steady state is nearly reached"
-    ride = law.ride(time, way, 1.0, stiffness=stiffness, mass=mass, force=0.6, tolerance=1e-9)
+    slider = law.slider(time, way, 1.0, stiffness=stiffness, mass=mass, force=0.6, tolerance=1e-9)
     exact = ends(ridden, [0.0, 0.0, 0.6, 0.6, 0.0, 0.0], 2)
-    np.testing.assert_allclose(ride.force, exact, atol=5e-5)
+    np.testing.assert_allclose(slider.force, exact, atol=5e-5)
 
 
 def test_a_law_in_python_is_asked_about_once_a_step() -> None:
@@ -144,10 +144,10 @@ def test_a_law_in_python_is_asked_about_once_a_step() -> None:
         return [v, (stiffness * (rate * t - u) - pressure * (sigma_0 * z + sigma_1 * dz)) / mass, dz]
 
     time = np.linspace(0.0, 4.0, 41)
-    ride = fc.law("registered", name="lugre", alpha_t=1e4).ride(time, rate * time, pressure, stiffness=stiffness, mass=mass, tolerance=1e-9)
+    slider = fc.law("registered", name="lugre", alpha_t=1e4).slider(time, rate * time, pressure, stiffness=stiffness, mass=mass, tolerance=1e-9)
     exact = solve_ivp(rates, (0.0, 4.0), [0.0, 0.0, 0.0], "LSODA", t_eval=time, rtol=1e-10, atol=1e-13).y
     # The law is an implicit Euler method in z, whose error goes with the step: 10 000 of them here, and twice as many calls would be two a step.
-    np.testing.assert_allclose(ride.force, stiffness * (rate * time - exact[0]), atol=2e-4)
+    np.testing.assert_allclose(slider.force, stiffness * (rate * time - exact[0]), atol=2e-4)
     assert 10_000 < asked[0] < 14_000
 
 
@@ -179,24 +179,29 @@ def test_a_record_that_begins_under_a_force() -> None:
     for force in (0.0, 0.2):
         law = {"law": "super_subloading", **LAW}
         record = SpringSlider(TIME, LOAD_POINT, 1.0, TIME, initial=force)
-        ride = fc.law(law).ride(TIME, LOAD_POINT, 1.0, **start, force=force)
-        assert ride.force[0] == force
-        np.testing.assert_array_equal(record.predicted({**law, **start}), ride.force)
+        slider = fc.law(law).slider(TIME, LOAD_POINT, 1.0, **start, force=force)
+        assert slider.force[0] == force
+        np.testing.assert_array_equal(record.predicted({**law, **start}), slider.force)
         by = ["mass", "mu_k"]
         derivatives = record.derivatives({**law, **start}, by)
-        exact = fc.law(law).ride(TIME, LOAD_POINT, 1.0, **start, force=force, by=by)
+        exact = fc.law(law).slider(TIME, LOAD_POINT, 1.0, **start, force=force, by=by)
         np.testing.assert_array_equal(derivatives, np.stack([exact.dforce_dmass, exact.dforce_dmu_k], axis=-1))
 
 
 def test_what_cannot_be_ridden() -> None:
     law = fc.law("super_subloading", **LAW)
     with pytest.raises(fc.CaseError, match=r"slider.mass: is 0: must be positive"):
-        law.ride([0, 1], [0, 1], 1.0, stiffness=1.0, mass=0.0)
+        law.slider([0, 1], [0, 1], 1.0, stiffness=1.0, mass=0.0)
     with pytest.raises(fc.CaseError, match=r"stiffness: has the shape \(2,\): must be \(\)"):
-        law.ride([0, 1], [0, 1], 1.0, stiffness=[1.0, 2.0], mass=1.0)
+        law.slider([0, 1], [0, 1], 1.0, stiffness=[1.0, 2.0], mass=1.0)
     with pytest.raises(fc.CaseError, match="no derivative of the law by mu; there are derivatives by mu_s, .*, stiffness, mass"):
-        law.ride([0, 1], [0, 1], 1.0, stiffness=1.0, mass=1.0, by=["mu"])
+        law.slider([0, 1], [0, 1], 1.0, stiffness=1.0, mass=1.0, by=["mu"])
     with pytest.raises(fc.Stopped, match="the slider takes too many steps at the time .*: check mass and stiffness"):
-        law.ride([0, 1e9], [0, 1e9], 1.0, stiffness=1e9, mass=1e-9)
+        law.slider([0, 1e9], [0, 1e9], 1.0, stiffness=1e9, mass=1e-9)
     with pytest.raises(ValueError, match="alpha_t: a spring-slider needs it"):
         fc.fit(SpringSlider(TIME, LOAD_POINT, 1.0, TIME), free={"mu_s": (0.4, 0.8)}, mu_k=0.3, r=1.0, stiffness=1.0, mass=1.0)
+
+
+def test_the_former_name_is_refused_with_the_new_one() -> None:
+    with pytest.raises(AttributeError, match="no `ride`: it is called `slider`"):
+        fc.law("coulomb", mu=0.3, alpha_t=1e3).ride  # type: ignore[attr-defined]  # noqa: B018

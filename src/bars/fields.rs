@@ -36,7 +36,7 @@ impl Bar {
             "moment" => self.moments(state),
             "slip" => self.of_grips(|grip| state.grips[grip].slip),
             "bond_shear" => self.of_grips(|grip| state.grips[grip].bond.traction),
-            "bond_normal" => self.of_grips(|grip| self.grips[grip].normal * state.grips[grip].apart),
+            "bond_normal" => self.of_grips(|grip| self.grips[grip].normal * state.grips[grip].across),
             "axial_force" => state.segments.iter().map(|segment| segment.force).collect(),
             "shear_force" => self.shears(state),
             "yielding" => state.segments.iter().map(|segment| f64::from(u8::from(segment.yields))).collect(),

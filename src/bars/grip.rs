@@ -43,7 +43,7 @@ pub struct GripState {
     /// s [L]
     pub slip: f64,
     /// v [L]
-    pub apart: f64,
+    pub across: f64,
     /// state of the law
     pub bond: BondState,
     /// whether it slipped in the last increment
@@ -95,37 +95,38 @@ impl Grip {
         let t = e / size;
         let n = turned(t);
         let (along, across) = (d.dot(&t), d.dot(&n));
-        let (slip, apart) = (along - old.natural[0], across - old.natural[1]);
+        let (slip, opened) = (along - old.natural[0], across - old.natural[1]);
         let found = self.under(pressure).respond(&old.bond, 0.0, slip - old.slip, false);
-        let (q, p) = (self.length * found.state.traction, self.length * self.normal * apart);
+        let (q, p) = (self.length * found.state.traction, self.length * self.normal * opened);
         let slope = n / size;
         // ∂s and ∂v by d and e
         let by_slip = [t, slope * across];
-        let by_apart = [n, slope * -along];
+        let by_normal = [n, slope * -along];
         let turn = slope * slope.transpose();
         let bent = bending_of_angle(e);
         let crossed = |of: Vector2<f64>| -> Matrix2<f64> { of * slope.transpose() };
         // second derivatives of s and v, by d and e and by e twice
         let of_slip = [crossed(n), bent * across - turn * along];
-        let of_apart = [-crossed(t), -bent * along - turn * across];
+        let of_normal = [-crossed(t), -bent * along - turn * across];
         let [stiff, tied] = [self.length * found.dtraction[1], self.length * self.normal];
         let rate = |i: usize, j: usize| {
-            let first = by_slip[i] * by_slip[j].transpose() * stiff + by_apart[i] * by_apart[j].transpose() * tied;
+            let first = by_slip[i] * by_slip[j].transpose() * stiff + by_normal[i] * by_normal[j].transpose() * tied;
             let second = match (i, j) {
                 (0, 0) => Matrix2::zeros(),
-                (0, 1) => of_slip[0] * q + of_apart[0] * p,
-                (1, 0) => (of_slip[0] * q + of_apart[0] * p).transpose(),
-                _ => of_slip[1] * q + of_apart[1] * p,
+                (0, 1) => of_slip[0] * q + of_normal[0] * p,
+                (1, 0) => (of_slip[0] * q + of_normal[0] * p).transpose(),
+                _ => of_slip[1] * q + of_normal[1] * p,
             };
             first + second
         };
         let answer = Answer {
-            forces: [0, 1].map(|i| by_slip[i] * q + by_apart[i] * p),
+            forces: [0, 1].map(|i| by_slip[i] * q + by_normal[i] * p),
             rates: [[rate(0, 0), rate(0, 1)], [rate(1, 0), rate(1, 1)]],
         };
         let traction = found.state.traction;
-        let stored = traction * traction / self.bond.stiffness() + self.normal * apart * apart;
-        let state = GripState { natural: old.natural, slip, apart, bond: found.state, slips: found.plastic != 0.0 };
+        let stored = traction * traction / self.bond.stiffness() + self.normal * opened * opened;
+        let state =
+            GripState { natural: old.natural, slip, across: opened, bond: found.state, slips: found.plastic != 0.0 };
         (answer, Gripped { state, stored: 0.5 * self.length * stored, dissipated: self.length * found.dissipation })
     }
 }

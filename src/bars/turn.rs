@@ -4,7 +4,7 @@
 //! M = EI (θ − θ₀)/l_m,   θ = α(e₂) − α(e₁)
 //! ∂θ/∂e₂ = J e₂/|e₂|²,   ∂θ/∂e₁ = −J e₁/|e₁|²          α: angle of a vector, J: turned by +90°
 //! ```
-//! l_m is the length that bends: half of both segments, or half of the one beside a clamp.
+//! l_m is the length that bends: half of both segments, or half of the one next to a clamp.
 
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};

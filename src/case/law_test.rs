@@ -37,8 +37,8 @@ pub struct LawTestInput {
     pub dilatancy: Option<Dilatancy>,
     /// k of Archard's law, as of a contact [L²/F]
     pub wear: Option<f64>,
-    /// Bond beside friction, as of a contact, with its `opening`; pressure, traction and dissipation of the results include it. Its stiffness
-    /// is alpha_t, beside frictionless half of `normal.alpha_n`
+    /// Bond in parallel with friction, as of a contact, with its `opening`; pressure, traction and dissipation of the results include it. Its stiffness
+    /// is alpha_t, without friction half of `normal.alpha_n`
     pub bond: Option<BondParameters>,
     /// How the pressure answers to the opening of the interface by dilatancy and wear; constant normal load by default
     #[serde(default)]
@@ -237,7 +237,7 @@ fn bonded(law: ContactLaw, bond: &BondParameters, input: &LawTestInput) -> Check
     )?;
     refuse_if(bond.opening.is_none(), "bond.opening", "is missing: a law alone has no mesh to choose it from")?;
     let alpha_n = input.normal.alpha_n;
-    let message = "is missing: half of it is the stiffness of a bond beside a law without alpha_t";
+    let message = "is missing: half of it is the stiffness of a bond in parallel with a law without alpha_t";
     refuse_if(law.stiffness == 0.0 && alpha_n.is_none(), "normal.alpha_n", message)?;
     let moves = input.dilatancy.is_some()
         || input.wear.is_some()

@@ -26,22 +26,10 @@ pub enum Unfound {
     Failed(Failed),
 }
 
-impl From<Refused> for Unfound {
-    fn from(refused: Refused) -> Self {
-        Self::Refused(refused)
-    }
-}
-
-impl From<Failed> for Unfound {
-    fn from(failed: Failed) -> Self {
-        Self::Failed(failed)
-    }
-}
-
-impl From<Error> for Unfound {
-    fn from(error: Error) -> Self {
-        Self::Failed(Failed::Stopped(error))
-    }
+conversions! {
+    Refused => Unfound: |refused| Self::Refused(refused);
+    Failed => Unfound: |failed| Self::Failed(failed);
+    Error => Unfound: |error| Self::Failed(Failed::Stopped(error));
 }
 
 /// The trials of a case, each in a folder of its own.

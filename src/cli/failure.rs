@@ -28,10 +28,10 @@ impl Failure {
     }
 }
 
-impl From<CaseError> for Failure {
-    fn from(error: CaseError) -> Self {
-        Self::BadInput(error.to_string())
-    }
+conversions! {
+    CaseError => Failure: |error| Self::BadInput(error.to_string());
+    Refused => Failure: |refused| Self::BadInput(refused.to_string());
+    Error => Failure: |error| Self::Stopped(error.to_string());
 }
 
 impl From<ReportError> for Failure {
@@ -43,23 +43,11 @@ impl From<ReportError> for Failure {
     }
 }
 
-impl From<Refused> for Failure {
-    fn from(refused: Refused) -> Self {
-        Self::BadInput(refused.to_string())
-    }
-}
-
 impl From<Failed> for Failure {
     fn from(failed: Failed) -> Self {
         match failed {
             Failed::Stopped(error) => error.into(),
             Failed::Internal(error) => Self::Internal(error),
         }
-    }
-}
-
-impl From<Error> for Failure {
-    fn from(error: Error) -> Self {
-        Self::Stopped(error.to_string())
     }
 }

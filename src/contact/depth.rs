@@ -1,7 +1,7 @@
 //! How deep the surfaces of a contact lie in each other: nodes of both, corners and ends of rigid bodies, rigid disks.
 //!
 //! Contact is evaluated at points of the slave. What lies between them may enter: a corner of a rigid body or a small disk an edge of the
-//! slave, a corner of the slave the master beside Gauss points.
+//! slave, a corner of the slave the master next to Gauss points.
 //!
 //! ```text
 //! node of the slave in a rigid master      −g of its projection

@@ -6,7 +6,7 @@
 //! linear edges:     φ_j = 1 at node j, 0 at the others
 //! quadratic edges:  φ_e = 1 on edge e but for the hats of its corners;  φ_c = 1 at corner c, 0 from the middle node on
 //! ```
-//! A corner of a quadratic edge has a hat of its own at an end of the slave, at an angle of more than 45° and beside a linear edge. Two
+//! A corner of a quadratic edge has a hat of its own at an end of the slave, at an angle of more than 45° and next to a linear edge. Two
 //! tractions per edge, at corner and middle node, would be all but undetermined in shear against the three nodes of an edge: each
 //! point that closes leaves a mismatch of the meshes, which a stiff penalty turns into a zigzag of tractions. Some surfaces
 //! have such hats all the same ([`Hats::AtNodes`]). (The shape functions N_j of the

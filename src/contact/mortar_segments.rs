@@ -40,7 +40,7 @@ pub(super) struct Overlap {
     pub ends: [Cut; 2],
     /// Gap of its middle along the edge's normal in the committed configuration, to what it faces now [L]
     pub gap: f64,
-    /// Gap beyond which others do not count beside it [L]
+    /// Gap beyond which others do not count compared with it [L]
     pub reach: f64,
 }
 

@@ -112,12 +112,12 @@ impl Assembler {
 
     /// Turns to the bodies that are there in a step, as they came.
     fn attend(&mut self, step: &Step, old: &State) {
-        let births = &old.step_start.births;
-        if self.absent == step.absent && self.bars_absent == step.bars.absent && self.activated.are_of(births) {
+        let activations = &old.step_start.activations;
+        if self.absent == step.absent && self.bars_absent == step.bars.absent && self.activated.are_of(activations) {
             return;
         }
         let model = &self.model;
-        let activated = model.activated_of(births);
+        let activated = model.activated_of(activations);
         let are_there = |e: usize| step.has(model.body_of_element[e]);
         self.solids = Solids::new(model, are_there, &activated);
         self.evolving = Evolving::new(model, self.solids.constant(), are_there, &activated);

@@ -114,16 +114,9 @@ pub enum NoSlipOperator {
     Linear(LinearFailure),
 }
 
-impl From<TrialFailure> for NoSlipOperator {
-    fn from(failure: TrialFailure) -> Self {
-        Self::Assembly(failure)
-    }
-}
-
-impl From<LinearFailure> for NoSlipOperator {
-    fn from(failure: LinearFailure) -> Self {
-        Self::Linear(failure)
-    }
+conversions! {
+    TrialFailure => NoSlipOperator: |failure| Self::Assembly(failure);
+    LinearFailure => NoSlipOperator: |failure| Self::Linear(failure);
 }
 
 impl SlipOperator {

@@ -1,10 +1,12 @@
 //! Constitutive laws: friction of interfaces, stress of bodies.
 
+#[macro_use]
+pub mod parameter;
+
 #[doc(hidden)]
 pub mod approach;
 pub mod bulk;
 mod dual;
 pub mod friction;
-pub mod parameter;
 pub(crate) mod tableau;
 pub(crate) mod text;

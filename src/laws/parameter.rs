@@ -88,4 +88,41 @@ macro_rules! numbers {
         }
     };
 }
-pub(crate) use numbers;
+
+/// Methods that change one thing of an input and return it, for chains: `setters! { contact: Contact; area(area: f64) { … } }`.
+macro_rules! setters {
+    (const $self:ident: $type:ty; $($(#[$doc:meta])* $name:ident($($argument:ident: $of:ty),*) { $($change:tt)* })*) => {
+        impl $type {
+            $($(#[$doc])*
+            #[must_use]
+            pub const fn $name(self, $($argument: $of),*) -> Self {
+                let mut $self = self;
+                $($change)*
+                $self
+            })*
+        }
+    };
+    ($self:ident: $type:ty; $($(#[$doc:meta])* $name:ident($($argument:ident: $of:ty),*) { $($change:tt)* })*) => {
+        impl $type {
+            $($(#[$doc])*
+            #[must_use]
+            pub fn $name(self, $($argument: $of),*) -> Self {
+                let mut $self = self;
+                $($change)*
+                $self
+            })*
+        }
+    };
+}
+
+/// Conversions into a type: `conversions! { f64 => Drive: |value| Self::Constant(value); }`.
+macro_rules! conversions {
+    ($($(#[$doc:meta])* $of:ty => $to:ty: |$value:pat_param| $made:expr;)*) => {
+        $($(#[$doc])*
+        impl From<$of> for $to {
+            fn from($value: $of) -> Self {
+                $made
+            }
+        })*
+    };
+}

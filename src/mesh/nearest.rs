@@ -44,7 +44,7 @@ pub fn nearest<'e>(
     let adjacent = elements.filter(|element| element.contains(&node));
     let sides = adjacent.flat_map(|element| element.iter().map(|other| (nodes[*other] - nodes[node]).norm()));
     let (near, size) = (distance(node), sides.fold(0.0, f64::max));
-    // A node beside no element is found where it is, to the round-off of its position.
+    // A node next to no element is found where it is, to the round-off of its position.
     let round_off = (EQUALLY_NEAR * size).max(OF_POSITION * nodes[node].amax());
     if let Some(other) = (0..nodes.len()).find(|other| *other != node && distance(*other) <= near + round_off) {
         return Err(NotOne::Several([node, other]));

@@ -74,7 +74,6 @@ pub struct PointMass {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Damping {
     /// Force per momentum: damps slow motions most, free flight included [1/T]
     pub mass: f64,
@@ -84,16 +83,12 @@ pub struct Damping {
     pub retardation: f64,
 }
 
-impl Damping {
+setters! { damping: Damping;
     /// Sets the mass-proportional damping [1/T].
-    pub fn mass(self, mass: f64) -> Self {
-        Self { mass, ..self }
-    }
+    mass(mass: f64) { damping.mass = mass; }
 
     /// Sets the retardation time of the viscous stress [T].
-    pub fn retardation(self, retardation: f64) -> Self {
-        Self { retardation, ..self }
-    }
+    retardation(retardation: f64) { damping.retardation = retardation; }
 }
 
 /// Layout of [`State::memory`](super::state::State::memory): the internal variables of all elements in sequence, of zero length

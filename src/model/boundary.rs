@@ -78,10 +78,12 @@ written!(
     text: Expression
 );
 
-impl From<f64> for BodyTemperature {
-    fn from(value: f64) -> Self {
-        Self::Constant(value)
-    }
+conversions! {
+    f64 => BodyTemperature: |value| Self::Constant(value);
+    f64 => Profile: |value| Self::Constant(value);
+    RandomField => Profile: |field| Self::Random(Box::new(field));
+    f64 => Drive: |value| Self::Constant(value);
+    f64 => Moment: |time| Self { time, beyond: None };
 }
 
 impl From<&BodyTemperature> for Drive {
@@ -133,18 +135,6 @@ impl Default for Profile {
     }
 }
 
-impl From<f64> for Profile {
-    fn from(value: f64) -> Self {
-        Self::Constant(value)
-    }
-}
-
-impl From<RandomField> for Profile {
-    fn from(field: RandomField) -> Self {
-        Self::Random(Box::new(field))
-    }
-}
-
 impl Profile {
     /// Value at a reference position at the start of the run; NaN where an expression is not defined.
     pub fn value(&self, position: Vector2<f64>) -> f64 {
@@ -165,12 +155,6 @@ impl Profile {
     /// Whether it varies in time.
     pub fn depends_on_time(&self) -> bool {
         matches!(self, Self::Expression(expression) if expression.depends_on_time())
-    }
-}
-
-impl From<f64> for Drive {
-    fn from(value: f64) -> Self {
-        Self::Constant(value)
     }
 }
 
@@ -513,12 +497,6 @@ pub struct Moment {
     pub time: f64,
     /// Start and end of the increment, if the scheme evaluates beyond its end
     pub beyond: Option<[f64; 2]>,
-}
-
-impl From<f64> for Moment {
-    fn from(time: f64) -> Self {
-        Self { time, beyond: None }
-    }
 }
 
 /// The time span of a step.

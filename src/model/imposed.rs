@@ -90,10 +90,9 @@ impl InitialStress {
 /// A fluid in the pores of a body. Without a permeability it has no time to flow, and elements are nearly incompressible from the start: take
 /// f_bar, reduced Q8 or T6. With one it flows in static steps, whose time is that of consolidation. The material, and the initial stress, are
 /// those of the effective stress; stresses and what contacts feel are total
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct PoreFluid {
     /// K_w: bulk modulus of the fluid, 2.2 GPa of water, K_w > 0; K_w/n of 100 times the stiffness of the material is enough [F/L²]
     pub bulk_modulus: f64,
@@ -129,49 +128,7 @@ pub struct PoreFluid {
 impl PoreFluid {
     /// Creates a fluid without initial pressure and without cavitation.
     pub fn new(bulk_modulus: f64, porosity: f64) -> Self {
-        Self {
-            bulk_modulus,
-            porosity,
-            pressure: Profile::default(),
-            cavitation: None,
-            permeability: None,
-            permeability_y: None,
-            unit_weight: None,
-            biot: None,
-            weighs: false,
-            capillary: None,
-            kozeny_carman: false,
-        }
-    }
-
-    /// Lets it flow, with the permeability and its unit weight [L/T], [F/L³].
-    pub fn flowing(self, permeability: f64, unit_weight: f64) -> Self {
-        Self { permeability: Some(permeability), unit_weight: Some(unit_weight), ..self }
-    }
-
-    /// Sets another permeability along y [L/T].
-    pub fn permeability_y(self, permeability: f64) -> Self {
-        Self { permeability_y: Some(permeability), ..self }
-    }
-
-    /// Sets Biot's coefficient of one that flows [-].
-    pub fn biot(self, biot: f64) -> Self {
-        Self { biot: Some(biot), ..self }
-    }
-
-    /// Lets its weight drive it.
-    pub fn weighing(self) -> Self {
-        Self { weighs: true, ..self }
-    }
-
-    /// Sets the height that it rises to in the pores [L].
-    pub fn capillary(self, height: f64) -> Self {
-        Self { capillary: Some(height), ..self }
-    }
-
-    /// Lets the permeability follow the void ratio.
-    pub fn kozeny_carman(self) -> Self {
-        Self { kozeny_carman: true, ..self }
+        Self { bulk_modulus, porosity, ..Self::default() }
     }
 
     /// Whether it flows.
@@ -184,20 +141,36 @@ impl PoreFluid {
         self.biot.unwrap_or(1.0)
     }
 
-    /// Sets the pressure at the start [F/L²].
-    pub fn pressure(self, pressure: impl Into<Profile>) -> Self {
-        Self { pressure: pressure.into(), ..self }
-    }
-
-    /// Sets the pressure at which it cavitates [F/L²].
-    pub fn cavitation(self, cavitation: f64) -> Self {
-        Self { cavitation: Some(cavitation), ..self }
-    }
-
     /// K_w/n [F/L²]
     pub fn modulus(&self) -> f64 {
         self.bulk_modulus / self.porosity
     }
+}
+
+setters! { pore: PoreFluid;
+    /// Lets it flow, with the permeability and its unit weight [L/T], [F/L³].
+    flowing(permeability: f64, unit_weight: f64) { pore.permeability = Some(permeability); pore.unit_weight = Some(unit_weight); }
+
+    /// Sets another permeability along y [L/T].
+    permeability_y(permeability: f64) { pore.permeability_y = Some(permeability); }
+
+    /// Sets Biot's coefficient of one that flows [-].
+    biot(biot: f64) { pore.biot = Some(biot); }
+
+    /// Lets its weight drive it.
+    weighing() { pore.weighs = true; }
+
+    /// Sets the height that it rises to in the pores [L].
+    capillary(height: f64) { pore.capillary = Some(height); }
+
+    /// Lets the permeability follow the void ratio.
+    kozeny_carman() { pore.kozeny_carman = true; }
+
+    /// Sets the pressure at the start [F/L²].
+    pressure(pressure: impl Into<Profile>) { pore.pressure = pressure.into(); }
+
+    /// Sets the pressure at which it cavitates [F/L²].
+    cavitation(cavitation: f64) { pore.cavitation = Some(cavitation); }
 }
 
 /// Pressure of the fluid in the pores of a body, given by place and time: drained ground whose water changes, or a reservoir. The material, and the
@@ -205,7 +178,6 @@ impl PoreFluid {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct PorePressure {
     /// p of the reference position x, y and, in expressions, of the run time t; what it is at t = 0 acts before anything moves. 0 at t = 0 for
     /// pressures that count from the start, which may be negative [F/L²]
@@ -225,11 +197,11 @@ impl PorePressure {
     pub fn new(pressure: impl Into<PoreField>) -> Self {
         Self { pressure: pressure.into(), biot: whole() }
     }
+}
 
+setters! { pore: PorePressure;
     /// Sets Biot's coefficient.
-    pub fn biot(self, biot: f64) -> Self {
-        Self { biot, ..self }
-    }
+    biot(biot: f64) { pore.biot = biot; }
 }
 
 impl Body {
@@ -254,7 +226,6 @@ impl Body {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Thermal {
     /// α: strain per temperature, relative to the undeformed body [1/Θ]
     pub expansion: f64,
@@ -268,11 +239,11 @@ impl Thermal {
     pub fn new(expansion: f64) -> Self {
         Self { expansion, reference: 0.0 }
     }
+}
 
+setters! { thermal: Thermal;
     /// Sets the temperature of the undeformed body [Θ].
-    pub fn reference(self, reference: f64) -> Self {
-        Self { reference, ..self }
-    }
+    reference(reference: f64) { thermal.reference = reference; }
 }
 
 /// Temperature of a body over a step.

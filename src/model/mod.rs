@@ -79,7 +79,6 @@ pub use step::{ForceComponent, Increments, Rupture, Step};
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "Newton")]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct NewtonSettings {
     /// Residual force relative to the acting forces
     pub tolerance: f64,
@@ -87,16 +86,12 @@ pub struct NewtonSettings {
     pub max_iterations: usize,
 }
 
-impl NewtonSettings {
+setters! { newton: NewtonSettings;
     /// Sets the tolerance [-].
-    pub fn tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
-    }
+    tolerance(tolerance: f64) { newton.tolerance = tolerance; }
 
     /// Sets the maximum number of linear solves.
-    pub fn max_iterations(self, max_iterations: usize) -> Self {
-        Self { max_iterations, ..self }
-    }
+    max_iterations(max_iterations: usize) { newton.max_iterations = max_iterations; }
 }
 
 impl Default for NewtonSettings {
@@ -299,7 +294,7 @@ impl Model {
                 reaction: zero,
                 fading: Vec::new(),
                 absent: self.steps.first().map(|step| step.absent.clone()).unwrap_or_default(),
-                births: Arc::default(),
+                activations: Arc::default(),
                 last_dt: 0.0,
             }),
             energy: Energy::default(),

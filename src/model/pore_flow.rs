@@ -61,7 +61,7 @@ pub struct WetElement {
     /// place of the pressure of each corner among the dofs of the nodes
     pub places: Vec<usize>,
     /// displacement of its nodes when it came into a deformed model, from which its strain counts; else empty [L]
-    pub birth: Vec<Vector2<f64>>,
+    pub activation: Vec<Vector2<f64>>,
     /// quadrature points
     pub points: Vec<WetPoint>,
     /// ∫ N_a N_b dV/Q: what the pores take up by the pressure [L⁵/F]
@@ -312,15 +312,21 @@ impl WetElement {
     }
 
     /// The element as it comes at displacements of its nodes.
-    pub fn activated(&self, birth: Vec<Vector2<f64>>, body: &Body, solid: &SolidElement, mesh: &Mesh) -> Option<Self> {
+    pub fn activated(
+        &self,
+        activation: Vec<Vector2<f64>>,
+        body: &Body,
+        solid: &SolidElement,
+        mesh: &Mesh,
+    ) -> Option<Self> {
         let numbers = [&self.nodes, &self.pressures, &self.places].map(Clone::clone);
-        Self::shaped(numbers, self.element, birth, body, solid, mesh)
+        Self::shaped(numbers, self.element, activation, body, solid, mesh)
     }
 
     fn shaped(
         [nodes, pressures, places]: [Vec<usize>; 3],
         e: usize,
-        birth: Vec<Vector2<f64>>,
+        activation: Vec<Vector2<f64>>,
         body: &Body,
         solid: &SolidElement,
         mesh: &Mesh,
@@ -329,7 +335,7 @@ impl WetElement {
         let (corners, law) = (kind.corners(), body.material.description());
         let linear = if corners == 3 { crate::mesh::ElementKind::T3 } else { crate::mesh::ElementKind::Q4 };
         let mut positions = mesh.places(e);
-        positions.iter_mut().zip(&birth).for_each(|(x, u)| *x += u);
+        positions.iter_mut().zip(&activation).for_each(|(x, u)| *x += u);
         let slopes = |at: [f64; 2]| {
             // ∂N/∂X = (∂X/∂ξ)⁻ᵀ ∂N/∂ξ with the geometry of all nodes
             let map: Matrix2<f64> = positions
@@ -369,7 +375,7 @@ impl WetElement {
             nodes,
             pressures,
             places,
-            birth,
+            activation,
             points: points.collect(),
             storage: mass * storage,
             projection: if is_equal { spread / (2.0 * law.shear_modulus) } else { DMatrix::zeros(corners, corners) },
@@ -402,8 +408,8 @@ impl WetElement {
         let mut f = Matrix2::identity();
         let mut hoop = 1.0;
         for (a, (&node, gradient)) in self.nodes.iter().zip(&point.gradients).enumerate() {
-            let birth = self.birth.get(a).copied().unwrap_or_default();
-            let moved = vector(u, node) - birth;
+            let activation = self.activation.get(a).copied().unwrap_or_default();
+            let moved = vector(u, node) - activation;
             f += moved * gradient.transpose();
             hoop += point.hoop.get(a).map_or(0.0, |share| share * moved.x);
         }

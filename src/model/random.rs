@@ -29,7 +29,6 @@ use thiserror::Error;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Random")]
 #[non_exhaustive]
-#[must_use]
 pub struct RandomField {
     /// Number of the field, 0 to 2^53: another seed gives another field
     pub seed: u64,
@@ -113,16 +112,6 @@ impl RandomField {
         Self { seed, mean, deviation, correlation, marginal, spectrum, waves: OnceLock::new() }
     }
 
-    /// Sets the distribution of the values at a point.
-    pub fn marginal(self, marginal: Marginal) -> Self {
-        Self { marginal, ..self }
-    }
-
-    /// Sets the spectrum.
-    pub fn spectrum(self, spectrum: Spectrum) -> Self {
-        Self { spectrum, waves: OnceLock::new(), ..self }
-    }
-
     /// Checks that its numbers are in range.
     ///
     /// # Errors
@@ -186,6 +175,14 @@ impl RandomField {
             Spectrum::VonKarman { hurst } => libm::expm1(-libm::log(share) / hurst).sqrt() / self.correlation,
         }
     }
+}
+
+setters! { random: RandomField;
+    /// Sets the distribution of the values at a point.
+    marginal(marginal: Marginal) { random.marginal = marginal; }
+
+    /// Sets the spectrum.
+    spectrum(spectrum: Spectrum) { random.spectrum = spectrum; random.waves = OnceLock::new(); }
 }
 
 /// Random bits: the generator `SplitMix64`.

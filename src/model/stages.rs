@@ -20,7 +20,7 @@ use super::Model;
 use super::element::{ElementError, SolidElement};
 use super::in_force;
 use super::pore_flow::WetElement;
-use super::state::{Births, State};
+use super::state::{Activations, State};
 use super::step::Step;
 use crate::contact::conduit::Conduit;
 use crate::contact::{ContactPair, ContactState};
@@ -32,7 +32,7 @@ const LEAST_SHARE: f64 = 0.5;
 #[derive(Clone, Debug, Default)]
 #[doc(hidden)]
 pub struct Activated {
-    births: Arc<Births>,
+    activations: Arc<Activations>,
     solids: BTreeMap<usize, SolidElement>,
     wet: BTreeMap<usize, WetElement>,
 }
@@ -40,8 +40,8 @@ pub struct Activated {
 #[doc(hidden)]
 impl Activated {
     /// Whether these are the ones that came at some displacements.
-    pub fn are_of(&self, births: &Arc<Births>) -> bool {
-        Arc::ptr_eq(&self.births, births) || self.births == *births
+    pub fn are_of(&self, activations: &Arc<Activations>) -> bool {
+        Arc::ptr_eq(&self.activations, activations) || self.activations == *activations
     }
 
     /// Whether an element is among them.
@@ -92,18 +92,20 @@ impl Model {
     /// An element as it is in a state: without strain at the place where it came.
     pub fn solid(&self, state: &State, element: usize) -> Cow<'_, SolidElement> {
         let given = &self.solids[element];
-        let births = state.step_start.births.get(&element);
+        let activations = state.step_start.activations.get(&element);
         // Elements are checked when they come.
-        births.and_then(|birth| self.activated(element, birth).ok()).map_or(Cow::Borrowed(given), Cow::Owned)
+        activations
+            .and_then(|activation| self.activated(element, activation).ok())
+            .map_or(Cow::Borrowed(given), Cow::Owned)
     }
 
     /// An element that comes at displacements of its nodes.
     ///
     /// # Errors
     /// [`ElementError::Degenerate`] when it is inverted there.
-    pub fn activated(&self, element: usize, birth: &[[f64; 2]]) -> Result<SolidElement, ElementError> {
-        let birth = birth.iter().map(|u| Vector2::from(*u)).collect();
-        self.solids[element].activated(self.mesh.section, &self.mesh.places(element), birth)
+    pub fn activated(&self, element: usize, activation: &[[f64; 2]]) -> Result<SolidElement, ElementError> {
+        let activation = activation.iter().map(|u| Vector2::from(*u)).collect();
+        self.solids[element].activated(self.mesh.section, &self.mesh.places(element), activation)
     }
 
     /// An element, as it came.
@@ -112,27 +114,26 @@ impl Model {
     }
 
     /// The elements that came into a deformed model, by number.
-    pub fn activated_of(&self, births: &Arc<Births>) -> Arc<Activated> {
-        let mut all = Activated { births: births.clone(), ..Activated::default() };
-        for (&e, birth) in births.iter() {
-            let Ok(activated) = self.activated(e, birth) else { continue };
-            all.wet.extend(self.activated_wet(e, birth, &activated).map(|wet| (e, wet)));
+    pub fn activated_of(&self, activations: &Arc<Activations>) -> Arc<Activated> {
+        let mut all = Activated { activations: activations.clone(), ..Activated::default() };
+        for (&e, activation) in activations.iter() {
+            let Ok(activated) = self.activated(e, activation) else { continue };
+            all.wet.extend(self.activated_wet(e, activation, &activated).map(|wet| (e, wet)));
             all.solids.insert(e, activated);
         }
         Arc::new(all)
     }
 
-    fn activated_wet(&self, element: usize, birth: &[[f64; 2]], activated: &SolidElement) -> Option<WetElement> {
-        let birth = birth.iter().map(|u| Vector2::from(*u)).collect();
-        self.flow.as_ref()?.wet(element)?.activated(birth, self.body_of(element), activated, &self.mesh)
+    fn activated_wet(&self, element: usize, activation: &[[f64; 2]], activated: &SolidElement) -> Option<WetElement> {
+        let activation = activation.iter().map(|u| Vector2::from(*u)).collect();
+        self.flow.as_ref()?.wet(element)?.activated(activation, self.body_of(element), activated, &self.mesh)
     }
 
     /// An element that water flows through as it is in a state: by its shape where it came.
     pub fn wet<'m>(&self, state: &State, given: &'m WetElement) -> Cow<'m, WetElement> {
-        let activated =
-            state.step_start.births.get(&given.element).and_then(|birth| {
-                self.activated_wet(given.element, birth, &self.activated(given.element, birth).ok()?)
-            });
+        let activated = state.step_start.activations.get(&given.element).and_then(|activation| {
+            self.activated_wet(given.element, activation, &self.activated(given.element, activation).ok()?)
+        });
         activated.map_or(Cow::Borrowed(given), Cow::Owned)
     }
 
@@ -169,25 +170,25 @@ impl Model {
     /// # Errors
     /// Returns an element whose shape there is far from that in the mesh, with the least share of a point in its size.
     pub fn bear(&self, step: &Step, state: &mut State) -> Result<(), (usize, f64)> {
-        let mut births = Births::clone(&state.step_start.births);
+        let mut activations = Activations::clone(&state.step_start.activations);
         for &element in step.changed.iter().flat_map(|&body| &self.bodies[body].elements) {
-            births.remove(&element);
-            let birth: Vec<[f64; 2]> =
+            activations.remove(&element);
+            let activation: Vec<[f64; 2]> =
                 self.mesh.vectors(element, &state.displacement).into_iter().map(Into::into).collect();
-            if !step.has(self.body_of_element[element]) || birth.iter().flatten().all(|u| *u == 0.0) {
+            if !step.has(self.body_of_element[element]) || activation.iter().flatten().all(|u| *u == 0.0) {
                 continue;
             }
             let volumes = self.solids[element].point_volumes();
-            let least = self.activated(element, &birth).map_or(0.0, |activated| {
+            let least = self.activated(element, &activation).map_or(0.0, |activated| {
                 let shares = activated.point_volumes().iter().zip(volumes).map(|(now, mesh)| now / mesh);
                 shares.fold(f64::INFINITY, f64::min)
             });
             if least < LEAST_SHARE {
                 return Err((element, least));
             }
-            births.insert(element, birth);
+            activations.insert(element, activation);
         }
-        Arc::make_mut(&mut state.step_start).births = Arc::new(births);
+        Arc::make_mut(&mut state.step_start).activations = Arc::new(activations);
         Ok(())
     }
 

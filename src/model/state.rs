@@ -67,9 +67,9 @@ impl State {
     /// Begins a step, which refers to the present state, with the bodies that are absent in it.
     pub fn begin_step(&mut self, absent: &[bool]) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
-        let (fading, absent, births) = (Vec::new(), absent.to_vec(), self.step_start.births.clone());
+        let (fading, absent, activations) = (Vec::new(), absent.to_vec(), self.step_start.activations.clone());
         let last_dt = self.last_dt();
-        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent, births, last_dt });
+        self.step_start = Arc::new(StepStart { displacement, reaction, fading, absent, activations, last_dt });
         (self.dt, self.last_increment) = (0.0, None);
     }
 
@@ -230,7 +230,7 @@ impl LastIncrement {
 }
 
 /// Displacements of the nodes of elements when they came, by element [L].
-pub type Births = BTreeMap<usize, Vec<[f64; 2]>>;
+pub type Activations = BTreeMap<usize, Vec<[f64; 2]>>;
 
 /// State of supported dofs and of bodies at the start of the step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -246,7 +246,7 @@ pub struct StepStart {
     /// whether each body is absent; empty if all are there
     pub absent: Vec<bool>,
     /// displacements of the nodes of each element that came into a deformed model [L]
-    pub births: Arc<Births>,
+    pub activations: Arc<Activations>,
     /// Δt of the increment before the step; 0 at the start of the run [T]
     pub last_dt: f64,
 }

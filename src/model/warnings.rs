@@ -176,13 +176,13 @@ fn friction_of_total_pressure(model: &Model, pair: &ContactPair) -> Option<Strin
     ))
 }
 
-/// Fluid pressure that is none beside the one at a neighbour [-]
+/// Fluid pressure that counts as none, over the one at a neighbour [-]
 const NO_PRESSURE: f64 = 1e-6;
 
 /// Part of the largest fluid pressure at the start where it ends abruptly, as a source does [-]
 const ABRUPT: f64 = 0.5;
 
-/// Warns of a fluid that starts with a pressure at some points and comes to those beside them only later: it counts as there before the
+/// Warns of a fluid that starts with a pressure at some points and comes to their neighbours only later: it counts as there before the
 /// run, in addition to the initial pressure.
 fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
     pair.initial.as_ref().filter(|_| pair.fluid.is_some())?;
@@ -206,7 +206,7 @@ fn isolated_pressure(model: &Model, pair: &ContactPair) -> Option<String> {
     let mut reached = (0..first.len()).filter(|&k| is_none(first[k]) && !is_none(last[k])).filter_map(nearest);
     let edge = reached.find(|&edge| first[edge] > ABRUPT * highest)?;
     Some(format!(
-        "its fluid_pressure is {} at {} at t = 0 and none beside it: it acts before anything moves, in addition to the \
+        "its fluid_pressure is {} at {} at t = 0 and none next to it: it acts before anything moves, in addition to the \
          initial pressure. If the run raises it, let it be 0 at t = 0, such as P*erfc((abs(x) + 1e-9)/(2*sqrt(D*t + \
          1e-30)))",
         number(first[edge]),
@@ -291,7 +291,7 @@ fn facets_of_a_fit(model: &Model, pair: &ContactPair) -> Option<String> {
     })
 }
 
-/// Corners of a bilinear element that are sharper than this are sheared too much beside a fault [rad]
+/// Corners of a bilinear element that are sharper than this are sheared too much next to a fault [rad]
 const SHARP: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Bilinear elements that are sheared resist the shear of a slipping fault too much, at every size: cycles come too early.
@@ -311,7 +311,7 @@ fn sheared_at_faults(model: &Model) -> Option<String> {
         sharp.find_map(|element| Some((element, element.nodes.iter().find_map(|node| adjacent.get(node))?)))?;
     let degrees = sharpest(&element).to_degrees();
     Some(format!(
-        "contact `{}`: bilinear elements beside it have corners of {degrees:.0}°, and are too stiff against its slip \
+        "contact `{}`: bilinear elements next to it have corners of {degrees:.0}°, and are too stiff against its slip \
          at every size: earthquakes come some percent too early; take quadratic elements (Q8)",
         pair.name
     ))

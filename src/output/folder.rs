@@ -38,7 +38,7 @@ const KNOWN: [&str; 22] = [
     report::FILE,
 ];
 
-/// Names of figures drawn beside results by earlier versions, ...
+/// Names of figures drawn next to results by earlier versions, ...
 const FIGURES: [&str; 11] = [
     "law.svg",
     "displacement.svg",

@@ -11,7 +11,7 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// The forces of a contact at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Borne {
+pub struct FrictionForce {
     /// time [T]
     pub time: f64,
     /// ∫ q ds of all points, as in `history.csv` [F]
@@ -28,19 +28,19 @@ pub struct FrictionHistory {
     /// time at which all closed points first slipped simultaneously [T]
     pub full_slip: Option<f64>,
     /// force with the largest tangential magnitude
-    pub largest: Option<Borne>,
+    pub largest: Option<FrictionForce>,
     /// force at the end
-    pub last: Option<Borne>,
+    pub last: Option<FrictionForce>,
 }
 
 impl FrictionHistory {
     /// Records the forces [F] and the slipping fraction of the closed length [-].
     pub fn note(&mut self, time: f64, normal: f64, tangential: f64, slipping: f64) {
         let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
-        let force = Borne { time, tangential_force: tangential, ratio };
+        let force = FrictionForce { time, tangential_force: tangential, ratio };
         self.last = Some(force);
         // A constant force keeps its first time.
-        let more = |largest: Borne| tangential.abs() > (1.0 + ROUND_OFF) * largest.tangential_force.abs();
+        let more = |largest: FrictionForce| tangential.abs() > (1.0 + ROUND_OFF) * largest.tangential_force.abs();
         if self.largest.is_none_or(more) {
             self.largest = Some(force);
         }
@@ -69,8 +69,9 @@ impl fmt::Display for FrictionHistory {
             }
         }
         if let [Some(largest), Some(last)] = [self.largest, self.last] {
-            let line =
-                |force: Borne| format!("{} ({:.4} of the normal force)", number(force.tangential_force), force.ratio);
+            let line = |force: FrictionForce| {
+                format!("{} ({:.4} of the normal force)", number(force.tangential_force), force.ratio)
+            };
             write!(
                 f,
                 "; peak tangential force {} at t = {}, {} at the end",

@@ -233,7 +233,7 @@ const TOTAL_SLIP: Quantity = q("total_slip", LENGTH, "plastic and elastic slip, 
 const SLIP_RATE: Quantity =
     q("slip_rate", VELOCITY, "plastic slip since the increment or row before over the time since");
 const RATIO: Quantity =
-    q("R", NONE, "|q|/(μ p): traction of friction over its peak; of a bond without friction beside it |q|/s; else 0");
+    q("R", NONE, "|q|/(μ p): traction of friction over its peak; of a bond without friction |q|/s; else 0");
 const MU: Quantity = q("mu", NONE, "μ: peak friction coefficient available now; 0 without friction");
 const STRUCTURE: Quantity = q("structure", NONE, "1/R*: degree of structure; 1 where a law has none");
 const STATE: Quantity =

@@ -51,7 +51,7 @@ const NEAREST: f64 = 1e-3;
 /// How far two T3 are from a parallelogram, √(d²/A), before they count less.
 const PAIRS: f64 = 0.3;
 
-/// Part of a term that must be new beside the terms before it.
+/// Part of a term that must be new compared with the terms before it.
 const NEW: f64 = 1e-6;
 
 /// The elements around every node.

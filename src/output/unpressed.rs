@@ -13,12 +13,12 @@ const ON_OPEN_POINTS: f64 = 0.01;
 /// Shear of the contacts whose strength fades over an opening that was not given.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Unpressed {
-    contacts: BTreeMap<String, Carried>,
+    contacts: BTreeMap<String, Shear>,
 }
 
 /// Shear of a contact.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
-struct Carried {
+struct Shear {
     /// Largest ∫ |q| ds so far of all points, and of those that are open [F]
     whole: f64,
     open: f64,
@@ -46,8 +46,8 @@ impl Unpressed {
 
     /// The warnings, each of which is reported once.
     pub fn warnings(&mut self) -> impl Iterator<Item = String> {
-        let message = |(contact, own): (String, Carried)| {
-            let Carried { whole, open, widest, opening } = own;
+        let message = |(contact, own): (String, Shear)| {
+            let Shear { whole, open, widest, opening } = own;
             let share = if whole > 0.0 { open / whole } else { 0.0 };
             (share > ON_OPEN_POINTS).then(|| {
                 format!(

@@ -113,7 +113,7 @@ impl Neighbour {
 
     /// Whether its bodies are those of the run, with the same stress-free places of those that came into the deformed model.
     fn has_same_bodies(&self, base: &BaseIncrement) -> bool {
-        self.spares_bodies && self.state.step_start.births == base.old.step_start.births
+        self.spares_bodies && self.state.step_start.activations == base.old.step_start.activations
     }
 
     /// Begins the increment, and its step if that is a new one.

@@ -258,7 +258,7 @@ fn a_fluid_that_is_in_a_zone_at_once_is_told() {
     let from_zero = "1.2*erfc((max(0, abs(x) - 0.3) + 1e-9)/(2*sqrt(0.1*t + 1e-30)))";
     let fading = "1.2*max(0, 1 - abs(x)/0.6) + 0.5*t";
     for method in ["node_to_segment", "gauss_to_segment"] {
-        let is_told = |fluid: &str| has(&common::model(&fault(fluid, method)).warnings(), "and none beside it");
+        let is_told = |fluid: &str| has(&common::model(&fault(fluid, method)).warnings(), "and none next to it");
         assert_eq!([zone, from_zero, fading, "0.5 + 0.5*t"].map(is_told), [true, false, false, false], "{method}");
     }
     let slip = |fluid: &str| {

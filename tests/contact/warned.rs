@@ -184,7 +184,7 @@ fn sheared_linear_elements_beside_a_fault_are_told() {
     let cycles = || json!({"quasi_dynamic": {}});
     let sharp = told(30.0, false, cycles());
     assert!(
-        sharp.len() == 1 && sharp[0].contains("contact `fault`: bilinear elements beside it have corners of 30°"),
+        sharp.len() == 1 && sharp[0].contains("contact `fault`: bilinear elements next to it have corners of 30°"),
         "{sharp:?}"
     );
     for (degrees, refined, scheme) in [(60.0, false, cycles()), (30.0, true, cycles()), (30.0, false, json!("static"))]

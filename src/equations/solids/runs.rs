@@ -12,7 +12,7 @@ use crate::equations::coupling::Layout;
 use crate::equations::evolving::evolves;
 use crate::equations::sums::{TrialFailure, add_blocks};
 use crate::equations::trial::nodal;
-use crate::laws::bulk::MaterialFailure;
+use crate::laws::bulk::Answer;
 use crate::linear::SparseMatrix;
 use crate::model::{Activated, Model};
 
@@ -27,7 +27,7 @@ pub(super) struct Runs {
     /// Forces of the elements on their nodes [F]
     pub forces: Vec<Vector2<f64>>,
     /// Energy stored in each element of the model that is in a run [F·L]
-    energies: Vec<Result<f64, MaterialFailure>>,
+    energies: Vec<Answer<f64>>,
     /// Tangents of a batch, column by column
     tangents: Vec<f64>,
     /// Elements that came into a deformed model

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Matrix4, Matrix5, Vector4, Vector5};
 
-use super::{MaterialFailure, Straining};
+use super::{Answer, MaterialFailure, Straining};
 
 /// The five components of a tensor, from its part in plane and 33.
 #[inline(always)]
@@ -56,7 +56,7 @@ pub(super) fn ln_stretch(h: f64) -> f64 {
 
 /// F₃₃, known to be positive and finite.
 #[inline(always)]
-pub(super) fn positive_stretch(straining: &Straining) -> Result<f64, MaterialFailure> {
+pub(super) fn positive_stretch(straining: &Straining) -> Answer<f64> {
     let h = straining.stretch;
     let jacobian = h * straining.deformation.determinant();
     if h > 0.0 && h.is_finite() { Ok(h) } else { Err(MaterialFailure::Inverted { jacobian }) }

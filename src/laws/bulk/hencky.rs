@@ -1,6 +1,6 @@
 use super::components::{ln_stretch, positive_stretch};
 use super::isotropic::{Invariants, StrainEnergy};
-use super::{BulkLaw, BulkResponse, ElasticConstants, Lame, MaterialDescription, MaterialFailure, Straining};
+use super::{Answer, BulkLaw, ElasticConstants, Lame, MaterialDescription, Straining};
 use crate::laws::parameter::InvalidParameter;
 
 /// Hencky's law: Kirchhoff stress proportional to the logarithmic strain.
@@ -45,7 +45,7 @@ impl BulkLaw for Hencky {
     }
 
     #[inline(always)]
-    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Answer {
         let h = positive_stretch(straining)?;
         let invariants = Invariants::of(&straining.deformation)?;
         let Lame { lambda, shear } = self.lame;

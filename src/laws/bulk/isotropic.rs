@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector4};
 
 use super::components::{components, moduli};
-use super::{BulkResponse, MaterialFailure, cofactor, positive_jacobian};
+use super::{Answer, BulkResponse, cofactor, positive_jacobian};
 
 /// The two invariants in plane, and their derivatives.
 ///
@@ -40,7 +40,7 @@ pub(super) struct StrainEnergy {
 }
 
 impl Invariants {
-    pub(super) fn of(deformation: &Matrix2<f64>) -> Result<Self, MaterialFailure> {
+    pub(super) fn of(deformation: &Matrix2<f64>) -> Answer<Self> {
         let jacobian = positive_jacobian(deformation)?;
         let displacement_gradient = deformation - Matrix2::identity();
         let volume_strain = displacement_gradient.trace() + displacement_gradient.determinant();

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix2, Matrix5};
 
 use super::components::components;
-use super::{BulkLaw, BulkResponse, ElasticConstants, Lame, MaterialDescription, MaterialFailure, Straining};
+use super::{Answer, BulkLaw, BulkResponse, ElasticConstants, Lame, MaterialDescription, MaterialFailure, Straining};
 use crate::laws::parameter::InvalidParameter;
 
 /// Linear elasticity: stress proportional to the small strain, whatever the rotation.
@@ -36,7 +36,7 @@ impl BulkLaw for Linear {
     }
 
     #[inline(always)]
-    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Answer {
         let Straining { deformation, stretch, .. } = straining;
         if !deformation.iter().all(|component| component.is_finite()) {
             return Err(MaterialFailure::Inverted { jacobian: f64::NAN });

@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Matrix4, Vector4};
 use pulp::{Arch, NullaryFnOnce};
 
 use super::components::{components, moduli, plane, plane_moduli};
-use super::{BulkLaw, BulkResponse, CauchyStress, MaterialFailure, Sections, Straining};
+use super::{Answer, BulkLaw, BulkResponse, CauchyStress, Sections, Straining};
 
 /// The part of a response in plane, of a body without out-of-plane strain or without out-of-plane stress.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,12 +50,7 @@ pub trait Material: BulkLaw {
     ///
     /// # Errors
     /// As [`BulkLaw::respond`].
-    fn in_plane(
-        &self,
-        strainings: &[Straining],
-        new: &mut [f64],
-        responses: &mut [MaterialResponse],
-    ) -> Result<(), MaterialFailure> {
+    fn in_plane(&self, strainings: &[Straining], new: &mut [f64], responses: &mut [MaterialResponse]) -> Answer<()> {
         match strainings.iter().any(|straining| straining.tangent) {
             true => Arch::new().dispatch(InPlane::<_, true> { law: self, strainings, new, responses }),
             false => Arch::new().dispatch(InPlane::<_, false> { law: self, strainings, new, responses }),
@@ -66,7 +61,7 @@ pub trait Material: BulkLaw {
     ///
     /// # Errors
     /// As [`BulkLaw::respond`].
-    fn in_space(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn in_space(&self, straining: &Straining, new: &mut [f64]) -> Answer {
         match straining.tangent {
             true => Arch::new().dispatch(InSpace::<_, true> { law: self, straining, new }),
             false => Arch::new().dispatch(InSpace::<_, false> { law: self, straining, new }),
@@ -77,7 +72,7 @@ pub trait Material: BulkLaw {
     ///
     /// # Errors
     /// As [`BulkLaw::respond`].
-    fn at_once(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, MaterialFailure> {
+    fn at_once(&self, deformation: &Matrix2<f64>) -> Answer<MaterialResponse> {
         let old = vec![0.0; self.description().variables.len()];
         self.respond(&Straining::new(*deformation, &old), &mut old.clone()).map(MaterialResponse::from)
     }
@@ -86,12 +81,7 @@ pub trait Material: BulkLaw {
     ///
     /// # Errors
     /// As [`BulkLaw::respond`].
-    fn stresses(
-        &self,
-        deformations: &[Matrix2<f64>],
-        volumes: &[f64],
-        stresses: &mut [Matrix2<f64>],
-    ) -> Result<f64, MaterialFailure> {
+    fn stresses(&self, deformations: &[Matrix2<f64>], volumes: &[f64], stresses: &mut [Matrix2<f64>]) -> Answer<f64> {
         let old = vec![0.0; self.description().variables.len()];
         let (mut new, mut energy) = (old.clone(), 0.0);
         for ((deformation, &volume), stress) in deformations.iter().zip(volumes).zip(stresses) {
@@ -107,7 +97,7 @@ pub trait Material: BulkLaw {
     ///
     /// # Errors
     /// As [`BulkLaw::respond`].
-    fn stretch_across(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+    fn stretch_across(&self, straining: &Straining) -> Answer<f64> {
         if self.description().sections != Sections::Plate {
             return Ok(straining.stretch);
         }
@@ -119,7 +109,7 @@ pub trait Material: BulkLaw {
     ///
     /// # Errors
     /// As [`BulkLaw::respond`].
-    fn cauchy_stress(&self, straining: &Straining) -> Result<CauchyStress, MaterialFailure> {
+    fn cauchy_stress(&self, straining: &Straining) -> Answer<CauchyStress> {
         let BulkResponse { stress, free_stretch, .. } = self.respond(straining, &mut straining.old.to_vec())?;
         if self.description().is_linear {
             return Ok(CauchyStress { xx: stress[0], yy: stress[3], zz: stress[4], xy: stress[1] });
@@ -148,7 +138,7 @@ struct InPlane<'a, L: ?Sized, const TANGENT: bool> {
 }
 
 impl<L: BulkLaw + ?Sized, const TANGENT: bool> NullaryFnOnce for InPlane<'_, L, TANGENT> {
-    type Output = Result<(), MaterialFailure>;
+    type Output = Answer<()>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
@@ -176,7 +166,7 @@ struct InSpace<'a, L: ?Sized, const TANGENT: bool> {
 }
 
 impl<L: BulkLaw + ?Sized, const TANGENT: bool> NullaryFnOnce for InSpace<'_, L, TANGENT> {
-    type Output = Result<BulkResponse, MaterialFailure>;
+    type Output = Answer;
 
     #[inline(always)]
     fn call(self) -> Self::Output {

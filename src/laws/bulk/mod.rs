@@ -123,7 +123,7 @@ pub struct MaterialDescription<'a> {
     pub concern: Option<&'a str>,
     /// c and tan φ of a law that yields where τ = c − σ_n tan φ on some plane, or nearly so; none of others [F/L², -]
     pub strength: Option<[f64; 2]>,
-    /// Whether an initial stress is the law's own, which [`BulkLaw::begin`] makes it remember; it stands beside the law ([`BodyLaw`])
+    /// Whether an initial stress is the law's own, which [`BulkLaw::begin`] makes it remember; otherwise it is added to the law ([`BodyLaw`])
     /// otherwise
     pub holds_initial_stress: bool,
     /// Names of what the law shows besides stress, at a point in any state
@@ -251,6 +251,9 @@ impl CauchyStress {
     }
 }
 
+/// Answer of a law, or why it has none.
+pub type Answer<T = BulkResponse> = Result<T, MaterialFailure>;
+
 /// Why a law could not answer; the increment is tried again with a smaller step.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -299,7 +302,7 @@ pub enum Flow {
 }
 
 /// J = det F, known to be positive and finite.
-pub(crate) fn positive_jacobian(deformation: &Matrix2<f64>) -> Result<f64, MaterialFailure> {
+pub(crate) fn positive_jacobian(deformation: &Matrix2<f64>) -> Answer<f64> {
     let jacobian = deformation.determinant();
     if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(MaterialFailure::Inverted { jacobian }) }
 }
@@ -339,7 +342,7 @@ pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
 ///         MaterialDescription::new(self.density, 3.0 * self.shear, self.shear) // λ = G
 ///     }
 ///
-///     fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+///     fn respond(&self, straining: &Straining, _: &mut [f64]) -> Answer {
 ///         let (f, h) = (straining.deformation, straining.stretch);
 ///         let jacobian = f.determinant() * h;
 ///         if !(jacobian > 0.0 && h > 0.0) {
@@ -371,7 +374,7 @@ pub trait BulkLaw: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`MaterialFailure`] when det F or F₃₃ is not positive, or the law's equations are not solved.
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure>;
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Answer;
 
     /// Write what the law remembers before the first increment over `variables`, which are zero: at a reference position, in a body
     /// with an initial stress. It is written whether or not the body can begin there.
@@ -391,7 +394,7 @@ pub trait BulkLaw: Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`BulkLaw::respond`].
-    fn show(&self, _straining: &Straining, _values: &mut [f64]) -> Result<(), MaterialFailure> {
+    fn show(&self, _straining: &Straining, _values: &mut [f64]) -> Answer<()> {
         Ok(())
     }
 
@@ -399,7 +402,7 @@ pub trait BulkLaw: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`MaterialFailure::Inverted`] when det F is not positive.
-    fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+    fn ln_free_stretch(&self, straining: &Straining) -> Answer<f64> {
         let own = self.description();
         Ok(-positive_jacobian(&straining.deformation)?.ln() * own.lambda() / own.p_wave_modulus)
     }

@@ -43,7 +43,6 @@ pub enum MaterialParameters {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct ElasticConstants {
     /// E: Young's modulus, E > 0 [F/L²]
     #[serde(rename = "E")]
@@ -92,11 +91,6 @@ impl ElasticConstants {
         Self { young, poisson, density: 0.0 }
     }
 
-    /// Sets the density [M/L³].
-    pub const fn density(self, density: f64) -> Self {
-        Self { density, ..self }
-    }
-
     /// λ and G, once all constants are found to be allowed.
     ///
     /// # Errors
@@ -114,6 +108,11 @@ impl ElasticConstants {
             shear: young / (2.0 * (1.0 + poisson)),
         })
     }
+}
+
+setters! { const constants: ElasticConstants;
+    /// Sets the density [M/L³].
+    density(density: f64) { constants.density = density; }
 }
 
 impl Lame {

@@ -1,6 +1,6 @@
 use super::components::positive_stretch;
 use super::isotropic::{Invariants, StrainEnergy};
-use super::{BulkLaw, BulkResponse, ElasticConstants, Lame, MaterialDescription, MaterialFailure, Straining};
+use super::{Answer, BulkLaw, ElasticConstants, Lame, MaterialDescription, Straining};
 use crate::laws::parameter::InvalidParameter;
 
 /// Saint Venant–Kirchhoff: second Piola–Kirchhoff stress proportional to the Green strain.
@@ -37,7 +37,7 @@ impl BulkLaw for SaintVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Answer {
         let h = positive_stretch(straining)?;
         let invariants = Invariants::of(&straining.deformation)?;
         let (Lame { lambda, shear }, constrained) = (self.lame, self.lame.constrained_modulus());

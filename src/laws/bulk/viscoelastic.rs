@@ -3,16 +3,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::components::{components, plane};
-use super::{
-    BulkLaw, BulkResponse, ElasticConstants, Lame, MaterialDescription, MaterialFailure, NeoHookean, Slot, Straining,
-};
+use super::{Answer, BulkLaw, ElasticConstants, Lame, MaterialDescription, NeoHookean, Slot, Straining};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Constants of [`Viscoelastic`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct ViscoelasticConstants {
     /// E: Young's modulus that is left when all has relaxed, E > 0 [F/L²]
     #[serde(rename = "E")]
@@ -35,11 +32,11 @@ impl ViscoelasticConstants {
     pub const fn new(young: f64, poisson: f64, relaxing: f64, tau: f64) -> Self {
         Self { young, poisson, relaxing, tau, density: 0.0 }
     }
+}
 
+setters! { const constants: ViscoelasticConstants;
     /// Sets the density [M/L³].
-    pub const fn density(self, density: f64) -> Self {
-        Self { density, ..self }
-    }
+    density(density: f64) { constants.density = density; }
 }
 
 /// A neo-Hookean body in parallel with one Maxwell arm: the standard linear solid at large rotations.
@@ -134,7 +131,7 @@ impl BulkLaw for Viscoelastic {
     /// ```text
     /// ∂P/∂h = ∂P_∞/∂h + φ λ₁ h F,   ∂P₃₃/∂h = ∂P_∞,₃₃/∂h + H₃₃ + φ (λ₁ + 2G₁) h²            h = F₃₃
     /// ```
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Answer {
         let Straining { deformation: f, stretch: h, dt, old, .. } = *straining;
         let mut response = self.behind.respond(straining, &mut [])?;
         let [arm, before] = [ARM, STRAIN].map(|slot| remembered(*slot.of(old)));

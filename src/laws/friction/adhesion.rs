@@ -1,15 +1,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
-use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
-use crate::laws::parameter::{InvalidParameter, numbers, require_positive};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variations, variations};
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding};
+use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Adhesion`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct AdhesionParameters {
     /// τ_a: strength, α s_u of an undrained clay, τ_a > 0 [F/L²]
     pub strength: f64,
@@ -25,11 +24,11 @@ impl AdhesionParameters {
     pub const fn new(strength: f64) -> Self {
         Self { strength, alpha_t: None }
     }
+}
 
+setters! { const law: AdhesionParameters;
     /// Sets the tangential stiffness α_t [F/L³].
-    pub const fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }
 
 /// Adhesion: surfaces in contact slide at one shear stress, whatever the pressure. Clay that has no time to drain, by total stress.
@@ -73,7 +72,7 @@ impl Adhesion {
 }
 
 impl FrictionLaw for Adhesion {
-    /// The lowest coefficient is 0: under a high pressure adhesion is nothing beside it.
+    /// The lowest coefficient is 0: under a high pressure adhesion is negligible.
     fn description(&self) -> Description {
         Description {
             stiffness: self.alpha_t,
@@ -118,16 +117,7 @@ impl SensitiveLaw for Adhesion {
         AdhesionParameters::NUMBERS
     }
 
-    fn start(&self, _: &str) -> Variation {
-        Variation::default()
-    }
-
-    fn vary(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-    ) -> Result<[Variation; 2], LawFailure> {
+    fn vary(&self, old: &FrictionState, sliding: Sliding, directions: [Direction; 2]) -> Variations {
         let inputs = Inputs::new(old, sliding, directions)?;
         let alpha_t = inputs.parameter("alpha_t", self.alpha_t);
         let strength = inputs.parameter("strength", self.strength);

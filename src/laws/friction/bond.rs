@@ -7,11 +7,10 @@ use super::traction_at_yield;
 use crate::laws::dual::{Dual, Number};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
-/// Bond of a contact, beside its friction: strength without pressure, in shear and in tension.
+/// Bond of a contact, in parallel with its friction: strength without pressure, in shear and in tension.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct BondParameters {
     /// c: shear strength at zero pressure, in addition to that of friction, c > 0. Required, but with `adhesion` and with the `cohesion` of
     /// slip_weakening, which have it already [F/L²]
@@ -41,48 +40,29 @@ pub struct BondParameters {
 
 impl BondParameters {
     /// Creates a bond of a shear strength c that slip does not end, without tension [F/L²].
-    pub const fn new(strength: f64) -> Self {
-        Self {
-            strength: Some(strength),
-            residual: None,
-            slip: None,
-            tension: 0.0,
-            opening: None,
-            limit: None,
-            bonded: false,
-            alpha_t: None,
-        }
+    pub fn new(strength: f64) -> Self {
+        Self { strength: Some(strength), ..Self::default() }
     }
+}
 
+setters! { const law: BondParameters;
     /// Sets c_r [F/L²].
-    pub const fn residual(self, residual: f64) -> Self {
-        Self { residual: Some(residual), ..self }
-    }
+    residual(residual: f64) { law.residual = Some(residual); }
 
     /// Sets D [L].
-    pub const fn slip(self, slip: f64) -> Self {
-        Self { slip: Some(slip), ..self }
-    }
+    slip(slip: f64) { law.slip = Some(slip); }
 
     /// Sets t [F/L²].
-    pub const fn tension(self, tension: f64) -> Self {
-        Self { tension, ..self }
-    }
+    tension(tension: f64) { law.tension = tension; }
 
     /// Sets δ [L].
-    pub const fn opening(self, opening: f64) -> Self {
-        Self { opening: Some(opening), ..self }
-    }
+    opening(opening: f64) { law.opening = Some(opening); }
 
     /// Sets τ_max [F/L²].
-    pub const fn limit(self, limit: f64) -> Self {
-        Self { limit: Some(limit), ..self }
-    }
+    limit(limit: f64) { law.limit = Some(limit); }
 
     /// Sets α_c [F/L³].
-    pub const fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }
 
 /// What a bond takes from its contact.

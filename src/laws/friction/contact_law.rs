@@ -13,7 +13,6 @@ use crate::laws::parameter::{InvalidParameter, require_positive};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Dilatancy {
     /// tan ψ: initial opening per plastic slip, in either direction of slip, with any law; below its lowest friction
     /// coefficient (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
@@ -36,11 +35,6 @@ impl Dilatancy {
     /// Creates dilatancy of tan ψ = d (1/R* − 1), without a limit.
     pub const fn of_structure(d: f64) -> Self {
         Self { rate: None, structure: Some(d), limit: None }
-    }
-
-    /// Sets the largest opening [L].
-    pub const fn limit(self, limit: f64) -> Self {
-        Self { limit: Some(limit), ..self }
     }
 
     /// Dilation δ₁ after ∫ tan ψ dλ, and its derivative by that.
@@ -66,6 +60,11 @@ impl Dilatancy {
 
     const RATE: &str = "dilatancy.rate";
     const STRUCTURE: &str = "dilatancy.structure";
+}
+
+setters! { const dilatancy: Dilatancy;
+    /// Sets the largest opening [L].
+    limit(limit: f64) { dilatancy.limit = Some(limit); }
 }
 
 /// Dilatancy that does more work than friction: its key, tan ψ, and the friction coefficient that is not above it.

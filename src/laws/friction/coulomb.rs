@@ -1,17 +1,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
-use super::{
-    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield,
-};
-use crate::laws::parameter::{InvalidParameter, numbers, require_positive};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variations, variations};
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, traction_at_yield};
+use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Coulomb`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct CoulombParameters {
     /// μ: friction coefficient, μ > 0 [-]
     pub mu: f64,
@@ -27,11 +24,11 @@ impl CoulombParameters {
     pub const fn new(mu: f64) -> Self {
         Self { mu, alpha_t: None }
     }
+}
 
+setters! { const law: CoulombParameters;
     /// Sets the tangential stiffness α_t [F/L³].
-    pub const fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }
 
 /// Coulomb friction on an elastic contact: sticks below μ p, slides at μ p.
@@ -115,16 +112,7 @@ impl SensitiveLaw for Coulomb {
         CoulombParameters::NUMBERS
     }
 
-    fn start(&self, _: &str) -> Variation {
-        Variation::default()
-    }
-
-    fn vary(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-    ) -> Result<[Variation; 2], LawFailure> {
+    fn vary(&self, old: &FrictionState, sliding: Sliding, directions: [Direction; 2]) -> Variations {
         let inputs = Inputs::new(old, sliding, directions)?;
         let alpha_t = inputs.parameter("alpha_t", self.alpha_t);
         let strength = inputs.parameter("mu", self.mu) * inputs.pressure;

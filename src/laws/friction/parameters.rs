@@ -113,24 +113,14 @@ impl FrictionParameters {
     }
 }
 
-macro_rules! parameters_of {
-    ($($law:ident $parameters:ty),*) => {$(
-        impl From<$parameters> for FrictionParameters {
-            fn from(parameters: $parameters) -> Self {
-                Self::$law(parameters)
-            }
-        }
-    )*};
+conversions! {
+    AdhesionParameters => FrictionParameters: |law| Self::Adhesion(law);
+    CoulombParameters => FrictionParameters: |law| Self::Coulomb(law);
+    SuperSubloadingParameters => FrictionParameters: |law| Self::SuperSubloading(law);
+    SlipWeakeningParameters => FrictionParameters: |law| Self::SlipWeakening(law);
+    RateAndStateParameters => FrictionParameters: |law| Self::RateAndState(law);
+    PrescribedSlipParameters => FrictionParameters: |law| Self::Prescribed(law);
 }
-
-parameters_of!(
-    Adhesion AdhesionParameters,
-    Coulomb CoulombParameters,
-    SuperSubloading SuperSubloadingParameters,
-    SlipWeakening SlipWeakeningParameters,
-    RateAndState RateAndStateParameters,
-    Prescribed PrescribedSlipParameters
-);
 
 impl Numbers for RegisteredParameters {
     fn names(&self) -> Vec<String> {
@@ -174,7 +164,6 @@ pub fn register(
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct RegisteredParameters {
     /// Name under which the calling program has registered it
     pub name: String,
@@ -198,11 +187,6 @@ impl RegisteredParameters {
         self
     }
 
-    /// Sets the tangential stiffness α_t [F/L³].
-    pub fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
-
     /// Creates the law; `default_alpha_t` is used if the case does not specify `alpha_t`.
     ///
     /// # Errors
@@ -211,7 +195,7 @@ impl RegisteredParameters {
         let alpha_t = self.alpha_t.unwrap_or(default_alpha_t);
         require_positive("alpha_t", alpha_t)?;
         if let Some(&value) = self.parameters.get("alpha_t") {
-            let allowed = "the stiffness is given beside the parameters, as \"alpha_t\" of the law".into();
+            let allowed = "the stiffness is given outside the parameters, as \"alpha_t\" of the law".into();
             return Err(InvalidParameter { name: "parameters.alpha_t", value, allowed });
         }
         let maker = REGISTER.read().unwrap_or_else(PoisonError::into_inner).get(&self.name).cloned();
@@ -228,4 +212,9 @@ impl RegisteredParameters {
         (!register.contains_key(&self.name))
             .then(|| format!("no law `{}` is registered in this program; {known}", self.name))
     }
+}
+
+setters! { law: RegisteredParameters;
+    /// Sets the tangential stiffness α_t [F/L³].
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }

@@ -4,13 +4,12 @@ use serde::{Deserialize, Serialize};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, PointLoad, RateLaw, Regime, Sliding, States,
 };
-use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
+use crate::laws::parameter::{InvalidParameter, require, require_positive};
 
 /// Parameters of [`PrescribedSlip`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct PrescribedSlipParameters {
     /// V: slip rate of the slave along +s, of either sign [L/T]
     pub slip_rate: f64,
@@ -24,11 +23,11 @@ impl PrescribedSlipParameters {
     pub const fn new(slip_rate: f64) -> Self {
         Self { slip_rate, alpha_t: None }
     }
+}
 
+setters! { const law: PrescribedSlipParameters;
     /// Sets the tangential stiffness α_t [F/L³].
-    pub const fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }
 
 numbers!(PrescribedSlipParameters: "slip_rate" slip_rate; "alpha_t" alpha_t);

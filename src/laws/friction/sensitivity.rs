@@ -30,6 +30,9 @@ pub struct Direction {
     pub parameter: Option<&'static str>,
 }
 
+/// Derivatives of a state along two directions.
+pub type Variations = Result<[Variation; 2], LawFailure>;
+
 /// A law with derivatives of its responses with respect to its parameters. They are exact derivatives of the computed values at
 /// fixed sub-steps.
 ///
@@ -41,19 +44,16 @@ pub trait SensitiveLaw: Debug + Send + Sync {
     /// Parameters of the derivatives, as named in cases.
     fn parameters(&self) -> &'static [&'static str];
 
-    /// Derivative of the initial state of a point with respect to a parameter.
-    fn start(&self, parameter: &str) -> Variation;
+    /// Derivative of the initial state of a point with respect to a parameter; by default none.
+    fn start(&self, _parameter: &str) -> Variation {
+        Variation::default()
+    }
 
     /// Derivatives of the state at the end of an increment along two directions.
     ///
     /// # Errors
     /// The same as for the response.
-    fn vary(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-    ) -> Result<[Variation; 2], LawFailure>;
+    fn vary(&self, old: &FrictionState, sliding: Sliding, directions: [Direction; 2]) -> Variations;
 }
 
 /// Inputs of a response with their derivatives along two directions, of a law with one internal variable.

@@ -1,19 +1,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, Variations, variations};
 use super::{
-    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding,
-    traction_at_yield,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Sliding, traction_at_yield,
 };
 use crate::laws::dual::{Dual, Number};
-use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct SlipWeakeningParameters {
     /// μ_s: static friction coefficient, μ_s ≥ μ_d [-]
     pub mu_s: f64,
@@ -37,16 +35,14 @@ impl SlipWeakeningParameters {
     pub const fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
         Self { mu_s, mu_d, critical_slip, cohesion: 0.0, alpha_t: None }
     }
+}
 
+setters! { const law: SlipWeakeningParameters;
     /// Sets the cohesion [F/L²].
-    pub const fn cohesion(self, cohesion: f64) -> Self {
-        Self { cohesion, ..self }
-    }
+    cohesion(cohesion: f64) { law.cohesion = cohesion; }
 
     /// Sets the tangential stiffness α_t [F/L³].
-    pub const fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }
 
 /// Linear slip weakening on an elastic contact, widely used in earthquake simulations.
@@ -280,12 +276,7 @@ impl SensitiveLaw for SlipWeakening {
         Variation::new(0.0, 0.0)
     }
 
-    fn vary(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-    ) -> Result<[Variation; 2], LawFailure> {
+    fn vary(&self, old: &FrictionState, sliding: Sliding, directions: [Direction; 2]) -> Variations {
         let inputs = Inputs::new(old, sliding, directions)?;
         let [mu_s, mu_d, alpha_t] = [("mu_s", self.mu_s), ("mu_d", self.mu_d), ("alpha_t", self.alpha_t)]
             .map(|(name, value)| inputs.parameter(name, value));

@@ -12,7 +12,6 @@ use crate::model::Damping;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Bar")]
 #[non_exhaustive]
-#[must_use]
 pub struct BarInput {
     /// Points [x, y] of its axis, joined by straight lines. Either these or `on`
     #[serde(default)]
@@ -74,7 +73,6 @@ pub struct Embedding {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "BarBond")]
 #[non_exhaustive]
-#[must_use]
 pub struct BarBond {
     /// k: shear per length and slip before any slips for good; default: 100 (λ + 2G)/(length of a segment) of the body times its
     /// thickness, a penalty [F/L²]

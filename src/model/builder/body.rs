@@ -99,7 +99,8 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
         let mut pore_pressure = pore_pressure.clone();
         if let Some(given) = &mut pore_pressure {
             let place = format!("{place}.pore_pressure");
-            let message = "is given beside a pore_fluid, which has a pressure of its own: leave one of them out";
+            let message =
+                "is given in addition to a pore_fluid, which has a pressure of its own: leave one of them out";
             refuse_if(pore_fluid.is_some(), &place, message)?;
             *given = pore_pressure::checked(&*law, given, &mesh.nodes_of(group), mesh, &place)?;
         }

@@ -171,7 +171,7 @@ fn check_implicit(model: &Model) -> Checked<()> {
         let refuse_if =
             |fails: bool, key: &str, why: &str| refuse_if(fails, format!("contacts.{}.{key}", pair.name), why);
         let adjacent = pair.laws.iter().any(|law| matches!(law.cohesion, Some(Cohesion::Parallel(_))));
-        let why = "beside friction is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): leave it out, \
+        let why = "in parallel with friction is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): leave it out, \
                    or take static steps with radiation_damping";
         refuse_if(adjacent, "bond", why)?;
         let why = "of water that flows is for quasi_dynamic steps whose laws all have a slip rate (rate_and_state, prescribed): give it by \

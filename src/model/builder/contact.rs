@@ -23,7 +23,6 @@ use crate::model::written::written;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Contact {
     /// Name in messages and results; the key of the contact in a case
     #[serde(skip)]
@@ -86,7 +85,7 @@ pub struct Contact {
     /// Strength of the interface as a share of that of the adjacent soil, or by cohesion and angle of friction: Coulomb friction and a
     /// bond, which `check --resolved` shows. In place of `friction`
     pub interface: Option<Interface>,
-    /// Bond of the surfaces beside friction: strength without pressure. With `adhesion`, or `cohesion` of slip_weakening, it takes the
+    /// Bond of the surfaces in parallel with friction: strength without pressure. With `adhesion`, or `cohesion` of slip_weakening, it takes the
     /// `opening` over which that fades, and a `limit`
     pub bond: Option<BondParameters>,
     /// Dilatancy: opening by plastic slip

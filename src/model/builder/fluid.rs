@@ -101,16 +101,9 @@ impl Serialize for FluidPressure {
     }
 }
 
-impl From<Flow> for FluidPressure {
-    fn from(flow: Flow) -> Self {
-        Self::Flow(Box::new(flow))
-    }
-}
-
-impl From<Measured> for FluidPressure {
-    fn from(measured: Measured) -> Self {
-        Self::Measured(measured)
-    }
+conversions! {
+    Flow => FluidPressure: |flow| Self::Flow(Box::new(flow));
+    Measured => FluidPressure: |measured| Self::Measured(measured);
 }
 
 impl FluidPressure {

@@ -313,25 +313,14 @@ impl From<FrictionParameters> for Friction {
     }
 }
 
-/// Lets the types convertible to FrictionParameters be used as friction.
-macro_rules! friction_from {
-    ($($parameters:ty),*) => {$(
-        impl From<$parameters> for Friction {
-            fn from(parameters: $parameters) -> Self {
-                FrictionParameters::from(parameters).into()
-            }
-        }
-    )*};
+conversions! {
+    AdhesionParameters => Friction: |law| FrictionParameters::from(law).into();
+    CoulombParameters => Friction: |law| FrictionParameters::from(law).into();
+    SuperSubloadingParameters => Friction: |law| FrictionParameters::from(law).into();
+    SlipWeakeningParameters => Friction: |law| FrictionParameters::from(law).into();
+    RateAndStateParameters => Friction: |law| FrictionParameters::from(law).into();
+    PrescribedSlipParameters => Friction: |law| FrictionParameters::from(law).into();
 }
-
-friction_from!(
-    AdhesionParameters,
-    CoulombParameters,
-    SuperSubloadingParameters,
-    SlipWeakeningParameters,
-    RateAndStateParameters,
-    PrescribedSlipParameters
-);
 
 impl<L: FrictionLaw + Clone + 'static> From<L> for Friction {
     fn from(law: L) -> Self {
@@ -433,7 +422,6 @@ impl InTime {
 /// Friction parameters that vary along the slave and in time: expressions may depend on x, y and the run time t.
 #[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 #[non_exhaustive]
-#[must_use]
 pub struct Along {
     /// Other laws than `friction` on parts of the slave; where several apply, the first one is used
     #[schemars(default)]
@@ -465,7 +453,6 @@ setters! { along: Along;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
-#[must_use]
 pub struct LawChoice {
     /// The law applies where this expression is positive
     #[serde(rename = "where")]

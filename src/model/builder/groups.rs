@@ -94,16 +94,9 @@ fn tagged(mesh: &Mesh, tag: u64) -> Vec<usize> {
     (0..mesh.own_nodes()).filter(|node| mesh.node_tags[*node] == tag).collect()
 }
 
-impl From<&str> for Place {
-    fn from(group: &str) -> Self {
-        Self::Group(group.into())
-    }
-}
-
-impl From<String> for Place {
-    fn from(group: String) -> Self {
-        Self::Group(group)
-    }
+conversions! {
+    &str => Place: |group| Self::Group(group.into());
+    String => Place: |group| Self::Group(group);
 }
 
 impl Display for Place {

@@ -201,7 +201,6 @@ impl<D: Into<Drive>> From<[D; 2]> for Change<Components> {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Spring")]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct SpringLoad {
     /// Stiffness in x [F/L]
     #[serde(default)]
@@ -230,7 +229,6 @@ setters! { spring: SpringLoad;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Dashpot")]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct DashpotLoad {
     /// Coefficient in x [F T/L]
     #[serde(default)]
@@ -254,30 +252,16 @@ setters! { dashpot: DashpotLoad;
     driver(driver: impl Into<Components>) { dashpot.driver = Some(driver.into()); }
 }
 
-impl From<SpringLoad> for Change<SpringLoad> {
-    fn from(spring: SpringLoad) -> Self {
-        Self::To(spring)
-    }
-}
-
-impl From<DashpotLoad> for Change<DashpotLoad> {
-    fn from(dashpot: DashpotLoad) -> Self {
-        Self::To(dashpot)
-    }
-}
-
-/// A spring to the ground.
-impl From<[f64; 2]> for Change<SpringLoad> {
-    fn from([kx, ky]: [f64; 2]) -> Self {
-        Self::To(SpringLoad::new(kx, ky))
-    }
-}
-
-/// A dashpot to the ground.
-impl From<[f64; 2]> for Change<DashpotLoad> {
-    fn from([cx, cy]: [f64; 2]) -> Self {
-        Self::To(DashpotLoad::new(cx, cy))
-    }
+conversions! {
+    SpringLoad => Change<SpringLoad>: |spring| Self::To(spring);
+    DashpotLoad => Change<DashpotLoad>: |dashpot| Self::To(dashpot);
+    /// A spring to the ground.
+    [f64; 2] => Change<SpringLoad>: |[kx, ky]| Self::To(SpringLoad::new(kx, ky));
+    /// A dashpot to the ground.
+    [f64; 2] => Change<DashpotLoad>: |[cx, cy]| Self::To(DashpotLoad::new(cx, cy));
+    f64 => Change<f64>: |value| Self::To(value);
+    f64 => Change<Drive>: |value| Self::To(value.into());
+    Drive => Change<Drive>: |drive| Self::To(drive);
 }
 
 impl Load {
@@ -425,22 +409,4 @@ pub(super) fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
 ) -> Result<Option<Change<T>>, D::Error> {
     let given = Option::deserialize(deserializer)?;
     Ok(Some(given.map_or(Change::End, Change::To)))
-}
-
-impl From<f64> for Change<f64> {
-    fn from(value: f64) -> Self {
-        Self::To(value)
-    }
-}
-
-impl From<f64> for Change<Drive> {
-    fn from(value: f64) -> Self {
-        Self::To(value.into())
-    }
-}
-
-impl From<Drive> for Change<Drive> {
-    fn from(drive: Drive) -> Self {
-        Self::To(drive)
-    }
 }

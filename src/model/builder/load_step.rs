@@ -28,7 +28,6 @@ pub const OF_CRITICAL_SLIP: f64 = 1e-4;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Step")]
 #[non_exhaustive]
-#[must_use]
 pub struct LoadStep {
     /// Name in messages and results
     pub name: String,
@@ -96,7 +95,6 @@ pub struct LoadStep {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Increments")]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct IncrementSettings {
     /// First increment [T]
     pub initial: f64,
@@ -127,10 +125,9 @@ fn of_critical_slip() -> f64 {
     OF_CRITICAL_SLIP
 }
 
-impl From<f64> for IncrementSettings {
-    fn from(initial: f64) -> Self {
-        Self { initial, min: None, max: None, error: None, pore_pressure: None, slip: OF_CRITICAL_SLIP }
-    }
+conversions! {
+    f64 => IncrementSettings: |initial| Self { initial, min: None, max: None, error: None, pore_pressure: None, slip: OF_CRITICAL_SLIP };
+    f64 => RuptureSettings: |slip_rate| Self { slip_rate, safety: nine_tenths() };
 }
 
 impl From<Increments> for IncrementSettings {
@@ -167,19 +164,12 @@ setters! { settings: IncrementSettings;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Rupture")]
 #[non_exhaustive]
-#[must_use]
 pub struct RuptureSettings {
     /// Slip rate above which increments are explicit [L/T]
     pub slip_rate: f64,
     /// Explicit increments as a fraction of the longest stable one, above 0 and at most 1; default 0.9 [-]
     #[serde(default = "nine_tenths")]
     pub safety: f64,
-}
-
-impl From<f64> for RuptureSettings {
-    fn from(slip_rate: f64) -> Self {
-        Self { slip_rate, safety: nine_tenths() }
-    }
 }
 
 setters! { settings: RuptureSettings;
@@ -234,7 +224,6 @@ impl UntilSettings {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Support {
     /// Group, or single node, that is supported
     pub on: Place,

@@ -34,20 +34,6 @@
 //! pressure at a contact, given or flowing, `conduit` the water that flows along it (its keys: `conduit_input`), and `pores` the effective stress
 //! of a contact next to bodies with a fluid.
 
-/// Methods that change one thing of an input and return it, for chains: `setters! { contact: Contact; area(area: f64) { … } }`.
-macro_rules! setters {
-    ($self:ident: $type:ty; $($(#[$doc:meta])* $name:ident($($argument:ident: $of:ty),*) { $($change:tt)* })*) => {
-        impl $type {
-            $($(#[$doc])*
-            pub fn $name(self, $($argument: $of),*) -> Self {
-                let mut $self = self;
-                $($change)*
-                $self
-            })*
-        }
-    };
-}
-
 mod agreement;
 mod bar;
 mod bars;
@@ -119,7 +105,6 @@ use crate::model::{Damping, Memories, Model, NewtonSettings, OutputRequests};
 
 /// Input of a model; [`Builder::build`] checks it and creates the model.
 #[derive(Default)]
-#[must_use]
 pub struct Builder {
     pub(crate) mesh: Mesh,
     pub(crate) title: String,

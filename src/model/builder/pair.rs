@@ -23,7 +23,7 @@
 //! ```
 //! α_t of (1) is for laws to which it is a penalty, 300 (λ + 2G)/h with `stick`; where the elastic slip is a part of the law, α_t is that
 //! of (2) in every run. With (1) a block of n layers of elements that sticks gives way by G/(15 n (λ + 2G)) of its own shear, 1 % for two.
-//! A stiffer α_t turns the mismatch of two meshes at every closure into shear, and takes more iterations; beside the bending
+//! A stiffer α_t turns the mismatch of two meshes at every closure into shear, and takes more iterations; compared with the bending
 //! of a thin belt it may be too stiff for Newton's method. It is not softened for thin bodies: a coat on a block is thin as well, does not
 //! bend, and would creep untold.
 //!
@@ -34,7 +34,7 @@
 //! energy where surfaces part and meet: with (1) more than all that was supplied, with (2) less than a hundredth of it
 //! (`energy_from_nowhere_ends_with_a_remedy_that_helps`).
 //!
-//! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, of the bodies that face each other
+//! λ + 2G is that of the softer side, compared with which the penalty must not give way, of the bodies that face each other
 //! (`facing.rs`); h is the depth of the element behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges on these. Where α_n is given, α_t = α_n/2. Surfaces that are tied
 //! take α_n = α_t = 10⁴ (λ + 2G)/h unless increments are explicit: nothing opens or slides there, so that no iteration has to find
 //! out. The α_c of a bond is the α_t of its friction where that is a penalty on the whole contact, otherwise that of (1) or (2) of a penalty.
@@ -492,7 +492,7 @@ pub fn default_over(contact: &Contact, method: Option<Method>, regime: Regime) -
     }
 }
 
-/// Returns α_t over (λ + 2G)/h of a law that gives none, beside an α_n that is not given [-]
+/// Returns α_t over (λ + 2G)/h of a law that gives none, where α_n is not given either [-]
 #[doc(hidden)]
 pub fn tangential_over(penalty: bool, contact: &Contact, method: Option<Method>, regime: Regime) -> f64 {
     let holds = penalty && regime == Regime::Static && bears_stiffness(contact, method);

@@ -20,7 +20,6 @@ use crate::model::{Model, Probe, Step, WatchedSet};
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Probe")]
 #[non_exhaustive]
-#[must_use]
 pub struct Gauge {
     /// Name in results; the key of the gauge in a case
     #[serde(skip)]

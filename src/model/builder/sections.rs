@@ -20,7 +20,6 @@ use crate::model::{Axis, Model, Station};
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Sections")]
 #[non_exhaustive]
-#[must_use]
 pub struct SectionsInput {
     /// Name in results; their key in a case
     #[serde(skip)]

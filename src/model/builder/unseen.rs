@@ -1,4 +1,4 @@
-//! What lies between the points of a contact, or beside them: nodes of both sides and the outline of the slave's bodies.
+//! What lies between the points of a contact, or next to them: nodes of both sides and the outline of the slave's bodies.
 
 use std::collections::{BTreeMap, BTreeSet};
 

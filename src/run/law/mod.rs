@@ -2,7 +2,7 @@
 //!
 //! The path prescribes slip and pressure as functions of time; steps end at their turning points. An interface that opens with slip
 //! answers with its pressure as its [`Confinement`] makes it: under constant load, constant normal stiffness or constant volume. A bond
-//! beside friction follows the opening of the path; where that is positive friction has no pressure.
+//! in parallel with friction follows the opening of the path; where that is positive friction has no pressure.
 //!
 //! With a [`Slider`] the path is that of a load point, whose spring pulls a mass along.
 //!

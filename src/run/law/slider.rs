@@ -64,12 +64,11 @@ impl Slider {
     pub fn new(stiffness: f64, mass: f64) -> Self {
         Self { stiffness, mass, tolerance: accurate() }
     }
+}
 
+setters! { slider: Slider;
     /// Sets the error of a step, as a fraction of the largest pressure.
-    #[must_use]
-    pub fn tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
-    }
+    tolerance(tolerance: f64) { slider.tolerance = tolerance; }
 }
 
 /// One step of a law along its path, and the row at its end if it ends at a time of the path.

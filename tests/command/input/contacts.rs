@@ -91,7 +91,7 @@ fn a_fluid_that_starts_at_one_point_is_reported_and_round_off_is_no_suction() {
     let nodal = ("/contacts/base/method", json!("node_to_segment"));
     let at_start =
         |text: &str| checked(&[initial.clone(), nodal.clone(), ("/contacts/base/fluid_pressure", json!(text))]);
-    let message = "its fluid_pressure is 0.1 at (1.5, 0) at t = 0 and none beside it";
+    let message = "its fluid_pressure is 0.1 at (1.5, 0) at t = 0 and none next to it";
     let diffusing = at_start("0.1*erfc(abs(x - 1.5)/(2*sqrt(0.1*t + 1e-12)))");
     assert!(diffusing.contains(message), "{diffusing}");
     for right in [
@@ -102,7 +102,7 @@ fn a_fluid_that_starts_at_one_point_is_reported_and_round_off_is_no_suction() {
         "-1e-306",
     ] {
         let text = at_start(right);
-        assert!(!text.contains("none beside it"), "{right}: {text}");
+        assert!(!text.contains("none next to it"), "{right}: {text}");
     }
     refused_edits(
         &[("/contacts/base/fluid_pressure", json!("-1e-3"))],

@@ -37,7 +37,7 @@ pub(super) fn watered(base: &Base) -> Outcome {
             let from = format!("abs(X-({})){offset}", model::corner(draft));
             let (pace, small) = (0.1 / model::duration(draft), if at_once { 1e-12 } else { 1e-30 });
             let record = base.run(&with(&format!("0.1*erfc(({from})/(2*sqrt({pace}*max(T,0)+{small})))")));
-            let told = record.warnings.iter().any(|warning| warning.contains("none beside it"));
+            let told = record.warnings.iter().any(|warning| warning.contains("none next to it"));
             if !matches!(record.ended, Ended::Refused(_)) && told != at_once {
                 let place = format!("{from}: warned {:?}", record.warnings);
                 return Outcome::Broken(Difference { share: f64::INFINITY, place, values: [0.0; 2] });

@@ -21,7 +21,7 @@ use super::{Names, Slot};
 #[cfg(doc)]
 use crate::laws::bulk::MaterialDescription;
 use crate::laws::bulk::components::{components, plane};
-use crate::laws::bulk::{BulkResponse, CauchyStress, MaterialFailure, Straining};
+use crate::laws::bulk::{Answer, BulkResponse, CauchyStress, MaterialFailure, Straining};
 
 /// Names of the initial stress among the variables of a law.
 pub const INITIAL_STRESS: [&str; 4] = ["initial_xx", "initial_yy", "initial_xy", "initial_zz"];
@@ -30,7 +30,7 @@ pub const INITIAL_STRESS: [&str; 4] = ["initial_xx", "initial_yy", "initial_xy",
 pub const TEMPERATURE: [&str; 2] = ["temperature_rise", "expansion_stress"];
 
 /// ϑ is positive.
-pub(super) fn positive(strain: f64) -> Result<(), MaterialFailure> {
+pub(super) fn positive(strain: f64) -> Answer<()> {
     let theta = 1.0 + strain;
     if theta > 0.0 { Ok(()) } else { Err(MaterialFailure::Inverted { jacobian: theta }) }
 }
@@ -51,7 +51,7 @@ pub(super) fn elastic<'a>(straining: &Straining<'a>, strain: f64, linear: bool) 
     }
 }
 
-/// An initial stress beside a law, which stays as it is.
+/// An initial stress in addition to that of a law, which stays as it is.
 #[derive(Clone, Debug)]
 pub(super) struct Imposed {
     /// σ₀: xx, yy, xy, zz [F/L²]

@@ -1,6 +1,6 @@
 //! A law in its body: under an initial stress, heated, with a fluid in its pores, in a plate.
 //!
-//! | beside the law | equations |
+//! | in addition to the law | equations |
 //! |---|---|
 //! | initial stress and temperature | `imposed.rs` |
 //! | a fluid that cannot drain | `pores.rs` |
@@ -18,10 +18,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::slots::{Names, Slot};
-use super::{
-    BulkLaw, BulkResponse, CauchyStress, InadmissibleStress, Material, MaterialDescription, MaterialFailure, Sections,
-    Straining,
-};
+use super::{Answer, BulkLaw, CauchyStress, InadmissibleStress, Material, MaterialDescription, Sections, Straining};
 pub use given::GIVEN_PRESSURE;
 use given::Given;
 use imposed::{Heat, Imposed};
@@ -29,11 +26,11 @@ pub use imposed::{INITIAL_STRESS, TEMPERATURE};
 use pores::Pores;
 pub use pores::{PORE_PRESSURE, PoreFluid};
 
-/// What is beside a law in its body; nothing by default.
+/// What there is in a body in addition to its law; nothing by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Surroundings {
-    /// Whether it begins under an initial stress, which stands beside a law that does not [hold](MaterialDescription::holds_initial_stress) it
+    /// Whether it begins under an initial stress, which is added to that of a law that does not [hold](MaterialDescription::holds_initial_stress) it
     pub stressed: bool,
     /// α of a body that is heated [1/Θ]
     pub expansion: Option<f64>,
@@ -45,31 +42,21 @@ pub struct Surroundings {
     pub plate: bool,
 }
 
-impl Surroundings {
+setters! { const surroundings: Surroundings;
     /// Sets whether it begins under an initial stress.
-    pub const fn stressed(self, stressed: bool) -> Self {
-        Self { stressed, ..self }
-    }
+    stressed(stressed: bool) { surroundings.stressed = stressed; }
 
     /// Sets the expansion α of a body that is heated [1/Θ].
-    pub const fn expansion(self, expansion: f64) -> Self {
-        Self { expansion: Some(expansion), ..self }
-    }
+    expansion(expansion: f64) { surroundings.expansion = Some(expansion); }
 
     /// Sets the fluid in its pores.
-    pub const fn fluid(self, fluid: PoreFluid) -> Self {
-        Self { fluid: Some(fluid), ..self }
-    }
+    fluid(fluid: PoreFluid) { surroundings.fluid = Some(fluid); }
 
     /// Sets Biot's coefficient of a body in whose pores the pressure of the fluid is given.
-    pub const fn biot(self, biot: f64) -> Self {
-        Self { biot: Some(biot), ..self }
-    }
+    biot(biot: f64) { surroundings.biot = Some(biot); }
 
     /// Makes it a plate.
-    pub const fn plate(self) -> Self {
-        Self { plate: true, ..self }
-    }
+    plate() { surroundings.plate = true; }
 }
 
 /// A law under what is imposed on it, with a fluid in its pores, or in a plate.
@@ -138,7 +125,7 @@ impl BodyLaw {
         })
     }
 
-    /// The law itself where nothing is beside it, which then costs nothing, and otherwise the law with what is.
+    /// The law itself where there is nothing else, which then costs nothing, and otherwise the law with what there is.
     pub fn around(law: impl Into<Arc<dyn Material>>, surroundings: Surroundings) -> Option<Arc<dyn Material>> {
         let body = Self::new(law, surroundings)?;
         let alone = body.names.len() == body.own.len() && !surroundings.plate;
@@ -157,7 +144,7 @@ impl BodyLaw {
     }
 
     /// The answer at any F₃₃.
-    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Answer {
         let fluid = self.pores.as_ref().map(|pores| pores.fluid(straining)).transpose()?;
         let strain = self.thermal_strain(new);
         imposed::positive(strain)?;
@@ -195,7 +182,7 @@ impl BulkLaw for BodyLaw {
         }
     }
 
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Answer {
         match self.surroundings.plate {
             true => self.free(straining, new),
             false => self.stretched(straining, new),
@@ -219,7 +206,7 @@ impl BulkLaw for BodyLaw {
     }
 
     /// h = ϑ h_e
-    fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+    fn ln_free_stretch(&self, straining: &Straining) -> Answer<f64> {
         let strain = self.thermal_strain(straining.old);
         Ok(self.law.ln_free_stretch(&self.elastic(straining, strain))? + strain.ln_1p())
     }
@@ -228,7 +215,7 @@ impl BulkLaw for BodyLaw {
         Some(Arc::new(Self { law: self.law.at_pressure(pressure)?, ..self.clone() }))
     }
 
-    fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
+    fn show(&self, straining: &Straining, values: &mut [f64]) -> Answer<()> {
         let straining = Straining { stretch: self.stretch_across(straining)?, ..*straining };
         let (own, fluid) = values.split_at_mut(self.law.description().shown.len());
         if let Some(pores) = &self.pores {

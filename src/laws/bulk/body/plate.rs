@@ -13,7 +13,7 @@ use nalgebra::{Vector4, Vector5};
 
 use super::BodyLaw;
 use crate::laws::bulk::components::{moduli, plane_moduli};
-use crate::laws::bulk::{BulkLaw, BulkResponse, MaterialFailure, Straining};
+use crate::laws::bulk::{Answer, BulkLaw, BulkResponse, MaterialFailure, Straining};
 
 /// Most iterations for (1).
 const ITERATIONS: usize = 60;
@@ -31,7 +31,7 @@ pub(super) fn modulus(modulus: f64, shear: f64) -> f64 {
 
 impl BodyLaw {
     /// The answer where nothing is pressed across the plane.
-    pub(super) fn free(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    pub(super) fn free(&self, straining: &Straining, new: &mut [f64]) -> Answer {
         let (h, answer) = match self.linear {
             true => self.opened(straining, new)?,
             false => self.solved(straining, new)?,
@@ -58,7 +58,7 @@ impl BodyLaw {
     }
 
     /// h of a linear law, and the answer there.
-    fn opened(&self, straining: &Straining, new: &mut [f64]) -> Result<(f64, BulkResponse), MaterialFailure> {
+    fn opened(&self, straining: &Straining, new: &mut [f64]) -> Answer<(f64, BulkResponse)> {
         let at = Straining { tangent: true, stretch: 1.0, ..*straining };
         let answer = self.stretched(&at, new)?;
         let h = 1.0 - answer.stress[4] / answer.tangent[(4, 4)];
@@ -66,7 +66,7 @@ impl BodyLaw {
     }
 
     /// h of (1), and the answer there.
-    fn solved(&self, straining: &Straining, new: &mut [f64]) -> Result<(f64, BulkResponse), MaterialFailure> {
+    fn solved(&self, straining: &Straining, new: &mut [f64]) -> Answer<(f64, BulkResponse)> {
         let left = |stress: f64| {
             let residual = stress / self.law.description().p_wave_modulus;
             MaterialFailure::NotConverged { law: PLATE, residual }

@@ -16,7 +16,7 @@ use super::{Names, Slot};
 #[cfg(doc)]
 use crate::laws::bulk::MaterialDescription;
 use crate::laws::bulk::components::{components, ln_stretch, plane, positive_stretch};
-use crate::laws::bulk::{BulkResponse, MaterialFailure, Straining, cofactor, positive_jacobian};
+use crate::laws::bulk::{Answer, BulkResponse, Straining, cofactor, positive_jacobian};
 
 /// Name of the initial pressure of the fluid among the variables of a law.
 pub const PORE_PRESSURE: &str = "initial_pore_pressure";
@@ -55,7 +55,7 @@ impl Pores {
     }
 
     /// ln J, of a linear law tr ε.
-    fn expansion(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+    fn expansion(&self, straining: &Straining) -> Answer<f64> {
         let Straining { deformation: f, stretch, .. } = *straining;
         if self.linear {
             return Ok(f.trace() - 2.0 + (stretch - 1.0));
@@ -65,7 +65,7 @@ impl Pores {
     }
 
     /// (1) and (4).
-    pub fn fluid(&self, straining: &Straining) -> Result<Fluid, MaterialFailure> {
+    pub fn fluid(&self, straining: &Straining) -> Answer<Fluid> {
         let (PoreFluid { modulus, cavitation }, initial) = (self.fluid, self.initial.value(straining.old));
         let expansion = self.expansion(straining)?;
         let stored = |expansion: f64| (0.5 * modulus * expansion - initial) * expansion;

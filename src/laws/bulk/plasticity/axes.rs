@@ -4,8 +4,8 @@
 use nalgebra::{Matrix2, Matrix4, Matrix5, Vector3, Vector4, Vector5};
 
 use super::{Returned, series};
-use crate::laws::bulk::MaterialFailure;
 use crate::laws::bulk::components::moduli;
+use crate::laws::bulk::{Answer, MaterialFailure};
 
 /// The axes of b = F C_p⁻¹ Fᵀ, two in plane and one across it.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub(super) struct Axes {
 impl Axes {
     /// The trial state of F, F₃₃ and C_p⁻¹ − 1 (xx, yy, xy, zz). b − 1 is formed from F − 1, so that small strains lose no digits.
     #[inline(always)]
-    pub fn of(deformation: &Matrix2<f64>, stretch: f64, state: &[f64; 4]) -> Result<Self, MaterialFailure> {
+    pub fn of(deformation: &Matrix2<f64>, stretch: f64, state: &[f64; 4]) -> Answer<Self> {
         let f = deformation;
         let (d, c) = (f - Matrix2::identity(), Matrix2::new(state[0], state[2], state[2], state[1]));
         let b = d + d.transpose() + d * d.transpose() + f * c * f.transpose();

@@ -7,15 +7,14 @@ use super::{
     Elasticity, Elastoplastic, LogarithmicBulk, ONE, ROUND_OFF, ReturnDescription, ReturnMap, Returned, VOLUME,
     deviator, double_dot, in_axes, within,
 };
-use crate::laws::bulk::{CauchyStress, Flow, InadmissibleStress, MaterialFailure, Slot};
+use crate::laws::bulk::{Answer, CauchyStress, Flow, InadmissibleStress, MaterialFailure, Slot};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::{at_least, number};
 
 /// Constants of [`CamClay`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct CamClayParameters {
     /// λ: slope of the line of normal compression, ln v over ln p, or e over ln p where a void ratio e is given, λ > κ [-]
     pub lambda: f64,
@@ -56,21 +55,8 @@ pub struct CamClayParameters {
 
 impl CamClayParameters {
     /// Creates the parameters of a body without mass, λ and κ being slopes of ln v; G or ν and p_c or OCR are still to be given.
-    pub const fn new([lambda, kappa]: [f64; 2], critical: f64, p_min: f64) -> Self {
-        Self {
-            lambda,
-            kappa,
-            e: None,
-            critical: Some(critical),
-            phi: None,
-            shear: None,
-            poisson: None,
-            p_c: None,
-            ratio: None,
-            p_min,
-            density: 0.0,
-            viscosity: 0.0,
-        }
+    pub fn new([lambda, kappa]: [f64; 2], critical: f64, p_min: f64) -> Self {
+        Self { lambda, kappa, critical: Some(critical), p_min, ..Self::default() }
     }
 
     /// λ̂ and κ̂: slopes of ln J over ln p of the Kirchhoff stress, as [`CamClay`] takes them [-]
@@ -80,16 +66,14 @@ impl CamClayParameters {
             slope / (1.0 - slope)
         })
     }
+}
 
+setters! { const law: CamClayParameters;
     /// Sets the shear modulus [F/L²].
-    pub const fn shear(self, shear: f64) -> Self {
-        Self { shear: Some(shear), ..self }
-    }
+    shear(shear: f64) { law.shear = Some(shear); }
 
     /// Sets the initial p_c [F/L²].
-    pub const fn p_c(self, p_c: f64) -> Self {
-        Self { p_c: Some(p_c), ..self }
-    }
+    p_c(p_c: f64) { law.p_c = Some(p_c); }
 }
 
 /// Modified Cam-clay, with an elasticity that has a potential.
@@ -376,7 +360,7 @@ impl Increment<'_> {
     }
 
     /// The root of (7) that is met first: a Δγ that is too large is found by doubling.
-    fn solved(&self) -> Result<State, MaterialFailure> {
+    fn solved(&self) -> Answer<State> {
         let start = self.state(0.0);
         let share = |state: &State| {
             let State { p, p_c, rest, .. } = *state;
@@ -482,12 +466,7 @@ impl ReturnMap for CamClay {
         })
     }
 
-    fn returned(
-        &self,
-        trial: &Vector3<f64>,
-        _: &Vector4<f64>,
-        history: &mut [f64],
-    ) -> Result<Returned, MaterialFailure> {
+    fn returned(&self, trial: &Vector3<f64>, _: &Vector4<f64>, history: &mut [f64]) -> Answer<Returned> {
         let elasticity = self.elasticity(history);
         let (elastic, strain) = (self.logarithmic(SHEAR.value(history)), in_axes(trial));
         let stress = elasticity.kirchhoff(&strain);

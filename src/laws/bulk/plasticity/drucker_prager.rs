@@ -7,7 +7,7 @@ use super::{
     Elasticity, Elastoplastic, ONE, ROUND_OFF, ReturnDescription, ReturnMap, Returned, THIRD, deviator, double_dot,
     in_axes, within,
 };
-use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, InadmissibleStress, Lame, MaterialFailure};
+use crate::laws::bulk::{Answer, CauchyStress, ElasticConstants, Flow, InadmissibleStress, Lame};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative};
 use crate::laws::text::{distinct, number};
 
@@ -169,12 +169,7 @@ impl ReturnMap for DruckerPrager {
     }
 
     #[inline(always)]
-    fn returned(
-        &self,
-        trial: &Vector3<f64>,
-        _: &Vector4<f64>,
-        history: &mut [f64],
-    ) -> Result<Returned, MaterialFailure> {
+    fn returned(&self, trial: &Vector3<f64>, _: &Vector4<f64>, history: &mut [f64]) -> Answer<Returned> {
         let Self { elastic, friction, dilation, cohesion, tension, .. } = *self;
         let (shear, bulk) = (elastic.shear, elastic.bulk());
         let mut answer = Returned::elastic(elastic, trial);

@@ -15,7 +15,7 @@ pub enum Elasticity {
     Logarithmic(LogarithmicBulk),
 }
 
-/// A bulk modulus in proportion to pressure, K = p/κ̂, beside a constant shear modulus.
+/// A bulk modulus in proportion to pressure, K = p/κ̂, and a constant shear modulus.
 ///
 /// ```text
 /// p = p_m e^(ε_v/κ̂ − 1)  for ε_v ≥ κ̂,   p_m ε_v/κ̂  below,   ε_v = −tr ε                                        (1)

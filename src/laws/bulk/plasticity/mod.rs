@@ -28,7 +28,7 @@ use nalgebra::{Matrix4, Matrix5, Vector2, Vector3, Vector4};
 
 use super::components::positive_stretch;
 use super::{
-    BulkLaw, BulkResponse, CauchyStress, Flow, InadmissibleStress, Lame, Material, MaterialDescription,
+    Answer, BulkLaw, BulkResponse, CauchyStress, Flow, InadmissibleStress, Lame, Material, MaterialDescription,
     MaterialFailure, Sections, Slot, Straining, positive_jacobian,
 };
 use crate::laws::parameter::{InvalidParameter, require_not_negative};
@@ -203,12 +203,7 @@ pub trait ReturnMap: Clone + Debug + Send + Sync + 'static {
     ///
     /// # Errors
     /// [`MaterialFailure::NotConverged`] when there is no return to the yield surface.
-    fn returned(
-        &self,
-        trial: &Vector3<f64>,
-        before: &Vector4<f64>,
-        history: &mut [f64],
-    ) -> Result<Returned, MaterialFailure>;
+    fn returned(&self, trial: &Vector3<f64>, before: &Vector4<f64>, history: &mut [f64]) -> Answer<Returned>;
 
     /// f of a stress: 0 where it yields, less where it does not [F/L²]
     fn yield_indicator(&self, stress: &Vector4<f64>, history: &[f64]) -> f64;
@@ -352,7 +347,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
 
     /// The axes of b, the law's answer there at the end of the increment, W and what was dissipated.
     #[inline(always)]
-    fn answer(&self, straining: &Straining, new: &mut [f64]) -> Result<(Axes, Returned, [f64; 2]), MaterialFailure> {
+    fn answer(&self, straining: &Straining, new: &mut [f64]) -> Answer<(Axes, Returned, [f64; 2])> {
         let Straining { deformation, stretch, dt, old, .. } = *straining;
         positive_stretch(straining)?;
         positive_jacobian(&deformation)?;
@@ -451,7 +446,7 @@ impl<L: ReturnMap> Elastoplastic<L> {
     }
 
     /// Stress and history in the axes where the law remembers `straining.old`.
-    fn committed<'a>(&self, straining: &Straining<'a>) -> Result<(Vector4<f64>, Cow<'a, [f64]>), MaterialFailure> {
+    fn committed<'a>(&self, straining: &Straining<'a>) -> Answer<(Vector4<f64>, Cow<'a, [f64]>)> {
         let axes = Axes::of(&straining.deformation, straining.stretch, PLASTIC.of(straining.old))?;
         let history = self.history_in(&axes, STRESS.behind(straining.old));
         Ok((self.law.elasticity(&history).kirchhoff(&in_axes(&axes.strains)), history))
@@ -474,7 +469,7 @@ impl<L: ReturnMap> BulkLaw for Elastoplastic<L> {
     }
 
     #[inline(always)]
-    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<BulkResponse, MaterialFailure> {
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Answer {
         let (axes, found, [energy, dissipation]) = self.answer(straining, new)?;
         let stress = axes.first_piola_kirchhoff(&found.stress);
         let tangent = if straining.tangent { axes.moduli(&found, self.spins()) } else { Matrix5::zeros() };
@@ -482,7 +477,7 @@ impl<L: ReturnMap> BulkLaw for Elastoplastic<L> {
     }
 
     /// Returns the stretch that leaves a plate without out-of-plane stress if it does not yield in the increment.
-    fn ln_free_stretch(&self, straining: &Straining) -> Result<f64, MaterialFailure> {
+    fn ln_free_stretch(&self, straining: &Straining) -> Answer<f64> {
         let jacobian = positive_jacobian(&straining.deformation)?;
         let [xx, yy, xy, zz] = *PLASTIC.of(straining.old);
         let areal = jacobian.ln() + 0.5 * (xx + yy + xx * yy - xy * xy).ln_1p();
@@ -509,7 +504,7 @@ impl<L: ReturnMap> BulkLaw for Elastoplastic<L> {
         begun
     }
 
-    fn show(&self, straining: &Straining, values: &mut [f64]) -> Result<(), MaterialFailure> {
+    fn show(&self, straining: &Straining, values: &mut [f64]) -> Answer<()> {
         let (stress, history) = self.committed(straining)?;
         let (first, own) = values.split_at_mut(SHOWN.len());
         let indicator = self.law.yield_indicator(&stress, &history);

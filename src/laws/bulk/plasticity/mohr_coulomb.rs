@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drucker_prager::{FLOOR, check_strength};
 use super::{Elasticity, Elastoplastic, ROUND_OFF, ReturnDescription, ReturnMap, Returned, VOLUME, in_axes, within};
-use crate::laws::bulk::{CauchyStress, ElasticConstants, Flow, InadmissibleStress, Lame, MaterialFailure};
+use crate::laws::bulk::{Answer, CauchyStress, ElasticConstants, Flow, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::{at_least, number};
 
@@ -369,7 +369,7 @@ impl MohrCoulomb {
 
     /// The return with γ_p at the end of the increment, its tangent, and γ_p.
     #[inline(always)]
-    fn sorted(&self, trial: &Vector3<f64>, before: f64) -> Result<(Vector3<f64>, Matrix3<f64>, f64), MaterialFailure> {
+    fn sorted(&self, trial: &Vector3<f64>, before: f64) -> Answer<(Vector3<f64>, Matrix3<f64>, f64)> {
         if self.residual.is_some_and(|(_, strain)| before < strain) {
             return self.softening(trial, before);
         }
@@ -393,11 +393,7 @@ impl MohrCoulomb {
 
     /// That of a strength that falls with γ_p: γ_p,n + Σ |Δε_p,i(γ_p)| − γ_p has its root between γ_p,n, where it is positive, and where
     /// it is not.
-    fn softening(
-        &self,
-        trial: &Vector3<f64>,
-        before: f64,
-    ) -> Result<(Vector3<f64>, Matrix3<f64>, f64), MaterialFailure> {
+    fn softening(&self, trial: &Vector3<f64>, before: f64) -> Answer<(Vector3<f64>, Matrix3<f64>, f64)> {
         let at = |slip: f64| {
             let found = self.at_strength(&self.strength(slip).0, trial).ok_or_else(|| self.none(trial, before))?;
             Ok((found, before + self.slip(trial, &found) - slip))
@@ -507,12 +503,7 @@ impl ReturnMap for MohrCoulomb {
     }
 
     #[inline(always)]
-    fn returned(
-        &self,
-        trial: &Vector3<f64>,
-        _: &Vector4<f64>,
-        history: &mut [f64],
-    ) -> Result<Returned, MaterialFailure> {
+    fn returned(&self, trial: &Vector3<f64>, _: &Vector4<f64>, history: &mut [f64]) -> Answer<Returned> {
         let mut answer = Returned::elastic(self.elastic, trial);
         let rank = rank_across(trial);
         let sorted = Vector3::from(sorted(rank, [answer.stress[0], answer.stress[1], answer.stress[2]]));

@@ -8,7 +8,7 @@ use super::{
     Elasticity, Elastoplastic, ReturnDescription, ReturnMap, Returned, deviator, double_dot, in_axes, share_within,
     within,
 };
-use crate::laws::bulk::{CauchyStress, InadmissibleStress, MaterialFailure, Slot};
+use crate::laws::bulk::{Answer, CauchyStress, InadmissibleStress, MaterialFailure, Slot};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::{at_least, number};
 
@@ -288,12 +288,7 @@ impl ReturnMap for SysCamClay {
         })
     }
 
-    fn returned(
-        &self,
-        trial: &Vector3<f64>,
-        before: &Vector4<f64>,
-        history: &mut [f64],
-    ) -> Result<Returned, MaterialFailure> {
+    fn returned(&self, trial: &Vector3<f64>, before: &Vector4<f64>, history: &mut [f64]) -> Answer<Returned> {
         let (elasticity, elastic) = (self.elasticity(history), self.clay.logarithmic(SHEAR.value(history)));
         let old = State {
             strain: elasticity.strain(before).into(),

@@ -7,7 +7,7 @@ use super::{
     EQUIVALENT, Elasticity, Elastoplastic, ONE, ROUND_OFF, ReturnDescription, ReturnMap, Returned, THIRD, VOLUME,
     deviator, double_dot, within,
 };
-use crate::laws::bulk::{CauchyStress, ElasticConstants, InadmissibleStress, Lame, MaterialFailure};
+use crate::laws::bulk::{Answer, CauchyStress, ElasticConstants, InadmissibleStress, Lame, MaterialFailure};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use crate::laws::text::distinct;
 
@@ -181,7 +181,7 @@ impl VonMises {
 
     /// Δε̄ of (5).
     #[inline(always)]
-    fn slip(&self, trial: &Vector4<f64>, history: &[f64]) -> Result<f64, MaterialFailure> {
+    fn slip(&self, trial: &Vector4<f64>, history: &[f64]) -> Answer<f64> {
         let (before, back, stiff) = (EQUIVALENT.value(history), VOLUME.behind(history), 3.0 * self.elastic.shear);
         let largest = equivalent(trial);
         if back.is_empty() && self.saturation == 0.0 {
@@ -268,12 +268,7 @@ impl ReturnMap for VonMises {
     }
 
     #[inline(always)]
-    fn returned(
-        &self,
-        trial: &Vector3<f64>,
-        _: &Vector4<f64>,
-        history: &mut [f64],
-    ) -> Result<Returned, MaterialFailure> {
+    fn returned(&self, trial: &Vector3<f64>, _: &Vector4<f64>, history: &mut [f64]) -> Answer<Returned> {
         let Lame { shear, .. } = self.elastic;
         let mut answer = Returned::elastic(self.elastic, trial);
         if self.yield_indicator(&answer.stress, history) <= ROUND_OFF * shear {

@@ -7,12 +7,12 @@ mod relaxation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation};
+use super::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, Variations};
 use super::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, PointLoad, RateLaw,
     Regime, Sliding, States, traction_at_yield,
 };
-use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
+use crate::laws::parameter::{InvalidParameter, require, require_positive};
 use path::{PathState, Ramp};
 pub use relaxation::StateEvolution;
 use relaxation::{Coefficients, Effect, Relaxation, arsinh_of_exp};
@@ -21,7 +21,6 @@ use relaxation::{Coefficients, Effect, Relaxation, arsinh_of_exp};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct RateAndStateParameters {
     /// f₀: friction coefficient in steady sliding at V₀, f₀ > 0 [-]
     pub f_0: f64,
@@ -64,31 +63,23 @@ impl RateAndStateParameters {
         let (b_2, critical_slip_2, theta_2) = (None, None, None);
         Self { f_0, reference_rate, a, b, critical_slip, evolution, theta, b_2, critical_slip_2, theta_2, alpha_t }
     }
+}
 
+setters! { const law: RateAndStateParameters;
     /// Sets the evolution law of the state.
-    pub const fn evolution(self, evolution: StateEvolution) -> Self {
-        Self { evolution, ..self }
-    }
+    evolution(evolution: StateEvolution) { law.evolution = evolution; }
 
     /// Sets the initial state θ [T].
-    pub const fn theta(self, theta: f64) -> Self {
-        Self { theta: Some(theta), ..self }
-    }
+    theta(theta: f64) { law.theta = Some(theta); }
 
     /// Adds a second state, with its effect b₂ and the slip over which it evolves [L].
-    pub const fn second(self, b_2: f64, critical_slip_2: f64) -> Self {
-        Self { b_2: Some(b_2), critical_slip_2: Some(critical_slip_2), ..self }
-    }
+    second(b_2: f64, critical_slip_2: f64) { law.b_2 = Some(b_2); law.critical_slip_2 = Some(critical_slip_2); }
 
     /// Sets the initial second state θ₂ [T].
-    pub const fn theta_2(self, theta_2: f64) -> Self {
-        Self { theta_2: Some(theta_2), ..self }
-    }
+    theta_2(theta_2: f64) { law.theta_2 = Some(theta_2); }
 
     /// Sets the tangential stiffness α_t [F/L³].
-    pub const fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }
 
 numbers!(
@@ -380,12 +371,7 @@ impl SensitiveLaw for RateAndState {
         Variation { traction: 0.0, variables: by.into_iter().collect() }
     }
 
-    fn vary(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-    ) -> Result<[Variation; 2], LawFailure> {
+    fn vary(&self, old: &FrictionState, sliding: Sliding, directions: [Direction; 2]) -> Variations {
         let mut ramp = Ramp::new(self, old, Inputs::new(old, sliding, directions)?);
         let PathState { traction, theta, .. } =
             if self.is_controlled && sliding.dt > 0.0 { ramp.end_of_path()? } else { ramp.single()? };

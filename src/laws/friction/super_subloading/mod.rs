@@ -15,7 +15,7 @@ use super::{
 pub use crate::laws::approach::Approach;
 use crate::laws::approach::SlidingCurve;
 use crate::laws::dual::Dual;
-use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 use direct::DirectEffect;
 use increment::{ROUND_OFF, SlipEquation, mean_of_steady_slip, mean_traction};
 use peak::PeakEvolution;
@@ -373,7 +373,6 @@ impl FrictionLaw for SuperSubloading {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct SuperSubloadingParameters {
     /// μ_s: static friction coefficient, μ_s ≥ μ_k [-]
     pub mu_s: f64,
@@ -462,56 +461,38 @@ impl SuperSubloadingParameters {
             tolerance: None,
         }
     }
+}
 
+setters! { const law: SuperSubloadingParameters;
     /// Sets the rate κ of weakening with slip [1/L].
-    pub const fn kappa(self, kappa: f64) -> Self {
-        Self { kappa, ..self }
-    }
+    kappa(kappa: f64) { law.kappa = kappa; }
 
     /// Sets the rate ξ of recovery in stationary contact [1/T].
-    pub const fn xi(self, xi: f64) -> Self {
-        Self { xi, ..self }
-    }
+    xi(xi: f64) { law.xi = xi; }
 
     /// Sets the exponents of weakening and recovery [-].
-    pub const fn exponents(self, m: f64, n: f64) -> Self {
-        Self { m, n, ..self }
-    }
+    exponents(m: f64, n: f64) { law.m = m; law.n = n; }
 
     /// Sets the direct effect a of the rate of plastic slip [-], and the rate V₀ from which on it grows [L/T].
-    pub const fn rate_effect(self, a: f64, reference_rate: f64) -> Self {
-        Self { a, reference_rate: Some(reference_rate), ..self }
-    }
+    rate_effect(a: f64, reference_rate: f64) { law.a = a; law.reference_rate = Some(reference_rate); }
 
     /// Sets the initial structure 1/R* [-].
-    pub const fn structure(self, structure: f64) -> Self {
-        Self { structure: Some(structure), ..self }
-    }
+    structure(structure: f64) { law.structure = Some(structure); }
 
     /// Sets the approach to full sliding.
-    pub const fn approach(self, approach: Approach) -> Self {
-        Self { approach, ..self }
-    }
+    approach(approach: Approach) { law.approach = approach; }
 
     /// Sets the elastic core R_e [-].
-    pub const fn elastic_core(self, elastic_core: f64) -> Self {
-        Self { elastic_core, ..self }
-    }
+    elastic_core(elastic_core: f64) { law.elastic_core = elastic_core; }
 
     /// Sets the integration of an increment.
-    pub const fn integration(self, integration: Integration) -> Self {
-        Self { integration, ..self }
-    }
+    integration(integration: Integration) { law.integration = integration; }
 
     /// Sets the tolerance of the controlled integration [-].
-    pub const fn tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance: Some(tolerance), ..self }
-    }
+    tolerance(tolerance: f64) { law.tolerance = Some(tolerance); }
 
     /// Sets the tangential stiffness α_t [F/L³].
-    pub const fn alpha_t(self, alpha_t: f64) -> Self {
-        Self { alpha_t: Some(alpha_t), ..self }
-    }
+    alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }
 
 const fn one() -> f64 {

@@ -9,7 +9,7 @@
 use super::increment::{Balance, LoadPath, PathState, STEADY, Varied, unsteadiness};
 use super::{EXCESS, SuperSubloading, SuperSubloadingParameters};
 use crate::laws::dual::{Dual, Number};
-use crate::laws::friction::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, variations};
+use crate::laws::friction::sensitivity::{Direction, Inputs, SensitiveLaw, Variation, Variations, variations};
 use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 
 impl SuperSubloading {
@@ -316,12 +316,7 @@ impl SensitiveLaw for SuperSubloading {
         Variation::new(0.0, dmu)
     }
 
-    fn vary(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-        directions: [Direction; 2],
-    ) -> Result<[Variation; 2], LawFailure> {
+    fn vary(&self, old: &FrictionState, sliding: Sliding, directions: [Direction; 2]) -> Variations {
         let mut inputs = Inputs::new(old, sliding, directions)?;
         let Varied { alpha_t, evolution, .. } = self.along(&inputs);
         inputs.variable = evolution.clamp(inputs.variable);
@@ -348,13 +343,7 @@ impl SensitiveLaw for SuperSubloading {
 
 impl SuperSubloading {
     /// The same with a direct effect of the rate.
-    fn vary_with_rate(
-        &self,
-        old: &FrictionState,
-        inputs: &Inputs,
-        rested: Dual,
-        sliding: Sliding,
-    ) -> Result<[Variation; 2], LawFailure> {
+    fn vary_with_rate(&self, old: &FrictionState, inputs: &Inputs, rested: Dual, sliding: Sliding) -> Variations {
         let old = self.within_strength(old);
         let trial = inputs.traction + self.along(inputs).alpha_t * inputs.slip;
         if self.is_elastic(&old, trial.value, sliding) {

@@ -25,7 +25,7 @@ use nalgebra::{Matrix5, Vector2, Vector5};
 
 use super::SolidElement;
 use super::ring::{At, inverse_transpose, jacobian};
-use crate::laws::bulk::{BulkResponse, CauchyStress, MaterialFailure};
+use crate::laws::bulk::{Answer, BulkResponse, CauchyStress};
 use crate::model::element::Formulation;
 
 /// Quadrature points and dofs of the element, a Q4.
@@ -57,7 +57,7 @@ struct Now<'a> {
 
 impl SolidElement {
     /// The element at displacements `u` by (4); `None` unless it is an F-bar element.
-    pub(super) fn mean(&self, u: &[Vector2<f64>]) -> Result<Option<Mean<'_>>, MaterialFailure> {
+    pub(super) fn mean(&self, u: &[Vector2<f64>]) -> Answer<Option<Mean<'_>>> {
         if self.formulation != Formulation::FBar {
             return Ok(None);
         }
@@ -125,10 +125,10 @@ impl Mean<'_> {
     /// the stored and the dissipated energy.
     pub fn respond(
         &self,
-        mut law: impl FnMut(usize, &Vector5<f64>) -> Result<BulkResponse, MaterialFailure>,
+        mut law: impl FnMut(usize, &Vector5<f64>) -> Answer,
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
-    ) -> Result<[f64; 2], MaterialFailure> {
+    ) -> Answer<[f64; 2]> {
         let mut answers = [BulkResponse::default(); POINTS];
         for ((k, now), answer) in self.points.iter().enumerate().zip(&mut answers) {
             *answer = law(k, &now.seen)?;

@@ -2,9 +2,9 @@
 //!
 //! This file contains elements with internal variables or an unsymmetric tangent as well; `viscous.rs` contains the viscous stress of a
 //! damped body, `f_bar.rs` F-bar, `ring.rs` axisymmetry, `stress.rs` the stress and the reference geometry of elements, `volume.rs` their mean volume
-//! change, `birth.rs` elements that come later.
+//! change, `activation.rs` elements that come later.
 
-mod birth;
+mod activation;
 mod f_bar;
 mod ring;
 mod stress;
@@ -18,7 +18,7 @@ use pulp::{Arch, NullaryFnOnce};
 
 use super::Formulation;
 use crate::laws::bulk::components::{components, plane};
-use crate::laws::bulk::{BulkResponse, Material, MaterialFailure, MaterialResponse, Straining};
+use crate::laws::bulk::{Answer, BulkResponse, Material, MaterialResponse, Straining};
 use crate::mesh::shape::ElementKind;
 
 /// A solid element: its reference geometry at the quadrature points.
@@ -52,7 +52,7 @@ pub struct SolidElement {
     /// Trace of the initial stress at the quadrature points of an F-bar element; empty without one [F/L²]
     initial: Vec<f64>,
     /// Displacements of the nodes when it came; empty for an element that has been there from the start [L]
-    birth: Vec<Vector2<f64>>,
+    activation: Vec<Vector2<f64>>,
 }
 
 impl SolidElement {
@@ -60,12 +60,7 @@ impl SolidElement {
     ///
     /// # Errors
     /// Returns the [`MaterialFailure`] of the law at a quadrature point.
-    pub fn force(
-        &self,
-        material: &dyn Material,
-        u: &[Vector2<f64>],
-        force: &mut [f64],
-    ) -> Result<f64, MaterialFailure> {
+    pub fn force(&self, material: &dyn Material, u: &[Vector2<f64>], force: &mut [f64]) -> Answer<f64> {
         if self.hoop.is_some() {
             return self.ring_at_once(material, u, force, None);
         }
@@ -84,7 +79,7 @@ impl SolidElement {
         material: &dyn Material,
         u: &[Vector2<f64>],
         forces: &mut [Vector2<f64>],
-    ) -> Result<f64, MaterialFailure> {
+    ) -> Answer<f64> {
         if self.hoop.is_some() {
             let mut all = [0.0; 18];
             let energy = self.ring_at_once(material, u, &mut all[..2 * u.len()], None)?;
@@ -107,8 +102,8 @@ impl SolidElement {
         material: &dyn Material,
         u: &[Vector2<f64>],
         forces: &mut [Vector2<f64>],
-    ) -> Result<f64, MaterialFailure> {
-        let u = &*self.since_birth(u);
+    ) -> Answer<f64> {
+        let u = &*self.since_activation(u);
         let points = self.volumes.len();
         debug_assert!(points <= M);
         let mut deformations = [Matrix2::zeros(); M];
@@ -147,7 +142,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: &mut [f64],
-    ) -> Result<f64, MaterialFailure> {
+    ) -> Answer<f64> {
         if self.hoop.is_some() {
             return self.ring_at_once(material, u, force, Some(tangent));
         }
@@ -168,8 +163,8 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: &mut [f64],
-    ) -> Result<f64, MaterialFailure> {
-        let u = &*self.since_birth(u);
+    ) -> Answer<f64> {
+        let u = &*self.since_activation(u);
         if let Some(mean) = self.mean(u)? {
             let answer = |_, seen: &Vector5<f64>| material.at_once(&plane(seen)).map(BulkResponse::from);
             return mean.respond(answer, force, Some(tangent)).map(|[energy, _]| energy);
@@ -273,7 +268,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
-    ) -> Result<[f64; 2], MaterialFailure> {
+    ) -> Answer<[f64; 2]> {
         if self.hoop.is_some() {
             return self.ring(material, memory, u, force, tangent);
         }
@@ -300,8 +295,8 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
-    ) -> Result<[f64; 2], MaterialFailure> {
-        let u = &*self.since_birth(u);
+    ) -> Answer<[f64; 2]> {
+        let u = &*self.since_activation(u);
         let (Memory { dt, old, new }, wanted) = (memory, tangent.is_some());
         let (points, mean) = (self.quadrature_points(), self.mean(u)?);
         let (count, gradients) = (old.len() / points, self.gradients.as_chunks::<N>().0);

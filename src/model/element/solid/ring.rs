@@ -9,7 +9,7 @@ use nalgebra::{Vector2, Vector5};
 
 use super::{Memory, SolidElement};
 use crate::laws::bulk::components::{components, plane};
-use crate::laws::bulk::{Material, MaterialFailure, Straining, cofactor, positive_jacobian};
+use crate::laws::bulk::{Answer, Material, MaterialFailure, Straining, cofactor, positive_jacobian};
 
 /// ∂N_a/∂X and N_a/R at a point; the latter are 0 in plane.
 #[derive(Clone, Copy, Default)]
@@ -27,8 +27,8 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
-    ) -> Result<[f64; 2], MaterialFailure> {
-        let u = &*self.since_birth(u);
+    ) -> Answer<[f64; 2]> {
+        let u = &*self.since_activation(u);
         let (count, wanted) = (material.description().variables.len(), tangent.is_some());
         if let Some(mean) = self.mean(u)? {
             let answer = |k: usize, seen: &Vector5<f64>| {
@@ -66,7 +66,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
-    ) -> Result<f64, MaterialFailure> {
+    ) -> Answer<f64> {
         let old = vec![0.0; material.description().variables.len() * self.quadrature_points()];
         let memory = Memory { dt: 0.0, old: &old, new: &mut old.clone() };
         self.ring(material, memory, u, force, tangent).map(|[energy, _]| energy)
@@ -74,7 +74,7 @@ impl SolidElement {
 
     /// F₃₃ at each quadrature point.
     pub(super) fn hoop_stretches(&self, u: &[Vector2<f64>]) -> Vec<f64> {
-        let u = &*self.since_birth(u);
+        let u = &*self.since_activation(u);
         self.everywhere().map(|(at, _)| at.deformation(u)[4]).collect()
     }
 
@@ -130,7 +130,7 @@ pub(super) fn straining<'a>(seen: &Vector5<f64>, dt: f64, old: &'a [f64]) -> Str
 }
 
 /// J = det F in three dimensions, known to be positive.
-pub(super) fn jacobian(f: &Vector5<f64>) -> Result<f64, MaterialFailure> {
+pub(super) fn jacobian(f: &Vector5<f64>) -> Answer<f64> {
     let jacobian = positive_jacobian(&plane(f))? * f[4];
     if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(MaterialFailure::Inverted { jacobian }) }
 }

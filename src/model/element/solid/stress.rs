@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector5};
 use super::ring::straining;
 use super::{SolidElement, deformation_gradient};
 use crate::laws::bulk::components::plane;
-use crate::laws::bulk::{CauchyStress, Material, MaterialFailure, Straining, log_strain};
+use crate::laws::bulk::{Answer, CauchyStress, Material, Straining, log_strain};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
 use crate::mesh::shape::{ElementKind, QuadraturePoint};
@@ -25,7 +25,7 @@ impl SolidElement {
         material: &dyn Material,
         memory: &[f64],
         u: &[Vector2<f64>],
-    ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
+    ) -> Answer<Few<CauchyStress, 9>> {
         let count = material.description().variables.len();
         let of = |(k, seen): (usize, &Vector5<f64>)| {
             material.cauchy_stress(&self.straining(seen, &memory[k * count..(k + 1) * count]))
@@ -42,8 +42,8 @@ impl SolidElement {
     }
 
     /// F at each quadrature point as the law sees it: F̄ of F-bar.
-    fn seen(&self, u: &[Vector2<f64>]) -> Result<Few<Vector5<f64>, 9>, MaterialFailure> {
-        let u = &*self.since_birth(u);
+    fn seen(&self, u: &[Vector2<f64>]) -> Answer<Few<Vector5<f64>, 9>> {
+        let u = &*self.since_activation(u);
         Ok(match self.mean(u)? {
             Some(mean) => mean.seen().into(),
             None => self.everywhere().map(|(at, _)| at.deformation(u)).collect(),
@@ -54,12 +54,7 @@ impl SolidElement {
     ///
     /// # Errors
     /// Returns the [`MaterialFailure`] of the law at a quadrature point.
-    pub fn log_strains(
-        &self,
-        material: &dyn Material,
-        memory: &[f64],
-        u: &[Vector2<f64>],
-    ) -> Result<Few<[f64; 4], 9>, MaterialFailure> {
+    pub fn log_strains(&self, material: &dyn Material, memory: &[f64], u: &[Vector2<f64>]) -> Answer<Few<[f64; 4], 9>> {
         let strain = |f: &Matrix2<f64>, across: f64| match material.description().is_linear {
             true => [f.m11 - 1.0, f.m22 - 1.0, across - 1.0, 0.5 * (f.m12 + f.m21)],
             false => log_strain(f, across),
@@ -74,7 +69,7 @@ impl SolidElement {
 
     /// F at each quadrature point.
     pub fn deformations(&self, u: &[Vector2<f64>]) -> Vec<Matrix2<f64>> {
-        let u = &*self.since_birth(u);
+        let u = &*self.since_activation(u);
         self.points().map(|(gradients, _)| deformation_gradient(gradients, u)).collect()
     }
 
@@ -93,12 +88,7 @@ impl SolidElement {
     ///
     /// # Errors
     /// Returns the [`MaterialFailure`] of the law at a quadrature point.
-    pub fn shown(
-        &self,
-        material: &dyn Material,
-        memory: &[f64],
-        u: &[Vector2<f64>],
-    ) -> Result<Vec<f64>, MaterialFailure> {
+    pub fn shown(&self, material: &dyn Material, memory: &[f64], u: &[Vector2<f64>]) -> Answer<Vec<f64>> {
         let (count, own) = (material.description().variables.len(), material.description().shown.len());
         let mut values = vec![0.0; own * self.quadrature_points()];
         for ((k, seen), values) in self.seen(u)?.iter().enumerate().zip(values.chunks_exact_mut(own.max(1))) {
@@ -156,7 +146,7 @@ impl SolidElement {
             mean_weight: 1.0,
             hoop: section.is_axisymmetric().then(Vec::new),
             initial: Vec::new(),
-            birth: Vec::new(),
+            activation: Vec::new(),
         };
         let over_radius = |at: [f64; 2]| {
             let values = kind.values(at);

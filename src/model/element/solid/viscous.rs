@@ -17,7 +17,7 @@ impl SolidElement {
         [u, v]: [&[Vector2<f64>]; 2],
         forces: &mut [Vector2<f64>],
     ) {
-        let u = &*self.since_birth(u);
+        let u = &*self.since_activation(u);
         let (law, mut all) = (material.description(), [0.0; 18]);
         for (at, volume) in self.everywhere() {
             let [deformation, rate] = self.motion(&at, u, v);
@@ -37,7 +37,7 @@ impl SolidElement {
         dvelocity: &[f64],
         tangent: &mut [f64],
     ) {
-        let u = &*self.since_birth(u);
+        let u = &*self.since_activation(u);
         let law = material.description();
         tangent.fill(0.0);
         for (at, volume) in self.everywhere() {

@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector5};
 
 use super::SolidElement;
 use super::ring::{inverse_transpose, jacobian};
-use crate::laws::bulk::MaterialFailure;
+use crate::laws::bulk::Answer;
 
 impl SolidElement {
     /// ⟨ln J⟩ over the reference volume at displacements `u`, or ⟨tr ε⟩ of a linear material; on request its derivatives,
@@ -12,13 +12,8 @@ impl SolidElement {
     ///
     /// # Errors
     /// [`MaterialFailure::Inverted`] when det F is not positive.
-    pub fn mean_volume_change(
-        &self,
-        is_linear: bool,
-        u: &[Vector2<f64>],
-        mut by: Option<&mut [f64]>,
-    ) -> Result<f64, MaterialFailure> {
-        let u = &*self.since_birth(u);
+    pub fn mean_volume_change(&self, is_linear: bool, u: &[Vector2<f64>], mut by: Option<&mut [f64]>) -> Answer<f64> {
+        let u = &*self.since_activation(u);
         let whole: f64 = self.everywhere().map(|(_, volume)| volume).sum();
         if let Some(by) = by.as_deref_mut() {
             by.fill(0.0);

@@ -12,7 +12,7 @@ const clock = (() => {
   return longest >= 5 * 86400 ? { unit: "days", size: 86400 } : { unit: "s", size: 1 };
 })();
 
-/** A time with its unit; in one that suits it, if it is short beside that of the run. */
+/** A time with its unit; in one that suits it, if it is short compared with that of the run. */
 function timed(time, digits = 7) {
   const isShort = clock.size > 1 && time !== 0 && Math.abs(time) < 0.01 * clock.size;
   const [value, unit] = isShort ? spanned(time) : [time / clock.size, clock.unit];

@@ -13,7 +13,7 @@ use crate::mesh::section::Section;
 use crate::model::element::ElementError;
 
 impl SolidElement {
-    /// The element without strain at displacements `birth`, by (8); `positions` are those of its nodes in the mesh.
+    /// The element without strain at displacements `activation`, by (8); `positions` are those of its nodes in the mesh.
     ///
     /// # Errors
     /// [`ElementError::Degenerate`] when it is inverted there.
@@ -21,18 +21,18 @@ impl SolidElement {
         &self,
         section: Section,
         positions: &[Vector2<f64>],
-        birth: Vec<Vector2<f64>>,
+        activation: Vec<Vector2<f64>>,
     ) -> Result<Self, ElementError> {
-        let then: Vec<Vector2<f64>> = positions.iter().zip(&birth).map(|(x, u)| x + u).collect();
+        let then: Vec<Vector2<f64>> = positions.iter().zip(&activation).map(|(x, u)| x + u).collect();
         let initial = self.initial.clone();
-        Ok(Self { initial, birth, ..Self::new(self.kind, self.formulation, section, &then)? })
+        Ok(Self { initial, activation, ..Self::new(self.kind, self.formulation, section, &then)? })
     }
 
     /// Displacements since it came.
-    pub(super) fn since_birth<'u>(&self, u: &'u [Vector2<f64>]) -> Cow<'u, [Vector2<f64>]> {
-        match self.birth.is_empty() {
+    pub(super) fn since_activation<'u>(&self, u: &'u [Vector2<f64>]) -> Cow<'u, [Vector2<f64>]> {
+        match self.activation.is_empty() {
             true => Cow::Borrowed(u),
-            false => u.iter().zip(&self.birth).map(|(u, birth)| u - birth).collect(),
+            false => u.iter().zip(&self.activation).map(|(u, activation)| u - activation).collect(),
         }
     }
 }
