@@ -88,8 +88,9 @@ impl InitialStress {
 }
 
 /// A fluid in the pores of a body. Without a permeability it has no time to flow, and elements are nearly incompressible from the start: take
-/// f_bar, reduced Q8 or T6. With one it flows in static steps, whose time is that of consolidation. The material, and the initial stress, are
-/// those of the effective stress; stresses and what contacts feel are total
+/// f_bar, reduced Q8 or T6. With one it flows, in static steps, whose time is that of consolidation, and in those of newmark, hht and
+/// generalized_alpha, where the density is that of both. The material, and the initial stress, are those of the effective stress; stresses and
+/// what contacts feel are total
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]

@@ -398,6 +398,15 @@ fn storage(fluid: &PoreFluid, law: &MaterialDescription) -> f64 {
     1.0 / fluid.modulus() + (fluid.coefficient() - fluid.porosity) * (1.0 - fluid.coefficient()) / bulk
 }
 
+#[doc(hidden)]
+impl Body {
+    /// Stiffness against a wave of compression, in which water that flows has no time to: λ + 2G + b² Q [F/L²].
+    pub fn wave_modulus(&self) -> f64 {
+        let law = self.material.description();
+        law.p_wave_modulus + self.flowing().map_or(0.0, |fluid| fluid.coefficient().powi(2) / storage(fluid, &law))
+    }
+}
+
 /// Least permeability of ground above a free surface, and of pores that close, over that at the start [-]
 const LEAST: f64 = 1e-4;
 

@@ -3,6 +3,7 @@
 use super::boundary::Profile;
 use super::coupled::CoupledParts;
 use super::pore_flow::{Drain, DrainKind, PoreFlow, WetElement};
+use super::scheme::Scheme;
 use super::text::number;
 use super::{Model, Step};
 use crate::mesh::ElementKind;
@@ -70,10 +71,10 @@ fn least(kind: ElementKind) -> f64 {
     }
 }
 
-/// Steps whose first increment is too short for the elements at an outlet.
+/// Static steps whose first increment is too short for the elements at an outlet; those of a motion have to be.
 fn overshoots(model: &Model, flow: &PoreFlow) -> Option<String> {
     let holds = |drain: &&Drain| drain.kind != DrainKind::Flux;
-    model.steps.iter().find_map(|step| {
+    model.steps.iter().filter(|step| step.scheme == Scheme::Static).find_map(|step| {
         let mut drained = vec![false; flow.count()];
         let corners = step.drains.iter().filter(holds).flat_map(|drain| &drain.corners);
         corners.for_each(|(k, ..)| drained[*k] = true);

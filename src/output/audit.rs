@@ -554,7 +554,8 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
     };
     let explicit = |step: &Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
     let may_be_massless = model.contacts.iter().any(|pair| pair.compliance > 0.0 && !pair.tied);
-    let rings = may_be_massless && !model.massless.contains(&true) && !model.steps.iter().any(explicit);
+    let solids = model.mesh.nodes.len() - model.mesh.water_nodes;
+    let rings = may_be_massless && !model.massless[..solids].contains(&true) && !model.steps.iter().any(explicit);
     if rings && model.contacts.iter().any(|pair| pair.penetration.is_some()) {
         return "multipliers on surfaces that have mass gain energy from impacts, the more the shorter the increments: make \
                 the contact `massless`, or leave `penetration` out";

@@ -472,7 +472,8 @@ pub struct WaveSpeeds {
 impl WaveSpeeds {
     /// Returns the wave speeds of the body of the slave of a contact, if it has one.
     pub fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
-        Some(Self::of(&*model.bodies[pair.body?].material))
+        let body = &model.bodies[pair.body?];
+        Some(Self::with(&*body.material, body.wave_modulus()))
     }
 
     /// Returns the wave speeds of a material; infinite without density.
@@ -481,10 +482,15 @@ impl WaveSpeeds {
     /// (2 − ξ²)² = 4 √(1 − ξ²) √(1 − ξ² c_s²/c_p²),   ξ = c_R/c_s
     /// ```
     pub fn of(material: &dyn Material) -> Self {
-        let speed = |modulus: f64| (modulus / material.description().density).sqrt();
-        let (shear, pressure) =
-            (speed(material.description().shear_modulus), speed(material.description().p_wave_modulus));
-        let ratio = material.description().shear_modulus / material.description().p_wave_modulus;
+        Self::with(material, material.description().p_wave_modulus)
+    }
+
+    /// Those with another λ + 2G.
+    fn with(material: &dyn Material, modulus: f64) -> Self {
+        let law = material.description();
+        let speed = |modulus: f64| (modulus / law.density).sqrt();
+        let (shear, pressure) = (speed(law.shear_modulus), speed(modulus));
+        let ratio = law.shear_modulus / modulus;
         // Negative below the root, except at the trivial root 0, positive above.
         let excess = |square: f64| (2.0 - square).powi(2) - 4.0 * ((1.0 - square) * (1.0 - square * ratio)).sqrt();
         let (mut low, mut high) = (0.1, 1.0);

@@ -191,7 +191,7 @@ fn judge_motion(model: &Model, step: &Step, [old, new]: [&State; 2], may_grow: b
         let estimate = local_error(model, step, old, new);
         LocalError { estimate, allowed }
     });
-    let slip = slip_error(model, step, [old, new]);
+    let slip = slip_error(model, step, [old, new]).worse(pressure_error(model, step, [old, new]));
     let slip = flow_error(new).map_or(slip, |flow| slip.worse(flow));
     let error = motion.worse(slip);
     let share = (SAFETY * motion.room().cbrt().min(slip.room().sqrt())).clamp(LEAST_SHARE, GROWTH);

@@ -318,7 +318,6 @@ fn what_cannot_flow_is_refused() {
         ),
         (fluid, json!({"bulk_modulus": 1, "porosity": 0.5}), "steps[0].drainage[0]: is for bodies whose water flows"),
         ("/bodies/soil/element", json!("f_bar"), "bodies.soil.element: is f_bar"),
-        ("/steps/0/scheme", json!({"newmark": {}}), "in static steps only"),
         ("/section", json!({"plane_stress": {"thickness": 1}}), "plane stress"),
         ("/periodic", json!([["soil_left", "soil_right"]]), "periodic: join sides of `soil`"),
         ("/steps/0/drainage/0", json!({"on": "soil_top"}), "needs exactly one of"),
@@ -329,8 +328,6 @@ fn what_cannot_flow_is_refused() {
         ("/steps/0/drainage/0", json!({"on": "soil_top", "impervious": true}), "no earlier step drains"),
         ("/steps/0/dt/pore_pressure", json!(-1), "steps[0].dt.pore_pressure"),
         ("/bodies/soil/thermal", json!({"expansion": 1e-3}), "bodies.soil.thermal: is heated"),
-        ("/steps/0/scheme", json!({"explicit": {}}), "in static steps only"),
-        ("/steps/0/scheme", json!({"hht": {"alpha": -0.05}}), "in static steps only"),
         (
             fluid,
             json!({"bulk_modulus": 1, "porosity": 0.5, "permeability": 1, "unit_weight": 1, "capillary": 0.1}),

@@ -13,6 +13,7 @@ mod following;
 mod impact;
 mod quasi_dynamic;
 mod radiation;
+mod saturated;
 mod slabs;
 mod slip_control;
 mod stability;

@@ -307,12 +307,12 @@ pub fn mass_weights(model: &Model, name: &str, place: &str) -> Checked<Vec<Nodal
 pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
     for EdgePoint { edge, weight, position, along, values } in gauss_points(&model.mesh, edges) {
-        let material = &*model.body_of(edge.element).material;
-        let impedance = |modulus: f64| (modulus * material.description().density).sqrt();
+        let body = model.body_of(edge.element);
+        let impedance = |modulus: f64| (modulus * body.material.description().density).sqrt();
         let s = along.normalize();
         let n = Vector2::new(s.y, -s.x);
-        let resistance = n * n.transpose() * impedance(material.description().p_wave_modulus)
-            + s * s.transpose() * impedance(material.description().shear_modulus);
+        let resistance = n * n.transpose() * impedance(body.wave_modulus())
+            + s * s.transpose() * impedance(body.material.description().shear_modulus);
         for (node, value) in values {
             let share = weight * value * along.norm() * model.mesh.section.weight(position);
             *total.entry(node).or_default() += resistance * share;

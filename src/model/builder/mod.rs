@@ -320,6 +320,8 @@ impl Builder {
         let contacts = self.contacts.iter().map(|contact| reduction::with_friction(contact, &model));
         self.contacts = contacts.collect::<Checked<_>>()?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
+        // Nodes that stand for pressures have no mass.
+        model.flow.iter().for_each(|flow| model.massless[flow.first..].fill(true));
         model.linkage = rigid::linkage(&self.plates, &self.steps, &model)?;
         let regime = schedule::regime(&self.steps);
         let absent = stages::absent_at_start(&self.steps, &model);

@@ -171,9 +171,12 @@ pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
     for (k, step) in model.steps.iter().enumerate() {
         let place = format!("steps[{k}]");
         let message = format!(
-            "water flows in `{first}` in static steps only: make it static, or leave out pore_fluid.permeability"
+            "is not for water that flows, as in `{first}`: take static steps, or newmark, hht or generalized_alpha, or leave out \
+             pore_fluid.permeability"
         );
-        refuse_if(step.scheme != Scheme::Static, format!("{place}.scheme"), message)?;
+        let serves =
+            step.scheme == Scheme::Static || step.scheme.coefficients().is_some() && step.scheme.theta() == 1.0;
+        refuse_if(!serves, format!("{place}.scheme"), message)?;
         let message = format!("is not for a model with water that flows, as in `{first}`: leave it out");
         refuse_if(step.rupture.is_some(), format!("{place}.rupture"), &message)?;
     }

@@ -79,6 +79,8 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Checked<()> {
     let constrained = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
     let heavy = model.bars_in(step).filter(|(_, bar)| bar.mass > 0.0).flat_map(|(_, bar)| &bar.vertices);
     heavy.flat_map(|vertex| &vertex.nodes).for_each(|&node| has_mass[node] = true);
+    // Pressures have no inertia.
+    model.flow.iter().for_each(|flow| has_mass[flow.first..].fill(true));
     let massless = |node: &usize| !(has_mass[*node] || constrained(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
