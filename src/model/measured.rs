@@ -17,7 +17,6 @@ use crate::mesh::Mesh;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Measured {
     /// Table of comma-separated numbers, relative to the case file. The first line has the places behind a word, such as "t"; each
     /// further one has a time of the run, and the pressures at the places. Times and places ascend

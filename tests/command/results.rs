@@ -10,8 +10,6 @@ use std::sync::Arc;
 use crate::common::{self, Blocks, Record, close};
 use crate::delayed::DelayedPressure;
 use fecontact::laws::friction::{FrictionLaw, Regime, Sliding};
-use fecontact::output::fields::{Fields, Frames, Selection};
-use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::results::Grid;
 use serde_json::{Value, json};

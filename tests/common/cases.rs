@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use fecontact::case::{self, CaseError};
 use fecontact::model::Model;
+use fecontact::output::fields::{Fields, Frames, Selection};
+use fecontact::output::gradients::Motions;
 use fecontact::run::{Saved, Simulation};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::{Finished, finished};
+use super::{Blocks, Finished, finished};
 
 /// The model of a case whose mesh is found from a path, or why it is refused. It is read as text, which the library does itself:
 /// a value would make every program of tests compile the reading of cases anew.
@@ -52,4 +54,32 @@ pub fn goes_on(case: &Value, whole: &Finished, increments: usize) {
     let mut run = Simulation::resume(model.clone(), Saved::from_bytes(&bytes, &model).expect("it can be read"));
     while run.next_increment().expect("it runs").is_some() {}
     assert!(run.state() == whole.last(), "a resumed run has other bits");
+}
+
+/// The frames of a model, one every some rows, with exact numbers.
+pub fn frames(folder: &Path, model: &Arc<Model>, every: usize) -> Fields {
+    let frames = Frames { of: Selection::Rows(every), points: false, exact: true, derived: false };
+    Fields::create(folder, model.clone(), &model.initial_state(), frames, Motions::default(), &Default::default())
+        .expect("frames")
+}
+
+/// A softer block of this length, in halves, that is pushed over a faceted ridge by its top.
+pub fn over_a_ridge(height: f64, length: f64, method: &str, friction: Value) -> Value {
+    let top = |x: f64| -height * x.abs();
+    let block = |s: f64| -0.75 + 0.5 * length * s;
+    json!({
+        "mesh": Blocks::default()
+            .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
+            .block("block", [7, 4], |s, t| [block(s), top(block(s)) * (1.0 - t) + 0.4 * t]).json(),
+        "bodies": {
+            "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+            "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}},
+        },
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "friction": friction}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.25},
+             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.04}]},
+            {"name": "push", "duration": 1, "dt": {"initial": 0.05, "min": 1e-5}, "supports": [{"on": "block_top", "ux": 1}]},
+        ],
+    })
 }

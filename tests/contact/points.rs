@@ -6,11 +6,9 @@ mod dashpots;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{Blocks, Finished, close, distance, finish, model, turned};
+use crate::common::{self, Blocks, Finished, close, distance, finish, model, turned};
 use fecontact::laws::friction::{FrictionParameters, FrictionState, Sliding};
 use fecontact::model::{Model, State};
-use fecontact::output::fields::{Fields, Frames, Selection};
-use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::warnings::Warnings;
 use fecontact::run::run;
@@ -468,15 +466,7 @@ fn points_are_written_and_warned_of() {
     };
     let model = Arc::new(model(&slider.case()));
     let mut history = History::create(folder.path(), &model).unwrap();
-    let mut fields = Fields::create(
-        folder.path(),
-        model.clone(),
-        &model.initial_state(),
-        Frames { of: Selection::Rows(1), points: false, exact: true, derived: false },
-        Motions::default(),
-        &std::collections::BTreeMap::new(),
-    )
-    .unwrap();
+    let mut fields = common::frames(folder.path(), &model, 1);
     let mut warnings = Warnings::default();
     let model = Arc::new(model);
     run(&model, &mut [&mut history, &mut fields, &mut warnings]).1.unwrap();

@@ -48,24 +48,9 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
         ("gauss_to_segment", 0.2, json!({"law": "frictionless"})),
         ("node_to_segment", 0.2, json!({"law": "coulomb", "mu": 0.3})),
     ] {
-        let top = |x: f64| -height * x.abs();
-        let block = |s: f64| -0.75 + 0.5 * s;
-        let run = finish(&json!({
-            "mesh": Blocks::default()
-                .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
-                .block("block", [7, 4], |s, t| [block(s), top(block(s)) * (1.0 - t) + 0.4 * t]).json(),
-            "bodies": {
-                "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
-                "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}},
-            },
-            "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "normal": {"alpha_n": 1.1e4},
-                                  "friction": friction}},
-            "steps": [
-                {"name": "press", "duration": 1, "dt": {"initial": 0.25},
-                 "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.04}]},
-                {"name": "push", "duration": 1, "dt": {"initial": 0.05, "min": 1e-5}, "supports": [{"on": "block_top", "ux": 1}]},
-            ],
-        }));
+        let mut case = common::over_a_ridge(height, 1.0, method, friction);
+        case["contacts"]["base"]["normal"] = json!({"alpha_n": 1.1e4});
+        let run = finish(&case);
         let (pair, mut found) = (&run.model.contacts[0], PairResponse::default());
         for states in run.states.windows(2) {
             let [before, x] = [&states[0], &states[1]].map(|state| run.model.configuration(&state.displacement));

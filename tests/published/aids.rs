@@ -15,7 +15,7 @@ use fecontact::run::{Attempt, Error, Observer};
 use fecontact::solve::contact_iteration::Acted;
 use serde_json::{Value, json};
 
-use crate::common::{Blocks, model, model_at};
+use crate::common::{Blocks, model, model_at, over_a_ridge};
 
 /// A case of the list.
 struct Case {
@@ -161,24 +161,7 @@ fn cantilevers([height, length, overlap]: [f64; 3]) -> Model {
 
 /// A softer block pushed by its top over a faceted ridge, with an α_t of 5 (λ + 2G)/h.
 fn faceted(height: f64, mu: f64, length: f64) -> Model {
-    let top = |x: f64| -height * x.abs();
-    let block = |s: f64| -0.75 + 0.5 * length * s;
-    let mut case = json!({
-        "mesh": Blocks::default()
-            .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
-            .block("block", [7, 4], |s, t| [block(s), top(block(s)) * (1.0 - t) + 0.4 * t]).json(),
-        "bodies": {
-            "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
-            "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}},
-        },
-        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": "node_to_segment",
-                              "friction": {"law": "coulomb", "mu": mu}}},
-        "steps": [
-            {"name": "press", "duration": 1, "dt": {"initial": 0.25},
-             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.04}]},
-            {"name": "push", "duration": 1, "dt": {"initial": 0.05, "min": 1e-5}, "supports": [{"on": "block_top", "ux": 1}]},
-        ],
-    });
+    let mut case = over_a_ridge(height, length, "node_to_segment", json!({"law": "coulomb", "mu": mu}));
     let alpha_n = model(&case).contacts[0].alpha_n;
     case["contacts"]["base"]["friction"]["alpha_t"] = json!(5.0 / 300.0 * alpha_n);
     model(&case)

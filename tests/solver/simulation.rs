@@ -7,9 +7,7 @@ use std::sync::Arc;
 use crate::common::{self, Blocks, close, finish_at, linear, with};
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::{Model, State};
-use fecontact::output::fields::{Fields, Frames, Selection};
 use fecontact::output::fronts::{Fronts, FrontsInput};
-use fecontact::output::gradients::Motions;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::warnings::Warnings;
@@ -335,15 +333,7 @@ fn observers_go_back_with_the_run() {
     let start = model.initial_state();
     let mut history = History::create(folder.path(), &model).expect("a table");
     let mut log = NewtonLog::create(folder.path(), &model).expect("a table");
-    let mut fields = Fields::create(
-        folder.path(),
-        model.clone(),
-        &start,
-        Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
-        Motions::default(),
-        &BTreeMap::new(),
-    )
-    .expect("frames");
+    let mut fields = common::frames(folder.path(), &model, 2);
     let mut fronts =
         Fronts::new(folder.path(), &model, &start, FrontsInput { slip_rate: 1e-3, seismic_rate: None, arrival: None });
     let mut warnings = Warnings::default();
@@ -379,17 +369,7 @@ fn observers_go_back_with_the_run() {
     let mut others: [Box<dyn Observer>; 5] = [
         Box::new(History::create(straight.path(), &model).expect("a table")),
         Box::new(NewtonLog::create(straight.path(), &model).expect("a table")),
-        Box::new(
-            Fields::create(
-                straight.path(),
-                model.clone(),
-                &start,
-                Frames { of: Selection::Rows(2), points: false, exact: true, derived: false },
-                Motions::default(),
-                &BTreeMap::new(),
-            )
-            .expect("frames"),
-        ),
+        Box::new(common::frames(straight.path(), &model, 2)),
         Box::new(Fronts::new(
             straight.path(),
             &model,

@@ -181,12 +181,6 @@ impl RegisteredParameters {
         Self { name: name.into(), parameters: BTreeMap::new(), alpha_t: None }
     }
 
-    /// Adds a parameter.
-    pub fn parameter(mut self, name: impl Into<String>, value: f64) -> Self {
-        self.parameters.insert(name.into(), value);
-        self
-    }
-
     /// Creates the law; `default_alpha_t` is used if the case does not specify `alpha_t`.
     ///
     /// # Errors
@@ -215,6 +209,9 @@ impl RegisteredParameters {
 }
 
 setters! { law: RegisteredParameters;
+    /// Adds a parameter.
+    parameter(name: impl Into<String>, value: f64) { law.parameters.insert(name.into(), value); }
+
     /// Sets the tangential stiffness α_t [F/L³].
     alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
 }

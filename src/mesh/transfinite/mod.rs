@@ -54,7 +54,6 @@ impl BlockKind {
 /// A quadrilateral divided into rows and columns of elements.
 #[derive(Clone, Debug)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Block {
     /// body that its elements belong to
     pub body: String,
@@ -95,34 +94,23 @@ impl Block {
         let sides = ["bottom", "right", "top", "left"].map(|side| Some(format!("{name}_{side}")));
         Self { sides, ..Self::new(name, [[x, y], [right, y], [right, top], [x, top]], elements) }
     }
+}
 
+setters! { block: Block;
     /// Sets the grading of the element sizes along side 0 and side 1.
-    pub fn grading(self, grading: [Grading; 2]) -> Self {
-        Self { grading, ..self }
-    }
+    grading(grading: [Grading; 2]) { block.grading = grading; }
 
     /// Sets the kind of elements.
-    pub fn kind(self, kind: BlockKind) -> Self {
-        Self { kind, ..self }
-    }
+    kind(kind: BlockKind) { block.kind = kind; }
 
     /// Makes a side, 0 to 3, the shorter arc of a circle around a centre [L].
-    pub fn arc(mut self, side: usize, centre: [f64; 2]) -> Self {
-        self.arcs[side] = Some(centre);
-        self
-    }
+    arc(side: usize, centre: [f64; 2]) { block.arcs[side] = Some(centre); }
 
     /// Sets the name of a side, 0 to 3.
-    pub fn side(mut self, side: usize, name: impl Into<String>) -> Self {
-        self.sides[side] = Some(name.into());
-        self
-    }
+    side(side: usize, name: impl Into<String>) { block.sides[side] = Some(name.into()); }
 
     /// Names the node nearest to a point [L].
-    pub fn point(mut self, name: impl Into<String>, near: [f64; 2]) -> Self {
-        self.points.insert(name.into(), near);
-        self
-    }
+    point(name: impl Into<String>, near: [f64; 2]) { block.points.insert(name.into(), near); }
 }
 
 /// A set of blocks, joined where two of one body, or of joined bodies, share a side.

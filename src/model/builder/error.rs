@@ -102,23 +102,20 @@ impl Builder {
         for (k, step) in self.steps.iter().enumerate() {
             check_name(&format!("steps[{k}].name"), &step.name)?;
         }
-        for contact in &self.contacts {
-            check_name("contacts", &contact.name)?;
-        }
-        for (body, _) in &self.bodies {
-            check_name("bodies", body)?;
-        }
-        for (body, _) in &self.rigid_bodies {
-            check_name("rigid_bodies", body)?;
-        }
-        for (bar, _) in &self.bars {
-            check_name("bars", bar)?;
+        let contacts = self.contacts.iter().map(|contact| &contact.name).collect();
+        let kinds: [(&str, Vec<&String>); 4] = [
+            ("contacts", contacts),
+            ("bodies", self.bodies.iter().map(|(name, _)| name).collect()),
+            ("rigid_bodies", self.rigid_bodies.iter().map(|(name, _)| name).collect()),
+            ("bars", self.bars.iter().map(|(name, _)| name).collect()),
+        ];
+        for (of, names) in &kinds {
+            names.iter().try_for_each(|name| check_name(of, name))?;
         }
         check_line("title", &self.title)?;
-        check_once("contacts", self.contacts.iter().map(|contact| &contact.name))?;
-        check_once("bodies", self.bodies.iter().map(|(name, _)| name))?;
-        check_once("bars", self.bars.iter().map(|(name, _)| name))?;
-        check_once("rigid_bodies", self.rigid_bodies.iter().map(|(name, _)| name))?;
+        for (of, names) in kinds {
+            check_once(of, names.into_iter())?;
+        }
         check_once("point_masses", self.point_masses.iter().map(|(name, _)| name))?;
         let Some(name) = &self.unknown else { return Ok(()) };
         Err(no_body(name, self.bodies.iter().map(|(name, _)| name.as_str()), &format!("bodies.{name}")))

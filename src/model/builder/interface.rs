@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Interface {
     /// R: share of the cohesion and of tan φ of the body adjacent to the interface that yields by mohr_coulomb, drucker_prager or von_mises
     /// (c = σ_y/√3, φ = 0), as it is before any softening, 0 ≤ R ≤ 1. Without `cohesion` and `friction_angle` [-]

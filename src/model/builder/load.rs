@@ -13,7 +13,6 @@ use crate::model::text::number;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct Load {
     /// Group, or single node, on which it acts
     pub on: Place,

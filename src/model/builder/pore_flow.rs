@@ -29,7 +29,6 @@ use crate::model::{Body, Model};
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Drainage")]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct DrainageInput {
     /// Group of edges or nodes, or a single node, of bodies whose water flows
     pub on: Place,

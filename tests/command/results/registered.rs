@@ -25,15 +25,7 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
     let model = Arc::new(model);
     let folder = TempDir::new().unwrap();
     let mut history = History::create(folder.path(), &model).unwrap();
-    let mut fields = Fields::create(
-        folder.path(),
-        model.clone(),
-        &model.initial_state(),
-        Frames { of: Selection::Rows(1), points: false, exact: true, derived: false },
-        Motions::default(),
-        &std::collections::BTreeMap::new(),
-    )
-    .unwrap();
+    let mut fields = common::frames(folder.path(), &model, 1);
     let mut record = Record::default();
     fecontact::run::run(&model, &mut [&mut record, &mut history, &mut fields]).1.unwrap();
     drop((history, fields));

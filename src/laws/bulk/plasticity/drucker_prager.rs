@@ -15,7 +15,6 @@ use crate::laws::text::{distinct, number};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct DruckerPragerParameters {
     /// E: Young's modulus, E > 0 [F/L²]
     #[serde(rename = "E")]

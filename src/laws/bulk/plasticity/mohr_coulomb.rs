@@ -14,7 +14,6 @@ use crate::laws::text::{at_least, number};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct MohrCoulombParameters {
     /// E: Young's modulus, E > 0 [F/L²]
     #[serde(rename = "E")]

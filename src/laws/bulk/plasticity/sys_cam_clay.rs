@@ -16,7 +16,6 @@ use crate::laws::text::{at_least, number};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-#[must_use]
 pub struct SysCamClayParameters {
     /// λ: slope of the line of normal compression of the remoulded soil, ln v over ln p, or e over ln p where a void ratio e is given,
     /// λ > κ [-]
