@@ -101,8 +101,8 @@ impl Trials {
         let begun = saved.map(|saved| saved.simulation().state().displacement.to_vec()).unwrap_or_default();
         let mesh = &job.model.mesh;
         let least = NO_MOTION * mesh.size_of(0..mesh.nodes.len());
-        let course = Arc::new(Mutex::new(Course { begun, least, ..Course::default() }));
-        let Outcome { ended, written, .. } = job.run(self.callbacks(&course))?;
+        let progress = Arc::new(Mutex::new(Progress { begun, least, ..Progress::default() }));
+        let Outcome { ended, written, .. } = job.run(self.callbacks(&progress))?;
         written?;
         if job.opened.case.output.report {
             let folders = std::slice::from_ref(&job.folder.path);
@@ -111,13 +111,13 @@ impl Trials {
                 ReportError::Unreadable { .. } => Error::Ended(error.to_string()),
             })?;
         }
-        let course = locked(&course);
-        let ([reached, displacement], growth) = (course.last, course.growth(course.last));
+        let progress = locked(&progress);
+        let ([reached, displacement], growth) = (progress.last, progress.growth(progress.last));
         let stands = match ended {
             _ if growth > GROWTH => false,
             Ok(()) => true,
             Err(Failed::Stopped(error)) if error.cause().is_some() => {
-                if !course.is_unbounded(&error) {
+                if !progress.is_unbounded(&error) {
                     return Err(Error::Ended(format!(
                         "F = {factor}: {error}. That is not a failure of the strengths, since no displacement had grown \
                          to more than {GROWTH} times the elastic one; make the case easier to solve (finer increments \
@@ -133,29 +133,29 @@ impl Trials {
     }
 
     /// The caller ends a run, and so does a displacement that has grown beyond question.
-    fn callbacks(&self, course: &Arc<Mutex<Course>>) -> Callbacks<'static> {
-        let (asked, watched) = (self.ends.clone(), course.clone());
+    fn callbacks(&self, progress: &Arc<Mutex<Progress>>) -> Callbacks<'static> {
+        let (asked, watched) = (self.ends.clone(), progress.clone());
         let ends = move || {
-            let course = locked(&watched);
-            let fails = (course.growth(course.last) > GROWTH).then(|| {
+            let progress = locked(&watched);
+            let fails = (progress.growth(progress.last) > GROWTH).then(|| {
                 Error::Ended(format!(
                     "displacements have grown to more than {GROWTH} times the elastic ones: the strengths fail"
                 ))
             });
             asked().or(fails)
         };
-        Callbacks { warn: Arc::new(|_| ()), ends: Arc::new(ends), progress: Some(Box::new(Watch(course.clone()))) }
+        Callbacks { warn: Arc::new(|_| ()), ends: Arc::new(ends), progress: Some(Box::new(Watch(progress.clone()))) }
     }
 }
 
-fn locked(course: &Mutex<Course>) -> MutexGuard<'_, Course> {
-    course.lock().unwrap_or_else(PoisonError::into_inner)
+fn locked(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
+    progress.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Largest displacement of a trial, and the fraction of the step there: after the first increment, after the last, and in the iterates
 /// of the attempt after it that was rejected.
 #[derive(Debug, Default)]
-struct Course {
+struct Progress {
     begun: Vec<f64>,
     /// Displacement that counts as none [L]
     least: f64,
@@ -164,7 +164,7 @@ struct Course {
     rejected: [f64; 2],
 }
 
-impl Course {
+impl Progress {
     /// A displacement over that of the first increment, carried on to the same fraction of the step.
     fn growth(&self, [reached, displacement]: [f64; 2]) -> f64 {
         let [share, first] = self.first.unwrap_or([reached, 0.0]);
@@ -182,23 +182,23 @@ impl Course {
     }
 }
 
-struct Watch(Arc<Mutex<Course>>);
+struct Watch(Arc<Mutex<Progress>>);
 
 impl Observer for Watch {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
-        let mut course = locked(&self.0);
+        let mut progress = locked(&self.0);
         let share = |time: f64| attempt.step.span.share(time);
-        let Some(state) = attempt.accepted.filter(|_| !course.begun.is_empty()) else {
+        let Some(state) = attempt.accepted.filter(|_| !progress.begun.is_empty()) else {
             let corrections = attempt.iterations.iter().map(|iteration| iteration.newton.correction);
             let farthest = corrections.fold(0.0, f64::max);
-            course.rejected = [share(attempt.old.time + attempt.dt), course.last[1] + farthest];
+            progress.rejected = [share(attempt.old.time + attempt.dt), progress.last[1] + farthest];
             return Ok(());
         };
-        let moved = state.displacement.iter().zip(&course.begun).map(|(now, begun)| (now - begun).abs());
+        let moved = state.displacement.iter().zip(&progress.begun).map(|(now, begun)| (now - begun).abs());
         let now = [share(state.time), moved.fold(0.0, f64::max)];
-        course.first.get_or_insert(now);
-        course.last = now;
-        course.rejected = [0.0; 2];
+        progress.first.get_or_insert(now);
+        progress.last = now;
+        progress.rejected = [0.0; 2];
         Ok(())
     }
 }

@@ -247,8 +247,8 @@ impl<P> Question<'_, P> {
             }
             (Locating::Averaged(_, committed), ..) => committed.weights(k).unwrap_or(own).clone(),
             (Locating::Projected(_), Master::Mesh(surface), Some(MasterPoint { segment, xi })) => {
-                let foot = surface.segments[segment].position(xi);
-                own.iter().copied().chain(foot.iter().map(|&(node, w)| (node, -w))).collect()
+                let projected = surface.segments[segment].position(xi);
+                own.iter().copied().chain(projected.iter().map(|&(node, w)| (node, -w))).collect()
             }
             _ => own.clone(),
         }

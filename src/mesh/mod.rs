@@ -184,7 +184,7 @@ impl Mesh {
     pub fn group(&self, name: &str) -> Result<&Group, UnknownGroup> {
         self.groups.get(name).ok_or_else(|| UnknownGroup {
             name: name.into(),
-            nearest: self.nearest_name(name),
+            nearest: names::nearest(name, self.groups.keys().map(String::as_str)).map(String::from),
             groups: self.groups.keys().cloned().collect(),
         })
     }
@@ -248,9 +248,5 @@ impl Mesh {
     #[doc(hidden)]
     pub fn size_of(&self, nodes: impl IntoIterator<Item = usize>) -> f64 {
         Box2::around(nodes.into_iter().map(|node| self.nodes[node])).map_or(0.0, |around| around.size().norm())
-    }
-
-    fn nearest_name(&self, name: &str) -> Option<String> {
-        names::nearest(name, self.groups.keys().map(String::as_str)).map(String::from)
     }
 }

@@ -17,7 +17,7 @@ const OVERSHOOTS: f64 = 0.5;
 /// Warnings about the water.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
     let Some(flow) = &model.flow else { return Vec::new() };
-    moves(model, flow).into_iter().chain(overshoots(model, flow)).chain(unheld(model, flow)).collect()
+    moves(model, flow).into_iter().chain(overshoots(model, flow)).chain(unprescribed(model, flow)).collect()
 }
 
 /// Water that is driven by its weight, and does not start at rest.
@@ -100,7 +100,7 @@ fn overshoots(model: &Model, flow: &PoreFlow) -> Option<String> {
 }
 
 /// A step in which water flows by a given flux into or out of bodies, and nothing holds their pressure.
-fn unheld(model: &Model, flow: &PoreFlow) -> Option<String> {
+fn unprescribed(model: &Model, flow: &PoreFlow) -> Option<String> {
     let is_given = |drain: &Drain| drain.kind == DrainKind::Flux && !matches!(drain.value, Profile::Constant(0.0));
     let given = |step: &Step| step.drains.iter().any(is_given);
     if !model.steps.iter().any(given) {

@@ -54,7 +54,11 @@ impl Model {
             .chain(sheared_at_faults(self))
             .chain(unfit::concerns(self))
             .chain(pore_flow_concerns::concerns(self));
-        let of_model = of_model.chain(self.bodies.iter().filter_map(concern_of_law));
+        let of_model = of_model.chain(
+            self.bodies
+                .iter()
+                .filter_map(|body| Some(format!("body `{}`: {}", body.name, body.material.description().concern?))),
+        );
         let concerns =
             self.about_methods(|chosen, pair| chosen.concern.map(String::from).or_else(|| uneven(self, pair, chosen)));
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
@@ -79,11 +83,6 @@ impl Model {
             .filter_map(|(pair, chosen)| Some(format!("contact `{}`: {}", pair.name, message(chosen.as_ref()?, pair)?)))
             .collect()
     }
-}
-
-/// Returns the concern of a body's law that is known before anything is solved.
-fn concern_of_law(body: &Body) -> Option<String> {
-    body.material.description().concern.map(|concern| format!("body `{}`: {concern}", body.name))
 }
 
 /// Output times that a step ending early may shift.

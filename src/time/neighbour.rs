@@ -81,7 +81,7 @@ pub struct Neighbour {
 }
 
 /// A neighbour within an increment.
-struct OnItsWay {
+struct InProgress {
     /// The state at the start of the increment with the water and multipliers of the pass
     old: Option<State>,
     /// u at the last pass, or as expected, and that of the run [L]
@@ -93,7 +93,7 @@ struct OnItsWay {
 }
 
 /// Whether neighbours have not arrived yet.
-fn are_under_way(ways: &Result<Vec<OnItsWay>, IncrementFailure>) -> bool {
+fn are_in_progress(ways: &Result<Vec<InProgress>, IncrementFailure>) -> bool {
     ways.as_ref().is_ok_and(|ways| ways.iter().any(|way| way.arrived.is_none()))
 }
 
@@ -117,7 +117,7 @@ impl Neighbour {
     }
 
     /// Begins the increment, and its step if that is a new one.
-    fn set_out(&mut self, base: &BaseIncrement) -> Result<OnItsWay, IncrementFailure> {
+    fn set_out(&mut self, base: &BaseIncrement) -> Result<InProgress, IncrementFailure> {
         let Self { model, state, begun, step, work, .. } = self;
         let new = *begun != Some(base.number);
         if new || step.is_none() {
@@ -129,7 +129,7 @@ impl Neighbour {
         }
         let (u, of_run) = (state.displacement.clone(), base.old.displacement.clone());
         let water = NeighbourWater::new(&base.water(), state);
-        let mut way = OnItsWay { u, of_run, old: None, water, arrived: None };
+        let mut way = InProgress { u, of_run, old: None, water, arrived: None };
         if let (Some(own), Some(run)) = (&state.last_increment, &base.old.last_increment) {
             let share = own.goes_on(base.new.time - base.old.time, model.flow.is_some()).unwrap_or(0.0);
             let ahead = |u: &mut [f64], way: &[f64]| u.iter_mut().zip(way).for_each(|(u, way)| *u += share * way);
@@ -145,7 +145,7 @@ impl Neighbour {
         base: &BaseIncrement,
         pass: &Pass,
         tangent: &Tangent,
-        way: &'a OnItsWay,
+        way: &'a InProgress,
     ) -> Option<Seeker<'a>> {
         let has_same_bodies = self.has_same_bodies(base);
         let Self { model, offset, step, work, .. } = self;
@@ -163,7 +163,7 @@ impl Neighbour {
     }
 
     /// Lets water flow along contacts under the equilibrium of the last pass.
-    fn flow(&self, base: &BaseIncrement, way: &mut OnItsWay) -> Result<(), IncrementFailure> {
+    fn flow(&self, base: &BaseIncrement, way: &mut InProgress) -> Result<(), IncrementFailure> {
         let step = self.step.as_ref().unwrap_or(base.step);
         let trial = base.whole(&self.state, step).ahead();
         way.arrived = way.water.flow(&self.model, trial, &base.water(), self.work.contacts())?;
@@ -171,7 +171,7 @@ impl Neighbour {
     }
 
     /// Accepts the solution of the last pass.
-    fn accept(&mut self, base: &BaseIncrement, way: OnItsWay) -> Result<(), IncrementFailure> {
+    fn accept(&mut self, base: &BaseIncrement, way: InProgress) -> Result<(), IncrementFailure> {
         let Self { model, state, step, work, .. } = self;
         let Some(step) = step else { return Ok(()) };
         let evaluation = std::mem::take(&mut work.assembler.evaluation);
@@ -192,22 +192,22 @@ pub fn follow(
     mut groups: Vec<Group>,
 ) -> Vec<Result<(), IncrementFailure>> {
     let set_out = |group: &mut Group| group.iter_mut().map(|neighbour| neighbour.set_out(base)).collect();
-    let mut all: Vec<Result<Vec<OnItsWay>, _>> = groups.par_iter_mut().with_max_len(1).map(set_out).collect();
+    let mut all: Vec<Result<Vec<InProgress>, _>> = groups.par_iter_mut().with_max_len(1).map(set_out).collect();
     let mut is_known = false;
-    while all.iter().any(are_under_way) {
+    while all.iter().any(are_in_progress) {
         if let Err(failure) = find(base, tangent, is_known, &mut groups, &mut all) {
             return groups.iter().map(|_| Err(failure.clone())).collect();
         }
         is_known = base.passes.len() == 1;
-        let under_way = groups.par_iter_mut().zip(&mut all).with_max_len(1).filter(|(_, ways)| are_under_way(ways));
-        under_way.for_each(|(group, all)| {
+        let in_progress = groups.par_iter_mut().zip(&mut all).with_max_len(1).filter(|(_, ways)| are_in_progress(ways));
+        in_progress.for_each(|(group, all)| {
             let Ok(ways) = all else { return };
             if let Err(failure) = group.iter().zip(ways).try_for_each(|(neighbour, way)| neighbour.flow(base, way)) {
                 *all = Err(failure);
             }
         });
     }
-    let arrive = |(group, ways): (&mut Group, Result<Vec<OnItsWay>, _>)| {
+    let arrive = |(group, ways): (&mut Group, Result<Vec<InProgress>, _>)| {
         group.iter_mut().zip(ways?).try_for_each(|(neighbour, way)| neighbour.accept(base, way))
     };
     groups.par_iter_mut().zip(all).with_max_len(1).map(arrive).collect()
@@ -219,7 +219,7 @@ fn find(
     tangent: &mut Tangent,
     is_known: bool,
     groups: &mut [Group],
-    all: &mut [Result<Vec<OnItsWay>, IncrementFailure>],
+    all: &mut [Result<Vec<InProgress>, IncrementFailure>],
 ) -> Result<(), IncrementFailure> {
     let mut old = base.water().pressed(tangent.model());
     let linearize = groups.iter().flatten().any(|neighbour| neighbour.has_same_bodies(base));
@@ -227,7 +227,7 @@ fn find(
         if k > 0 {
             tangent.multiply(&mut old);
         }
-        for (group, ways) in groups.iter().zip(&mut *all).filter(|(_, ways)| are_under_way(ways)) {
+        for (group, ways) in groups.iter().zip(&mut *all).filter(|(_, ways)| are_in_progress(ways)) {
             for (of, way) in group.iter().zip(ways.iter_mut().flatten()) {
                 match &mut way.old {
                     Some(old) if k > 0 => multiply(&of.model, of.work.contacts(), old),
@@ -249,17 +249,17 @@ fn solve(
     pass: &Pass,
     tangent: &mut Tangent,
     groups: &mut [Group],
-    all: &mut [Result<Vec<OnItsWay>, IncrementFailure>],
+    all: &mut [Result<Vec<InProgress>, IncrementFailure>],
 ) {
     let mut seekers = Vec::new();
-    for (group, ways) in groups.iter_mut().zip(&*all).filter(|(_, ways)| are_under_way(ways)) {
+    for (group, ways) in groups.iter_mut().zip(&*all).filter(|(_, ways)| are_in_progress(ways)) {
         if let Ok(ways) = ways {
             let each = group.iter_mut().zip(ways);
             seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(base, pass, tangent, way)).collect());
         }
     }
     let found = solve_neighbours(seekers, tangent);
-    for (ways, found) in all.iter_mut().filter(|ways| are_under_way(ways)).zip(found) {
+    for (ways, found) in all.iter_mut().filter(|ways| are_in_progress(ways)).zip(found) {
         match (ways.as_mut(), found) {
             (Ok(ways), Ok(found)) => {
                 for (way, u) in ways.iter_mut().zip(found) {

@@ -56,10 +56,10 @@ pub fn check_size(place: &str, name: &str, value: f64) -> Checked<()> {
     refuse_if(!STIFFNESSES.contains(&value), place, message)
 }
 
-/// Checks that a number is positive; `besides` is added to the message.
-pub fn check_positive(place: &str, value: f64, besides: &str) -> Checked<()> {
+/// Checks that a number is positive; `hint` is added to the message.
+pub fn check_positive(place: &str, value: f64, hint: &str) -> Checked<()> {
     let fails = !(value > 0.0 && value.is_finite());
-    refuse_if(fails, place, format_args!("is {value}: must be positive{besides}"))
+    refuse_if(fails, place, format_args!("is {value}: must be positive{hint}"))
 }
 
 /// Checks that a number is zero or positive.

@@ -11,7 +11,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::ser::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::besides::Besides;
+use super::additions::Additions;
 use super::error::{Checked, ModelError, refuse_if};
 use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
@@ -126,7 +126,7 @@ impl Friction {
         points: &mut [SlavePoint],
         mesh: &Mesh,
         default: Option<DefaultAlphaT>,
-        besides: Besides,
+        additions: Additions,
     ) -> Checked<Laws> {
         for Region { positive: Named { name, profile }, .. } in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
@@ -148,7 +148,7 @@ impl Friction {
             let (number, friction) = chosen;
             let values = friction.varying.iter().map(|named| named.value(at, place));
             let drawn = values.collect::<Checked<Vec<_>>>()?;
-            let values = friction.in_range(&drawn, default.map(|default| default.of_law), besides);
+            let values = friction.in_range(&drawn, default.map(|default| default.of_law), additions);
             for (named, _) in friction.varying.iter().zip(drawn.iter().zip(&values)).filter(|(_, (was, is))| was != is)
             {
                 *truncated.entry(named.name.clone()).or_default() += 1;
@@ -166,10 +166,10 @@ impl Friction {
             let first = first.map(|Named { name, .. }| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let default_alpha_t = default.map(|default| default.of(|alpha_t| (friction.law)(&values, alpha_t)));
             let law = friction.law(&values, default_alpha_t, place, first)?;
-            let law = besides.of(law).map_err(|InvalidParameter { name, value, allowed }| {
+            let law = additions.of(law).map_err(|InvalidParameter { name, value, allowed }| {
                 ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
             })?;
-            varying.push(friction.in_time(at, &values, default_alpha_t, besides));
+            varying.push(friction.in_time(at, &values, default_alpha_t, additions));
             laws.push(Arc::new(law));
         }
         let varies = all().flat_map(|friction| &friction.varying).any(|named| named.profile.depends_on_time());
@@ -180,10 +180,10 @@ impl Friction {
 
     /// Returns the values with those of random fields truncated to the range of the law: where the law does not take them, the
     /// nearest ones that it takes, one after another from the means of all, because the range of one may depend on others.
-    fn in_range(&self, drawn: &[f64], alpha_t: Option<f64>, besides: Besides) -> Vec<f64> {
+    fn in_range(&self, drawn: &[f64], alpha_t: Option<f64>, additions: Additions) -> Vec<f64> {
         let fits = |values: &[f64]| {
             let law = (self.law)(values, alpha_t.unwrap_or(1.0));
-            law.is_ok_and(|law| besides.of(law).is_ok())
+            law.is_ok_and(|law| additions.of(law).is_ok())
         };
         let mean = |named: &Named| match &named.profile {
             Profile::Random(field) => Some(field.mean),
@@ -215,7 +215,7 @@ impl Friction {
     }
 
     /// Returns the time-dependent law at a place, where its parameters have these values at the start.
-    fn in_time(&self, at: Vector2<f64>, values: &[f64], alpha_t: Option<f64>, besides: Besides) -> InTime {
+    fn in_time(&self, at: Vector2<f64>, values: &[f64], alpha_t: Option<f64>, additions: Additions) -> InTime {
         let there = |(named, value): (&Named, &f64)| match named.profile.depends_on_time() {
             true => named.profile.clone(),
             false => Profile::Constant(*value),
@@ -225,7 +225,7 @@ impl Friction {
             at,
             law: self.law.clone(),
             alpha_t: alpha_t.unwrap_or(f64::NAN),
-            besides,
+            additions,
         }
     }
 
@@ -389,7 +389,7 @@ struct InTime {
     /// Default α_t [F/L³]
     alpha_t: f64,
     /// What its contact adds
-    besides: Besides,
+    additions: Additions,
 }
 
 impl InTime {
@@ -412,10 +412,10 @@ impl InTime {
             None
         };
         let law = law.ok_or(LawFailure::Undefined { time })?;
-        if let Some(Beyond { key, rate, least }) = self.besides.offsets.beyond(&law.description()) {
+        if let Some(Beyond { key, rate, least }) = self.additions.offsets.beyond(&law.description()) {
             return Err(LawFailure::Dilates { time, key, rate, least });
         }
-        self.besides.of(law).map_err(|_| LawFailure::Undefined { time })
+        self.additions.of(law).map_err(|_| LawFailure::Undefined { time })
     }
 }
 

@@ -34,10 +34,10 @@
 //! pressure at a contact, given or flowing, `conduit` the water that flows along it (its keys: `conduit_input`), and `pores` the effective stress
 //! of a contact next to bodies with a fluid.
 
+mod additions;
 mod agreement;
 mod bar;
 mod bars;
-mod besides;
 mod body;
 mod bond;
 mod checks;

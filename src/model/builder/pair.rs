@@ -43,7 +43,7 @@
 
 use std::collections::BTreeSet;
 
-use super::besides::Besides;
+use super::additions::Additions;
 use super::bond::{bond, fades};
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size, refuse_if};
@@ -100,14 +100,14 @@ fn pair(contact: &Contact, model: &Model, regime: Regime, outline: Option<&Outli
     }
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model, regime)?;
     let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
-    let besides = Besides { offsets, bond: None };
+    let additions = Additions { offsets, bond: None };
     let structure = contact.initial.as_ref().and_then(|initial| initial.structure.as_ref());
     contact::check_has_friction(contact, &place)?;
     let friction = friction::friction(&contact.friction, &contact.along, structure, &place)?;
-    let mut found = friction.laws(&place, &mut points, &model.mesh, alpha_t, besides)?;
+    let mut found = friction.laws(&place, &mut points, &model.mesh, alpha_t, additions)?;
     let bond = bond(&place, contact, &found.at_start, alpha_n, alpha_t, model)?;
     if bond.is_some() {
-        found = friction.laws(&place, &mut points, &model.mesh, alpha_t, Besides { bond, ..besides })?;
+        found = friction.laws(&place, &mut points, &model.mesh, alpha_t, Additions { bond, ..additions })?;
     }
     let fades = bond.map(|_| fades(&place, contact, alpha_n, model)).transpose()?;
     let Laws { at_start: laws, in_time, truncated } = found;

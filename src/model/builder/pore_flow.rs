@@ -139,8 +139,8 @@ pub fn check_fluid(law: &dyn Material, fluid: &PoreFluid, element: Formulation, 
     )?;
     let message = "is for water that weighs: give \"weighs\": true, or leave it out";
     refuse_if(fluid.capillary.is_some() && !fluid.weighs, place("capillary"), message)?;
-    let besides = " (leave it out for undrained conditions)";
-    check_positive(&place("permeability"), fluid.permeability.unwrap_or(1.0), besides)?;
+    let hint = " (leave it out for undrained conditions)";
+    check_positive(&place("permeability"), fluid.permeability.unwrap_or(1.0), hint)?;
     check_positive(&place("permeability_y"), fluid.permeability_y.unwrap_or(1.0), "")?;
     let message = "is missing: the permeability k is a speed under a gradient of head, and k/unit_weight under one of the pressure (9.81e3 N/m³ of \
                    water)";

@@ -5,14 +5,14 @@ use crate::laws::parameter::InvalidParameter;
 
 /// What a contact adds to its friction law.
 #[derive(Clone, Copy, Debug)]
-pub struct Besides {
+pub struct Additions {
     /// Dilatancy and wear
     pub offsets: Offsets,
     /// Strength without pressure
     pub bond: Option<(BondParameters, BondSurfaces)>,
 }
 
-impl Besides {
+impl Additions {
     /// Completes a law.
     ///
     /// # Errors
