@@ -45,6 +45,11 @@ pub fn require_not_negative(name: &'static str, value: f64) -> Result<(), Invali
     require(name, value, value >= 0.0, "it must be zero or positive, and finite")
 }
 
+/// Default N/D of a key of a case.
+pub(crate) const fn ratio<const N: u32, const D: u32>() -> f64 {
+    N as f64 / D as f64
+}
+
 /// Error: no parameter of a law has this name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{name}` is not a parameter of this law; known are `{}`", known.join("`, `"))]

@@ -9,6 +9,7 @@ use super::element::SolidElement;
 use super::measured::{GivenPressure, PoreField};
 use super::{Body, Model, Step};
 use crate::laws::bulk::{CauchyStress, GIVEN_PRESSURE, PORE_PRESSURE, Slot, TEMPERATURE};
+use crate::laws::parameter::ratio;
 
 /// Initial stress of a body. Displacements and strains are measured from the initial state; stresses are total. The run
 /// reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
@@ -185,18 +186,14 @@ pub struct PorePressure {
     #[schemars(with = "GivenPressure")]
     pub pressure: PoreField,
     /// b: Biot's coefficient, 0 < b ≤ 1, 1 − K/K_s with the bulk moduli of the body and of its grains; 1 of soil [-]
-    #[serde(default = "whole")]
+    #[serde(default = "ratio::<1, 1>")]
     pub biot: f64,
-}
-
-fn whole() -> f64 {
-    1.0
 }
 
 impl PorePressure {
     /// Creates the pressure of a body whose grains are rigid.
     pub fn new(pressure: impl Into<PoreField>) -> Self {
-        Self { pressure: pressure.into(), biot: whole() }
+        Self { pressure: pressure.into(), biot: 1.0 }
     }
 }
 

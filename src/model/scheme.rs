@@ -67,7 +67,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::laws::parameter::{InvalidParameter, require};
+use crate::laws::parameter::{InvalidParameter, ratio, require};
 
 /// Time scheme of a step, as the case file names it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -80,10 +80,10 @@ pub enum Scheme {
     /// Newmark; default β = 1/4, γ = 1/2 (the trapezoidal rule).
     Newmark {
         /// β > 0 [-]
-        #[serde(default = "quarter")]
+        #[serde(default = "ratio::<1, 4>")]
         beta: f64,
         /// γ ≥ 1/2 [-]
-        #[serde(default = "half")]
+        #[serde(default = "ratio::<1, 2>")]
         gamma: f64,
     },
     /// Hilber–Hughes–Taylor: second order, with damping of frequencies that the increments do not resolve.
@@ -94,14 +94,14 @@ pub enum Scheme {
     /// Generalized-α: second order, with the least damping of resolved frequencies among such schemes.
     GeneralizedAlpha {
         /// 0 ≤ ρ∞ ≤ 1: spectral radius at infinite frequency; default 0.8, 1 does not damp [-]
-        #[serde(default = "four_fifths")]
+        #[serde(default = "ratio::<4, 5>")]
         rho_infinity: f64,
     },
     /// Central differences: no equations to solve, but increments are limited by the highest frequency of a single
     /// element or contact point.
     Explicit {
         /// 0 < safety ≤ 1: increment as a fraction of the longest stable one; default 0.9 [-]
-        #[serde(default = "nine_tenths")]
+        #[serde(default = "ratio::<9, 10>")]
         safety: f64,
     },
     /// Quasi-dynamic: no inertia, linear bodies and contacts in small sliding with radiation damping; slip and state of
@@ -110,7 +110,7 @@ pub enum Scheme {
     /// linearly within the step
     QuasiDynamic {
         /// Error of one step in the friction coefficient, 0 < tolerance < 0.1; default 1e-5 [-]
-        #[serde(default = "hundred_thousandth")]
+        #[serde(default = "ratio::<1, 100_000>")]
         tolerance: f64,
         /// Steps per row of results, at least 1; default 10
         #[serde(default = "ten")]
@@ -119,38 +119,13 @@ pub enum Scheme {
     /// Wilson-θ: linear acceleration, equilibrium at t + θ Δt.
     Wilson {
         /// 1.37 ≤ θ ≤ 2; default 1.4 [-]
-        #[serde(default = "seven_fifths")]
+        #[serde(default = "ratio::<7, 5>")]
         theta: f64,
     },
 }
 
-fn quarter() -> f64 {
-    0.25
-}
-
-fn half() -> f64 {
-    0.5
-}
-
-fn four_fifths() -> f64 {
-    0.8
-}
-
-/// Default fraction of the longest stable increment that explicit steps take [-]
-pub fn nine_tenths() -> f64 {
-    0.9
-}
-
-fn hundred_thousandth() -> f64 {
-    1e-5
-}
-
 fn ten() -> usize {
     10
-}
-
-fn seven_fifths() -> f64 {
-    1.4
 }
 
 /// Coefficients of a dynamic scheme in the equations above.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, refuse_if};
 use crate::contact::conduit::InTime;
+use crate::laws::parameter::ratio;
 use crate::model::boundary::{Drive, Expression, Profile, Span, check_table};
 use crate::model::written::written;
 
@@ -40,7 +41,7 @@ pub struct Flow {
     pub leak: Option<FlowLeak>,
     /// Error of the pressure that is allowed by what the surfaces do within an increment, over its largest change in the run so far: it
     /// takes part in the choice of static and implicit increments, but not beside bodies whose water flows, where `dt.pore_pressure` does; default 0.01
-    #[serde(default = "Flow::error")]
+    #[serde(default = "ratio::<1, 100>")]
     pub error: f64,
 }
 
@@ -163,12 +164,8 @@ impl Flow {
             source: None,
             wells: Vec::new(),
             leak: None,
-            error: Self::error(),
+            error: 0.01,
         }
-    }
-
-    fn error() -> f64 {
-        0.01
     }
 
     /// Holds a pressure at the node nearest to a place.

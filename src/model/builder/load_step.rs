@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::groups::Place;
 use super::load::{Change, Load, present};
 use super::pore_flow::DrainageInput;
+use crate::laws::parameter::ratio;
 use crate::model::boundary::{BodyTemperature, Drive};
-use crate::model::scheme::{Scheme, nine_tenths};
+use crate::model::scheme::Scheme;
 use crate::model::step::ForceComponent;
 use crate::model::text::vector;
 use crate::model::{Damping, Increments};
@@ -127,7 +128,7 @@ fn of_critical_slip() -> f64 {
 
 conversions! {
     f64 => IncrementSettings: |initial| Self { initial, min: None, max: None, error: None, pore_pressure: None, slip: OF_CRITICAL_SLIP };
-    f64 => RuptureSettings: |slip_rate| Self { slip_rate, safety: nine_tenths() };
+    f64 => RuptureSettings: |slip_rate| Self { slip_rate, safety: 0.9 };
 }
 
 impl From<Increments> for IncrementSettings {
@@ -168,7 +169,7 @@ pub struct RuptureSettings {
     /// Slip rate above which increments are explicit [L/T]
     pub slip_rate: f64,
     /// Explicit increments as a fraction of the longest stable one, above 0 and at most 1; default 0.9 [-]
-    #[serde(default = "nine_tenths")]
+    #[serde(default = "ratio::<9, 10>")]
     pub safety: f64,
 }
 

@@ -38,6 +38,7 @@ use serde::Deserialize;
 use super::path::Phase;
 use super::report::{LawMachine, LawRow};
 use crate::laws::friction::{Confined, Confinement, ContactLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use crate::laws::parameter::ratio;
 use crate::run::error::Error;
 
 /// Machine that pulls a mass with the law, all per area of the interface: M ü = F − q, F = q₀ + k (w − w₀ − u), with the way w of the load
@@ -51,18 +52,14 @@ pub struct Slider {
     /// M: mass per area [F T²/L³]
     pub mass: f64,
     /// Error of force and traction in a step, as a fraction of the largest pressure; default: 1e-8 [-]
-    #[serde(default = "accurate")]
+    #[serde(default = "ratio::<1, 100_000_000>")]
     pub tolerance: f64,
-}
-
-fn accurate() -> f64 {
-    1e-8
 }
 
 impl Slider {
     /// Creates a machine from k [F/L³] and M [F T²/L³].
     pub fn new(stiffness: f64, mass: f64) -> Self {
-        Self { stiffness, mass, tolerance: accurate() }
+        Self { stiffness, mass, tolerance: 1e-8 }
     }
 }
 

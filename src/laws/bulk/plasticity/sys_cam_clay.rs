@@ -9,7 +9,7 @@ use super::{
     within,
 };
 use crate::laws::bulk::{Answer, CauchyStress, InadmissibleStress, MaterialFailure, Slot};
-use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, ratio, require, require_not_negative, require_positive};
 use crate::laws::text::{at_least, number};
 
 /// Constants of [`SysCamClay`]: those of [`CamClay`], rates of loss, and the initial skeleton.
@@ -58,13 +58,13 @@ pub struct SysCamClayParameters {
     #[serde(default)]
     pub m: Option<f64>,
     /// 1/R* at the start: degree of structure, 1 for remoulded soil, ≥ 1 [-]
-    #[serde(default = "one")]
+    #[serde(default = "ratio::<1, 1>")]
     pub structure: f64,
     /// a: loss of structure as it yields, a ≥ 0 [-]
     #[serde(default)]
     pub a: f64,
     /// c_s: share of shear in the loss of structure, the rest being that of compaction, 0 ≤ c_s ≤ 1 [-]
-    #[serde(default = "one")]
+    #[serde(default = "ratio::<1, 1>")]
     pub c_s: f64,
     /// b_r: rotation of the yield surface as it is sheared, b_r ≥ 0 [-]
     #[serde(default)]
@@ -75,10 +75,6 @@ pub struct SysCamClayParameters {
     /// ζ at the start: rotation √(3/2) ‖β‖ of the yield surface towards the initial stress, 0 ≤ ζ < M [-]
     #[serde(default)]
     pub zeta: f64,
-}
-
-const fn one() -> f64 {
-    1.0
 }
 
 impl SysCamClayParameters {

@@ -15,7 +15,7 @@ use super::{
 pub use crate::laws::approach::Approach;
 use crate::laws::approach::SlidingCurve;
 use crate::laws::dual::Dual;
-use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, ratio, require, require_not_negative, require_positive};
 use direct::DirectEffect;
 use increment::{ROUND_OFF, SlipEquation, mean_of_steady_slip, mean_traction};
 use peak::PeakEvolution;
@@ -390,10 +390,10 @@ pub struct SuperSubloadingParameters {
     #[serde(default)]
     pub xi: f64,
     /// m: exponent of the loss, m > 0 [-]
-    #[serde(default = "one")]
+    #[serde(default = "ratio::<1, 1>")]
     pub m: f64,
     /// n: exponent of the recovery, n > 0 [-]
-    #[serde(default = "one")]
+    #[serde(default = "ratio::<1, 1>")]
     pub n: f64,
     /// a: direct effect of the rate of plastic slip λ, by which the strength is multiplied by 1 + a ln(1 + λ/V₀), a ≥ 0; none by
     /// default. R is then a state of its own, and steady sliding may strengthen with the rate [-]
@@ -450,8 +450,8 @@ impl SuperSubloadingParameters {
             r,
             kappa: 0.0,
             xi: 0.0,
-            m: one(),
-            n: one(),
+            m: 1.0,
+            n: 1.0,
             a: 0.0,
             reference_rate: None,
             structure: None,
@@ -493,8 +493,4 @@ setters! { const law: SuperSubloadingParameters;
 
     /// Sets the tangential stiffness α_t [F/L³].
     alpha_t(alpha_t: f64) { law.alpha_t = Some(alpha_t); }
-}
-
-const fn one() -> f64 {
-    1.0
 }
