@@ -4,7 +4,8 @@
 //! r_i = p_i − (line through the neighbours of i)                     inner points: i and three points on either side are closed
 //! scatter of p = 1/p̄ · √(Σ m_i²/n),   m_i = min(|r_i|, |r_i+1|) where r_i r_i+1 < 0, otherwise 0
 //! ```
-//! over the n inner points, with their mean pressure p̄; that of q alike, by p̄ as well. Towards the end of a contact the elastic pressure is
+//! over the n inner points, with their mean pressure p̄; that of q by p̄ as well, m_i being the least of three residuals that alternate: where slip
+//! reverses, q has a step, of which two do. Towards the end of a contact the elastic pressure is
 //! steep, at the corner of a block singular, which no mesh resolves over its last points. A smooth pressure has residuals of one sign, or small
 //! ones where its curvature changes; a kink or the edge of a contact has a single large one. What alternates counts twice its amplitude.
 
@@ -46,29 +47,45 @@ impl Course {
 
     /// The larger of the scatters of p and q [-]
     pub fn scatter(&self, states: &[ContactState]) -> f64 {
+        self.alternation(states, ADJACENT).unwrap_or(0.0)
+    }
+
+    /// The same over all points between two closed ones, of a contact so short that no two neighbours are inner points; `None` on others [-]
+    pub fn short_scatter(&self, states: &[ContactState]) -> Option<f64> {
+        let is_long = self.alternation(states, ADJACENT).is_some();
+        self.alternation(states, 1).filter(|_| !is_long)
+    }
+
+    /// The larger scatter over the points with so many closed ones on either side; `None` if no two of them are neighbours.
+    fn alternation(&self, states: &[ContactState], beside: usize) -> Option<f64> {
         let inner = |k: usize| -> Option<[f64; 2]> {
-            let first = k.checked_sub(ADJACENT)?;
-            let goes_on = self.next.get(first..k + ADJACENT)?.iter().all(Option::is_some);
-            let closed = states.get(first..=k + ADJACENT)?.iter().all(ContactState::is_closed);
+            let first = k.checked_sub(beside)?;
+            let goes_on = self.next.get(first..k + beside)?.iter().all(Option::is_some);
+            let closed = states.get(first..=k + beside)?.iter().all(ContactState::is_closed);
             Some([self.next[k - 1]?, self.next[k]?]).filter(|_| goes_on && closed)
         };
         let ways: Vec<Option<[f64; 2]>> = (0..states.len()).map(inner).collect();
+        if !ways.windows(2).any(|pair| pair.iter().all(Option::is_some)) {
+            return None;
+        }
         let pressures = states.iter().zip(&ways).filter(|(_, ways)| ways.is_some()).map(|(s, _)| s.friction.pressure);
         let (count, sum) = pressures.fold((0.0, 0.0), |(count, sum), pressure| (count + 1.0, sum + pressure));
-        let alternates = |traction: &dyn Fn(&ContactState) -> f64| {
+        let alternates = |traction: &dyn Fn(&ContactState) -> f64, in_a_row: usize| {
             let residual = |k: usize| {
                 let [before, after] = ways[k]?;
                 let [left, own, right] = [k - 1, k, k + 1].map(|k| traction(&states[k]));
                 Some(own - (left * after + right * before) / (before + after))
             };
             let residuals: Vec<Option<f64>> = (0..states.len()).map(residual).collect();
-            let least = residuals.windows(2).filter_map(|pair| match pair {
-                [Some(a), Some(b)] if a * b < 0.0 => Some(a.abs().min(b.abs()).powi(2)),
-                _ => None,
+            let least = residuals.windows(in_a_row).filter_map(|row| {
+                let least =
+                    row.iter().try_fold(f64::INFINITY, |least, residual| Some(least.min((*residual)?.abs())))?;
+                let alternate = row.windows(2).all(|pair| matches!(pair, [Some(a), Some(b)] if a * b < 0.0));
+                alternate.then_some(least.powi(2))
             });
             least.sum::<f64>()
         };
-        let [p, q] = [alternates(&|state| state.friction.pressure), alternates(&ContactState::shear)];
-        if sum > 0.0 { (p.max(q) / count).sqrt() / (sum / count) } else { 0.0 }
+        let [p, q] = [alternates(&|state| state.friction.pressure, 2), alternates(&ContactState::shear, 3)];
+        Some(if sum > 0.0 { (p.max(q) / count).sqrt() / (sum / count) } else { 0.0 })
     }
 }

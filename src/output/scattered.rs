@@ -1,39 +1,113 @@
 //! Warning about tractions that alternate from point to point: sums of them may be right, the distribution is not.
 
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
 use super::worst::Worst;
+use crate::contact::ContactState;
 use crate::contact::master::Master;
 use crate::contact::scatter::Course;
 use crate::model::scheme::{Scheme, time_text};
+use crate::model::text::count;
 use crate::model::{Method, Model, State};
 use crate::run::observer::Attempt;
 
-/// Scatter of tractions at the end of a step that causes a warning, over the mean pressure.
+/// Scatter of tractions that causes a warning, at the end of a step or as rms over its time, over the mean pressure.
 const SCATTERS: f64 = 0.05;
 
-/// Enters the largest scatter of each contact at the end of a step without explicit increments, whose waves alternate as well.
-pub fn record(worst: &mut Worst, model: &Model, attempt: &Attempt, state: &State) {
-    if !attempt.ends_step(state) || matches!(attempt.step.scheme, Scheme::Explicit { .. }) {
-        return;
-    }
-    let undeformed = model.mesh.undeformed();
-    let contacts = model.contacts.iter().zip(&model.methods).zip(&state.contacts).enumerate();
-    for (k, ((pair, chosen), states)) in contacts.filter(|(_, ((pair, _), _))| attempt.step.joins(pair)) {
-        let scatter = Course::new(&pair.points, &undeformed).scatter(states);
-        if scatter <= worst.bound(k, SCATTERS) {
-            continue;
+/// The same at the end of a step for a contact so short that all of it lies close to its ends, where pressures are steep.
+const SCATTERS_IF_SHORT: f64 = 0.125;
+
+/// The largest scatter of each contact over its bound, and what it was so far in this step.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub struct Scattered {
+    /// By contact
+    pub worst: Worst,
+    within: BTreeMap<usize, Within>,
+    /// How the points of each contact follow each other
+    #[serde(skip)]
+    courses: BTreeMap<usize, Course>,
+}
+
+/// Scatter of a contact within a step.
+#[derive(Clone, Default, Serialize, Deserialize)]
+struct Within {
+    /// ∫ scatter² dt [T]
+    squares: f64,
+    /// [T]
+    duration: f64,
+    largest: f64,
+    /// when it was largest [T]
+    time: f64,
+}
+
+impl Scattered {
+    /// Looks at an increment, unless it is explicit: their waves alternate as well.
+    pub fn record(&mut self, model: &Model, attempt: &Attempt, state: &State) {
+        if matches!(attempt.step.scheme, Scheme::Explicit { .. }) {
+            return;
         }
-        let by_mortar = chosen.as_ref().is_some_and(|chosen| chosen.method == Method::Mortar);
-        let remedy = match &pair.master {
-            Master::Mesh(_) if !by_mortar => "take \"method\": \"mortar\", or a softer alpha_n",
-            _ => "take softer alpha_n and alpha_t, a finer slave, or shorter increments while points close",
+        let contacts = model.contacts.iter().zip(&model.methods).zip(&state.contacts).enumerate();
+        for (k, ((pair, chosen), states)) in contacts.filter(|(_, ((pair, _), _))| attempt.step.joins(pair)) {
+            let course = self.courses.entry(k).or_insert_with(|| Course::new(&pair.points, &model.mesh.undeformed()));
+            let within = self.within.entry(k).or_default();
+            within.add(course.scatter(states), attempt.dt, state.time);
+            if !attempt.ends_step(state) {
+                continue;
+            }
+            let within = std::mem::take(within);
+            let (size, found) = within.largest(course, states, state.time, &attempt.step.name);
+            if size <= self.worst.bound(k, 1.0) {
+                continue;
+            }
+            let by_mortar = chosen.as_ref().is_some_and(|chosen| chosen.method == Method::Mortar);
+            let remedy = match &pair.master {
+                Master::Mesh(_) if !by_mortar => "take \"method\": \"mortar\", or a softer alpha_n",
+                Master::Mesh(_) => {
+                    "take softer alpha_n and alpha_t, edges of the master no longer than the slave's, or shorter increments while points \
+                     close"
+                }
+                _ => "take softer alpha_n and alpha_t, a finer slave, or shorter increments while points close",
+            };
+            let message = format!(
+                "contact `{}`, {found}: sums of them may be right, their distribution is not; {remedy}",
+                pair.name
+            );
+            self.worst.enter(k, size, message);
+        }
+    }
+}
+
+impl Within {
+    fn add(&mut self, scatter: f64, dt: f64, time: f64) {
+        self.squares += scatter * scatter * dt;
+        self.duration += dt;
+        if scatter > self.largest {
+            (self.largest, self.time) = (scatter, time);
+        }
+    }
+
+    /// The largest scatter of a step over its bound, in the end and over its time, and what there is to be said of it.
+    fn largest(&self, course: &Course, states: &[ContactState], end: f64, step: &str) -> (f64, String) {
+        let told = |time: f64, scatter: f64, how: String| {
+            let percent = 100.0 * scatter;
+            format!(
+                "t = {}: tractions alternate from point to point by {percent:.0} % of the mean pressure{how}",
+                time_text(time)
+            )
         };
-        let message = format!(
-            "contact `{}`, t = {}: tractions alternate from point to point by {:.0} % of the mean pressure (column scatter): sums of \
-                 them may be right, their distribution is not; {remedy}",
-            pair.name,
-            time_text(state.time),
-            100.0 * scatter
+        let mean = (self.squares / self.duration).sqrt();
+        let at_end = course.scatter(states);
+        let most = |a: (f64, String), b: (f64, String)| if b.0 > a.0 { b } else { a };
+        let over_time = format!(" (column scatter), and by {:.0} % over the time of step `{step}`", 100.0 * mean);
+        let found = most(
+            (at_end / SCATTERS, told(end, at_end, " (column scatter)".into())),
+            (mean / SCATTERS, told(self.time, self.largest, over_time)),
         );
-        worst.enter(k, scatter, message);
+        let Some(all_over) = course.short_scatter(states) else { return found };
+        let closed = states.iter().filter(|state| state.is_closed()).count();
+        let on = format!(" on {}", count(closed, "closed point"));
+        most(found, (all_over / SCATTERS_IF_SHORT, told(end, all_over, on)))
     }
 }

@@ -18,7 +18,7 @@ use super::depths;
 use super::few_edges::FewEdges;
 use super::instability::Instability;
 use super::opened::by_water;
-use super::scattered;
+use super::scattered::Scattered;
 use super::slid_bars;
 use super::unpressed::Unpressed;
 use super::worst::Worst;
@@ -66,7 +66,7 @@ pub struct Warnings {
     /// Friction in increments that are too long for it
     coarse: Worst,
     /// Contacts whose tractions alternate from point to point
-    scattered: Worst,
+    scattered: Scattered,
     /// Contacts that are closed on few edges
     few_edges: FewEdges,
     /// Shear that open points carry
@@ -118,7 +118,7 @@ impl Observer for Warnings {
         self.linear_bodies(model, state, way, attempt.ends_step(state));
         let x = model.configuration(&state.displacement);
         coarse::record(&mut self.coarse, model, attempt, state, &x);
-        scattered::record(&mut self.scattered, model, attempt, state);
+        self.scattered.record(model, attempt, state);
         self.few_edges.record(model, attempt, state, &x);
         self.unpressed.record(model, state);
         slid_bars::record(&mut self.slid_bars, model, state);
@@ -169,7 +169,7 @@ impl Observer for Warnings {
             self.list.push(format!("contact `{name}` has never closed{where_seen}: {near}"));
         }
         self.list.extend(self.unstable.message());
-        for worst in [&mut self.coarse, &mut self.scattered, &mut self.slid_bars] {
+        for worst in [&mut self.coarse, &mut self.scattered.worst, &mut self.slid_bars] {
             self.list.extend(worst.take().map(|(_, message)| message));
         }
         self.list.extend(self.few_edges.warnings());

@@ -32,6 +32,16 @@ const SHOWN: &[(&str, &str, &str)] = &[
         "other codes are compared at these points with these penalties (benches/README.md)",
     ),
     (
+        "anchored_wall.json",
+        "contact `inside_3`, t = 251: tractions alternate",
+        "of the metre above the bottom of the pit, 5 points, forces alone are looked at",
+    ),
+    (
+        "pile_in_clay.json",
+        "contact `base`, t = 2: tractions alternate",
+        "of the base of the pile, 5 points with a corner, the force alone is looked at",
+    ),
+    (
         "validation/ironing_",
         "a master node penetrates the slave by",
         "coarse meshes are compared with finer ones (docs/validation/ironing.md)",

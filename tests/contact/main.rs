@@ -23,6 +23,7 @@ mod random;
 mod remedies;
 mod rigid_bodies;
 mod rings;
+mod scattered;
 mod search;
 mod segment_searches;
 mod self_contact;

@@ -1,0 +1,110 @@
+//! Tractions that alternate are told on short contacts and within steps as well, and what only looks like it is not.
+
+use std::sync::Arc;
+
+use fecontact::output::warnings::Warnings;
+use serde_json::{Value, json};
+
+use crate::common::{self, close, with};
+
+/// The warning of a run that tractions alternate, if there is one; then place and pressure of the closed points of its contact in the end.
+fn told(case: &Value) -> (Option<String>, Vec<[f64; 2]>) {
+    let (mut warnings, model) = (Warnings::default(), Arc::new(common::model(case)));
+    let end = fecontact::run::run(&model, &mut [&mut warnings]).1.unwrap_or_else(|error| panic!("{error}"));
+    let mut told = warnings.list.into_iter().filter(|told| told.contains("tractions alternate"));
+    let undeformed = model.mesh.undeformed();
+    let points = model.contacts[0].points.iter().zip(&end.contacts[0]);
+    let closed = points.filter(|(_, state)| state.is_closed());
+    let found = closed.map(|(point, state)| [point.at(&undeformed).x, state.friction.pressure]).collect();
+    let first = told.next();
+    assert!(first.as_deref().is_none_or(common::warnings::is_listed) && told.next().is_none());
+    (first, found)
+}
+
+/// Half of a cylinder of radius 25 pressed on a plate by 5, half of the force, of so many edges along the plate.
+fn cylinder(edges: usize, contact: &Value) -> Value {
+    let body = json!({"material": {"model": "linear", "E": 2e5, "nu": 0.3}});
+    let edge = 25.0 * std::f64::consts::FRAC_1_SQRT_2;
+    // They overlap a little at the lowest node, which holds it.
+    let [low, top] = [-1e-5, 25.0 - 1e-5];
+    json!({
+        "mesh": {"blocks": [
+            {"body": "cylinder", "corners": [[0, low], [edge, top - edge], [edge, top], [0, top]], "elements": [48, 24],
+             "grading": [400, 400], "arcs": [[0, top], null, null, null], "sides": ["round", null, "top", "axis"]},
+            {"body": "plate", "corners": [[0, 0], [100, 0], [100, -40], [0, -40]], "elements": [edges, 24], "grading": [1600, 400],
+             "sides": ["flat", null, "bottom", "axis"]}]},
+        "bodies": {"cylinder": body, "plate": body},
+        "contacts": {"c": with(json!({"slave": "round", "master": "flat", "friction": {"law": "frictionless"},
+                                "initial": {"pressure": 0}}), contact)},
+        "plates": ["top"],
+        "steps": [{"name": "press", "duration": 1, "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "axis", "ux": 0}],
+                   "loads": [{"on": "top", "total_force": {"y": -5}}]}]
+    })
+}
+
+/// On seven edges of half a Hertz contact that are shorter than those of the plate the pressure alternates about the closed form by a third of
+/// the largest, which is told though all points are near an end; with a softer penalty neither.
+#[test]
+fn a_short_contact_that_alternates_is_told() {
+    let modulus = 2e5 / (2.0 * (1.0 - 0.3 * 0.3));
+    let half_width = (4.0 * 10.0 * 25.0 / (std::f64::consts::PI * modulus)).sqrt();
+    let largest = 2.0 * 10.0 / (std::f64::consts::PI * half_width);
+    let error = |found: &[[f64; 2]]| {
+        let inner = found.iter().filter(|[x, _]| x.abs() < 0.75 * half_width);
+        let off = inner.map(|[x, p]| (p - largest * (1.0 - (x / half_width).powi(2)).sqrt()).abs() / largest);
+        off.fold(0.0, f64::max)
+    };
+    let (stiff, found) = told(&cylinder(48, &json!({})));
+    println!("{stiff:?}: {found:.4?}, {:.3}", error(&found));
+    assert!(stiff.is_some_and(|told| told.contains(&format!("on {} closed points", found.len()))));
+    assert!(found.len() < 8 && error(&found) > 0.3);
+    let (soft, found) = told(&cylinder(48, &json!({"normal": {"alpha_n": 3e7}})));
+    println!("{soft:?}: {found:.4?}, {:.3}", error(&found));
+    assert!(soft.is_none() && error(&found) < 0.1);
+}
+
+/// A block of five edges that is stretched on a plane slips out on both sides: q = ±μ p has a step in the middle, which is right and not told, at
+/// ten Gauss points and at six nodes.
+#[test]
+fn slip_that_reverses_is_not_told() {
+    for (method, points) in [("gauss_to_segment", 10), ("node_to_segment", 6)] {
+        let case = json!({
+            "mesh": {"blocks": [{"body": "block", "corners": [[-1, 0], [1, 0], [1, 1], [-1, 1]], "elements": [5, 3],
+                                 "sides": ["sole", "right", "top", "left"]}]},
+            "bodies": {"block": {"material": {"model": "linear", "E": 1000, "nu": 0}}},
+            "contacts": {"c": {"slave": "sole", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "method": method,
+                               "friction": {"law": "coulomb", "mu": 0.5}}},
+            "steps": [{"name": "press", "duration": 1, "dt": {"initial": 0.1},
+                       "supports": [{"on": "left", "ux": "-0.02*t"}, {"on": "right", "ux": "0.02*t"}, {"on": "top", "uy": "-1e-3*t"}]}]
+        });
+        let states = &common::finish(&case).last().contacts[0].clone();
+        assert_eq!(states.len(), points);
+        for (k, state) in states.iter().enumerate() {
+            let expected = if k < points / 2 { -0.5 } else { 0.5 } * state.friction.pressure;
+            close("μ p", state.shear(), expected, 1e-6);
+        }
+        assert_eq!(told(&case).0, None);
+    }
+}
+
+/// A block on ground of equal edges, at Gauss points with a stiff penalty, is moved to and fro, so that its nodes face nodes at the start and in the
+/// end alone: what it has scattered in between is told with the time when it was largest.
+#[test]
+fn scatter_within_a_step_is_told() {
+    let body = json!({"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}});
+    let (told, _) = told(&json!({
+        "mesh": {"blocks": [
+            {"body": "lower", "corners": [[-2, -1], [2, -1], [2, 0], [-2, 0]], "elements": [48, 6], "sides": ["lower_far", null, "ground", null]},
+            {"body": "upper", "corners": [[-1, 0], [1, 0], [1, 1], [-1, 1]], "elements": [24, 6], "sides": ["sole", null, "upper_far", null]}]},
+        "bodies": {"lower": body, "upper": body},
+        "contacts": {"base": {"slave": "sole", "master": "ground", "friction": {"law": "frictionless"}, "method": "gauss_to_segment",
+                              "normal": {"alpha_n": 300.0 * 6.0 * 1346.0}}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "lower_far", "ux": 0, "uy": 0},
+                {"on": "upper_far", "ux": 0, "uy": -0.01}]},
+            {"name": "to and fro", "duration": 1, "dt": {"initial": 0.1, "max": 0.1},
+             "supports": [{"on": "upper_far", "ux": "0.06*sin(pi*(t - 1))"}]}]
+    }));
+    let told = told.expect("a warning");
+    assert!(told.contains("t = 1.5: ") && told.contains("over the time of step `to and fro`"), "{told}");
+}
