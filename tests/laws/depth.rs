@@ -14,7 +14,7 @@ use fecontact::laws::bulk::{
     MaterialFailure, NeoHookean, Straining, Viscoelastic, ViscoelasticConstants,
 };
 use fecontact::laws::friction::{Answer, Coulomb, CoulombParameters, Description, FrictionLaw, FrictionState, Sliding};
-use fecontact::mesh::InlineMesh;
+use fecontact::mesh::{InlineMesh, Section};
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Contact, LoadStep, Support};
 use fecontact::model::{Method, Model, Scheme};
@@ -109,7 +109,7 @@ fn few_functions_lie_between_an_increment_and_a_law() {
     // It is asked once, for the stiffness that all increments have.
     let linear = || Linear::new(&constants).expect("a law");
     let viscous = with!(ViscoelasticConstants::new(1000.0, 0.3, 100.0, 1.0), density: 1.0);
-    let viscous = Noted(Viscoelastic::new(&viscous).expect("a law"));
+    let viscous = || Noted(Viscoelastic::new(&viscous).expect("a law"));
     let still = || LoadStep::new("drag", 1.0);
     let moving = || still().scheme(Scheme::GeneralizedAlpha { rho_infinity: 0.8 });
     let small = |contact: Contact| contact.method(Method::NodeToSegment).small_sliding();
@@ -117,9 +117,16 @@ fn few_functions_lie_between_an_increment_and_a_law() {
         depth("averages over edges", model(elastic(), still(), |contact| contact)),
         depth("projections", model(elastic(), still(), |contact| contact.method(Method::NodeToSegment))),
         depth("multipliers", model(elastic(), still(), |contact| contact.penetration(1e-3))),
-        depth("a body that remembers", model(viscous, still(), |contact| contact)),
+        depth("a body that remembers", model(viscous(), still(), |contact| contact)),
+        depth("rings that remember", model(viscous(), still(), |contact| contact).section(Section::Axisymmetric)),
+        depth("F-bar elements that remember", model(viscous(), still(), |contact| contact).f_bar("block")),
+        depth(
+            "F-bar rings that remember",
+            model(viscous(), still(), |contact| contact).section(Section::Axisymmetric).f_bar("block"),
+        ),
+        depth("F-bar elements", model(elastic(), still(), |contact| contact).f_bar("block")),
         depth("linear bodies, condensed on the contact", model(linear(), moving(), small)),
     ];
     assert!(found.iter().all(|[friction, _]| *friction > 0), "{found:?}");
-    assert!(found[..4].iter().all(|[_, bulk]| *bulk > 0), "{found:?}");
+    assert!(found[..8].iter().all(|[_, bulk]| *bulk > 0), "{found:?}");
 }

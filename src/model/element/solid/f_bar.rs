@@ -125,16 +125,12 @@ impl Mean<'_> {
     /// the stored and the dissipated energy.
     pub fn respond(
         &self,
-        mut law: impl FnMut(usize, &Vector5<f64>) -> Answer,
+        answers: &[BulkResponse; POINTS],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
-    ) -> Answer<[f64; 2]> {
-        let mut answers = [BulkResponse::default(); POINTS];
-        for ((k, now), answer) in self.points.iter().enumerate().zip(&mut answers) {
-            *answer = law(k, &now.seen)?;
-        }
+    ) -> [f64; 2] {
         let [mut energy, mut dissipated] = [self.initial_energy(), 0.0];
-        for (now, answer) in self.points.iter().zip(&answers) {
+        for (now, answer) in self.points.iter().zip(answers) {
             energy += now.volume * answer.energy;
             dissipated += now.volume * answer.dissipation;
         }
@@ -143,9 +139,9 @@ impl Mean<'_> {
         self.points.iter().zip(&stresses).for_each(|(now, stress)| now.at.add_force(stress, force));
         if let Some(tangent) = tangent {
             tangent.fill(0.0);
-            self.add_tangent(&answers, tangent);
+            self.add_tangent(answers, tangent);
         }
-        Ok([energy, dissipated])
+        [energy, dissipated]
     }
 
     /// Tangent (6), column by column. With δF̄ by (4) it is that of moduli of F alone and products of h:

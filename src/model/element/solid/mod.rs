@@ -13,7 +13,7 @@ mod volume;
 
 use std::array;
 
-use nalgebra::{Matrix2, Matrix4, Vector2, Vector5};
+use nalgebra::{Matrix2, Matrix4, Vector2};
 use pulp::{Arch, NullaryFnOnce};
 
 use super::Formulation;
@@ -166,8 +166,12 @@ impl SolidElement {
     ) -> Answer<f64> {
         let u = &*self.since_activation(u);
         if let Some(mean) = self.mean(u)? {
-            let answer = |_, seen: &Vector5<f64>| material.at_once(&plane(seen)).map(BulkResponse::from);
-            return mean.respond(answer, force, Some(tangent)).map(|[energy, _]| energy);
+            let mut answers = [BulkResponse::default(); 4];
+            for (answer, seen) in answers.iter_mut().zip(mean.seen()) {
+                *answer = material.at_once(&plane(&seen))?.into();
+            }
+            let [energy, _] = mean.respond(&answers, force, Some(tangent));
+            return Ok(energy);
         }
         let (gradients, volumes) = (self.gradients.as_chunks::<N>().0, &self.volumes);
         let mut responses = [MaterialResponse::default(); M];
@@ -311,7 +315,7 @@ impl SolidElement {
         let mut responses = [MaterialResponse::default(); M];
         material.in_plane(&strainings[..points], new, &mut responses[..points])?;
         if let Some(mean) = mean {
-            return mean.respond(|k, _| Ok(BulkResponse::from(responses[k])), force, tangent);
+            return Ok(mean.respond(&array::from_fn(|k| responses[k].into()), force, tangent));
         }
         let (volumes, responses) = (&self.volumes, &responses[..points]);
         Ok(Arch::new().dispatch(Gathered::<N, SYMMETRIC> { gradients, volumes, responses, force, tangent }))

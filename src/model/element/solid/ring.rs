@@ -9,7 +9,7 @@ use nalgebra::{Vector2, Vector5};
 
 use super::{Memory, SolidElement};
 use crate::laws::bulk::components::{components, plane};
-use crate::laws::bulk::{Answer, Material, MaterialFailure, Straining, cofactor, positive_jacobian};
+use crate::laws::bulk::{Answer, BulkResponse, Material, MaterialFailure, Straining, cofactor, positive_jacobian};
 
 /// ∂N_a/∂X and N_a/R at a point; the latter are 0 in plane.
 #[derive(Clone, Copy, Default)]
@@ -28,25 +28,23 @@ impl SolidElement {
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
     ) -> Answer<[f64; 2]> {
+        let (count, wanted, seen) = (material.description().variables.len(), tangent.is_some(), self.seen(u)?);
+        let mut answers = [BulkResponse::default(); 9];
+        for ((k, seen), answer) in seen.iter().enumerate().zip(&mut answers) {
+            let own = k * count..(k + 1) * count;
+            let now = Straining { tangent: wanted, ..straining(seen, dt, &old[own.clone()]) };
+            *answer = material.in_space(&now, &mut new[own])?;
+        }
         let u = &*self.since_activation(u);
-        let (count, wanted) = (material.description().variables.len(), tangent.is_some());
-        if let Some(mean) = self.mean(u)? {
-            let answer = |k: usize, seen: &Vector5<f64>| {
-                let own = k * count..(k + 1) * count;
-                let now = Straining { tangent: wanted, ..straining(seen, dt, &old[own.clone()]) };
-                material.in_space(&now, &mut new[own])
-            };
-            return mean.respond(answer, force, tangent);
+        if let (Some(mean), Some(answers)) = (self.mean(u)?, answers.first_chunk()) {
+            return Ok(mean.respond(answers, force, tangent));
         }
         force.fill(0.0);
         if let Some(tangent) = tangent.as_deref_mut() {
             tangent.fill(0.0);
         }
         let [mut energy, mut dissipated] = [0.0; 2];
-        for (k, (at, volume)) in self.everywhere().enumerate() {
-            let own = k * count..(k + 1) * count;
-            let now = Straining { tangent: wanted, ..straining(&at.deformation(u), dt, &old[own.clone()]) };
-            let answer = material.in_space(&now, &mut new[own])?;
+        for (answer, (at, volume)) in answers.iter().zip(self.everywhere()) {
             energy += volume * answer.energy;
             dissipated += volume * answer.dissipation;
             at.add_force(&(volume * answer.stress), force);

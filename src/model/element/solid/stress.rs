@@ -42,7 +42,7 @@ impl SolidElement {
     }
 
     /// F at each quadrature point as the law sees it: F̄ of F-bar.
-    fn seen(&self, u: &[Vector2<f64>]) -> Answer<Few<Vector5<f64>, 9>> {
+    pub(super) fn seen(&self, u: &[Vector2<f64>]) -> Answer<Few<Vector5<f64>, 9>> {
         let u = &*self.since_activation(u);
         Ok(match self.mean(u)? {
             Some(mean) => mean.seen().into(),
