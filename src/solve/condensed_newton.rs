@@ -18,7 +18,7 @@ use super::Workspace;
 use super::contact_iteration::{Acted, ContactIteration};
 use super::floating::null_motion;
 use super::newton::{self, Equations, NewtonFailure};
-use super::watch::{Watch, in_trial, is_unaided, settings, tolerance};
+use super::watch::Watch;
 use crate::equations::condensed::{CondensedEquations, ContactNodes, depends_on_length, is_linear};
 use crate::equations::supports;
 use crate::equations::{Assembler, Trial, TrialFailure};
@@ -184,7 +184,7 @@ pub(super) fn solve(
     let OfLength { bodies, eliminated } = &*of_length;
     let mut u = start.to_vec();
     if watch.begins {
-        if is_unaided(trial) {
+        if watch.seeks_floating {
             assemble_all(trial, &u, work)?;
             watch.floating = null_motion(model, trial.step, &u, &work.system.tangent);
         }
@@ -197,12 +197,12 @@ pub(super) fn solve(
         let forwarded = bodies.forward(&nodes.balanced(model, trial.step, &system.residual));
         let equations = CondensedEquations::new(nodes, bodies, trial, &u, forwarded.right.clone(), assembler, system);
         let (from, all) = (nodes.gather(&u), u.clone());
-        let mut iterations = Vec::new();
+        let (mut iterations, settings) = (Vec::new(), watch.settings);
         let mut on_contacts = OnContacts { equations, nodes, all, assembler, iteration, trial, watch: &mut *watch };
         let result = newton::solve(
             &mut on_contacts,
             from.clone(),
-            settings(model, trial),
+            settings,
             &mut solver.with(eliminated.as_ref(), *whole),
             condensed,
             &mut iterations,
@@ -227,7 +227,7 @@ pub(super) fn solve(
         if let Some(last) = watch.records.last_mut() {
             last.newton.residual = system.imbalance;
         }
-        if system.imbalance <= tolerance(model, trial.stiffening) {
+        if system.imbalance <= watch.settings.tolerance {
             return Some(Ok(u));
         }
     }
@@ -257,7 +257,7 @@ impl Equations for OnContacts<'_> {
         if request == Request::Tangent {
             iteration.note(assembler.model(), all, trial.old);
         }
-        let acted = Acted { condense: 1, ..in_trial(trial.stiffening, iteration.acted) };
+        let acted = Acted { condense: 1, ..iteration.acted };
         watch.note(request, assembler, system.forces, acted);
         Ok(())
     }

@@ -20,7 +20,7 @@ use super::contact_iteration::ContactIteration;
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
 use super::newton::{self, Equations, NewtonFailure};
-use super::watch::{Watch, in_trial, is_unaided, settings};
+use super::watch::Watch;
 use super::{IterationRecord, Workspace, condensed_newton};
 use crate::contact::force::ContactState;
 use crate::equations::supports;
@@ -57,7 +57,7 @@ pub fn equilibrium(model: &Model, trial: Trial, start: Option<Vec<f64>>, work: &
     let spent = work.assembler.seconds.assembly + work.assembler.seconds.contact;
     let clock = std::time::Instant::now();
     let (start, extrapolated) = start.map_or_else(|| start_value(model, trial), |start| (start, false));
-    let mut watch = Watch::new(begins, extrapolated);
+    let mut watch = Watch::new(model, trial, begins, extrapolated);
     if begins && !model.aids.start {
         watch.foreseen = foreseen(model, trial, work);
     }
@@ -68,9 +68,9 @@ pub fn equilibrium(model: &Model, trial: Trial, start: Option<Vec<f64>>, work: &
             if begins {
                 iteration.start_increment();
             }
-            let mut iterations = Vec::new();
+            let (mut iterations, settings) = (Vec::new(), watch.settings);
             let mut all = AllEquations { assembler, iteration, trial, watch: &mut watch };
-            let result = newton::solve(&mut all, start, settings(model, trial), &mut **solver, system, &mut iterations);
+            let result = newton::solve(&mut all, start, settings, &mut **solver, system, &mut iterations);
             watch.record(iterations);
             result
         }
@@ -104,11 +104,11 @@ impl Equations for AllEquations<'_> {
         assembler.measure(*trial, u, system);
         if request == Request::Tangent {
             iteration.note(assembler.model(), u, trial.old);
-            if watch.begins && watch.tangents == 0 && is_unaided(*trial) {
+            if watch.seeks_floating && watch.tangents == 0 {
                 watch.floating = null_motion(assembler.model(), trial.step, u, &system.tangent);
             }
         }
-        watch.note(request, assembler, system.forces, in_trial(trial.stiffening, iteration.acted));
+        watch.note(request, assembler, system.forces, iteration.acted);
         Ok(())
     }
 

@@ -12,6 +12,12 @@ use crate::model::Model;
 pub struct Watch {
     /// Whether it is a new increment
     pub begins: bool,
+    /// Whether a body may be found that nothing holds: a step begins, or its stabilization has just ended
+    pub seeks_floating: bool,
+    /// Settings of Newton's method
+    pub settings: newton::Settings,
+    /// Factor of the penalties
+    stiffening: f64,
     /// Whether its start value extrapolates the last one
     extrapolated: bool,
     /// Number of tangents of the present solution
@@ -31,10 +37,36 @@ pub struct Watch {
 
 impl Watch {
     /// Begins it, at a new increment or not, from an extrapolated start value or not.
-    pub fn new(begins: bool, extrapolated: bool) -> Self {
+    pub fn new(model: &Model, trial: Trial, begins: bool, extrapolated: bool) -> Self {
+        let Trial { old, step, dt, stiffening, .. } = trial;
+        let unaided =
+            old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0);
+        let tolerance = model.newton.tolerance;
+        let settings = newton::Settings {
+            tolerance: if stiffening < 1.0 { tolerance.max(ROUGHLY) } else { tolerance },
+            max_iterations: model.newton.max_iterations,
+            old_tangents: model.aids.old_tangents,
+            downhill: model.aids.downhill,
+            saddle: model.saddle(),
+            gives_up: step.scheme.is_dynamic() && step.shorter(dt, 1).is_some(),
+        };
+        let seeks_floating = begins && unaided;
         let (flips, acted) = (Flips::default(), Acted::default());
-        let (floating, foreseen, seen, records) = (None, None, Vec::new(), Vec::new());
-        Self { begins, extrapolated, tangents: 0, seen, flips, floating, foreseen, acted, records }
+        let (tangents, floating, foreseen, seen, records) = (0, None, None, Vec::new(), Vec::new());
+        Self {
+            begins,
+            seeks_floating,
+            settings,
+            stiffening,
+            extrapolated,
+            tangents,
+            seen,
+            flips,
+            floating,
+            foreseen,
+            acted,
+            records,
+        }
     }
 
     /// Records the state of the equations after their evaluation.
@@ -46,8 +78,9 @@ impl Watch {
             self.foreseen = Some(assembler.evaluation.contacts.clone());
         }
         if request == Request::Tangent {
-            self.acted = acted;
-            self.acted.start = usize::from(self.extrapolated && self.records.is_empty() && self.tangents == 0);
+            let [stiffening, softening] = [self.stiffening > 1.0, self.stiffening < 1.0].map(usize::from);
+            let start = usize::from(self.extrapolated && self.records.is_empty() && self.tangents == 0);
+            self.acted = Acted { stiffening, softening, start, ..acted };
             self.tangents += 1;
         } else if self.tangents > 0 && request == Request::Residual {
             let evaluation = &assembler.evaluation;
@@ -77,30 +110,3 @@ impl Watch {
 
 /// ‖r‖/‖f‖ required of an initial guess [-]
 const ROUGHLY: f64 = 1e-2;
-
-/// Required ‖r‖/‖f‖ of every part of a solution, or of an initial guess [-]
-pub fn tolerance(model: &Model, stiffening: f64) -> f64 {
-    if stiffening < 1.0 { model.newton.tolerance.max(ROUGHLY) } else { model.newton.tolerance }
-}
-
-pub fn settings(model: &Model, trial: Trial) -> newton::Settings {
-    newton::Settings {
-        tolerance: tolerance(model, trial.stiffening),
-        max_iterations: model.newton.max_iterations,
-        old_tangents: model.aids.old_tangents,
-        downhill: model.aids.downhill,
-        saddle: model.saddle(),
-        gives_up: trial.step.scheme.is_dynamic() && trial.step.shorter(trial.dt, 1).is_some(),
-    }
-}
-
-/// Whether a step begins, or its stabilization has just ended.
-pub fn is_unaided(trial: Trial) -> bool {
-    let Trial { old, step, .. } = trial;
-    old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0)
-}
-
-/// Aids that acted on contact points, with the modified penalties of the trial.
-pub fn in_trial(stiffening: f64, acted: Acted) -> Acted {
-    Acted { stiffening: usize::from(stiffening > 1.0), softening: usize::from(stiffening < 1.0), ..acted }
-}
