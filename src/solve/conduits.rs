@@ -17,7 +17,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::failure::IncrementFailure;
-use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Reached, TooFast, Wall, WaterStep};
+use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Reached, TooFast, Wall};
 use crate::contact::{ContactPair, ContactState};
 use crate::equations::Trial;
 use crate::model::state::{State, Water as BodyWater};
@@ -51,8 +51,8 @@ pub struct WaterCourse {
     pub pressure: Vec<f64>,
     /// Open length [L]
     open: f64,
-    /// Its steps
-    steps: Vec<WaterStep>,
+    /// Ends of its steps [T]
+    steps: Vec<f64>,
 }
 
 fn disagree(flowing: &[Flowing]) -> IncrementFailure {
@@ -126,8 +126,8 @@ struct Flowing<'a> {
     walls: Vec<Wall>,
     /// p̂(p_k)
     found: Reached,
-    /// Steps of the run beside which it flows
-    steps: Option<&'a [WaterStep]>,
+    /// Ends of the steps of the run beside which it flows [T]
+    steps: Option<&'a [f64]>,
 }
 
 impl Flowing<'_> {

@@ -4,8 +4,8 @@
 //! V (S (p₁ − p₀) + w₁ − w₀) = h (Σ T̄/η b/ℓ (p_j − p_i) + V Q + wells − V c (p₁ − p̄))       all at the end of a step: implicit Euler (4)
 //! p = 2 p_½½ − p_1,   e = |p_½½ − p_1|          p_1: by one step, p_½½: by two of half the length                       (5)
 //! ```
-//! (5) is of second order and, as every volume is a linear combination of two that balance, keeps the balance. Where it undershoots, p_½½
-//! stands. The steps end at the corners of wells. Within an increment the surfaces change linearly from what they were to what they
+//! (5) is of second order and, as every volume is a linear combination of two that balance, keeps the balance. It undershoots by e at most,
+//! which is bounded. The steps end at the corners of wells. Within an increment the surfaces change linearly from what they were to what they
 //! are at its end; where they give way to the water, by a known compliance c_w, they follow its pressure:
 //!
 //! ```text
@@ -26,17 +26,8 @@ pub struct Course<'a> {
     pub rates: Option<&'a [Wall]>,
     /// c_w and p̂₁ of every node; none give way if empty [L³/F], [F/L²]
     pub gives_way: [&'a [f64]; 2],
-    /// Steps that are made, as another run has made them; if not given, as many as the error asks for
-    pub steps: Option<&'a [WaterStep]>,
-}
-
-/// A step of the water within an increment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaterStep {
-    /// Its end [T]
-    pub end: f64,
-    /// Whether p_½½ stands in place of (5)
-    pub undershoots: bool,
+    /// Ends of the steps that are made, as another run has made them; if not given, as many as the error asks for [T]
+    pub steps: Option<&'a [f64]>,
 }
 
 impl Course<'_> {
@@ -70,16 +61,16 @@ pub struct Reached {
     pub pressure: Vec<f64>,
     /// Volumes in the increment
     pub amounts: Amounts,
-    /// Steps
-    pub steps: Vec<WaterStep>,
+    /// Ends of the steps [T]
+    pub steps: Vec<f64>,
 }
 
 impl Reached {
     /// Takes a step.
-    fn take(&mut self, end: f64, Found { pressure, amounts, undershoots, .. }: Found) {
+    fn take(&mut self, end: f64, Found { pressure, amounts, .. }: Found) {
         self.pressure = pressure;
         self.amounts = self.amounts.combined(1.0, amounts, 1.0);
-        self.steps.push(WaterStep { end, undershoots });
+        self.steps.push(end);
     }
 }
 
@@ -123,8 +114,8 @@ impl Conduit {
         let mut room = Steps::default();
         let (mut time, mut next) = (from, to - from);
         if let Some(steps) = course.steps {
-            for &WaterStep { end, undershoots } in steps {
-                let found = self.two_ways(&reached.pressure, start, [time, end], course, Some(undershoots), &mut room);
+            for &end in steps {
+                let found = self.two_ways(&reached.pressure, start, [time, end], course, &mut room);
                 let step = end - time;
                 if !found.error.is_finite() {
                     return Err(TooFast { time, step });
@@ -137,7 +128,7 @@ impl Conduit {
         for stop in stops {
             while time < stop {
                 let end = if time + next > stop - SHORTEST * (to - from) { stop } else { time + next };
-                let found = self.two_ways(&reached.pressure, start, [time, end], course, None, &mut room);
+                let found = self.two_ways(&reached.pressure, start, [time, end], course, &mut room);
                 let error = found.error;
                 let share = (SAFETY / error.sqrt()).clamp(SHARES[0], SHARES[1]);
                 let is_short = end - time <= SHORTEST * (to - from);
@@ -156,38 +147,24 @@ impl Conduit {
         Ok(reached)
     }
 
-    /// (5), with e over what is allowed; whether it undershoots may be given.
-    fn two_ways(
-        &self,
-        from: &[f64],
-        start: &[f64],
-        span: [f64; 2],
-        course: &Course,
-        undershoots: Option<bool>,
-        room: &mut Steps,
-    ) -> Found {
+    /// (5), with e over what is allowed.
+    fn two_ways(&self, from: &[f64], start: &[f64], span: [f64; 2], course: &Course, room: &mut Steps) -> Found {
         let middle = 0.5 * (span[0] + span[1]);
         let (one, whole) = self.step(from, start, span, course, room);
         let (half, first) = self.step(from, start, [span[0], middle], course, room);
         let (two, second) = self.step(&half, start, [middle, span[1]], course, room);
         let halves = first.combined(1.0, second, 1.0);
-        let [mut error, mut scale, mut least, mut under, mut largest] = [0.0f64; 5];
+        let [mut error, mut scale, mut largest] = [0.0f64; 3];
         for node in 0..from.len() {
             error = nan_max(error, (two[node] - one[node]).abs());
             scale = scale.max((two[node] - self.initial[node]).abs()).max((from[node] - self.initial[node]).abs());
-            least = least.min(two[node]);
             largest = largest.max(two[node].abs());
-            under = under.min(2.0 * two[node] - one[node]);
         }
         let allowed = TOLERANCE * scale + ROUND_OFF * largest;
         let error = if error == 0.0 { 0.0 } else { error / allowed };
-        let undershoots = undershoots.unwrap_or(under < least - 0.01 * allowed);
-        if undershoots {
-            return Found { pressure: two, amounts: halves, error, undershoots };
-        }
         let pressure = two.iter().zip(&one).map(|(two, one)| 2.0 * two - one).collect();
         let amounts = halves.combined(2.0, whole, -1.0).with_throughput(halves.throughput);
-        Found { pressure, amounts, error, undershoots }
+        Found { pressure, amounts, error }
     }
 
     /// (4) for the change of the pressure, and the volumes in a step. What joins two nodes counts by the difference of their pressures, and a
@@ -297,7 +274,6 @@ struct Found {
     pressure: Vec<f64>,
     amounts: Amounts,
     error: f64,
-    undershoots: bool,
 }
 
 /// Memory of the steps.
