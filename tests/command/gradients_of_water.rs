@@ -119,6 +119,11 @@ fn of_what_opens_are_those_of_complete_runs() {
     println!("{main:?} {others:?}");
     // The steps of the water are those of the increments, but for a few.
     assert!(main.0 < 1e-5 && others.0 < 5e-5, "{main:?} {others:?}");
+    // What a run leaves of the agreement of water and equilibrium, its neighbours leave as well.
+    case["newton"] = json!({"tolerance": 1e-7});
+    let [main, others] = compared(&case, &places[..1]);
+    println!("{main:?} {others:?}");
+    assert!(main.0 < 1e-5 && others.0 < 5e-5, "{main:?} {others:?}");
 }
 
 /// A run that is taken up has the same derivatives, bit by bit; and the run itself is that without derivatives.

@@ -462,3 +462,22 @@ fn rigid_bodies_that_are_refused() {
     let soft = Contact::new("base", "block_bottom", "block_top", CoulombParameters::new(MU)).rigid_body("tool");
     refused(block(true, soft).rigid_body("tool", [0.0, 0.0]).step(step().support(path())), "is for a rigid master");
 }
+
+/// The dashpots that steer a rigid body into contact go by what it may touch, 1e-3 (λ + 2G) × duration = 2e-3 E for ν = 0, and not by a softer
+/// body that stands aside.
+#[test]
+fn a_soft_bystander_does_not_steer_a_rigid_body() {
+    let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0}});
+    let model = model(&json!({
+        "mesh": Blocks::default().rectangle("block", [2, 1], [-1.0, 0.0], [1.0, 1.0]).rectangle("aside", [1, 1], [5.0, 0.0], [6.0, 1.0]).json(),
+        "bodies": {"block": body(100.0), "aside": body(1.0)},
+        "rigid_bodies": {"tool": {"reference": [0, -1]}},
+        "contacts": {"base": {"slave": "block_bottom", "master": {"plane": {"point": [0, -0.1], "normal": [0, 1]}}, "rigid_body": "tool",
+                              "friction": {"law": "coulomb", "mu": MU}}},
+        "steps": [{"name": "press", "duration": 2, "dt": {"initial": 0.1}, "stabilize": 1e-3,
+                   "supports": [{"on": "block_top", "ux": 0, "uy": 0}, {"on": "aside", "ux": 0, "uy": 0}, {"on": "tool", "ux": 0, "angle": 0}],
+                   "loads": [{"on": "tool", "force": {"y": 1}}]}],
+    }));
+    let [node, _] = model.mesh.rigid_bodies[0].nodes();
+    close("c₀", model.steps[0].stabilization[2 * node + 1], 0.2, 1e-12);
+}

@@ -174,3 +174,12 @@ fn what_has_no_meaning_is_refused() {
         assert!(message.contains(&format!("contacts.tie.{place}")), "{key}: {message}");
     }
 }
+
+/// Softer penalties on the way to a start value are those of contacts: what is tied stays so.
+#[test]
+fn a_tie_keeps_its_stiffness() {
+    let steps = json!([{"name": "rest", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "lower_bottom", "ux": 0, "uy": 0}]}]);
+    let case = tied(&column([5, 7], false), "linear", &json!({"sliding": "small"}), steps);
+    let pair = &common::model(&case).contacts[0];
+    assert_eq!(pair.normal_stiffness(1e-4), pair.alpha_n);
+}

@@ -374,3 +374,14 @@ fn a_large_increment_is_answered_or_refused() {
     }
     assert!(answered > 5000 && (10..200).contains(&refused), "{answered} {refused}");
 }
+
+/// M = 6 sin φ/(3 − sin φ) is 1.2 for an angle of friction of 30°.
+#[test]
+fn the_angle_of_friction_is_that_of_compression() {
+    let mut by_angle = given(P_0);
+    by_angle.as_object_mut().expect("keys").remove("M");
+    by_angle["phi"] = json!(30);
+    let f = principal([-0.02, 0.01, 0.005]);
+    let [by_slope, by_angle] = [given(P_0), by_angle].map(|given| Point::new(build(given)).at(&f).0.stress);
+    assert!((by_slope - by_angle).amax() < 1e-12 * by_slope.amax(), "{by_slope} {by_angle}");
+}

@@ -267,3 +267,34 @@ fn surfaces_of_lames_tube_and_sphere_have_their_stresses() {
         message(&what, surface_errors(&run, ["body_left", "body_right"], tube, false), bound);
     }
 }
+
+/// Stresses recovered of squares, whose patches extend alike along both axes, turn with the body: no term is left out by round-off.
+#[test]
+fn recovered_stresses_turn_with_squares() {
+    let stresses = |columns: usize, refined: bool, angle: f64| {
+        let mesh = Blocks::default().block("body", [columns; 2], |s, t| common::turned([s, t], angle)).json();
+        let mesh = if refined { quadratic(&mesh, half_way) } else { mesh };
+        let mut case = case(&Value::Null, mesh, linear(), json!([]));
+        case["steps"][0]["supports"] = json!([{"on": "body", "ux": 0, "uy": 0}]);
+        let model = common::model(&case);
+        let mut state = model.initial_state();
+        for (node, at) in model.mesh.nodes.iter().enumerate() {
+            let [x, y] = common::turned([at.x, at.y], -angle);
+            let u = common::turned([1e-3 * (3.0 * x).sin() * y, 1e-3 * (2.0 * y).cos() * x], angle);
+            state.displacement[2 * node..][..2].copy_from_slice(&u);
+        }
+        let invariants =
+            |stress: &CauchyStress| [stress.xx + stress.yy, (0.5 * (stress.xx - stress.yy)).hypot(stress.xy)];
+        nodal_stresses(&model, &state).iter().map(invariants).collect::<Vec<_>>()
+    };
+    for (columns, refined) in [(1, false), (2, false), (3, false), (1, true), (2, true)] {
+        for angle in [0.3, 0.785, 1.234, 2.9] {
+            let pairs = stresses(columns, refined, 0.0).into_iter().zip(stresses(columns, refined, angle));
+            for (k, (stress, turned)) in pairs.enumerate() {
+                for i in 0..2 {
+                    close(&format!("node {k} of {columns}, {refined}, {angle}"), turned[i], stress[i], 1e-10);
+                }
+            }
+        }
+    }
+}

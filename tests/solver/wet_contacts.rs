@@ -303,3 +303,20 @@ fn sides_of_every_kind() {
     let message = refusal(&wrong);
     assert!(message.contains("contacts.cut.seal: is -1"), "{message}");
 }
+
+/// By default the seal lets through a thousand times what the shortest element beside the contact does: pressures are nearly continuous there,
+/// and all the more beside the longer ones.
+#[test]
+fn the_default_seal_goes_by_the_shortest_element() {
+    let mut case = cut_column("q4", [2, 2], smooth());
+    let side = |s: f64| if s < 0.6 { s / 3.0 } else { 0.2 + (s - 0.6) / 8.0 };
+    case["mesh"] = Blocks::default()
+        .block("low", [3, 2], |s, t| [side(s), 0.5 * t])
+        .block("high", [3, 2], |s, t| [side(s), 0.5 + 0.5 * t])
+        .json();
+    let sizes: Vec<f64> = model(&case).flow.as_ref().expect("water").elements.iter().map(|wet| wet.size).collect();
+    let [least, most] = [f64::min, f64::max].map(|of| sizes.iter().copied().reduce(of).expect("elements"));
+    assert!(most > 1.5 * least, "{sizes:?}");
+    let seam = model(&case).contacts[0].seam.as_ref().expect("it is sealed").conductance;
+    close("κ", seam, 1e3 / least, 1e-9 * seam);
+}

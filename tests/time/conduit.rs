@@ -186,3 +186,75 @@ fn dilatancy_sucks_within_a_rupture() {
     println!("slip {} and {}, opening {lifted}", slip(&dilatant), slip(&plain));
     assert!(slip(&dilatant) < slip(&plain));
 }
+
+/// A block, driven as a whole or at its top, that slides at a given rate on a fault that slip opens, in a step of this scheme, with this friction.
+fn opened_by_slip(scheme: &Value, young: f64, driven: &str, more: &Value) -> Finished {
+    let mut case = json!({
+        "mesh": Blocks::default().rectangle("block", [20, 1], [0.0, 0.0], [10.0, 0.5]).json(),
+        "bodies": {"block": {"material": {"model": "linear", "E": young, "nu": 0.2, "density": 10}}},
+        "contacts": {"base": {
+            "slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "method": "node_to_segment", "sliding": "small",
+            "fluid_pressure": {"flow": {
+                "storage": 1e-3, "transmissivity": 1e-3, "viscosity": 1, "per_slip": 2e-2, "wells": [{"at": [0, 0], "pressure": 0.03}],
+            }},
+        }},
+        "steps": [{"name": "slide", "duration": 1, "scheme": scheme, "dt": {"initial": 1},
+                   "supports": [{"on": driven, "ux": {"rate": 0.5}}, {"on": "block_top", "uy": 0}]}],
+        "output": {"interval": 0.1},
+    });
+    let base = case["contacts"]["base"].as_object_mut().expect("keys");
+    base.extend(more.as_object().expect("keys").clone());
+    finish(&case)
+}
+
+/// T = k₀ + k₁ v t everywhere, and p is that of a constant diffusivity at the time ∫ T/(S η) dt, P (1 − Σ 2 sin(λ x)/(λ L) exp(−λ² ∫ D dt)),
+/// λ = (k + ½) π/L: in explicit increments, and in quasi-dynamic steps that are a good part of the time.
+#[test]
+fn slip_opens_the_fault_as_it_goes() {
+    let pressure = |x: f64| {
+        let of = |k: i32| {
+            let wave = (f64::from(k) + 0.5) * std::f64::consts::PI / 10.0;
+            0.2 / wave * (wave * x).sin() * (-wave * wave * (1e-3 + 0.5 * 2e-2 * 0.5) / 1e-3).exp()
+        };
+        0.03 * (1.0 - (0..400).map(of).sum::<f64>())
+    };
+    let coulomb = json!({"friction": {"law": "coulomb", "mu": 1e-3}, "initial": {"pressure": 100, "balanced": true}});
+    let sliding = json!({
+        "friction": {"law": "rate_and_state", "f_0": 10, "V_0": 0.5, "a": 1, "b": 0, "D_c": 1, "theta": 2, "alpha_t": 1e6},
+        "radiation_damping": 1e-3,
+        "initial": {"pressure": 100, "traction": 1000, "balanced": true},
+    });
+    let explicit = opened_by_slip(&json!({"explicit": {}}), 1e5, "block", &coulomb);
+    let quasi_dynamic = opened_by_slip(&quasi_dynamic(1e-6), 1e3, "block_top", &sliding);
+    for run in [explicit, quasi_dynamic] {
+        balances(&run);
+        let x = run.model.mesh.undeformed();
+        let points = run.model.contacts[0].points.iter().zip(&run.last().contacts[0]);
+        let off = points.map(|(slave, state)| (state.fluid - pressure(slave.at(&x).x)).abs()).fold(0.0, f64::max);
+        println!("off by {off}, {} increments", run.report.increments);
+        assert!(off < 1e-4, "{off}");
+    }
+}
+
+/// Water that can hardly be stored presses back by a spring of 1/S an area, stiffer than all others here: the stable increment of the mass on
+/// it falls with √S.
+#[test]
+fn stiff_water_shortens_explicit_increments() {
+    let [longer, shorter] = [1e-7, 1e-9].map(|storage| {
+        let run = finish(&json!({
+            "mesh": Blocks::default().rectangle("block", [4, 4], [0.0, 0.0], [1.0, 1.0]).json(),
+            "bodies": {"block": {"material": {"model": "linear", "E": 100, "nu": 0, "density": 1}}},
+            "contacts": {"base": {
+                "slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "sliding": "small",
+                "normal": {"alpha_n": 1000}, "friction": {"law": "frictionless"}, "initial": {"pressure": 1, "balanced": true},
+                "fluid_pressure": {"flow": {"storage": storage, "transmissivity": 0, "viscosity": 1}},
+            }},
+            "steps": [{"name": "rest", "duration": 0.02, "scheme": {"explicit": {}}, "dt": {"initial": 1},
+                       "supports": [{"on": "block", "ux": 0}]}],
+        }));
+        run.last().dt
+    });
+    println!("{longer:e}, {shorter:e}");
+    close("ratio", longer / shorter, 10.0, 0.5);
+}
