@@ -71,13 +71,6 @@ impl Differentiated<'_> {
             of both in one case";
         refuse_if(self.begins_with, "gradients", message)?;
         self.model.steps.iter().try_for_each(check_step)?;
-        let message = "are not available where bodies are added or removed in a model with flowing water, whose \
-            pressures then start anew: leave them out";
-        refuse_if(self.model.flow.is_some() && self.model.changes_bodies(), "gradients", message)?;
-        let message =
-            "are not available of water that flows along a contact beside bodies in which it flows: leave them out";
-        let flows_along = self.model.flow.as_ref().is_some_and(|flow| !flow.channels.is_empty());
-        refuse_if(flows_along, "gradients", message)?;
         let defaults: Value = serde_json::from_str(&resolved(self.case, self.model)).unwrap_or_default();
         let one = |(k, place): (usize, &String)| {
             let at = format!("gradients[{k}]");

@@ -266,8 +266,8 @@ impl ContactPair {
         for ((slave, met), initial) in self.points.iter_mut().zip(met).zip(&mut initial) {
             let (Some((_, kinematics)), Some(outward)) = (met, slave.outward(x)) else { continue };
             let stress_vector = stress(slave) * outward;
-            let pressure =
-                kinematics.normal.dot(&stress_vector) - seam.as_ref().map_or(0.0, |seam| seam.pressure(&kinematics, x));
+            let pressure = kinematics.normal.dot(&stress_vector)
+                - seam.as_ref().map_or(0.0, |seam| seam.pressure(slave, &kinematics, x));
             *initial = InitialTraction { pressure, traction: -kinematics.tangent.dot(&stress_vector) };
             slave.touch += initial.pressure / self.alpha_n;
         }

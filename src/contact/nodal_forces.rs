@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector2;
 
+use super::between::Between;
 use super::kinematics::{Kinematics, Lever, kinematics};
 use super::pair::ContactPair;
 use super::point::{ContactState, Tractions, Weights};
@@ -33,6 +34,8 @@ pub struct Closed<'a> {
     pub fluid: &'a [f64],
     /// Water between the surfaces that the balance of each pressure takes up; empty without a seam [L³]
     pub taken: &'a [f64],
+    /// Water that drains from between surfaces that are apart [L³]
+    pub drained: f64,
     /// p and q
     pub tractions: Tractions,
     /// Whether the point is open, and a fluid or a bond acts
@@ -88,6 +91,7 @@ pub struct ClosedPoints {
 #[derive(Clone, Copy, Debug)]
 struct Place {
     tractions: Tractions,
+    drained: f64,
     is_open: bool,
     is_bonded: bool,
     /// First node, and number of nodes
@@ -107,7 +111,8 @@ impl ClosedPoints {
 
     /// Returns the contribution of a point, if it is closed.
     pub fn get(&self, point: usize) -> Option<Closed<'_>> {
-        let Place { tractions, is_open, is_bonded, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
+        let Place { tractions, drained, is_open, is_bonded, nodes: [first, count], tangent } =
+            (*self.points.get(point)?)?;
         let dofs = 2 * first..2 * (first + count);
         let varied =
             |values: &'_ [f64]| -> std::ops::Range<usize> { if values.is_empty() { 0..0 } else { dofs.clone() } };
@@ -120,6 +125,7 @@ impl ClosedPoints {
             dtraction: &self.dtraction[varied(&self.dtraction)],
             fluid: self.fluid.get(dofs.clone()).unwrap_or_default(),
             taken: self.taken.get(dofs.clone()).unwrap_or_default(),
+            drained,
             tractions,
             is_open,
             is_bonded,
@@ -168,6 +174,7 @@ impl ClosedPoints {
         let whole = |of: Tractions| Tractions { pressure: of.pressure + fluid, traction: of.traction + radiates[0] };
         self.points.push(Some(Place {
             tractions,
+            drained: k.water.as_ref().map_or(0.0, Between::drained),
             is_open: false,
             is_bonded: false,
             nodes: [self.nodes.len(), k.nodes.len() + k.behind.len()],

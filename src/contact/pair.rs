@@ -172,7 +172,8 @@ impl ContactPair {
     /// on the current length, and turns with it, as a load that follows the surface does.
     pub fn is_symmetric(&self) -> bool {
         let smooth = |law: &Arc<ContactLaw>| law.description.is_frictionless && law.description.opening.is_empty();
-        self.small.is_some() && self.laws.iter().all(smooth)
+        let drains = self.seam.as_ref().is_some_and(|seam| seam.open.is_some());
+        self.small.is_some() && !drains && self.laws.iter().all(smooth)
     }
 
     /// Friction law of a slave point at the start of the run.
@@ -285,7 +286,7 @@ impl ContactPair {
     /// p_w at a slave point with these kinematics at the start of a contact [F/L²].
     pub(super) fn pressure_at(&self, slave: &SlavePoint, k: &Kinematics, x: &Configuration, time: f64) -> f64 {
         match &self.seam {
-            Some(seam) => seam.pressure(k, x),
+            Some(seam) => seam.pressure(slave, k, x),
             None => self.fluid_pressure(slave, x, time),
         }
     }

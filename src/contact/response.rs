@@ -228,7 +228,12 @@ impl<P> Question<'_, P> {
 
     /// Adds the water of the bodies at a located point to its kinematics; returns its pressure.
     fn add_water(&self, seam: &Seam, (k, old): (usize, &ContactState), gap: f64, kinematics: &mut Kinematics) -> f64 {
-        let (mut water, behind) = seam.meet(&self.weights(k, old), self.x, self.during.seeps * old.length);
+        let seeps = self.during.seeps * old.length;
+        let (mut water, behind) = seam.meet(&self.pair.points[k], &self.weights(k, old), self.x, seeps);
+        if let Some(open) = &seam.open {
+            water.outside = open.pressure;
+            water.drains = open.at(gap - old.friction.opening).map(|conducts| conducts * seeps);
+        }
         water.count_from(old.master_point.map(|_| old.gap * old.length), gap, kinematics.length);
         kinematics.dpores.resize(if self.varied { 2 * behind.len() } else { 0 }, 0.0);
         kinematics.behind.extend(behind);

@@ -2,13 +2,22 @@
 //!
 //! ```text
 //! t = (p + p_w) n − q s                        p closes and rubs: the effective pressure                        (1)
-//! p_w: mean of p_s and p_m                     of the sides whose water flows;   p_s = Σ w_a p_a over the slave's nodes, p_m alike
+//! p_w = p₀ − (p_s − p_m)/2                     p_s = Σ w_a p_a over the slave's nodes, p_m alike; p₀ at the point itself; of the sides whose water flows
 //! ΔV = g ℓ − (g ℓ)_n                           water that has come between the surfaces                         (2)
 //! Q = κ ℓ (p_s − p_m)                          water that flows across, per time                                (3)
 //! r_a = −s_a (∂p_w/∂p_a ΔV + Δt/β ∂(p_s − p_m)/∂p_a Q)          in the balance of a pressure                   (4)
 //! ```
 //! The forces of p_w and (4) are derivatives of −p_w g ℓ: where normals and lengths do not change the coupling is symmetric. A node in the
-//! middle of an edge has the mean pressure of its ends. Open surfaces are filled with water, whose volume is that of the gap.
+//! middle of an edge has the mean pressure of its ends. Mortar takes p_s and p_m, as it takes the gap, as means around a point; p₀ is that of the slave
+//! at the point, and what is linear along the surface is exactly so in (1), up to its ends. Open surfaces are filled with water, whose volume is that of the gap.
+//!
+//! Surfaces that part may drain to a place outside, of the pressure p̄, and are filled from there. From each side flows
+//!
+//! ```text
+//! Q = κ_d(g − d) ℓ (p − p̄),   κ_d(w) ∝ min(w, w₀)³                             as a crack drains to its mouth           (4a)
+//! ```
+//! κ_d grows from 0 with the gap that is solved for, so that a pressure which lifts the surfaces has one opening that lets it out, and p is continuous in
+//! time. Its derivative by g makes the tangent unsymmetric.
 //!
 //! Where water flows along the contact it has a pressure of its own, p_c, linear or quadratic between the nodes of the slave:
 //!
@@ -24,7 +33,7 @@ use std::collections::BTreeMap;
 
 use super::between::{ACROSS, Between};
 use super::kinematics::Kinematics;
-use super::point::Weights;
+use super::point::{SlavePoint, Weights};
 use crate::mesh::configuration::Configuration;
 
 /// Water on both sides of a contact.
@@ -36,8 +45,34 @@ pub struct Seam {
     pub channel: BTreeMap<usize, PressurePart>,
     /// κ between two sides whose water flows, or between what flows along the contact and each of them; 0 beside any other [L³/(F T)]
     pub conductance: f64,
+    /// Where surfaces that are apart drain
+    pub open: Option<Drained>,
     /// What passes through an element beside the contact, at most [L³/(F T)]
     pub beside: f64,
+}
+
+/// The place outside to which surfaces that are apart drain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drained {
+    /// p̄ [F/L²]
+    pub pressure: f64,
+    /// κ_d from the opening w on [L³/(F T)]
+    pub conductance: f64,
+    /// w, up to which it grows with the third power of the opening [L]
+    pub aperture: f64,
+    /// Its number among the outlets of the model
+    pub outlet: usize,
+}
+
+impl Drained {
+    /// κ_d of an opening, and its derivative by it [L³/(F T)], [L²/(F T)].
+    pub(super) fn at(&self, opening: f64) -> [f64; 2] {
+        let share = (opening / self.aperture).max(0.0);
+        if share >= 1.0 {
+            return [self.conductance, 0.0];
+        }
+        [self.conductance * share.powi(3), 3.0 * self.conductance * share.powi(2) / self.aperture]
+    }
 }
 
 /// Part of the pressure of a node.
@@ -72,9 +107,16 @@ impl Seam {
         self.conductance.min(self.beside)
     }
 
-    /// The water at a point with these weights of x_s − x_m, and the nodes of its pressures; `seeps` is ℓ Δt/β.
-    pub(super) fn meet(&self, weights: &[(usize, f64)], x: &Configuration, seeps: f64) -> (Between, Vec<usize>) {
-        let mut behind: Vec<usize> = self.behind(weights.iter().map(|(node, _)| *node)).collect();
+    /// The water at a point of the slave with these weights of x_s − x_m, and the nodes of its pressures; `seeps` is ℓ Δt/β.
+    pub(super) fn meet(
+        &self,
+        slave: &SlavePoint,
+        weights: &[(usize, f64)],
+        x: &Configuration,
+        seeps: f64,
+    ) -> (Between, Vec<usize>) {
+        let own = &slave.position;
+        let mut behind: Vec<usize> = self.behind(weights.iter().chain(own).map(|(node, _)| *node)).collect();
         behind.sort_unstable();
         behind.dedup();
         let count = 2 * behind.len();
@@ -83,14 +125,17 @@ impl Seam {
             let (side, parts) = self.nodes.get(node)?;
             Some((*side, &parts[..], if *side == 0 { *w } else { -w }))
         });
-        let along = weights.iter().filter_map(|(node, w)| Some((2, std::slice::from_ref(self.channel.get(node)?), *w)));
+        let along = |node: &usize| self.channel.get(node).map(std::slice::from_ref);
+        let between = weights.iter().filter_map(|(node, w)| Some((2, along(node)?, *w)));
+        let of_slave = |node: &usize| self.nodes.get(node).map(|(_, parts)| &parts[..]);
+        let at_point = own.iter().filter_map(|(node, w)| Some((3, along(node).or_else(|| of_slave(node))?, *w)));
         let mut water = Between {
             scales: vec![0.0; count],
             shares: std::array::from_fn(|_| vec![0.0; count]),
             ..Between::default()
         };
-        let mut wet = [false; 3];
-        for (place, parts, weight) in pores.chain(along) {
+        let mut wet = [false; 4];
+        for (place, parts, weight) in pores.chain(between).chain(at_point) {
             wet[place] = true;
             water.pressures[place] += weight * pressure(parts, x);
             for part in parts {
@@ -98,8 +143,12 @@ impl Seam {
                 water.shares[place][local(part.dof)] += weight * part.share;
             }
         }
-        let sides = f64::from(u8::from(wet[0]) + u8::from(wet[1])).max(1.0);
-        water.means = if wet[2] { [0.0, 0.0, 1.0] } else { wet.map(|wet| f64::from(u8::from(wet)) / sides) };
+        water.means = match wet {
+            [true, true, false, _] => [-0.5, 0.5, 0.0, 1.0],
+            [false, true, false, _] => [0.0, 1.0, 0.0, 0.0],
+            _ => [0.0, 0.0, 0.0, 1.0],
+        };
+        water.sides = [wet[0], wet[1]];
         // Where water flows along the contact, it comes from one body to the other through that.
         water.passes = ACROSS.map(|places| {
             let passes = places.iter().all(|place| wet[*place]) && places.contains(&2) == wet[2];
@@ -108,10 +157,10 @@ impl Seam {
         (water, behind)
     }
 
-    /// p_w at a point with these kinematics [F/L²].
-    pub(super) fn pressure(&self, k: &Kinematics, x: &Configuration) -> f64 {
+    /// p_w at a point of the slave with these kinematics [F/L²].
+    pub(super) fn pressure(&self, slave: &SlavePoint, k: &Kinematics, x: &Configuration) -> f64 {
         let weights: Weights = k.nodes.iter().copied().zip(k.relative.iter().copied()).collect();
-        self.meet(&weights, x, 0.0).0.pressure()
+        self.meet(slave, &weights, x, 0.0).0.pressure()
     }
 }
 

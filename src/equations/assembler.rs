@@ -404,7 +404,7 @@ impl Assembler {
                 Term::PoreFlow => pore_flow::add(model, activated, trial, u, water, &mut sums)?,
                 Term::Interfaces => {
                     contacts::add(responses, &mut sums);
-                    contacts::add_water(model, responses, water);
+                    contacts::add_water(model, trial, responses, water);
                 }
                 Term::Bars => {
                     let found = bars::add(model, trial, u, bar_states, &mut sums);

@@ -11,7 +11,7 @@ use super::coupling::joined;
 use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
 use super::water_balances::{Balances, Times};
-use crate::contact::conduit::{Conduit, ConduitState, Gives};
+use crate::contact::conduit::{Conduit, ConduitState, Gives, Well};
 use crate::contact::seam::Seam;
 use crate::model::Model;
 use crate::model::pore_flow::{PRESCRIBED, PoreFlow};
@@ -39,15 +39,9 @@ pub(super) fn add(
     balances: &mut Balances,
     sums: &mut Sums,
 ) -> Result<(), TrialFailure> {
-    let Some(flow) = &model.flow else { return Ok(()) };
     water.channels.clone_from(&trial.old.water.channels);
     water.channels.as_flattened_mut().iter_mut().for_each(|outlet| outlet.go_on(times.memory));
-    for (pair, old) in model.contacts.iter().zip(&trial.old.conduits).filter(|(pair, _)| trial.step.joins(pair)) {
-        let (Some(conduit), Some(seam)) = (pair.conduit.as_ref().filter(|conduit| conduit.is_wet()), &pair.seam) else {
-            continue;
-        };
-        let number = flow.channels.keys().position(|name| *name == pair.name).unwrap_or_default();
-        let channel = Channel { model, flow, conduit, seam, old, trial, u, span: times.span };
+    for (number, channel) in channels(model, trial, u, times) {
         water.between += channel.store(balances, sums);
         channel.let_out(&mut water.channels[number], balances, sums)?;
         channel.join(balances, sums);
@@ -55,7 +49,47 @@ pub(super) fn add(
     Ok(())
 }
 
+/// What would flow out of the nodes at which wells hold a pressure, were that 0: number of the pressure, and L³/(F T).
+pub(super) fn held(model: &Model, trial: Trial, u: &[f64]) -> Vec<(usize, f64)> {
+    let mut all = Vec::new();
+    for (_, channel) in channels(model, trial, u, Times::of(trial)) {
+        let (passes, numbers) = (channel.passes(), &channel.conduit.pressures);
+        let held = channel.wells().filter(|well| matches!(well.gives, Gives::Pressure(_))).flat_map(|well| &well.at);
+        all.extend(held.map(|(node, _)| (numbers[*node], PRESCRIBED * passes[*node])));
+    }
+    all
+}
+
+/// Contacts along which water flows beside bodies in which it does, with their numbers among these.
+fn channels<'a>(
+    model: &'a Model,
+    trial: Trial<'a>,
+    u: &'a [f64],
+    times: Times,
+) -> impl Iterator<Item = (usize, Channel<'a>)> {
+    let pairs = model.contacts.iter().zip(&trial.old.conduits).filter(move |(pair, _)| trial.step.joins(pair));
+    pairs.filter_map(move |(pair, old)| {
+        let (flow, seam) = (model.flow.as_ref()?, pair.seam.as_ref()?);
+        let conduit = pair.conduit.as_ref().filter(|conduit| conduit.is_wet())?;
+        let number = flow.channels.keys().position(|name| *name == pair.name).unwrap_or_default();
+        Some((number, Channel { model, flow, conduit, seam, old, trial, u, span: times.span }))
+    })
+}
+
 impl Channel<'_> {
+    /// What passes a node along the contact and into the bodies [L⁵/(F T)].
+    fn passes(&self) -> Vec<f64> {
+        let mut passes: Vec<f64> = self.conduit.line.lengths().iter().map(|length| length * self.seam.most()).collect();
+        self.joints().for_each(|(a, b, joint)| [a, b].iter().for_each(|&node| passes[node] += joint));
+        passes
+    }
+
+    /// Wells that are open.
+    fn wells(&self) -> impl Iterator<Item = &Well> {
+        let middle = 0.5 * (self.trial.old.time + self.trial.time);
+        self.conduit.wells.iter().filter(move |well| well.is_open(middle))
+    }
+
     fn pressure(&self, node: usize) -> f64 {
         self.flow.pressure(self.conduit.pressures[node], Some(self.u))
     }
@@ -89,8 +123,7 @@ impl Channel<'_> {
         sums: &mut Sums,
     ) -> Result<(), TrialFailure> {
         let Self { conduit, trial, span, .. } = self;
-        let mut passes: Vec<f64> = conduit.line.lengths().iter().map(|length| length * self.seam.most()).collect();
-        self.joints().for_each(|(a, b, joint)| [a, b].iter().for_each(|&node| passes[node] += joint));
+        let passes = self.passes();
         let mut out = |node: usize, [flow, slope]: [f64; 2], outlet: &mut Outflow| {
             let k = conduit.pressures[node];
             if !flow.is_finite() {
@@ -111,8 +144,7 @@ impl Channel<'_> {
                 out(node, [slope * (self.pressure(node) - leak.pressure[node]), slope], leaked)?;
             }
         }
-        let middle = 0.5 * (trial.old.time + trial.time);
-        for well in conduit.wells.iter().filter(|well| well.is_open(middle)) {
+        for well in self.wells() {
             for &(node, share) in &well.at {
                 let slope = PRESCRIBED * passes[node];
                 let flow = match &well.gives {

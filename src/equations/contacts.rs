@@ -87,9 +87,16 @@ pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
     }
 }
 
-/// Adds the water between surfaces to what came to the pores of each pressure.
-pub(super) fn add_water(model: &Model, responses: &[PairResponse], water: &mut Water) {
+/// Adds the water between surfaces to what came to the pores of each pressure, and what drains from there to the outlets.
+pub(super) fn add_water(model: &Model, trial: Trial, responses: &[PairResponse], water: &mut Water) {
     let Some(flow) = &model.flow else { return };
+    let span = pore_flow::span(trial);
+    for (pair, response) in model.contacts.iter().zip(responses) {
+        if let Some(open) = pair.seam.as_ref().and_then(|seam| seam.open) {
+            let drained: f64 = response.all_acting().map(|(_, closed)| closed.drained).sum();
+            water.outlets[open.outlet].let_out(drained / span, span);
+        }
+    }
     for (_, closed) in responses.iter().flat_map(PairResponse::all_acting) {
         let dofs = closed.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         for (dof, taken) in dofs.zip(closed.taken).filter(|(dof, _)| *dof >= flow.dof(0)) {

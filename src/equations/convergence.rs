@@ -15,6 +15,7 @@
 //! which are differences of displacements over Δt. The distance of a model from the origin does not enter: positions are only
 //! subtracted from each other.
 
+use super::pore_flow;
 use super::trial::Trial;
 use super::{bars, links, supports};
 use crate::contact::response::PairResponse;
@@ -316,6 +317,9 @@ impl ConvergenceCriterion {
         for spring in &step.loads.springs {
             let node = spring.dof / 2;
             squares[node] += (spring.stiffness * u[spring.dof].abs().min(farthest(node))).powi(2);
+        }
+        for (dof, force) in pore_flow::held(model, trial, u) {
+            squares[dof / 2] += force * force;
         }
         let way: Vec<f64> =
             old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();

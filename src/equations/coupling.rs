@@ -139,7 +139,8 @@ impl Layout {
         let tied = self.tied(all.clone());
         let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
         let unsymmetric = self.all_unsymmetric(&pattern);
-        self.pattern = Arc::new(pattern.symmetric_but(unsymmetric));
+        let pressures = model.flow.as_ref().map_or(0..0, |flow| flow.first..flow.first + flow.count() / 2);
+        self.pattern = Arc::new(pattern.symmetric_but(unsymmetric).with_saddle(pressures));
         let mut blocks = std::mem::take(&mut self.blocks);
         blocks.clear();
         blocks.reserve_exact(self.starts.last().copied().unwrap_or(0));

@@ -97,6 +97,17 @@ pub(super) fn add(
     Ok(())
 }
 
+/// Flow out of what holds a pressure were that 0, as a force at its dof: so large are the parts of its balance, which cancel [F].
+pub(super) fn held(model: &Model, trial: Trial, u: &[f64]) -> Vec<(usize, f64)> {
+    let (Some(flow), span) = (&model.flow, span(trial)) else { return Vec::new() };
+    let outlets = trial.step.drains.iter().flat_map(|drain| {
+        let conductance = drain.kind.conductance();
+        drain.corners.iter().map(move |&(k, _, area)| (k, area * conductance))
+    });
+    let all = outlets.chain(channels::held(model, trial, u));
+    all.map(|(k, passes)| (flow.dof(k), flow.scales[k] * span * passes * flow.pressure(k, Some(u)).abs())).collect()
+}
+
 /// An element in an increment.
 struct Increment<'a> {
     flow: &'a PoreFlow,

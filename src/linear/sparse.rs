@@ -4,6 +4,7 @@
 //! among them. Values are never compared. A constrained dof has an equation of its own, A_dd x_d = b_d; what its column has elsewhere counts
 //! as on the right-hand side, and spoils no symmetry.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Sparsity pattern by nodes. Row and column nodes are the same set: the pattern is symmetric, the values only where it says so.
@@ -15,6 +16,8 @@ pub struct Pattern {
     rows: Vec<usize>,
     /// Whether values between each node and others of this kind, or its own, may be unsymmetric
     unsymmetric: Vec<bool>,
+    /// Nodes each of whose unknowns gives a stable system a negative eigenvalue, as multipliers and pressures do
+    saddle: Range<usize>,
 }
 
 /// Position of the 2×2 block of a (row node, column node) pair in the values.
@@ -60,12 +63,22 @@ impl Pattern {
             rows.extend_from_slice(list);
             starts.push(rows.len());
         }
-        Self { starts, rows, unsymmetric: vec![true; nodes] }
+        Self { starts, rows, unsymmetric: vec![true; nodes], saddle: 0..0 }
     }
 
     /// The same for values that are symmetric but between these nodes.
     pub fn symmetric_but(self, unsymmetric: Vec<bool>) -> Self {
         Self { unsymmetric, ..self }
+    }
+
+    /// The same with nodes each of whose unknowns gives a stable system a negative eigenvalue.
+    pub fn with_saddle(self, saddle: Range<usize>) -> Self {
+        Self { saddle, ..self }
+    }
+
+    /// Whether an unknown of a node gives a stable system a negative eigenvalue.
+    pub(super) fn is_of_saddle(&self, node: usize) -> bool {
+        self.saddle.contains(&node)
     }
 
     /// Flags of the nodes between which values may be unsymmetric.

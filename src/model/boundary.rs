@@ -110,6 +110,8 @@ pub enum Profile {
     X(Vec<[f64; 2]>),
     /// Pairs of y and value, y ascending
     Y(Vec<[f64; 2]>),
+    /// Pairs of run time and value, times ascending, where the run time is permitted; linear between, constant outside
+    Table(Vec<[f64; 2]>),
     /// A random field
     Random(Box<RandomField>),
     /// Uniform value
@@ -124,7 +126,7 @@ pub enum Profile {
 
 written!(
     Profile,
-    "a number, an expression in x, y such as \"1 + 0.1*x\", {\"x\": [[x, v], …]}, or {\"random\": {…}}",
+    "a number, an expression in x, y such as \"1 + 0.1*x\", {\"x\": [[x, v], …]}, {\"table\": [[t, v], …]}, or {\"random\": {…}}",
     number: Constant,
     text: Expression
 );
@@ -148,13 +150,23 @@ impl Profile {
             Self::Expression(expression) => expression.value(position, time),
             Self::X(table) => interpolate(table, position.x),
             Self::Y(table) => interpolate(table, position.y),
+            Self::Table(table) => interpolate(table, time),
             Self::Random(field) => field.value(position),
         }
     }
 
     /// Whether it varies in time.
     pub fn depends_on_time(&self) -> bool {
-        matches!(self, Self::Expression(expression) if expression.depends_on_time())
+        match self {
+            Self::Expression(expression) => expression.depends_on_time(),
+            _ => matches!(self, Self::Table(_)),
+        }
+    }
+
+    /// Times of a table.
+    pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
+        let table = if let Self::Table(table) = self { &table[..] } else { &[] };
+        table.iter().map(|row| row[0])
     }
 }
 

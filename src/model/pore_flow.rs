@@ -136,6 +136,16 @@ pub enum DrainKind {
     Flux,
 }
 
+impl DrainKind {
+    /// κ; 0 of a flux [L³/(F T)].
+    pub fn conductance(self) -> f64 {
+        match self {
+            Self::Conducts(conductance) | Self::Seeps(conductance) => conductance,
+            Self::Flux => 0.0,
+        }
+    }
+}
+
 impl Drain {
     /// Flow q out of the body at a place, and ∂q/∂p [L/T], [L³/(F T)].
     pub fn flow(&self, pressure: f64, at: Vector2<f64>, time: f64) -> [f64; 2] {

@@ -229,7 +229,8 @@ impl Step {
     /// Times of the tables by which supports and loads go.
     pub fn corners(&self) -> impl Iterator<Item = f64> + '_ {
         let motions = self.supports.iter().flat_map(|support| support.motion.drives());
-        self.loads.amplitudes().map(|amplitude| &amplitude.drive).chain(motions).flat_map(Drive::corners)
+        let outlets = self.drains.iter().flat_map(|drain| drain.value.corners());
+        self.loads.amplitudes().map(|amplitude| &amplitude.drive).chain(motions).flat_map(Drive::corners).chain(outlets)
     }
 
     /// The support that prescribes a dof: its own, or an inclined one of its node.

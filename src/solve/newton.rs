@@ -50,8 +50,6 @@ pub struct Settings {
     pub old_tangents: bool,
     /// Whether a line search is made where the residual stalls
     pub downhill: bool,
-    /// Negative eigenvalues that the tangent of an equilibrium has by nature: the pressures of water that flows
-    pub saddle: usize,
     /// Whether iterations that stall for long are given up, as a shorter increment may follow
     pub gives_up: bool,
 }
@@ -216,7 +214,7 @@ pub fn solve<E: Equations>(
             solution.x.iter_mut().for_each(|x| *x *= share);
         }
         u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u += x);
-        iterations.push(plan.iteration(&solution, settings.saddle));
+        iterations.push(plan.iteration(&solution));
         match equations.evaluate(&u, Request::Residual, system) {
             Ok(()) => {}
             Err(failure) if plan.factorized => return Err(NewtonFailure::Evaluation(failure)),
@@ -231,11 +229,6 @@ pub fn solve<E: Equations>(
     Ok(u)
 }
 
-/// Least number of negative eigenvalues beyond those that a tangent has by nature; where it has some, only that of a symmetric tangent is known.
-pub fn beyond(saddle: usize, all: Option<usize>, least: Option<usize>) -> Option<usize> {
-    if saddle == 0 { least } else { all.map(|negative| negative.saturating_sub(saddle)) }
-}
-
 /// Plan of the next correction.
 #[derive(Clone, Copy)]
 struct Plan {
@@ -247,15 +240,15 @@ struct Plan {
 
 impl Plan {
     /// Record of the correction; its residual is not known yet.
-    fn iteration(self, solution: &Solution, saddle: usize) -> Iteration {
+    fn iteration(self, solution: &Solution) -> Iteration {
         Iteration {
             residual: f64::NAN,
             correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
             linear_residual: solution.residual,
             factorized: self.factorized,
             perturbed_pivots: solution.perturbed_pivots,
-            negative_pivots: solution.negative_pivots.map(|negative| negative.saturating_sub(saddle)),
-            least_negative: beyond(saddle, solution.negative_pivots, solution.least_negative),
+            negative_pivots: solution.negative_pivots,
+            least_negative: solution.least_negative,
             fallback: solution.fallback,
             searched: self.searched,
         }

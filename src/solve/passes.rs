@@ -34,7 +34,7 @@
 use super::conduits::Water;
 use super::equilibrium::{Found, Solved, start_value};
 use super::failure::IncrementFailure;
-use super::{IterationRecord, Pass, Workspace, newton};
+use super::{IterationRecord, Pass, Workspace};
 use crate::contact::force::ContactState;
 use crate::equations::Trial;
 use crate::model::{Model, Scheme, State};
@@ -244,9 +244,7 @@ fn count_negative(trial: Trial, u: &[f64], last: Option<usize>, work: &mut Works
     let coupling = assembler.coupling();
     let evaluated = assembler.tangent(trial, u, false, system);
     let factorized = evaluated.is_ok() && solver.factorize(&system.tangent).is_ok();
-    let saddle = assembler.model().saddle();
-    let (all, least) = (solver.negative_pivots(), solver.least_negative());
-    let counted = if factorized { newton::beyond(saddle, all, least) } else { None };
+    let counted = if factorized { solver.least_negative() } else { None };
     // The order of elimination of what follows is as if nothing had been counted.
     assembler.couple(&coupling);
     counted

@@ -47,7 +47,6 @@ impl Watch {
             max_iterations: model.newton.max_iterations,
             old_tangents: model.aids.old_tangents,
             downhill: model.aids.downhill,
-            saddle: model.saddle(),
             gives_up: step.scheme.is_dynamic() && step.shorter(dt, 1).is_some(),
         };
         let seeks_floating = begins && unaided;

@@ -107,7 +107,9 @@ pub fn compared(case: &Value, places: &[&str]) -> [(f64, String); 2] {
             let alike = history.iter().filter(|(other, _)| kind(other) == kind(name)).flat_map(|(_, column)| column);
             let typical = alike.fold(0.0f64, |most, value| most.max(value.abs())) / value;
             let column = format!("d({name})/d({place})");
-            for (found, expected) in found[&column].iter().zip(&differences) {
+            // A body that is not there has no value.
+            let both = found[&column].iter().zip(&differences).filter(|(a, b)| !a.is_nan() || !b.is_nan());
+            for (found, expected) in both {
                 // Below a tenth of Q/θ a derivative is known relative to that.
                 let error = (found - expected).abs() / scale.max(0.1 * typical.abs()).max(f64::MIN_POSITIVE);
                 let worst = &mut worst[usize::from(!["force", "motion"].contains(&kind(name)))];

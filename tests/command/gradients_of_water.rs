@@ -168,16 +168,36 @@ fn by_times_and_held_places_are_refused() {
     }
 }
 
-/// Water along a contact that is solved with that of the bodies beside it has none.
+/// Water along a contact that leaks off into the bodies on both sides, which are pressed together and slide.
 #[test]
-fn beside_bodies_whose_water_flows_are_refused() {
-    let mut case = block(2, json!({"storage": 1, "transmissivity": 1, "viscosity": 1}), 1.0, [0.5, 0.5]);
-    case["bodies"]["block"]["pore_fluid"] =
-        json!({"bulk_modulus": 50, "porosity": 0.4, "permeability": 1, "unit_weight": 1});
-    case["contacts"]["base"]["initial"] = json!({"pressure": 100});
-    case["gradients"] = json!(places(&["storage"]));
-    let told = refused(&case);
-    assert!(told.contains("gradients: are not available of water that flows along a contact beside bodies"), "{told}");
+fn that_leaks_off_into_bodies_are_those_of_complete_runs() {
+    let soil = json!({"material": {"model": "hencky", "E": 90, "nu": 0.2}, "pore_fluid": {
+        "bulk_modulus": 500, "porosity": 0.4, "permeability": 0.1, "unit_weight": 1}});
+    let flow = json!({"storage": 0.02, "aperture": 0.1, "viscosity": 1e-3, "leak": {"coefficient": 0.01, "pressure": 0.1},
+                      "wells": [{"at": [0, 1], "pressure": 0.5}, {"at": [1, 1], "rate": 1e-2}]});
+    let mut case = json!({
+        "mesh": Blocks::default().rectangle("low", [5, 3], [0.0, 0.0], [1.2, 1.0]).rectangle("high", [4, 3], [0.0, 1.0], [1.0, 2.0]).json(),
+        "bodies": {"low": soil, "high": soil}, "watch": ["high_top"],
+        "contacts": {"base": {"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 2000},
+            "normal": {"alpha_n": 5000}, "fluid_pressure": {"flow": flow}, "dilatancy": {"rate": 0.05}, "initial": {"pressure": 1.0}}},
+        "steps": [{"name": "slide", "duration": 0.5, "dt": {"initial": 0.02, "max": 0.05}, "supports": [
+            {"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "high_top", "ux": {"rate": 0.02}}],
+            "loads": [{"on": "high_top", "dead_pressure": 1}], "drainage": [{"on": "high_top", "pressure": 0}]}],
+    });
+    let bodies = ["bodies.low.pore_fluid.permeability", "bodies.high.material.E", "contacts.base.friction.mu"];
+    let flow = places(&["storage", "aperture", "viscosity", "leak.coefficient", "wells[0].pressure", "wells[1].rate"]);
+    for seal in [1e3, 0.5] {
+        case["contacts"]["base"]["seal"] = json!(seal);
+        let places: Vec<&str> = flow
+            .iter()
+            .map(String::as_str)
+            .chain(bodies)
+            .chain(["contacts.base.seal", "contacts.base.dilatancy.rate"])
+            .collect();
+        let [main, others] = compared(&case, &places);
+        println!("{seal}: {main:?} {others:?}");
+        assert!(main.0 < 1e-6 && others.0 < 5e-6, "{seal}: {main:?} {others:?}");
+    }
 }
 
 /// A column of soil whose water flows out at the top, under a load.
@@ -209,6 +229,50 @@ fn of_consolidation_are_those_of_complete_runs() {
         println!("{model}: {main:?} {others:?}");
         assert!(main.0 < 1e-6 && others.0 < 5e-6, "{model}: {main:?} {others:?}");
     }
+}
+
+/// Bodies that come and go with their water, in a deformed model: by the numbers of what is removed, of what stays and of what comes.
+#[test]
+fn of_stages_are_those_of_complete_runs() {
+    let block = |body: &str, [left, right]: [f64; 2], [low, high]: [f64; 2], sides: Value| {
+        json!({"body": body, "corners": [[left, low], [right, low], [right, high], [left, high]], "elements": [(4.0 * (right - left)).round(), 4],
+               "sides": sides})
+    };
+    let soil = |pressure: Value| {
+        json!({"material": {"model": "hencky", "E": 0.9, "nu": 0.2}, "pore_fluid": {
+            "bulk_modulus": 50, "porosity": 0.4, "permeability": 1, "unit_weight": 1, "pressure": pressure}})
+    };
+    let case = json!({
+        "mesh": {"joined": [["dug", "ground", "fill"]], "blocks": [
+            block("ground", [0.0, 0.25], [0.0, 1.0], json!(["bottom", null, null, "side"])),
+            block("ground", [0.25, 0.5], [0.0, 1.0], json!(["bottom", "side", null, null])),
+            block("dug", [0.0, 0.25], [1.0, 1.5], json!([null, null, "crest", "side"])),
+            block("fill", [0.25, 0.5], [1.0, 1.5], json!([null, "side", "top", null]))]},
+        "bodies": {"ground": soil(json!(0)), "dug": soil(json!(0)), "fill": soil(json!(0))}, "watch": ["top", "crest", "bottom"],
+        "steps": [
+            {"name": "load", "duration": 0.2, "dt": {"initial": 0.02, "max": 0.05},
+             "supports": [{"on": "bottom", "ux": 0, "uy": 0}, {"on": "side", "ux": 0}],
+             "loads": [{"on": "crest", "dead_pressure": 0.05}], "drainage": [{"on": "crest", "pressure": 0}]},
+            {"name": "dig", "duration": 0.1, "dt": {"initial": 0.02}, "loads": [{"on": "crest", "dead_pressure": null}], "remove": ["dug"]},
+            {"name": "fill", "duration": 0.1, "dt": {"initial": 0.02}, "add": ["fill"]},
+            {"name": "drain", "duration": 0.5, "dt": {"initial": 0.01, "max": 0.05},
+             "loads": [{"on": "top", "dead_pressure": 0.05}], "drainage": [{"on": "top", "pressure": 0}]},
+        ],
+    });
+    let places = [
+        "bodies.ground.pore_fluid.permeability",
+        "bodies.ground.material.E",
+        "bodies.dug.pore_fluid.permeability",
+        "bodies.dug.material.E",
+        "bodies.fill.pore_fluid.permeability",
+        "bodies.fill.pore_fluid.bulk_modulus",
+        "bodies.fill.material.E",
+        "steps[0].loads[0].dead_pressure",
+        "steps[3].loads[0].dead_pressure",
+    ];
+    let [main, others] = compared(&case, &places);
+    println!("{main:?} {others:?}");
+    assert!(main.0 < 1e-6 && others.0 < 5e-6, "{main:?} {others:?}");
 }
 
 /// Terzaghi's column settles by U(c t/H²)/M, c = M k/γ: of a loaded column with stiff water, k ∂u/∂k = t ∂u/∂t, the difference of the column itself

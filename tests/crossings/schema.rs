@@ -52,7 +52,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     ),
     (&["measured", "file"], "a table in a file: tests/time/fluid_pressure.rs"),
     (
-        &["permeability_y", "weighs", "capillary", "head", "impervious", "consolidation", "seal"],
+        &["permeability_y", "weighs", "capillary", "head", "impervious", "consolidation", "seal", "open_pressure"],
         "water that weighs, that comes and goes, and seals: tests/solver/consolidation.rs, staged_water.rs, wet_contacts.rs, wet_conduits.rs, tests/time/saturated.rs",
     ),
     (&["clearance"], "a gap that is not that of the mesh: tests/contact/validation.rs"),

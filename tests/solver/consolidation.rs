@@ -133,6 +133,32 @@ fn increments_end_at_the_corners_of_tables() {
     assert!(run.states.len() < 120, "{} increments", run.states.len());
 }
 
+/// A pressure that is prescribed by a table at the top, after a load of 1: Duhamel's integral of Terzaghi's series over the rates of the table. Increments
+/// end at its times.
+#[test]
+fn a_table_prescribes_a_pressure_in_time() {
+    let mut case = column("q8", 8, json!({"initial": 0.004}));
+    case["steps"][0]["duration"] = json!(0.3);
+    let rates = [(0.0, 0.105, 0.5 / 0.105), (0.105, 0.2, -0.5 / 0.095)];
+    case["steps"][0]["drainage"] = json!([{"on": "soil_top", "pressure": {"table": [[0, 0], [0.105, 0.5], [0.2, 0]]}}]);
+    let run = finish(&case);
+    for time in [0.105, 0.2, 0.3] {
+        let mut expected = terzaghi(0.5, time)[0];
+        for (from, to, rate) in rates {
+            let end = time.min(to);
+            let middle = |k: u32| from + (f64::from(k) + 0.5) / 400.0 * (end - from);
+            let risen: f64 = (0..400).map(|k| 1.0 - terzaghi(0.5, time - middle(k))[0]).sum();
+            expected += if end > from { rate * (end - from) / 400.0 * risen } else { 0.0 };
+        }
+        let found = pressure(&run, at(&run, time), [0.0, 0.5]);
+        println!("t = {time}: p {found:.5} ({expected:.5})");
+        close("p", found, expected, 5e-3);
+    }
+    case["steps"][0]["drainage"] = json!([{"on": "soil_top", "pressure": {"table": [[0, 0], [0, 1]]}}]);
+    let message = refusal(&case);
+    assert!(message.contains("steps[0].drainage[0].pressure.table: the times of the table must increase"), "{message}");
+}
+
 /// A flux that only the volume of the body limits is reported, and not one beside a side whose pressure is prescribed.
 #[test]
 fn a_flux_without_a_prescribed_pressure_is_reported() {

@@ -24,8 +24,7 @@ fn root_or_shorter(start: f64, gives_up: bool, equation: impl Fn(f64) -> Result<
     let pattern = std::sync::Arc::new(Pattern::new(1, std::iter::once(&[0usize][..])));
     let tangent = SparseMatrix::zero(pattern);
     let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };
-    let settings =
-        Settings { tolerance: 1e-12, max_iterations: 30, old_tangents: true, saddle: 0, downhill: true, gives_up };
+    let settings = Settings { tolerance: 1e-12, max_iterations: 30, old_tangents: true, downhill: true, gives_up };
     let mut iterations = Vec::new();
     let found = solve(
         &mut Unknown(equation),

@@ -63,32 +63,57 @@ fn the_straight_branch_is_reported_from_eulers_load_on() {
     assert!(warning.contains("up to 1 negative eigenvalue"), "{warning}");
 }
 
+/// A case with a body far away that slides on another.
+fn beside_what_slides(mut case: Value) -> Value {
+    let block = |body: &str, x: [f64; 2], y: f64, sides: [&str; 2]| {
+        json!({"body": body, "kind": "Q4", "elements": [3, 1], "sides": [sides[0], null, sides[1], null],
+               "corners": [[x[0], y], [x[1], y], [x[1], y + 1.0], [x[0], y + 1.0]]})
+    };
+    let others =
+        [block("bed", [100.0, 104.0], 0.0, ["foot", "ground"]), block("slider", [101.0, 103.0], 1.0, ["sole", "head"])];
+    case["mesh"]["blocks"].as_array_mut().expect("blocks").extend(others);
+    let material = case["bodies"]["beam"].clone();
+    (case["bodies"]["bed"], case["bodies"]["slider"]) = (material.clone(), material);
+    case["contacts"] = json!({"far": {"slave": "sole", "master": "ground", "friction": {"law": "coulomb", "mu": 0.3}}});
+    let held = [json!({"on": "foot", "ux": 0, "uy": 0}), json!({"on": "head", "ux": 0.05, "uy": -0.02})];
+    case["steps"][0]["supports"].as_array_mut().expect("supports").extend(held);
+    case
+}
+
 /// A body far away that slides on another says nothing of the beam, whose own eigenvalues are counted as before, although the tangent as
 /// a whole is not symmetric: the stable branch, where it was 1.07; and the straight beam is reported beside it.
 #[test]
 fn what_slides_elsewhere_hides_no_instability() {
-    let beside = |mut case: Value| {
-        let block = |body: &str, x: [f64; 2], y: f64, sides: [&str; 2]| {
-            json!({"body": body, "kind": "Q4", "elements": [3, 1], "sides": [sides[0], null, sides[1], null],
-                   "corners": [[x[0], y], [x[1], y], [x[1], y + 1.0], [x[0], y + 1.0]]})
-        };
-        let others = [
-            block("bed", [100.0, 104.0], 0.0, ["foot", "ground"]),
-            block("slider", [101.0, 103.0], 1.0, ["sole", "head"]),
-        ];
-        case["mesh"]["blocks"].as_array_mut().expect("blocks").extend(others);
-        let material = case["bodies"]["beam"].clone();
-        (case["bodies"]["bed"], case["bodies"]["slider"]) = (material.clone(), material);
-        case["contacts"] =
-            json!({"far": {"slave": "sole", "master": "ground", "friction": {"law": "coulomb", "mu": 0.3}}});
-        let held = [json!({"on": "foot", "ux": 0, "uy": 0}), json!({"on": "head", "ux": 0.05, "uy": -0.02})];
-        case["steps"][0]["supports"].as_array_mut().expect("supports").extend(held);
-        case
-    };
-    let (run, warnings) = message(&beside(beam(0.05, 2.0, json!({"initial": 0.1}))));
+    let (run, warnings) = message(&beside_what_slides(beam(0.05, 2.0, json!({"initial": 0.1}))));
     close("end force", run.reaction("right", run.last())[0], -0.1181, 1e-2);
     assert!(!is_unstable(&warnings), "{warnings:?}");
-    assert!(is_unstable(&message(&beside(beam(0.0, 0.1, json!({"initial": 0.1, "max": 0.1})))).1));
+    assert!(is_unstable(&message(&beside_what_slides(beam(0.0, 0.1, json!({"initial": 0.1, "max": 0.1})))).1));
+}
+
+/// Nor does water that flows freely through all of them: each pressure gives the tangent a negative eigenvalue, and those beyond are told, with and
+/// without something that slides.
+#[test]
+fn water_hides_no_instability() {
+    let strain = 4.0 * std::f64::consts::PI.powi(2) / 12.0 * (0.5f64 / 20.0).powi(2);
+    let wet = |times: f64, slides: bool| {
+        let mut case = beam(0.0, times * strain * 20.0, json!({"initial": 0.1, "max": 0.1}));
+        case["bodies"]["beam"]["pore_fluid"] =
+            json!({"bulk_modulus": 1e4, "porosity": 0.5, "permeability": 1e6, "unit_weight": 1});
+        case["steps"][0]["drainage"] = json!([{"on": "left", "pressure": 0}]);
+        if slides {
+            case = beside_what_slides(case);
+            case["steps"][0]["drainage"].as_array_mut().expect("entries").push(json!({"on": "foot", "pressure": 0}));
+        }
+        message(&case).1
+    };
+    for slides in [false, true] {
+        assert!(!is_unstable(&wet(0.9, slides)), "{slides}");
+        let warnings = wet(2.0, slides);
+        let warning = warnings.iter().find(|warning| warning.contains("equilibria are unstable")).expect("a warning");
+        let since = warning.split("t = ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a time");
+        close("since", since.parse().expect("a number"), 0.5, 0.03);
+        assert!(warning.contains("up to 1 negative eigenvalue"), "{warning}");
+    }
 }
 
 /// A straight column, clamped at one end, at the other held across only and pressed by a pressure, which follows the surface: the tangent

@@ -7,7 +7,9 @@ use crate::terms::{arbitrary_displacement, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::model::Model;
 use fecontact::model::state::{LastIncrement, State};
-use fecontact::run::{Saved, Simulation};
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
+use fecontact::run::{Saved, Simulation, run};
 use serde_json::{Value, json};
 
 /// Soil of stiffness M = 1 whose water is nearly incompressible and flows with c = 1.
@@ -65,15 +67,17 @@ fn balance(run: &Finished) {
 #[test]
 fn a_closed_cut_does_not_disturb_a_column() {
     for (kind, counts) in [("q4", [6, 6]), ("q8", [4, 4]), ("q4", [6, 5])] {
-        let run = finish(&cut_column(kind, counts, smooth()));
+        let mut cut = cut_column(kind, counts, smooth());
+        cut["steps"][0]["loads"][0]["dead_pressure"] = json!("0.1");
+        let run = finish(&cut);
         let blocks = Blocks::default().rectangle("low", [2, counts[0] + counts[1]], [0.0, 0.0], [0.25, 1.0]);
-        let mut whole = cut_column(kind, counts, smooth());
+        let mut whole = cut;
         whole.as_object_mut().expect("a case").remove("contacts");
         whole["mesh"] = mesh(&blocks, kind);
         whole["bodies"].as_object_mut().expect("bodies").remove("high");
         whole["steps"][0]["supports"] =
             json!([{"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "low_left", "ux": 0}, {"on": "low_right", "ux": 0}]);
-        whole["steps"][0]["loads"] = json!([{"on": "low_top", "dead_pressure": "1"}]);
+        whole["steps"][0]["loads"] = json!([{"on": "low_top", "dead_pressure": "0.1"}]);
         whole["steps"][0]["drainage"] = json!([{"on": "low_top", "pressure": 0}]);
         let one = finish(&whole);
         let mut worst = 0.0f64;
@@ -87,12 +91,12 @@ fn a_closed_cut_does_not_disturb_a_column() {
             }
         }
         println!("{kind}, {counts:?}: largest difference of p {worst:.1e}");
-        assert!(worst < if counts[0] == counts[1] { 5e-4 } else { 2e-3 }, "{kind}, {counts:?}: {worst}");
+        assert!(worst < if counts[0] == counts[1] { 5e-5 } else { 2e-4 }, "{kind}, {counts:?}: {worst}");
         balance(&run);
         // What the surfaces carry is what the water leaves.
         let last = run.last();
         for state in &last.contacts[0] {
-            close("p + p_w", state.contact_pressure() + state.fluid, 1.0, 2e-3);
+            close("p + p_w", state.contact_pressure() + state.fluid, 0.1, 2e-4);
         }
         close("energy", last.energy.error(), 0.0, 1e-6 * last.energy.external_work);
     }
@@ -106,16 +110,17 @@ fn a_seal_holds_back_water_by_its_number() {
         contact["seal"] = json!(conductance);
         let mut case = cut_column("q4", [3, 3], contact);
         case["steps"][0]["duration"] = json!(100);
-        case["steps"][0]["dt"] = json!({"initial": 0.5, "max": 20, "pore_pressure": 0.01});
-        case["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "2"}]);
-        case["steps"][0]["drainage"] = json!([{"on": "high_top", "pressure": 0}, {"on": "low_bottom", "pressure": 1}]);
+        case["steps"][0]["dt"] = json!({"initial": 0.5, "max": 20, "pore_pressure": 1e-3});
+        case["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "0.2"}]);
+        case["steps"][0]["drainage"] =
+            json!([{"on": "high_top", "pressure": 0}, {"on": "low_bottom", "pressure": 0.1}]);
         let run = finish(&case);
-        let q = if conductance > 0.0 { 1.0 / (1.0 + 1.0 / conductance) } else { 0.0 };
-        close("flow", run.last().water.outlets[0].rate, 0.25 * q, 1e-5);
-        close("flow in", run.last().water.outlets[1].rate, -0.25 * q, 1e-5);
+        let q = if conductance > 0.0 { 0.1 / (1.0 + 1.0 / conductance) } else { 0.0 };
+        close("flow", run.last().water.outlets[0].rate, 0.25 * q, 1e-6);
+        close("flow in", run.last().water.outlets[1].rate, -0.25 * q, 1e-6);
         let [below, above] = ["low", "high"].map(|body| pressure(&run, run.last(), body, [0.0, 0.5]));
-        close("p below", below, 1.0 - 0.5 * q, 1e-5);
-        close("p above", above, 0.5 * q, 1e-5);
+        close("p below", below, 0.1 - 0.5 * q, 1e-6);
+        close("p above", above, 0.5 * q, 1e-6);
         balance(&run);
     }
 }
@@ -209,6 +214,94 @@ fn the_tangent_is_that_of_the_residual() {
     }
 }
 
+/// The same where surfaces that part drain, in the range of openings over which the drain grows.
+#[test]
+fn the_tangent_is_that_of_the_residual_of_what_drains() {
+    for (kind, more) in [
+        ("q4", json!({})),
+        ("q8", json!({"seal": 0.4})),
+        ("q4", json!({"sliding": "small"})),
+        ("q8", json!({"method": "node_to_segment"})),
+    ] {
+        let contact = json!({"slave": "high_bottom", "master": "low_top", "friction": {"law": "frictionless"}, "normal": {"alpha_n": 20}, "open_pressure": 0.4});
+        let (mut model, state, u) = strained(with(contact, &more), kind, "plane_strain", 0.02);
+        let pair = &mut Arc::get_mut(&mut model).expect("nobody else has it").contacts[0];
+        let open = pair.seam.as_mut().and_then(|seam| seam.open.as_mut()).expect("it drains");
+        (open.aperture, open.conductance) = (0.05, 2.0);
+        let error = tangent_error(&model, Trial::new(&state, &model.steps[0], 0.3, 0.2), &u, 1e-6);
+        println!("{kind}, {more}: {error:.1e}");
+        assert!(error < 5e-6, "{kind}, {more}: {error:.1e}");
+    }
+}
+
+/// A column of height 0.5 under a load on its top, below another body that is apart from it by 0.1.
+fn below_a_gap(kind: &str, load: f64, contact: Value) -> Value {
+    let blocks = Blocks::default().rectangle("low", [2, 8], [0.0, 0.0], [0.25, 0.5]).rectangle(
+        "high",
+        [2, 2],
+        [0.0, 0.6],
+        [0.25, 1.0],
+    );
+    json!({
+        "mesh": mesh(&blocks, kind), "bodies": {"low": soil(), "high": soil()}, "contacts": {"cut": contact},
+        "steps": [{"name": "load", "duration": 0.125, "dt": {"initial": 0.000625}, "supports": [
+            {"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "low_left", "ux": 0}, {"on": "low_right", "ux": 0}, {"on": "high", "ux": 0, "uy": 0}],
+            "loads": [{"on": "low_top", "dead_pressure": format!("{load}")}]}],
+    })
+}
+
+/// Terzaghi (1943) at T = 0.5: surfaces that are apart drain, to air or to water that presses on them, as a side does where that pressure is prescribed. Their
+/// outflow is the settlement, less what comes into the gap.
+#[test]
+fn surfaces_that_are_apart_are_drained() {
+    for (load, outside) in [(0.1, 0.0), (0.1, 0.04), (-0.1, 0.0)] {
+        let contact = json!({"slave": "high_bottom", "master": "low_top", "friction": {"law": "frictionless"}, "open_pressure": outside});
+        let run = finish(&below_a_gap("q8", load, contact));
+        let last = run.last();
+        let found = -last.displacement[2 * run.nodes("low_top")[0] + 1] / 0.5;
+        let p = pressure(&run, last, "low", [0.0, 0.0]);
+        println!("load {load}, {outside}: settles by {found:.5}, p {p:.5}");
+        close("settlement", found, 0.76395 * load, 3e-4);
+        close("p at the base", p, outside + 0.37078 * load, 5e-4);
+        close("outflow", last.water.outlets[0].volume, 0.0, 1e-6);
+        balance(&run);
+    }
+}
+
+/// Water of the pressure 0.03 at the base of a column that bears 0.01 lifts its upper half until what flows out between the halves leaves it the pressure of
+/// the load: it flows up by (0.03 − 0.01)/½ per area, half of it through the upper half. In increments of any length it comes to that, and on the way
+/// they come to one course: flow between the halves at t = 0.05 by increments of 1/20, 1/80, 1/320 and 1/1280.
+#[test]
+fn what_drains_regulates_an_opening() {
+    let lifted = |kind: &str, method: &str, dt: f64| {
+        let mut case = cut_column(kind, [4, 4], with(smooth(), &json!({"open_pressure": 0, "method": method})));
+        case["steps"][0]["duration"] = json!(1);
+        case["steps"][0]["dt"] = json!({"initial": dt});
+        case["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "0.01"}]);
+        case["steps"][0]["drainage"] =
+            json!([{"on": "high_top", "pressure": 0}, {"on": "low_bottom", "pressure": 0.03}]);
+        case["newton"] = json!({"tolerance": 1e-10});
+        let run = finish(&case);
+        let last = run.last();
+        // Points of a quadratic edge do not open alike.
+        close("p", pressure(&run, last, "low", [0.0, 0.5]), 0.01, if kind == "q8" { 3e-4 } else { 1e-5 });
+        let [between, above, below] = [0, 1, 2].map(|k| last.water.outlets[k].rate / 0.25);
+        println!("{kind}, {dt}: {between:.6} {above:.6} {below:.6}, {:?} iterations", run.iterations.iter().max());
+        let flows = [(between, 0.02), (above, 0.02), (below, -0.04)];
+        flows.iter().for_each(|(q, expected)| close("flow", *q, *expected, 2e-5));
+        balance(&run);
+        run
+    };
+    lifted("q8", "mortar", 0.01);
+    for method in ["mortar", "node_to_segment"] {
+        let early = [0.05, 0.0125, 0.003125, 0.00078125]
+            .map(|dt| lifted("q4", method, dt).at(0.05).water.outlets[0].rate / 0.25);
+        println!("{method}: {early:.5?}");
+        let off = [0, 1, 2].map(|k| (early[k] / early[3] - 1.0).abs());
+        assert!(off[1] < 0.3 * off[0] && off[2] < 0.01, "{method}: {early:?}");
+    }
+}
+
 /// Friction goes by what the water leaves: a slab on clay that is loaded at once slides under μ times what has been taken over so far.
 #[test]
 fn friction_grows_as_water_leaves() {
@@ -261,7 +354,59 @@ fn no_water_is_lost_in_sliding() {
     }
 }
 
-/// A run that was stopped goes on to the same bits, and Newton's method converges with its square.
+/// Residuals of the iterations of every increment, and whether each has the tangent of the one before it.
+#[derive(Default)]
+struct Residuals(Vec<Vec<(f64, bool)>>);
+
+impl Observer for Residuals {
+    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let each = attempt.iterations.iter().map(|iteration| &iteration.newton);
+        self.0.push(each.map(|newton| (newton.residual, newton.factorized)).collect());
+        Ok(())
+    }
+}
+
+/// Newton's method converges with its square beside water, closed and sliding, and where surfaces part and drain: the best order of three residuals that
+/// fall, in each increment that has so many above round-off.
+#[test]
+fn newtons_method_converges_with_its_square() {
+    let mut sliding = cut_column(
+        "q4",
+        [4, 3],
+        json!({"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.4, "alpha_t": 1000},
+        "normal": {"alpha_n": 1000}, "initial": {"pressure": 0.1}}),
+    );
+    sliding["steps"][0]["supports"] =
+        json!([{"on": "low", "ux": 0}, {"on": "low_bottom", "uy": 0}, {"on": "high_top", "ux": {"rate": 0.1}}]);
+    sliding["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "0.2"}]);
+    let mut lifted = cut_column("q4", [4, 4], with(smooth(), &json!({"open_pressure": 0})));
+    lifted["steps"][0]["loads"] = json!([{"on": "high_top", "dead_pressure": "0.1"}]);
+    lifted["steps"][0]["drainage"] = json!([{"on": "high_top", "pressure": 0}, {"on": "low_bottom", "pressure": 0.3}]);
+    for (what, mut case) in [("sliding", sliding), ("lifted", lifted)] {
+        for body in ["low", "high"] {
+            case["bodies"][body]["material"] = json!({"model": "hencky", "E": 0.9, "nu": 0.2});
+        }
+        case["steps"][0]["dt"] = json!({"initial": 0.05});
+        case["newton"] = json!({"tolerance": 1e-13, "max_iterations": 40});
+        let mut model = model(&case);
+        model.aids.old_tangents = false;
+        let mut residuals = Residuals::default();
+        run(&Arc::new(model), &mut [&mut residuals]).1.expect("it runs");
+        let mut orders = Vec::new();
+        for increment in &residuals.0 {
+            let falls = |three: &&[(f64, bool)]| {
+                three.iter().all(|one| one.1) && (3e-7..0.1 * three[0].0).contains(&three[1].0)
+            };
+            let order = |three: &[(f64, bool)]| (three[2].0 / three[1].0).ln() / (three[1].0 / three[0].0).ln();
+            orders.extend(increment.windows(3).filter(falls).map(order).reduce(f64::max));
+        }
+        println!("{what}: {orders:.2?}");
+        let slow = orders.iter().filter(|order| **order < 1.7).count();
+        assert!(orders.len() >= 5 && slow <= 1, "{what}: {orders:.2?}");
+    }
+}
+
+/// A run that was stopped goes on to the same bits.
 #[test]
 fn a_stopped_run_goes_on_to_the_same_bits() {
     let mut case = cut_column("q4", [4, 3], smooth());
@@ -278,6 +423,40 @@ fn a_stopped_run_goes_on_to_the_same_bits() {
     let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
     while run.next_increment().expect("it runs").is_some() {}
     assert!(run.state() == whole.last(), "a resumed run has other bits");
+}
+
+/// Ground under hydrostatic water that is cut upright to its surface: by mortar the cut begins under the effective stress at each depth, which is none
+/// at the surface, and nothing moves.
+#[test]
+fn a_cut_through_ground_below_water_rests() {
+    let blocks = Blocks::default().rectangle("near", [2, 4], [-2.0, -3.0], [0.0, 0.0]).rectangle(
+        "far",
+        [2, 3],
+        [0.0, -3.0],
+        [2.0, 0.0],
+    );
+    let mut body = json!({"material": {"model": "linear", "E": 1000, "nu": 0.3, "density": 2}});
+    body["pore_fluid"] = json!({"bulk_modulus": 1e5, "porosity": 0.4, "permeability": 0.01, "unit_weight": 10, "weighs": true, "pressure": "-10*y"});
+    body["initial_stress"] = json!({"geostatic": {"surface": 0, "weight": 10, "K0": 0.5}});
+    for kind in ["q4", "q8"] {
+        let case = json!({
+            "mesh": mesh(&blocks, kind), "bodies": {"near": body, "far": body},
+            "contacts": {"cut": {"slave": "near_right", "master": "far_left", "method": "mortar", "friction": {"law": "coulomb", "mu": 0.3}, "initial": {"of_bodies": true}}},
+            "steps": [{"name": "rest", "duration": 1, "dt": {"initial": 0.2}, "supports": [
+                {"on": "near_bottom", "ux": 0, "uy": 0}, {"on": "near_left", "ux": 0}, {"on": "far_bottom", "ux": 0, "uy": 0}, {"on": "far_right", "ux": 0}],
+                "loads": [{"on": "near", "gravity": {"y": "-10"}}, {"on": "far", "gravity": {"y": "-10"}}],
+                "drainage": [{"on": "near_top", "head": 0}, {"on": "far_top", "head": 0}]}],
+        });
+        let run = finish(&case);
+        let (pair, x) = (&run.model.contacts[0], run.model.mesh.undeformed());
+        for (point, state) in pair.points.iter().zip(&run.states[0].contacts[0]) {
+            close("p'", state.contact_pressure(), -5.0 * point.at(&x).y, 1e-6);
+            close("p_w", state.fluid, -10.0 * point.at(&x).y, 1e-6);
+        }
+        let moved = run.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+        println!("{kind}: {moved:.1e}");
+        assert!(moved < 1e-9, "{kind}: {moved:e}");
+    }
 }
 
 /// Water flows through a tie; one side alone bears its water, and lets none pass; what makes no sense is refused.
@@ -302,6 +481,11 @@ fn sides_of_every_kind() {
     wrong["contacts"]["cut"]["seal"] = json!(-1);
     let message = refusal(&wrong);
     assert!(message.contains("contacts.cut.seal: is -1"), "{message}");
+    wrong["contacts"]["cut"] = smooth();
+    wrong["contacts"]["cut"]["open_pressure"] = json!(0);
+    wrong["contacts"]["cut"]["fluid_pressure"] = json!(1);
+    let message = refusal(&wrong);
+    assert!(message.contains("contacts.cut.open_pressure: is for a contact of bodies whose water flows"), "{message}");
 }
 
 /// By default the seal lets through a thousand times what the shortest element beside the contact does: pressures are nearly continuous there,

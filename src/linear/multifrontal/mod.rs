@@ -180,12 +180,16 @@ impl LinearSolver for Multifrontal {
 
     fn negative_pivots(&self) -> Option<usize> {
         let symbolic = self.symbolic.as_ref()?;
-        symbolic.fronts.iter().all(|front| front.symmetric).then(|| self.factors.negative())
+        let negative = || self.factors.negative().saturating_sub(symbolic.of_saddle(true));
+        symbolic.fronts.iter().all(|front| front.symmetric).then(negative)
     }
 
     fn least_negative(&self) -> Option<usize> {
-        let fronts = &self.symbolic.as_ref()?.fronts;
-        let odd = fronts.iter().filter(|front| !front.symmetric).count() > 0 && self.factors.is_odd() != self.reversed;
-        (self.factors.replaced() == 0).then(|| self.factors.negative() + usize::from(odd))
+        let symbolic = self.symbolic.as_ref()?;
+        let [by_nature, of_rest] = [true, false].map(|symmetric| symbolic.of_saddle(symmetric));
+        let odd = symbolic.fronts.iter().any(|front| !front.symmetric)
+            && (self.factors.is_odd() != self.reversed) != (of_rest % 2 == 1);
+        let negative = self.factors.negative().saturating_sub(by_nature);
+        (self.factors.replaced() == 0).then_some(negative + usize::from(odd))
     }
 }

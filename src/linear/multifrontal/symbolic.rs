@@ -57,6 +57,13 @@ impl Symbolic {
         Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests })
     }
 
+    /// Number of the saddle's unknowns in symmetric fronts, or in the others.
+    pub fn of_saddle(&self, symmetric: bool) -> usize {
+        let pivots = |front: &Front| front.first..front.first + front.pivots;
+        let fronts = self.fronts.iter().filter(|front| front.symmetric == symmetric);
+        fronts.flat_map(pivots).filter(|dof| self.pattern.is_of_saddle(self.nodes[dof / 2])).count()
+    }
+
     /// Number of values in the factors.
     pub fn values(&self) -> usize {
         self.fronts.last().map_or(0, |front| front.values.end)

@@ -113,6 +113,9 @@ pub struct Contact {
     /// what passes through an element adjacent to it, so that the pressure has no jump. Of two bodies whose water flows (`permeability`); where water flows along the
     /// contact, from there into each of the bodies whose water flows [L³/(F T)]
     pub seal: Option<f64>,
+    /// p̄: surfaces that part drain to a place of this pressure, 0 for air, and are filled from there; unless given, they are filled from the pores. κ of the drain grows with the third
+    /// power of the opening. Of bodies whose water flows (`permeability`) [F/L²]
+    pub open_pressure: Option<f64>,
     /// Friction parameters that vary along the slave and in time
     #[serde(default)]
     pub along: Along,
@@ -278,6 +281,7 @@ impl Contact {
             radiation_damping: Radiation::default(),
             fluid_pressure: None,
             seal: None,
+            open_pressure: None,
             along: Along::default(),
             initial: None,
         }
@@ -369,6 +373,9 @@ setters! { contact: Contact;
 
     /// Sets κ of a seal between two bodies whose water flows [L³/(F T)].
     seal(conductance: f64) { contact.seal = Some(conductance); }
+
+    /// Drains surfaces that part to a place of this pressure [F/L²].
+    open_pressure(pressure: f64) { contact.open_pressure = Some(pressure); }
 
     /// Sets the pressure p_w of a fluid from a table of time and place.
     measured_pressure(measured: Measured) { contact.fluid_pressure = Some(FluidPressure::Measured(measured)); }
@@ -484,6 +491,7 @@ pub fn check_tied(contact: &Contact, place: &str) -> Checked<()> {
         ("wear", contact.wear.is_some()),
         ("radiation_damping", contact.radiation_damping != Radiation::OfBodies(false)),
         ("fluid_pressure", contact.fluid_pressure.is_some()),
+        ("open_pressure", contact.open_pressure.is_some()),
         ("along", !contact.along.is_empty()),
         ("initial", contact.initial.is_some()),
     ];

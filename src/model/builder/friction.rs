@@ -209,7 +209,7 @@ impl Friction {
     fn varies_in_place_and_time(&self) -> bool {
         let of_both = |profile: &Profile| match profile {
             Profile::Expression(expression) => expression.depends_on_time() && expression.depends_on_position(),
-            Profile::Constant(_) | Profile::X(_) | Profile::Y(_) | Profile::Random(_) => false,
+            Profile::Constant(_) | Profile::X(_) | Profile::Y(_) | Profile::Table(_) | Profile::Random(_) => false,
         };
         self.varying.iter().any(|named| of_both(&named.profile))
     }
@@ -371,6 +371,9 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
         }
         Profile::X(table) => ("x", table),
         Profile::Y(table) => ("y", table),
+        Profile::Table(table) => {
+            return check_table(table, "time").map_err(|error| ModelError::new(format!("{place}.table"), error));
+        }
     };
     check_table(table, name).map_err(|error| ModelError::new(format!("{place}.{name}"), error))
 }

@@ -287,7 +287,9 @@ impl Builder {
         let channels = conduit::channels(&self.contacts, &bodies, &self.mesh);
         let mut flow = pore_flow::flow(&bodies, &solids, &channels, &mut self.mesh)?;
         flow.iter_mut().for_each(|flow| {
-            flow.outlets = pore_flow::outlets(self.steps.iter().flat_map(|step| &step.drainage), &self.mesh)
+            let drained = self.contacts.iter().filter(|contact| contact.open_pressure.is_some());
+            flow.outlets = drained.map(|contact| contact.name.clone()).collect();
+            flow.outlets.extend(pore_flow::outlets(self.steps.iter().flat_map(|step| &step.drainage), &self.mesh));
         });
         let mut model = Model {
             memories: Memories::new(&solids, &bodies, &body_of_element),

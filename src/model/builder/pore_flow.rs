@@ -32,7 +32,7 @@ use crate::model::{Body, Model};
 pub struct DrainageInput {
     /// Group of edges or nodes, or a single node, of bodies whose water flows
     pub on: Place,
-    /// p_w that is prescribed there, by the reference position x, y and in expressions the run time t; 0 where water drains freely [F/L²]
+    /// p_w that is prescribed there, by the reference position x, y or the run time t; 0 where water drains freely [F/L²]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<Profile>,
     /// Level of free water that stands there: p_w = γ_w (head − y) of the reference position, of water that `weighs` [L]

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::contact::Contact;
-use super::error::{Checked, check_not_negative, refuse_if};
+use super::error::{Checked, check_finite, check_not_negative, refuse_if};
 use super::fluid::FluidPressure;
 use crate::contact::conduit::Conduit;
-use crate::contact::seam::{PressurePart, Seam};
+use crate::contact::seam::{Drained, PressurePart, Seam};
 use crate::mesh::{Edge, Group};
 use crate::model::Model;
 use crate::model::pore_flow::WetElement;
@@ -15,15 +15,19 @@ use crate::model::pore_flow::WetElement;
 /// pressures, and of the more permeable one into what is between them: the jump is a thousandth of what the pressure falls by in that element at most [-]
 const NEARLY_CONTINUOUS: f64 = 1e3;
 
+/// Opening from which on surfaces that part drain as well as that, over the size of the smallest element beside them [-]
+const OPEN: f64 = 1e-4;
+
 /// The water on both sides of a contact, and along it; `None` where none flows in the bodies, or where its pressure is given.
 pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &Model) -> Checked<Option<Seam>> {
     let mut nodes = BTreeMap::new();
     let mut most = [0.0f64; 2];
-    let mut sides = 0;
+    let (mut sides, mut size) = (0, f64::INFINITY);
     let groups = [Some(contact.slave.as_str()), contact.master_group()];
     let (Some(flow), None | Some(FluidPressure::Flow(_)), false) =
         (&model.flow, &contact.fluid_pressure, contact.is_own())
     else {
+        check_open(place, contact, false)?;
         return without(place, contact);
     };
     let part = |number: usize, share: f64| PressurePart {
@@ -49,6 +53,7 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
         for (edge, wet) in wet {
             let mobility = wet.mobility[0].max(wet.mobility[1]);
             most[side] = most[side].max(mobility / wet.size);
+            size = size.min(wet.size);
             let part = |node: usize, share: f64| Some(part(flow.of_node[node]?, share));
             let [start, end] = [edge.nodes[0], edge.nodes[1]];
             for &node in &edge.nodes {
@@ -71,7 +76,22 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
     let given = contact.seal.unwrap_or(NEARLY_CONTINUOUS * governs);
     check_not_negative(&format!("{place}.seal"), given)?;
     let conductance = if passes { given } else { 0.0 };
-    Ok((sides > 0).then_some(Seam { nodes, channel, conductance, beside }))
+    check_open(place, contact, sides > 0 && channel.is_empty())?;
+    let open = contact.open_pressure.map(|pressure| Drained {
+        pressure,
+        conductance: NEARLY_CONTINUOUS * beside,
+        aperture: OPEN * size,
+        outlet: flow.outlets.iter().position(|name| *name == contact.name).unwrap_or_default(),
+    });
+    Ok((sides > 0).then_some(Seam { nodes, channel, conductance, open, beside }))
+}
+
+/// Refuses a pressure of what opens where that does not drain.
+fn check_open(place: &str, contact: &Contact, drains: bool) -> Checked<()> {
+    let place = format!("{place}.open_pressure");
+    let message = "is for a contact of bodies whose water flows, without a `fluid_pressure`: leave it out";
+    refuse_if(contact.open_pressure.is_some() && !drains, &place, message)?;
+    check_finite(&place, contact.open_pressure)
 }
 
 /// Refuses a seal where nothing can flow across.
