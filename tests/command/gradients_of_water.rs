@@ -168,35 +168,40 @@ fn by_times_and_held_places_are_refused() {
     }
 }
 
-/// Water along a contact that leaks off into the bodies on both sides, which are pressed together and slide.
+/// Water along a contact that leaks off into the bodies on both sides, which are pressed together and slide, between a well that holds a pressure and one with
+/// a rate.
 #[test]
 fn that_leaks_off_into_bodies_are_those_of_complete_runs() {
-    let soil = json!({"material": {"model": "hencky", "E": 90, "nu": 0.2}, "pore_fluid": {
-        "bulk_modulus": 500, "porosity": 0.4, "permeability": 0.1, "unit_weight": 1}});
+    let soil = |permeability: f64| {
+        json!({"material": {"model": "hencky", "E": 90, "nu": 0.2}, "pore_fluid": {
+            "bulk_modulus": 500, "porosity": 0.4, "permeability": permeability, "unit_weight": 1}})
+    };
     let flow = json!({"storage": 0.02, "aperture": 0.1, "viscosity": 1e-3, "leak": {"coefficient": 0.01, "pressure": 0.1},
-                      "wells": [{"at": [0, 1], "pressure": 0.5}, {"at": [1, 1], "rate": 1e-2}]});
+                      "wells": [{"at": [0, 1], "pressure": 0.1}, {"at": [1, 1], "rate": 1e-2}]});
     let mut case = json!({
         "mesh": Blocks::default().rectangle("low", [5, 3], [0.0, 0.0], [1.2, 1.0]).rectangle("high", [4, 3], [0.0, 1.0], [1.0, 2.0]).json(),
-        "bodies": {"low": soil, "high": soil}, "watch": ["high_top"],
+        "bodies": {"low": soil(5.0), "high": soil(10.0)}, "watch": ["high_top"],
         "contacts": {"base": {"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 2000},
             "normal": {"alpha_n": 5000}, "fluid_pressure": {"flow": flow}, "dilatancy": {"rate": 0.05}, "initial": {"pressure": 1.0}}},
         "steps": [{"name": "slide", "duration": 0.5, "dt": {"initial": 0.02, "max": 0.05}, "supports": [
             {"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "high_top", "ux": {"rate": 0.02}}],
-            "loads": [{"on": "high_top", "dead_pressure": 1}], "drainage": [{"on": "high_top", "pressure": 0}]}],
+            "loads": [{"on": "high_top", "dead_pressure": "1"}],
+            "drainage": [{"on": "high_top", "pressure": 0}, {"on": "low_bottom", "pressure": 0}]}],
     });
-    let bodies = ["bodies.low.pore_fluid.permeability", "bodies.high.material.E", "contacts.base.friction.mu"];
+    let besides = [
+        "bodies.low.pore_fluid.permeability",
+        "bodies.high.material.E",
+        "contacts.base.friction.mu",
+        "contacts.base.seal",
+        "contacts.base.dilatancy.rate",
+    ];
     let flow = places(&["storage", "aperture", "viscosity", "leak.coefficient", "wells[0].pressure", "wells[1].rate"]);
+    let places: Vec<&str> = flow.iter().map(String::as_str).chain(besides).collect();
     for seal in [1e3, 0.5] {
         case["contacts"]["base"]["seal"] = json!(seal);
-        let places: Vec<&str> = flow
-            .iter()
-            .map(String::as_str)
-            .chain(bodies)
-            .chain(["contacts.base.seal", "contacts.base.dilatancy.rate"])
-            .collect();
         let [main, others] = compared(&case, &places);
         println!("{seal}: {main:?} {others:?}");
-        assert!(main.0 < 1e-6 && others.0 < 5e-6, "{seal}: {main:?} {others:?}");
+        assert!(main.0 < 1e-6 && others.0 < 1e-5, "{seal}: {main:?} {others:?}");
     }
 }
 
