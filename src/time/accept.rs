@@ -33,8 +33,6 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     (state.dt, state.time) = (time - state.time, time);
     model.note_water(state);
     receive_with_bodies(model, step, state.dt, &found.water, state);
-    // What an increment leaves of the balance of water is not weighed with that of the next, as forces are.
-    model.flow.iter().for_each(|flow| state.force[2 * flow.first..].fill(0.0));
     state.increment += 1;
 }
 

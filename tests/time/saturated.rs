@@ -5,6 +5,7 @@
 //! ```
 
 use std::f64::consts::PI;
+use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, finish, goes_on, half_way, quadratic, refusal, with};
 use fecontact::model::Model;
@@ -439,6 +440,22 @@ fn corrections_fall_with_their_square() {
             // Below, round-off decides.
             let last = increment.windows(2).rfind(|pair| pair[1] > 1e-11).expect("two corrections");
             assert!(last[1] < 40.0 * last[0] * last[0], "{scheme}: {increment:?}");
+        }
+    }
+}
+
+/// `check` says how fast motions may be: 2π f ρ k/γ_w = 0.01.
+#[test]
+fn check_prints_the_highest_frequency() {
+    for (scheme, expected) in [(json!("static"), None), (newmark(), Some(0.01 / (2.0 * PI * 0.05)))] {
+        let case = column("q4", &[2], &soil(0.05), json!({"scheme": scheme, "duration": 1, "dt": {"initial": 0.1}}));
+        let read = fecontact::case::from_text(&case.to_string(), Path::new("test.json")).expect("a case");
+        let text = fecontact::case::report(&read, &crate::common::model(&case));
+        let told = text.split("u-p holds up to a frequency of ").nth(1).and_then(|rest| rest.split_whitespace().next());
+        let told: Option<f64> = told.map(|word| word.parse().expect("a number"));
+        assert_eq!(told.is_some(), expected.is_some(), "{text}");
+        if let (Some(told), Some(expected)) = (told, expected) {
+            close("f", told, expected, 1e-3 * expected);
         }
     }
 }

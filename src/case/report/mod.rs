@@ -147,20 +147,32 @@ fn bodies(case: &Case, model: &Model) -> Vec<String> {
         let damping = damping([input.damping.mass, input.damping.retardation]);
         let imposed = imposed(input);
         let slopes = slopes(&input.material);
-        let wet = model.flow.iter().flat_map(|flow| &flow.elements);
-        let diffusivity =
-            wet.into_iter().find(|wet| model.body_of(wet.element).name == *name).map(|wet| wet.diffusivity);
-        let consolidates =
-            diffusivity.map_or_else(String::new, |c| format!(", consolidates by c = k M/unit_weight = {}", number(c)));
+        let flows = flows(name, model);
         [
             name.clone(),
-            format!("{}{slopes}{element}{damping}{imposed}{consolidates}", parameters(&input.material, "model", &[])),
+            format!("{}{slopes}{element}{damping}{imposed}{flows}", parameters(&input.material, "model", &[])),
         ]
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
     let velocities = case.initial_velocity.iter();
     lines.extend(velocities.map(|(name, velocity)| format!("{name}: initial velocity {}", vector(*velocity))));
     lines
+}
+
+/// 2π f ρ k/γ_w of the fastest motions that water follows without inertia of its own, with the density ρ of the mixture for that of water [-]
+const SLOW: f64 = 0.01;
+
+/// How fast the water of a body flows.
+fn flows(name: &str, model: &Model) -> String {
+    let mut wet = model.flow.iter().flat_map(|flow| &flow.elements);
+    let Some(wet) = wet.find(|wet| model.body_of(wet.element).name == name) else { return String::new() };
+    let (law, c) = (model.body_of(wet.element).material.description(), wet.diffusivity);
+    let mut text = format!(", consolidates by c = k M/unit_weight = {}", number(c));
+    if model.steps.iter().any(|step| step.scheme.is_dynamic()) {
+        let frequency = SLOW * law.p_wave_modulus / (std::f64::consts::TAU * law.density * c);
+        text += &format!(", u-p holds up to a frequency of {}", number(frequency));
+    }
+    text
 }
 
 /// Slopes of cam_clay and sys_cam_clay as the law takes them.
