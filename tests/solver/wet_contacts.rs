@@ -480,6 +480,13 @@ fn sides_of_every_kind() {
     wrong["contacts"]["cut"]["fluid_pressure"] = json!(1);
     let message = refusal(&wrong);
     assert!(message.contains("contacts.cut.open_pressure: is for a contact of bodies whose water flows"), "{message}");
+    let mut same = cut_column("q4", [2, 2], smooth());
+    let mut cut = smooth();
+    cut["open_pressure"] = json!(0);
+    same["contacts"] = json!({"low_bottom": cut});
+    same["steps"][0]["drainage"] = json!([{"on": "low_bottom", "pressure": 0}]);
+    let message = refusal(&same);
+    assert!(message.contains("contacts.low_bottom.open_pressure: drains under the name of a group"), "{message}");
 }
 
 /// By default the seal lets through a thousand times what the shortest element beside the contact does: pressures are nearly continuous there,

@@ -325,7 +325,7 @@ pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
 /// `Builder::body("block", Blatz { shear: 2.0, density: 0.0 })`:
 ///
 /// ```
-/// use fecontact::laws::bulk::{BulkLaw, BulkResponse, Material, MaterialDescription, MaterialFailure, Straining};
+/// use fecontact::laws::bulk::{Answer, BulkLaw, BulkResponse, Material, MaterialDescription, MaterialFailure, Straining};
 /// use nalgebra::{Matrix2, Matrix5, Vector5};
 ///
 /// /// Foamed rubber (Blatz & Ko), ν = ¼: W = G/2 (F:F + 2/J − 5), P = G (F − F⁻ᵀ/J) with J of all three stretches.

@@ -77,6 +77,9 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
     check_not_negative(&format!("{place}.seal"), given)?;
     let conductance = if passes { given } else { 0.0 };
     check_open(place, contact, sides > 0 && channel.is_empty())?;
+    let message = format!("drains under the name of a group that drains as well: give `{}` another name", contact.name);
+    let same = flow.outlets.iter().filter(|name| **name == contact.name).count() > 1;
+    refuse_if(contact.open_pressure.is_some() && same, format!("{place}.open_pressure"), message)?;
     let open = contact.open_pressure.map(|pressure| Drained {
         pressure,
         conductance: NEARLY_CONTINUOUS * beside,

@@ -93,6 +93,19 @@ fn is_main(column: &str) -> bool {
             .contains(&name)
 }
 
+/// Gives contacts with strength without pressure the opening over which it fades: by default it is chosen from the bodies, anew in every complete
+/// run, where derivatives keep that of the run.
+fn give_openings(case: &mut Value) {
+    for contact in case["contacts"].as_object_mut().into_iter().flat_map(|contacts| contacts.values_mut()) {
+        let friction = contact["friction"].to_string();
+        let has_strength =
+            contact["bond"].is_object() || friction.contains("adhesion") || friction.contains("cohesion");
+        if has_strength && contact["bond"]["opening"].is_null() {
+            contact["bond"]["opening"] = json!(5e-3);
+        }
+    }
+}
+
 pub(super) fn derivatives(base: &Base) -> Outcome {
     let draft = base.draft;
     if is_explicit(draft) || draft.is("scheme", "quasi_dynamic") || base.record.ended != Ended::Complete {
@@ -100,6 +113,7 @@ pub(super) fn derivatives(base: &Base) -> Outcome {
     }
     let mut case = model::case(draft, &base.ways);
     case["newton"]["tolerance"] = json!(1e-12);
+    give_openings(&mut case);
     let Some((at, value)) = place(&case, draft.seed) else { return Outcome::Idle };
     let name = at[1..].replace('/', ".");
     let mut asked = case.clone();
