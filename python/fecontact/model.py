@@ -585,6 +585,13 @@ class AlongY(dict[str, Any]):
         super().__init__({"y": y})
 
 
+class Table(dict[str, Any]):
+    """Pairs of run time and value, times ascending; linear between, constant outside."""
+
+    def __init__(self, table: Pairs) -> None:
+        super().__init__({"table": table})
+
+
 class VonKarman(dict[str, Any]):
     """Von Kármán: rough at all wavelengths below the correlation length.
 
@@ -650,9 +657,10 @@ class Components(dict[str, Any]):
 
 class PoreFluid(dict[str, Any]):
     """A fluid in the pores of a body. Without a permeability it has no time to flow, and elements are nearly
-    incompressible from the start: take f_bar, reduced Q8 or T6. With one it flows in static steps, whose time is
-    that of consolidation. The material, and the initial stress, are those of the effective stress; stresses and
-    what contacts feel are total.
+    incompressible from the start: take f_bar, reduced Q8 or T6. With one it flows, in static steps, whose time is
+    that of consolidation, and in those of newmark, hht and generalized_alpha, where the density is that of both.
+    The material, and the initial stress, are those of the effective stress; stresses and what contacts feel are
+    total.
 
     Args:
         bulk_modulus: K_w: bulk modulus of the fluid, 2.2 GPa of water, K_w > 0; K_w/n of 100 times the
@@ -768,8 +776,8 @@ class Contact(dict[str, Any]):
         along: Friction parameters that vary along the slave and in time
         area: Tributary area of each point of a point group as slave, including the thickness or the full turn;
             it is constant. Edges have lengths of their own [L for thickness 1, or L²]
-        bond: Bond of the surfaces beside friction: strength without pressure. With `adhesion`, or `cohesion` of
-            slip_weakening, it takes the `opening` over which that fades, and a `limit`
+        bond: Bond of the surfaces in parallel with friction: strength without pressure. With `adhesion`, or
+            `cohesion` of slip_weakening, it takes the `opening` over which that fades, and a `limit`
         clearance: Gap of the surfaces at the start, the same at every point that faces the master, instead of
             the gaps of the mesh: positive for a clearance, negative for an interference. All later gaps are
             measured relative to it, so that neither facets nor the accuracy of the mesh change it [L]
@@ -800,6 +808,9 @@ class Contact(dict[str, Any]):
             against a polyline or outline with a corner of more than 45°, there with points at the slave's own
             corners and ends; it also otherwise, with a `smooth` master, and where `points` are given
         normal: Normal contact
+        open_pressure: p̄: surfaces that part drain to a place of this pressure, 0 for air, and are filled from
+            there; unless given, they are filled from the pores. κ of the drain grows with the third power of
+            the opening. Of bodies whose water flows (`permeability`) [F/L²]
         points: Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2, and 4 for quadratic edges
             against a rigid master with corners
         radiation_damping: Static steps: radiation damping, a traction η × slip rate that resists slip in
@@ -848,6 +859,7 @@ class Contact(dict[str, Any]):
         massless: bool | Given = NOT_GIVEN,
         method: Method | None | Given = NOT_GIVEN,
         normal: Normal | Given = NOT_GIVEN,
+        open_pressure: float | None | Given = NOT_GIVEN,
         points: int | None | Given = NOT_GIVEN,
         radiation_damping: Radiation | Given = NOT_GIVEN,
         rigid_body: str | None | Given = NOT_GIVEN,
@@ -859,7 +871,7 @@ class Contact(dict[str, Any]):
         tied: bool | Given = NOT_GIVEN,
         wear: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "clearance": clearance, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "interface": interface, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "seal": seal, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
+        super().__init__(_given({"slave": slave, "master": master, "along": along, "area": area, "bond": bond, "clearance": clearance, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "friction": friction, "initial": initial, "interface": interface, "massless": massless, "method": method, "normal": normal, "open_pressure": open_pressure, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "seal": seal, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "stick": stick, "tied": tied, "wear": wear}))
 
 
 class Plane(dict[str, Any]):
@@ -1141,7 +1153,7 @@ class Registered(dict[str, Any]):
 
 
 class Bond(dict[str, Any]):
-    """Bond of a contact, beside its friction: strength without pressure, in shear and in tension.
+    """Bond of a contact, in parallel with its friction: strength without pressure, in shear and in tension.
 
     Args:
         alpha_t: α_c: stiffness of the bond against slip. Default: α_t of the friction where it is a penalty
@@ -1240,13 +1252,6 @@ class FlowWell(dict[str, Any]):
         until: float | None | Given = NOT_GIVEN,
     ) -> None:
         super().__init__(_given({"at": at, "from_": from_, "pressure": pressure, "rate": rate, "until": until}))
-
-
-class Table(dict[str, Any]):
-    """Pairs of run time and value, times ascending; linear between, constant outside."""
-
-    def __init__(self, table: Pairs) -> None:
-        super().__init__({"table": table})
 
 
 class Flow(dict[str, Any]):
@@ -1786,8 +1791,8 @@ class Drainage(dict[str, Any]):
         head: Level of free water that stands there: p_w = γ_w (head − y) of the reference position, of water
             that `weighs` [L]
         impervious: true: ends what an earlier step has said of this place
-        pressure: p_w that is prescribed there, by the reference position x, y and in expressions the run time
-            t; 0 where water drains freely [F/L²]
+        pressure: p_w that is prescribed there, by the reference position x, y or the run time t; 0 where water
+            drains freely [F/L²]
         seepage: true: water leaves where its pressure is above 0, and none enters
     """
 
@@ -2158,7 +2163,7 @@ InitialStress = Union[Geostatic, Components]
 
 # Quantity that varies along a surface, by reference position. A table is linear between its pairs, constant outside;
 # the same coordinate twice is a jump, and the second value holds there and beyond.
-Profile = Union[AlongX, AlongY, Random, float, str]
+Profile = Union[AlongX, AlongY, Table, Random, float, str]
 
 # Distribution of the values of a random field at a point.
 Marginal = Union[Literal["normal"], Literal["lognormal"]]
