@@ -88,7 +88,7 @@
 //! The slip increment Δu_t of a contact point, from the case file to the law and back to `history.csv`:
 //!
 //! 1. The motion of the block, `"ux": {"rate": 0.05}`, is read as a [`model::builder::Support`], from which the builder makes a
-//!    [`model::support::Prescribed`] dof of the [`model::Step`].
+//!    `Prescribed` dof of the [`model::Step`].
 //! 2. [`run`] requests an increment, [`time::increment`] creates a [`equations::Trial`] for it, and [`solve::equilibrium`]
 //!    finds the displacement u at its end by iteration.
 //! 3. At every iterate `equations/contacts.rs` evaluates each [`contact::pair`]. `contact/search.rs` and

@@ -1,4 +1,4 @@
-//! Follower nodes ([`crate::model::linkage`]): their equations, and those of rigid platens.
+//! Follower nodes (`model/linkage.rs`): their equations, and those of rigid platens.
 //!
 //! ```text
 //!  A ●━━━━━━○━━━━━━━○━━━━━━━━━● B     A, B: leaders, at the distance L;   ○: followers c, which keep their place between them

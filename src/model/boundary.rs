@@ -1,4 +1,4 @@
-//! Variation of prescribed quantities in time and space, and loads. Supports are in [`super::support`]. Moments in time and
+//! Variation of prescribed quantities in time and space, and loads. Supports are in `support.rs`. Moments in time and
 //! step spans are also defined here.
 
 use std::fmt::{Display, Formatter};

@@ -1,7 +1,7 @@
 //! Detection of unconstrained rigid-body modes, which are reported by name.
 //!
 //! The rigid motions Φ of all bodies (x, y, rotation) are tested on the tangent: A = Φᵀ K Φ, scaled by ΦᵀD Φ with D the
-//! diagonal of |K| ([`Resistance`]). A node outside all bodies has two motions of its own, tested on its block of K.
+//! diagonal of |K| (`Resistance`). A node outside all bodies has two motions of its own, tested on its block of K.
 
 use nalgebra::{DVector, Matrix2, Matrix2x3, Vector2, Vector3};
 

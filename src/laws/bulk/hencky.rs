@@ -22,7 +22,7 @@ use crate::laws::parameter::InvalidParameter;
 /// so equal stretches are no special case: no principal direction is ever needed.
 ///
 /// # Errors
-/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`](crate::laws::bulk::MaterialFailure::Inverted) when J = det F is not positive and finite.
 ///
 /// Source: Hencky (1928), Z. Techn. Phys. 9, 215; Anand (1979), J. Appl. Mech. 46, 78, doi:10.1115/1.3424532.
 #[derive(Clone, Copy, Debug, PartialEq)]

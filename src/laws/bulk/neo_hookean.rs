@@ -14,7 +14,7 @@ use crate::laws::parameter::InvalidParameter;
 /// with m = (λ₁ − λ₂)² of the principal stretches in plane, J = λ₁ λ₂, and h = F₃₃ out of it; (2) is (1) with I₁ = m + 2J + h².
 ///
 /// # Errors
-/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`](crate::laws::bulk::MaterialFailure::Inverted) when J = det F is not positive and finite.
 ///
 /// Source: Bonet & Wood (2008), Nonlinear Continuum Mechanics for Finite Element Analysis, §6.4.3.
 #[derive(Clone, Copy, Debug, PartialEq)]

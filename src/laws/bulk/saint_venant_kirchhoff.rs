@@ -16,7 +16,7 @@ use crate::laws::parameter::InvalidParameter;
 /// The law softens in strong compression: it is for large rotations but moderate strains.
 ///
 /// # Errors
-/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`](crate::laws::bulk::MaterialFailure::Inverted) when J = det F is not positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SaintVenantKirchhoff {
     lame: Lame,

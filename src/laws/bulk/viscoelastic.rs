@@ -60,7 +60,7 @@ setters! { const constants: ViscoelasticConstants;
 /// It remembers ε and E, in plane and E₃₃.
 ///
 /// # Errors
-/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`](crate::laws::bulk::MaterialFailure::Inverted) when J = det F is not positive and finite.
 ///
 /// Source: Simo & Hughes (1998), Computational Inelasticity, §10.3 (the recurrence); Ferry (1980), Viscoelastic Properties
 /// of Polymers (the standard linear solid).

@@ -69,7 +69,7 @@ setters! { const surroundings: Surroundings;
 /// the old ones. Damping is the law's own, in a plate with the moduli of a plate.
 ///
 /// # Errors
-/// [`MaterialFailure::Inverted`] when det F or ϑ is not positive, [`MaterialFailure::NotConverged`] when no F₃₃ leaves a plate free of
+/// [`MaterialFailure::Inverted`](crate::laws::bulk::MaterialFailure::Inverted) when det F or ϑ is not positive, [`MaterialFailure::NotConverged`](crate::laws::bulk::MaterialFailure::NotConverged) when no F₃₃ leaves a plate free of
 /// stress, and those of the law at F_e.
 #[derive(Clone, Debug)]
 pub struct BodyLaw {

@@ -59,7 +59,7 @@ impl SolidElement {
     /// Computes the internal force (2) at nodal displacements `u` in `force`; returns the stored energy.
     ///
     /// # Errors
-    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`](crate::laws::bulk::MaterialFailure) of the law at a quadrature point.
     pub fn force(&self, material: &dyn Material, u: &[Vector2<f64>], force: &mut [f64]) -> Answer<f64> {
         if self.hoop.is_some() {
             return self.ring_at_once(material, u, force, None);
@@ -73,7 +73,7 @@ impl SolidElement {
     /// Computes the internal force (2) on each node in `forces`; returns the stored energy.
     ///
     /// # Errors
-    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`](crate::laws::bulk::MaterialFailure) of the law at a quadrature point.
     pub fn nodal_forces(
         &self,
         material: &dyn Material,
@@ -135,7 +135,7 @@ impl SolidElement {
     /// Computes the same as [`SolidElement::force`], and the tangent (3) in `tangent`, column by column.
     ///
     /// # Errors
-    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`](crate::laws::bulk::MaterialFailure) of the law at a quadrature point.
     pub fn force_and_tangent(
         &self,
         material: &dyn Material,
@@ -264,7 +264,7 @@ impl SolidElement {
     /// stored and the dissipated energy of the increment.
     ///
     /// # Errors
-    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`](crate::laws::bulk::MaterialFailure) of the law at a quadrature point.
     pub fn evolve(
         &self,
         material: &dyn Material,

@@ -19,7 +19,7 @@ impl SolidElement {
     /// Cauchy stress at each quadrature point, given its internal variables there (empty for a material without any).
     ///
     /// # Errors
-    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`](crate::laws::bulk::MaterialFailure) of the law at a quadrature point.
     pub fn stresses(
         &self,
         material: &dyn Material,
@@ -53,7 +53,7 @@ impl SolidElement {
     /// Logarithmic strain xx, yy, zz, xy at each quadrature point, as the law sees it (F̄ of F-bar); of a linear law sym F − 1.
     ///
     /// # Errors
-    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`](crate::laws::bulk::MaterialFailure) of the law at a quadrature point.
     pub fn log_strains(&self, material: &dyn Material, memory: &[f64], u: &[Vector2<f64>]) -> Answer<Few<[f64; 4], 9>> {
         let strain = |f: &Matrix2<f64>, across: f64| match material.description().is_linear {
             true => [f.m11 - 1.0, f.m22 - 1.0, across - 1.0, 0.5 * (f.m12 + f.m21)],
@@ -87,7 +87,7 @@ impl SolidElement {
     /// Returns what a material [shows](crate::laws::bulk::MaterialDescription::shown) at each quadrature point, one behind the other.
     ///
     /// # Errors
-    /// Returns the [`MaterialFailure`] of the law at a quadrature point.
+    /// Returns the [`MaterialFailure`](crate::laws::bulk::MaterialFailure) of the law at a quadrature point.
     pub fn shown(&self, material: &dyn Material, memory: &[f64], u: &[Vector2<f64>]) -> Answer<Vec<f64>> {
         let (count, own) = (material.description().variables.len(), material.description().shown.len());
         let mut values = vec![0.0; own * self.quadrature_points()];

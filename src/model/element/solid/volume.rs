@@ -11,7 +11,7 @@ impl SolidElement {
     /// ⟨F⁻ᵀ:δF⟩ or ⟨tr δε⟩, two a node.
     ///
     /// # Errors
-    /// [`MaterialFailure::Inverted`] when det F is not positive.
+    /// [`MaterialFailure::Inverted`](crate::laws::bulk::MaterialFailure::Inverted) when det F is not positive.
     pub fn mean_volume_change(&self, is_linear: bool, u: &[Vector2<f64>], mut by: Option<&mut [f64]>) -> Answer<f64> {
         let u = &*self.since_activation(u);
         let whole: f64 = self.everywhere().map(|(_, volume)| volume).sum();
