@@ -236,6 +236,47 @@ fn of_consolidation_are_those_of_complete_runs() {
     }
 }
 
+/// In motion, by each scheme: a column that swings, and wet bodies that slide on each other and pass water through a seal.
+#[test]
+fn in_motion_are_those_of_complete_runs() {
+    let soil = || {
+        json!({"material": {"model": "hencky", "E": 90, "nu": 0.2, "density": 1}, "pore_fluid": {
+            "bulk_modulus": 500, "porosity": 0.4, "permeability": 0.02, "unit_weight": 1, "biot": 0.9}})
+    };
+    let slide = json!({
+        "mesh": Blocks::default().rectangle("low", [5, 3], [0.0, 0.0], [1.2, 1.0]).rectangle("high", [4, 3], [0.0, 1.0], [1.0, 2.0]).json(),
+        "bodies": {"low": soil(), "high": soil()}, "watch": ["high_top"],
+        "contacts": {"base": {"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 2000},
+            "normal": {"alpha_n": 5000}, "seal": 0.01, "initial": {"pressure": 0.0}}},
+        "steps": [
+            {"name": "load", "duration": 0.1, "dt": {"initial": 0.05}, "supports": [
+                {"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "high_top", "ux": 0}], "loads": [{"on": "high_top", "dead_pressure": "1"}]},
+            {"name": "slide", "duration": 0.2, "dt": {"initial": 0.02}, "supports": [{"on": "high_top", "ux": {"rate": 0.1}}],
+                "drainage": [{"on": "high_top", "pressure": 0.1}, {"on": "low_bottom", "pressure": 0}]}],
+    });
+    let of_slide = [
+        "bodies.low.pore_fluid.permeability",
+        "bodies.high.material.density",
+        "contacts.base.friction.mu",
+        "contacts.base.seal",
+    ];
+    let material = json!({"model": "neo_hookean", "E": 0.9, "nu": 0.2, "density": 1});
+    let swing = column(material, json!({"on": "soil_top", "pressure": 0.3, "filter": 2}));
+    let of_swing =
+        ["bodies.soil.pore_fluid.permeability", "bodies.soil.pore_fluid.biot", "bodies.soil.material.density"];
+    for scheme in
+        [json!({"newmark": {}}), json!({"hht": {"alpha": -0.1}}), json!({"generalized_alpha": {"rho_infinity": 0.8}})]
+    {
+        for (mut case, places) in [(swing.clone(), &of_swing[..]), (slide.clone(), &of_slide[..])] {
+            let last = case["steps"].as_array_mut().and_then(|steps| steps.last_mut()).expect("steps");
+            last["scheme"] = scheme.clone();
+            let [main, others] = compared(&case, places);
+            println!("{scheme}: {main:?} {others:?}");
+            assert!(main.0 < 1e-6 && others.0 < 5e-5, "{scheme}: {main:?} {others:?}");
+        }
+    }
+}
+
 /// Bodies that come and go with their water, in a deformed model: by the numbers of what is removed, of what stays and of what comes.
 #[test]
 fn of_stages_are_those_of_complete_runs() {

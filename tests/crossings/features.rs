@@ -79,6 +79,8 @@ pub const SLOTS: &[Slot] = &[
     ("pores", &[("no", 6), ("full", 1), ("cavitating", 1), ("given", 1), ("flow", 2)]),
     // where water that flows leaves the block, or enters it
     ("drainage", &[("no", 12), ("held", 1), ("filter", 1), ("seepage", 1), ("flux", 1)]),
+    // what it does between the surfaces
+    ("gap", &[("no", 12), ("drained", 1), ("sealed", 1)]),
     ("heat", &[("no", 6), ("number", 1), ("table", 1), ("by_place", 1)]),
     (
         "scheme",
@@ -164,6 +166,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
         &["ground_element:f_bar", "block_element:f_bar", "rupture", "heat", "periodic", "master:itself"],
         "what water that flows through bodies is not for",
     ),
+    (&["gap"], &["fluid:constant", "fluid:in_time", "fluid:by_place"], "water of given pressure between the surfaces"),
     (&["pores:cavitating"], &["ground_law:linear", "block_law:linear"], "that is not linear"),
     (&["ground_law:linear"], &["ground_element:f_bar"], "F-bar is for large strains"),
     (&["block_law:linear"], &["block_element:f_bar"], "F-bar is for large strains"),
@@ -494,6 +497,9 @@ pub const NEEDED: &[(&str, &[(&str, &str)])] = &[
     ("tractions:of_bodies", &[("stress", "components")]),
     ("fluid:of_bodies", &[("pores", "full")]),
     ("drainage", &[("pores", "flow")]),
+    ("gap", &[("pores", "flow")]),
+    ("gap:drained", &[("fluid", "no")]),
+    ("gap:sealed", &[("master", "deformable")]),
     ("interface", &[("friction", "coulomb")]),
     ("interface:reduced", &[("block_law", "mohr_coulomb")]),
     ("tip", &[("surfaces", "matching"), ("master", "deformable")]),

@@ -52,8 +52,8 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
     ),
     (&["measured", "file"], "a table in a file: tests/time/fluid_pressure.rs"),
     (
-        &["permeability_y", "weighs", "capillary", "head", "impervious", "consolidation", "seal", "open_pressure"],
-        "water that weighs, that comes and goes, and seals: tests/solver/consolidation.rs, staged_water.rs, wet_contacts.rs, wet_conduits.rs, tests/time/saturated.rs",
+        &["permeability_y", "weighs", "capillary", "head", "impervious", "consolidation"],
+        "water that weighs, that comes and goes: tests/solver/consolidation.rs, staged_water.rs, wet_contacts.rs, wet_conduits.rs, tests/time/saturated.rs",
     ),
     (&["clearance"], "a gap that is not that of the mesh: tests/contact/validation.rs"),
     (&["without"], "groups that are a part of another: tests/solver/groups.rs"),

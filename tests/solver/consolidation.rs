@@ -92,6 +92,30 @@ fn a_column_consolidates_as_terzaghi_says() {
     assert!(fine < 1.5e-3, "16 elements: {fine}");
 }
 
+/// A seepage face lets no water in: a column that is pulled keeps its water, which takes the whole pull, and one that is pressed then consolidates
+/// as Terzaghi says, U(0.5) = 0.76395, all that it settles by being what has left.
+#[test]
+fn a_seepage_face_lets_water_out_alone() {
+    for kind in ["q8", "q4"] {
+        let mut case = column(kind, 8, json!({"initial": 0.005}));
+        case["steps"][0]["drainage"] = json!([{"on": "soil_top", "seepage": true}]);
+        case["steps"][0]["loads"] = json!([{"on": "soil_top", "dead_pressure": "-0.5"}]);
+        let press = json!({"name": "press", "duration": 0.5, "loads": [{"on": "soil_top", "dead_pressure": "1"}]});
+        case["steps"].as_array_mut().expect("steps").push(press);
+        let run = finish(&case);
+        let [pulled, pressed] = [0.5, 1.0].map(|time| at(&run, time));
+        let top = 2 * run.nodes("soil_top")[0] + 1;
+        println!("{kind}: pulled {:.1e}, pressed {:.5}", pulled.displacement[top], -pressed.displacement[top]);
+        for height in [0.0, 0.5, 1.0] {
+            close("p of the pulled column", pressure(&run, pulled, [0.0, height]), -0.5, 1e-6);
+        }
+        close("outflow of the pulled column", pulled.water.outlets[0].volume, 0.0, 1e-12);
+        close("U(0.5)", -pressed.displacement[top], 0.76395, 3e-3);
+        let area = 0.125;
+        close("outflow", pressed.water.outlets[0].volume / area, -pressed.displacement[top], 1e-6);
+    }
+}
+
 /// A load that goes at T = 0.05, by a table or in a step of its own: the formula of second order begins anew after it. Of superposed series; a run that
 /// does not begin anew is off by 0.65 % of p₀, one that does by 0.08 % (a program of its own, with the same elements and increments).
 #[test]

@@ -71,6 +71,11 @@ impl Writer<'_> {
         if let Some(fluid) = &self.ways.fluid {
             contact["fluid_pressure"] = json!(frame.expression(Kind::Stress, fluid, self.ways.load));
         }
+        match draft.of("gap") {
+            "drained" => contact["open_pressure"] = json!(self.write(Kind::Stress, 0.3 * self.ways.load)),
+            "sealed" => contact["seal"] = json!(2e-4 * frame.unit(Kind::Velocity) / frame.stress),
+            _ => {}
+        }
         match draft.of("dilatancy") {
             "free" => contact["dilatancy"] = json!({"rate": self.pick("tan psi", &[0.05, 0.15])}),
             "structure" => contact["dilatancy"] = json!({"structure": self.pick("tan psi", &[0.05, 0.2])}),
