@@ -17,15 +17,15 @@ use crate::mesh::configuration::Configuration;
 /// Number of points on either side of an inner one.
 const ADJACENT: usize = 3;
 
-/// How the points of a slave surface follow each other.
+/// The points of a slave surface in their order along it.
 #[derive(Clone, Debug)]
-pub struct Course {
+pub struct PointSequence {
     /// Distance of each point to the next one; `None` at ends and corners of the surface [L]
     next: Vec<Option<f64>>,
 }
 
-impl Course {
-    /// The course of points that are listed in the order of their surface, in a configuration.
+impl PointSequence {
+    /// The sequence of points that are listed in the order of their surface, in a configuration.
     pub fn new(points: &[SlavePoint], x: &Configuration) -> Self {
         let nodes = |point: &SlavePoint| -> Vec<usize> {
             point.length.iter().flat_map(|share| &share.tangent).map(|&(node, _)| node).collect()

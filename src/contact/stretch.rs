@@ -16,7 +16,7 @@ use nalgebra::Vector2;
 use super::master::{Master, Shape};
 use super::pair::ContactPair;
 use super::point::ContactState;
-use super::scatter::Course;
+use super::scatter::PointSequence;
 use super::surface::{CORNER, Surface};
 use crate::mesh::configuration::Configuration;
 
@@ -69,7 +69,7 @@ struct Seen<'a> {
     pair: &'a ContactPair,
     states: &'a [ContactState],
     x: &'a Configuration<'a>,
-    course: Course,
+    sequence: PointSequence,
     /// Longest edge at the closed stretch
     edge: f64,
 }
@@ -89,9 +89,9 @@ impl ContactPair {
         let [first, last] = most_loaded(states)?;
         let edges = (first..=last).filter_map(|k| self.edge_at(k, &states[k], x));
         let (edge, per_edge) = edges.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
-        let seen = Seen { pair: self, states, x, course: Course::new(&self.points, x), edge };
+        let seen = Seen { pair: self, states, x, sequence: PointSequence::new(&self.points, x), edge };
         let ways: Vec<f64> =
-            std::iter::once(Some(0.0)).chain((first..last).map(|k| seen.course.after(k))).collect::<Option<_>>()?;
+            std::iter::once(Some(0.0)).chain((first..last).map(|k| seen.sequence.after(k))).collect::<Option<_>>()?;
         let ways: Vec<f64> = ways
             .iter()
             .scan(0.0, |sum, way| {
@@ -195,8 +195,8 @@ impl Seen<'_> {
     /// surface nor open points with a projection.
     fn side(&self, from: usize, ahead: bool, way: f64) -> Option<Side> {
         let step = |k: usize| match ahead {
-            true => self.course.after(k).map(|way| (k + 1, way)),
-            false => k.checked_sub(1).and_then(|before| Some((before, self.course.after(before)?))),
+            true => self.sequence.after(k).map(|way| (k + 1, way)),
+            false => k.checked_sub(1).and_then(|before| Some((before, self.sequence.after(before)?))),
         };
         let (mut at, mut gone) = (from, 0.0);
         let mut near: Option<(Open, f64)> = None;

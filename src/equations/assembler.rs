@@ -45,7 +45,7 @@ pub struct Assembler {
     /// Sum of the forces' magnitudes at each dof [F]
     pub(super) magnitudes: Vec<f64>,
     pub(super) equilibrium: ConvergenceCriterion,
-    /// Responses of contacts without predictions, kept to reuse their memory
+    /// Responses of contacts without predictions, stored to reuse their memory
     responses: Vec<PairResponse>,
     /// Last answers of the laws of each contact
     pub(super) answered: Vec<LastAnswers>,
@@ -70,7 +70,7 @@ enum Linearization {
     /// To be found from the next tangent
     Wanted,
     Found(LinearizedSolids),
-    /// What stands for the bodies in a residual beside the solution
+    /// What stands for the bodies in a residual near the solution
     Given(SolidForces),
 }
 
@@ -169,7 +169,7 @@ impl Assembler {
         Ok(())
     }
 
-    /// Computes the residual beside a solution about which the bodies may be linearized; it is measured by [`Assembler::share`].
+    /// Computes the residual near a solution about which the bodies may be linearized; it is measured by [`Assembler::share`].
     ///
     /// # Errors
     /// The same as for [`Assembler::residual`].
@@ -271,7 +271,7 @@ impl Assembler {
         let model = &*self.model.clone();
         model.ties.gather(2, &mut self.evaluation.damping);
         model.linkage.gather(&mut self.evaluation.damping);
-        self.keep_states(responses);
+        self.store_states(responses);
         self.balance(trial, u, tangent, system);
         supports::prescribe(model, self.weight, trial, u, tangent, system)
     }
@@ -323,7 +323,7 @@ impl Assembler {
             if let Some(v) = v {
                 assembler.add_viscous([u, v]);
             }
-            assembler.keep_states(responses);
+            assembler.store_states(responses);
             assembler.seconds.assembly += clock.elapsed().as_secs_f64();
             Ok(())
         })
@@ -491,11 +491,11 @@ impl Assembler {
     /// Stores the magnitudes of the contact forces.
     pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
         self.equilibrium.note_contacts(&self.model, trial.stiffening, responses);
-        self.keep_states(responses);
+        self.store_states(responses);
     }
 
     /// Stores the trial states of the contact points for the accepted state.
-    fn keep_states(&mut self, responses: &[PairResponse]) {
+    fn store_states(&mut self, responses: &[PairResponse]) {
         let contacts = &mut self.evaluation.contacts;
         contacts.resize_with(responses.len(), Vec::new);
         contacts.iter_mut().zip(responses).for_each(|(states, pair)| states.clone_from(&pair.states));
@@ -540,9 +540,9 @@ impl Assembler {
             inertia.into_iter().for_each(|inertia| inertia.stiffen(&self.model, &mass, &mut tangent));
             return Ok(tangent);
         }
-        let kept = std::mem::take(&mut self.evaluation);
+        let before = std::mem::take(&mut self.evaluation);
         let added = self.add(&[term], trial, Motion { u, v: None }, responses, false, Some(&mut tangent));
-        self.evaluation = kept;
+        self.evaluation = before;
         added.map(|()| tangent)
     }
 }

@@ -1,8 +1,8 @@
-//! Water that flows along contacts beside bodies in which it flows: its pressures are solved with theirs.
+//! Water that flows along contacts between bodies in which it flows, too: its pressures are solved with theirs.
 //!
 //! ```text
 //! Δm_a = ℓ_a S (p − p_n)_a, and what the surfaces open by (`contact/seam.rs`)                                                (1)
-//! Σ_b T/η b/ℓ (p_a − p_b) − ℓ_a Q + ℓ_a c (p_a − p̄) − wells                what flows out of a node, beside that into the bodies     (2)
+//! Σ_b T/η b/ℓ (p_a − p_b) − ℓ_a Q + ℓ_a c (p_a − p̄) − wells                what flows out of a node, except into the bodies     (2)
 //! ```
 //! in the balance (4) of `pore_flow.rs`. T is that of the surfaces at the start of the increment, as the permeability of the bodies is. A well that
 //! holds a pressure does so to a millionth.
@@ -49,18 +49,18 @@ pub(super) fn add(
     Ok(())
 }
 
-/// What would flow out of the nodes at which wells hold a pressure, were that 0: number of the pressure, and L³/(F T).
-pub(super) fn held(model: &Model, trial: Trial, u: &[f64]) -> Vec<(usize, f64)> {
+/// What would flow out of the nodes at which wells prescribe a pressure, were that 0: number of the pressure, and L³/(F T).
+pub(super) fn prescribed(model: &Model, trial: Trial, u: &[f64]) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for (_, channel) in channels(model, trial, u, Times::of(trial)) {
         let (passes, numbers) = (channel.passes(), &channel.conduit.pressures);
-        let held = channel.wells().filter(|well| matches!(well.gives, Gives::Pressure(_))).flat_map(|well| &well.at);
-        all.extend(held.map(|(node, _)| (numbers[*node], PRESCRIBED * passes[*node])));
+        let nodes = channel.wells().filter(|well| matches!(well.gives, Gives::Pressure(_))).flat_map(|well| &well.at);
+        all.extend(nodes.map(|(node, _)| (numbers[*node], PRESCRIBED * passes[*node])));
     }
     all
 }
 
-/// Contacts along which water flows beside bodies in which it does, with their numbers among these.
+/// Contacts along which water flows between bodies in which it does, with their numbers among these.
 fn channels<'a>(
     model: &'a Model,
     trial: Trial<'a>,
@@ -148,7 +148,7 @@ impl Channel<'_> {
             for &(node, share) in &well.at {
                 let slope = PRESCRIBED * passes[node];
                 let flow = match &well.gives {
-                    Gives::Pressure(held) => [slope * (self.pressure(node) - held(trial.time)), slope],
+                    Gives::Pressure(given) => [slope * (self.pressure(node) - given(trial.time)), slope],
                     Gives::Rate(rate) => [-share * rate(trial.time), 0.0],
                 };
                 out(node, flow, wells)?;

@@ -173,7 +173,7 @@ impl<'a> CondensedEquations<'a> {
 
     /// Finds the dofs of some nodes among those at contacts.
     fn find(&self, model: &Model, nodes: &[usize], dofs: &mut Vec<usize>) {
-        let place = |node: usize| self.nodes.places[model.ties.original(node)].expect("nodes at contacts are kept");
+        let place = |node: usize| self.nodes.places[model.ties.original(node)].expect("nodes at contacts are retained");
         dofs.clear();
         dofs.extend(nodes.iter().flat_map(|&node| [0, 1].map(|i| 2 * place(node) as usize + i)));
     }
@@ -479,8 +479,8 @@ impl Jumps {
         }
     }
 
-    /// Pattern of L A T for A with the pattern `plain`, all `kept` nodes coupled with each other.
-    pub fn pattern(&self, plain: &Pattern, kept: &[usize]) -> Pattern {
+    /// Pattern of L A T for A with the pattern `plain`, all `retained` nodes coupled with each other.
+    pub fn pattern(&self, plain: &Pattern, retained: &[usize]) -> Pattern {
         let with_master_points = |node: usize| {
             std::iter::once(node).chain(self.master_points(node).iter().map(|&(master_point, _)| master_point))
         };
@@ -488,7 +488,7 @@ impl Jumps {
             let coupled = plain.neighbours(column).iter().filter(move |row| **row <= column);
             coupled.map(move |&row| with_master_points(row).chain(with_master_points(column)).collect::<Vec<_>>())
         });
-        let groups: Vec<Vec<usize>> = groups.chain([kept.to_vec()]).collect();
+        let groups: Vec<Vec<usize>> = groups.chain([retained.to_vec()]).collect();
         Pattern::new(plain.nodes(), groups.iter().map(|group| &group[..]))
     }
 
@@ -502,7 +502,7 @@ impl Jumps {
             let itself = |node: usize| std::iter::once((node, 1.0)).chain(self.master_points(node).iter().copied());
             for (to_column, by_column) in itself(column) {
                 for (to_row, by_row) in itself(row) {
-                    let to = sum.pattern.block(to_row, to_column).expect("coupled with the feet");
+                    let to = sum.pattern.block(to_row, to_column).expect("coupled with the master");
                     let balanced = |i: &usize| to_row == row || !fixed[2 * row + i] && !fixed[2 * to_row + i];
                     for i in (0..2).filter(balanced) {
                         for j in 0..2 {

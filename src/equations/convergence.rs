@@ -318,21 +318,21 @@ impl ConvergenceCriterion {
             let node = spring.dof / 2;
             squares[node] += (spring.stiffness * u[spring.dof].abs().min(farthest(node))).powi(2);
         }
-        for (dof, force) in pore_flow::held(model, trial, u) {
+        for (dof, force) in pore_flow::prescribed(model, trial, u) {
             squares[dof / 2] += force * force;
         }
         let way: Vec<f64> =
             old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();
-        let scheme = step.scheme.coefficients();
+        let scheme = trial.integration();
         if let (Some(scheme), Some(mass)) = (scheme, mass) {
             let [inertia] = mass.multiply_symmetric([&way]);
-            let (dacceleration, dvelocity) = (scheme.dacceleration(dt), scheme.dvelocity(dt));
+            let (dacceleration, dvelocity) = (scheme.dacceleration(), scheme.dvelocity());
             for (node, squared) in squares.iter_mut().enumerate() {
                 *squared += square(&inertia, node) * dacceleration.powi(2);
                 *squared += stiffness[node][2] * square(&way, node) * dvelocity.powi(2);
             }
         }
-        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
+        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity());
         for dashpot in &step.loads.dashpots {
             squares[dashpot.dof / 2] += (dashpot.coefficient * dvelocity * way[dashpot.dof]).powi(2);
         }

@@ -55,7 +55,7 @@ pub(super) fn joined(flow: &PoreFlow, pressures: [usize; 2]) -> Vec<usize> {
     nodes
 }
 
-/// Nodes that stand for pressures of neighbours along contacts where water flows beside that of bodies.
+/// Nodes that stand for pressures of neighbours along contacts where water flows between wet bodies.
 fn channels(model: &Model, flow: &PoreFlow) -> Vec<Vec<usize>> {
     let conduits = model.contacts.iter().filter_map(|pair| pair.conduit.as_ref()).filter(|conduit| conduit.is_wet());
     let of = |conduit: &Conduit| -> Vec<Vec<usize>> {
@@ -70,7 +70,7 @@ pub(super) struct Layout {
     model: Arc<Model>,
     /// current coupling
     pub coupling: Arc<Coupling>,
-    /// what is not symmetric beside contact
+    /// what is not symmetric, except contact
     unsymmetric: Unsymmetric,
     /// the pattern
     pub pattern: Arc<Pattern>,

@@ -246,13 +246,12 @@ pub(super) fn stabilization_dependence(step: &Step) -> Dependence {
 
 /// Subtracts their forces, which count as `damping`; returns their norm.
 pub(super) fn add_stabilization(trial: Trial, u: &[f64], damping: &mut [f64], sums: &mut Sums) -> f64 {
-    let left = trial.stabilization_left();
-    if trial.dt == 0.0 || left == 0.0 {
+    if trial.is_instant() || trial.stabilization_left() == 0.0 {
         return 0.0;
     }
     let mut squares = 0.0;
     for (dof, start) in trial.step.stabilization.iter().enumerate() {
-        let coefficient = left * start / trial.dt;
+        let coefficient = trial.stabilizing(*start);
         let force = -coefficient * (u[dof] - trial.old.displacement[dof]);
         sums.add(dof, -force);
         damping[dof] += force;

@@ -9,7 +9,7 @@ use super::links::{self, Turning, blend};
 use super::sums::{Dependence, add_blocks};
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
-use crate::model::scheme::{Coefficients, supported_rates};
+use crate::model::scheme::TimeIntegration;
 use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
 
@@ -70,21 +70,19 @@ pub(super) struct Inertia {
     pub factors: Vec<f64>,
     /// rigid platens, whose tangent has further terms
     turning: Vec<Turning>,
-    scheme: Coefficients,
-    /// Δt [T]
-    dt: f64,
+    scheme: TimeIntegration,
 }
 
 impl Inertia {
     /// Computes the inertia in a dynamic increment with the mass matrix M; prescribed dofs have the acceleration of their
     /// supports.
     pub fn at(model: &Model, trial: Trial, u: &[f64], mass: &SparseMatrix) -> Option<Self> {
-        let Trial { old, step, dt, .. } = trial;
-        let scheme = step.scheme.coefficients()?;
+        let Trial { old, step, .. } = trial;
+        let scheme = trial.integration()?;
         let (velocity, acceleration) = rates(model, trial, u, scheme);
         let accelerations = old.acceleration.iter().zip(&acceleration);
         let mut weighted: Vec<f64> = accelerations.map(|(old, new)| blend(scheme.alpha_m, *old, *new)).collect();
-        let mut factors = vec![(1.0 - scheme.alpha_m) * scheme.dacceleration(dt); u.len()];
+        let mut factors = vec![(1.0 - scheme.alpha_m) * scheme.dacceleration(); u.len()];
         for support in &step.supports {
             let at = support.at;
             let along = blend(scheme.alpha_f, at.of(&old.acceleration), at.of(&acceleration));
@@ -92,7 +90,7 @@ impl Inertia {
                 None => (weighted[at.dof], factors[at.dof]) = (along, 0.0),
                 Some(_) => {
                     let missed = missed(support, trial.prescribed(support, model), u);
-                    let rest = (scheme.alpha_f - scheme.alpha_m) * scheme.dacceleration(dt) * missed;
+                    let rest = (scheme.alpha_f - scheme.alpha_m) * scheme.dacceleration() * missed;
                     at.set(along + rest, &mut weighted);
                 }
             }
@@ -101,11 +99,11 @@ impl Inertia {
             weighted[dof] = of_leaders(&weighted) + factors[dof] * (u[dof] - base);
         }
         let turning = Turning::all(model, trial, u, scheme);
-        let rate = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
+        let rate = (1.0 - scheme.alpha_m) * scheme.dacceleration();
         turning.iter().for_each(|plate| plate.weighted(scheme, rate, &mut weighted));
         links::spread_turning(model, rate, u, &mut weighted);
         let [force, weighted] = mass.multiply_symmetric([&acceleration, &weighted]);
-        Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme, dt })
+        Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme })
     }
 
     /// (1) of [`crate::model::scheme`]: the residual of the weighted forces, those at the start of the increment and those at
@@ -125,7 +123,7 @@ impl Inertia {
     /// Adds the tangent of the weighted inertia.
     pub fn stiffen(&self, model: &Model, mass: &SparseMatrix, tangent: &mut SparseMatrix) {
         tangent.add_columns(mass, &self.factors);
-        self.turning.iter().for_each(|plate| plate.stiffen(model, self.scheme, self.dt, &self.factors, mass, tangent));
+        self.turning.iter().for_each(|plate| plate.stiffen(model, self.scheme, &self.factors, mass, tangent));
     }
 }
 
@@ -136,29 +134,29 @@ pub fn kinetic_energy(mass: &SparseMatrix, velocity: &[f64]) -> f64 {
 }
 
 /// Velocity and acceleration at `u`; prescribed dofs have those of their supports.
-fn rates(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
-    let Trial { old, step, dt, .. } = trial;
-    let free = |dof: usize| scheme.rates(u[dof] - old.displacement[dof], old.velocity[dof], old.acceleration[dof], dt);
+fn rates(model: &Model, trial: Trial, u: &[f64], scheme: TimeIntegration) -> (Vec<f64>, Vec<f64>) {
+    let Trial { old, step, .. } = trial;
+    let free = |dof: usize| scheme.rates(u[dof] - old.displacement[dof], old.velocity[dof], old.acceleration[dof]);
     let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
     for support in &step.supports {
         let places = trial.thirds(support, model);
-        let (v, a) = supported_rates(places, support.at.of(&old.velocity), dt);
+        let (v, a) = scheme.supported(places, support.at.of(&old.velocity));
         let missed = missed(support, places[3], u);
-        support.at.set(v + scheme.dvelocity(dt) * missed, &mut velocity);
-        support.at.set(a + scheme.dacceleration(dt) * missed, &mut acceleration);
+        support.at.set(v + scheme.dvelocity() * missed, &mut velocity);
+        support.at.set(a + scheme.dacceleration() * missed, &mut acceleration);
     }
     model.ties.spread(2, &mut velocity);
     model.ties.spread(2, &mut acceleration);
     for (dof, base, of_leaders) in followed(model, trial, u) {
-        velocity[dof] = of_leaders(&velocity) + scheme.dvelocity(dt) * (u[dof] - base);
-        acceleration[dof] = of_leaders(&acceleration) + scheme.dacceleration(dt) * (u[dof] - base);
+        velocity[dof] = of_leaders(&velocity) + scheme.dvelocity() * (u[dof] - base);
+        acceleration[dof] = of_leaders(&acceleration) + scheme.dacceleration() * (u[dof] - base);
     }
     for plate in Turning::all(model, trial, u, scheme) {
-        plate.velocities(scheme.dvelocity(dt), &mut velocity);
-        plate.accelerations(scheme.dacceleration(dt), &mut acceleration);
+        plate.velocities(scheme.dvelocity(), &mut velocity);
+        plate.accelerations(scheme.dacceleration(), &mut acceleration);
     }
-    links::spread_turning(model, scheme.dvelocity(dt), u, &mut velocity);
-    links::spread_turning(model, scheme.dacceleration(dt), u, &mut acceleration);
+    links::spread_turning(model, scheme.dvelocity(), u, &mut velocity);
+    links::spread_turning(model, scheme.dacceleration(), u, &mut acceleration);
     (velocity, acceleration)
 }
 
@@ -189,37 +187,36 @@ pub(super) fn missed(support: &Prescribed, target: f64, u: &[f64]) -> f64 {
 /// v of one dof at the end of the increment, and ∂v/∂u: from [`rates`] or, in statics, the mean of the increment. An
 /// increment of zero length leaves v unchanged.
 pub(super) fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
-    let Trial { old, step, dt, .. } = trial;
+    let Trial { old, step, .. } = trial;
     let dof = model.linkage.leading(2 * model.ties.original(dof / 2) + dof % 2);
     let (increment, before) = (u[dof] - old.displacement[dof], old.velocity[dof]);
-    if dt == 0.0 {
+    if trial.is_instant() {
         return (before, 0.0);
     }
-    let Some(scheme) = step.scheme.coefficients() else { return (increment / dt, 1.0 / dt) };
-    let free =
-        |dof: usize| scheme.rates(u[dof] - old.displacement[dof], old.velocity[dof], old.acceleration[dof], dt).0;
+    let Some(scheme) = trial.integration() else { return trial.mean_velocity(increment) };
+    let free = |dof: usize| scheme.rates(u[dof] - old.displacement[dof], old.velocity[dof], old.acceleration[dof]).0;
     match step.support_at(dof) {
         Some(support) if support.at.inclined.is_some() => {
             let places = trial.thirds(support, model);
-            let along = supported_rates(places, support.at.of(&old.velocity), dt).0
-                + scheme.dvelocity(dt) * missed(support, places[3], u);
+            let along = scheme.supported(places, support.at.of(&old.velocity)).0
+                + scheme.dvelocity() * missed(support, places[3], u);
             let (d, first) = (support.at.vector(), dof & !1);
             let rates = Vector2::new(free(first), free(first + 1));
-            ((rates + d * (along - d.dot(&rates)))[dof % 2], scheme.dvelocity(dt))
+            ((rates + d * (along - d.dot(&rates)))[dof % 2], scheme.dvelocity())
         }
-        Some(support) => (supported_rates(trial.thirds(support, model), before, dt).0, 0.0),
-        None => (free(dof), scheme.dvelocity(dt)),
+        Some(support) => (scheme.supported(trial.thirds(support, model), before).0, 0.0),
+        None => (free(dof), scheme.dvelocity()),
     }
 }
 
 /// v and ∂v/∂u of every dof in a dynamic increment; v only at the start of dynamics, and `None` in statics.
 pub(super) fn motion(model: &Model, trial: Trial, u: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-    let Trial { old, step, dt, .. } = trial;
-    if dt == 0.0 {
+    let Trial { old, step, .. } = trial;
+    if trial.is_instant() {
         return Some((old.velocity.clone(), vec![0.0; u.len()]));
     }
-    let scheme = step.scheme.coefficients()?;
-    let mut dvelocity = vec![scheme.dvelocity(dt); u.len()];
+    let scheme = trial.integration()?;
+    let mut dvelocity = vec![scheme.dvelocity(); u.len()];
     let straight = step.supports.iter().filter(|support| support.at.inclined.is_none());
     straight.for_each(|support| dvelocity[support.at.dof] = 0.0);
     model.ties.spread(2, &mut dvelocity);

@@ -38,7 +38,7 @@ use crate::linear::SparseMatrix;
 use crate::linear::system::System;
 use crate::mesh::configuration::vector;
 use crate::model::linkage::Follower;
-use crate::model::scheme::Coefficients;
+use crate::model::scheme::TimeIntegration;
 use crate::model::{Model, State};
 
 /// e of a rigid platen initially, and its change by the displacements `u`.
@@ -57,7 +57,7 @@ pub fn perpendicular(e: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// Average of the values before and after, weighted with α_f.
-fn blended(scheme: Coefficients, [before, after]: [Vector2<f64>; 2]) -> Vector2<f64> {
+fn blended(scheme: TimeIntegration, [before, after]: [Vector2<f64>; 2]) -> Vector2<f64> {
     before * scheme.alpha_f + after * (1.0 - scheme.alpha_f)
 }
 
@@ -170,7 +170,7 @@ pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tan
     for &[a, b] in &model.linkage.rigid {
         let (e, length) = arm(model, [a, b], u);
         let before = arm(model, [a, b], &trial.old.displacement).0;
-        let scheme = trial.step.scheme.coefficients();
+        let scheme = trial.integration();
         let lever = scheme.map_or(e, |scheme| blended(scheme, [before, e]));
         let force = vector(&system.residual, b);
         system.residual[2 * b] = lever.perp(&force) / length;
@@ -261,17 +261,17 @@ pub(super) struct Turning {
 
 impl Turning {
     /// All platens in the increment to the displacement `u`.
-    pub fn all(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> Vec<Self> {
+    pub fn all(model: &Model, trial: Trial, u: &[f64], scheme: TimeIntegration) -> Vec<Self> {
         (0..model.linkage.rigid.len()).map(|k| Self::of(model, trial, u, scheme, k)).collect()
     }
 
-    fn of(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients, k: usize) -> Self {
+    fn of(model: &Model, trial: Trial, u: &[f64], scheme: TimeIntegration, k: usize) -> Self {
         let leaders = model.linkage.rigid[k];
         let e: [Vector2<f64>; 2] = [&trial.old.displacement, u].map(|u| arms(model, leaders, u).iter().sum());
         let (spin, angular) = turning(model, leaders, trial);
         let way = relative(leaders, u) - relative(leaders, &trial.old.displacement);
         let angle = e[0].perp(&way).atan2(e[0].norm_squared() + e[0].dot(&way));
-        let end = scheme.rates(angle, spin, angular, trial.dt);
+        let end = scheme.rates(angle, spin, angular);
         let [before, way] = arms(model, leaders, u);
         let square = before.norm_squared();
         let stretch = way.dot(&(2.0 * before + way)) / (2.0 * square);
@@ -292,14 +292,14 @@ impl Turning {
     }
 
     /// Applies the constraint to the weighted accelerations of the scheme.
-    pub fn weighted(&self, scheme: Coefficients, rate: f64, values: &mut [f64]) {
+    pub fn weighted(&self, scheme: TimeIntegration, rate: f64, values: &mut [f64]) {
         let angular = blend(scheme.alpha_m, self.angular[0], self.angular[1]);
         let arm = blended(scheme, self.e);
         self.give(perpendicular(arm) * angular - arm * self.square(scheme) + self.excess.0 * rate, values);
     }
 
     /// Weighted square of the angular velocity, (ω²)_f.
-    fn square(&self, scheme: Coefficients) -> f64 {
+    fn square(&self, scheme: TimeIntegration) -> f64 {
         blend(scheme.alpha_f, self.spin[0].powi(2), self.spin[1].powi(2))
     }
 
@@ -309,16 +309,16 @@ impl Turning {
     }
 
     /// ∂(weighted acceleration of B relative to A)/∂e minus `rate`, that of the scheme node by node [1/T²].
-    fn beyond(&self, scheme: Coefficients, rate: f64, dt: f64) -> Matrix2<f64> {
+    fn beyond(&self, scheme: TimeIntegration, rate: f64) -> Matrix2<f64> {
         let [e, turned] = [self.e[1], perpendicular(self.e[1])];
         let angle = turned.transpose() / e.norm_squared();
         let (m, f) = (1.0 - scheme.alpha_m, 1.0 - scheme.alpha_f);
         let angular = blend(scheme.alpha_m, self.angular[0], self.angular[1]);
         let arm = blended(scheme, self.e);
-        let spun = perpendicular(arm) * angle * (m * scheme.dacceleration(dt));
+        let spun = perpendicular(arm) * angle * (m * scheme.dacceleration());
         let turn = Matrix2::new(0.0, -angular, angular, 0.0);
         let pulled_back =
-            Matrix2::identity() * self.square(scheme) + arm * angle * (2.0 * self.spin[1] * scheme.dvelocity(dt));
+            Matrix2::identity() * self.square(scheme) + arm * angle * (2.0 * self.spin[1] * scheme.dvelocity());
         spun + (turn - pulled_back) * f + (self.excess.1 - Matrix2::identity()) * rate
     }
 
@@ -326,15 +326,14 @@ impl Turning {
     pub fn stiffen(
         &self,
         model: &Model,
-        scheme: Coefficients,
-        dt: f64,
+        scheme: TimeIntegration,
         factors: &[f64],
         mass: &SparseMatrix,
         tangent: &mut SparseMatrix,
     ) {
         let [a, b] = self.leaders;
         let rate = factors[2 * b];
-        let beyond = self.beyond(scheme, rate, dt);
+        let beyond = self.beyond(scheme, rate);
         let mut rows: BTreeMap<usize, (Matrix2<f64>, f64)> = BTreeMap::new();
         for (node, share) in self.nodes(model) {
             for &row in mass.pattern.neighbours(node) {
@@ -393,12 +392,12 @@ fn reference(model: &Model, trial: Trial, k: usize) -> Matrix2<f64> {
 
 /// Displacements of rigid platens at the end of an increment whose accelerations vary linearly up to those found at θ Δt, where
 /// the displacement is `ahead`; R and all other nodes are at `u` already.
-pub fn turning_at_end(model: &Model, end: Trial, [ahead, found]: [&[f64]; 2], scheme: Coefficients, u: &mut [f64]) {
+pub fn turning_at_end(model: &Model, end: Trial, [ahead, found]: [&[f64]; 2], scheme: TimeIntegration, u: &mut [f64]) {
     for (k, &leaders) in model.linkage.rigid.iter().enumerate() {
         let (spin, angular) = turning(model, leaders, end);
         let e: Vector2<f64> = arms(model, leaders, ahead).iter().sum();
         let there = e.perp(&relative(leaders, found)) / e.norm_squared();
-        let angle = scheme.increment(spin, angular, angular + (there - angular) / end.step.scheme.theta(), end.dt);
+        let angle = scheme.increment(spin, angular, angular + (there - angular) / end.step.scheme.theta());
         let [before, way] = arms(model, leaders, &end.old.displacement);
         let turn = nalgebra::Rotation2::new(angle);
         give(leaders, reference(model, end, k), turn * (before + way) - before, u);

@@ -97,14 +97,14 @@ pub(super) fn add(
     Ok(())
 }
 
-/// Flow out of what holds a pressure were that 0, as a force at its dof: so large are the parts of its balance, which cancel [F].
-pub(super) fn held(model: &Model, trial: Trial, u: &[f64]) -> Vec<(usize, f64)> {
+/// Flow out of where a pressure is prescribed, were that 0, as a force at its dof: so large are the parts of its balance, which cancel [F].
+pub(super) fn prescribed(model: &Model, trial: Trial, u: &[f64]) -> Vec<(usize, f64)> {
     let (Some(flow), span) = (&model.flow, span(trial)) else { return Vec::new() };
     let outlets = trial.step.drains.iter().flat_map(|drain| {
         let conductance = drain.kind.conductance();
         drain.corners.iter().map(move |&(k, _, area)| (k, area * conductance))
     });
-    let all = outlets.chain(channels::held(model, trial, u));
+    let all = outlets.chain(channels::prescribed(model, trial, u));
     all.map(|(k, passes)| (flow.dof(k), flow.scales[k] * span * passes * flow.pressure(k, Some(u)).abs())).collect()
 }
 

@@ -330,17 +330,17 @@ impl SlipOperator {
     /// Back substitution of A u = −r: u of all nodes from the jumps and m.
     fn recover(&self, forwarded: &crate::linear::Forwarded, jumps: &[f64], middles: &[f64]) -> Vec<f64> {
         let n = self.sites.len();
-        let mut kept = vec![0.0; 2 * self.nodes.nodes.len()];
+        let mut retained = vec![0.0; 2 * self.nodes.nodes.len()];
         for (place, m) in self.moving.iter().enumerate() {
             if let Some(m) = m {
-                (0..2).for_each(|i| kept[2 * place + i] = -middles[2 * m + i]);
+                (0..2).for_each(|i| retained[2 * place + i] = -middles[2 * m + i]);
             }
         }
         for (k, site) in self.sites.iter().enumerate() {
             let jump = site.directions[0] * jumps[k] + site.directions[1] * jumps[n + k];
-            (0..2).for_each(|i| kept[2 * site.slave + i] -= jump[i]);
+            (0..2).for_each(|i| retained[2 * site.slave + i] -= jump[i]);
         }
-        let mut u = self.condensed.backward(forwarded, &kept);
+        let mut u = self.condensed.backward(forwarded, &retained);
         u.iter_mut().for_each(|u| *u = -*u);
         u
     }
@@ -349,7 +349,7 @@ impl SlipOperator {
 /// Points of a pair with matching nodes, as checked when the model is built.
 fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes, slips: Slips) -> Vec<Facing> {
     let inverse = |alpha: f64| if alpha > 0.0 { 1.0 / alpha } else { 0.0 };
-    let place = |node: usize| nodes.place(model.ties.original(node)).expect("nodes at contacts are kept");
+    let place = |node: usize| nodes.place(model.ties.original(node)).expect("nodes at contacts are retained");
     let points = pair.points.iter().zip(pair.small.iter().flat_map(|small| small.points.iter().flatten()));
     let of = |(slave, point): (_, &crate::contact::small_sliding::SmallPoint)| {
         let (own, master) = point.facing(|node| model.ties.original(node)).expect("nodes face nodes");

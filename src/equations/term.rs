@@ -64,7 +64,7 @@ impl Term {
     }
 }
 
-/// Returns where the tangent of a step is unsymmetric beside contacts, as those say who add to it; inertia, dashpots and dead loads
+/// Returns where the tangent of a step is unsymmetric apart from contacts, by the terms that add to it; inertia, dashpots and dead loads
 /// are symmetric.
 pub(super) fn unsymmetric_of(model: &Model, step: &Step) -> Unsymmetric {
     let mut nodes = loads::unsymmetric(step);

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use crate::mesh::configuration::vector;
 use crate::model::boundary::Moment;
+use crate::model::scheme::TimeIntegration;
 use crate::model::support::Prescribed;
 use crate::model::{Model, State, Step};
 
@@ -46,6 +47,31 @@ impl<'a> Trial<'a> {
     /// The moment at which supports and loads are evaluated.
     pub fn moment(&self) -> Moment {
         Moment { time: self.time, beyond: self.beyond }
+    }
+
+    /// The scheme over the increment; `None` without inertia.
+    pub fn integration(&self) -> Option<TimeIntegration> {
+        TimeIntegration::new(self.step.scheme, self.dt)
+    }
+
+    /// Whether the state at its start is evaluated, and nothing moves.
+    pub fn is_instant(&self) -> bool {
+        self.dt == 0.0
+    }
+
+    /// v of a dof that moves by Δu in an increment without inertia, and ∂v/∂Δu.
+    pub fn mean_velocity(&self, increment: f64) -> (f64, f64) {
+        (increment / self.dt, 1.0 / self.dt)
+    }
+
+    /// Whether a shorter increment may follow if this one cannot be solved.
+    pub fn may_be_shortened(&self) -> bool {
+        self.step.shorter(self.dt, 1).is_some()
+    }
+
+    /// Coefficient c of a stabilizing dashpot at the end of the increment, from that per Δt at the start of the step.
+    pub fn stabilizing(&self, start: f64) -> f64 {
+        self.stabilization_left() * start / self.dt
     }
 
     /// Remaining fraction of the stabilizing dashpots at the end of the increment, 1 to 0; exactly 0 at the end of the

@@ -257,26 +257,54 @@ impl Coefficients {
         let shift = alpha_f - alpha_m;
         Self { alpha_m, alpha_f, beta: 0.25 * (1.0 + shift).powi(2), gamma: 0.5 + shift }
     }
+}
+
+/// A dynamic scheme over an increment of length Δt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeIntegration {
+    /// Weight of the old inertia force
+    pub alpha_m: f64,
+    /// Weight of the old internal, contact and external forces
+    pub alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+    /// Δt [T]
+    dt: f64,
+}
+
+impl TimeIntegration {
+    /// That of a scheme; `None` for statics and central differences.
+    pub fn new(scheme: Scheme, dt: f64) -> Option<Self> {
+        let Coefficients { alpha_m, alpha_f, beta, gamma } = scheme.coefficients()?;
+        Some(Self { alpha_m, alpha_f, beta, gamma, dt })
+    }
 
     /// ∂a₁/∂u₁ = 1/(β Δt²) [1/T²].
-    pub fn dacceleration(&self, dt: f64) -> f64 {
-        1.0 / (self.beta * dt * dt)
+    pub fn dacceleration(&self) -> f64 {
+        1.0 / (self.beta * self.dt * self.dt)
     }
 
     /// ∂v₁/∂u₁ = γ/(β Δt) [1/T].
-    pub fn dvelocity(&self, dt: f64) -> f64 {
-        self.gamma / (self.beta * dt)
+    pub fn dvelocity(&self) -> f64 {
+        self.gamma / (self.beta * self.dt)
     }
 
     /// (v₁, a₁) of one dof from its displacement increment Δu and (v₀, a₀).
-    pub fn rates(&self, increment: f64, v: f64, a: f64, dt: f64) -> (f64, f64) {
-        let a1 = (increment - dt * v) / (self.beta * dt * dt) - (0.5 / self.beta - 1.0) * a;
-        (v + dt * ((1.0 - self.gamma) * a + self.gamma * a1), a1)
+    pub fn rates(&self, increment: f64, v: f64, a: f64) -> (f64, f64) {
+        let Self { beta, gamma, dt, .. } = *self;
+        let a1 = (increment - dt * v) / (beta * dt * dt) - (0.5 / beta - 1.0) * a;
+        (v + dt * ((1.0 - gamma) * a + gamma * a1), a1)
     }
 
     /// Δu of one dof from (v₀, a₀) and a₁: the inverse of equation (2).
-    pub fn increment(&self, v: f64, a: f64, a1: f64, dt: f64) -> f64 {
-        dt * v + dt * dt * ((0.5 - self.beta) * a + self.beta * a1)
+    pub fn increment(&self, v: f64, a: f64, a1: f64) -> f64 {
+        let Self { beta, dt, .. } = *self;
+        dt * v + dt * dt * ((0.5 - beta) * a + beta * a1)
+    }
+
+    /// (v₁, a₁) of a supported dof: [`supported_rates`].
+    pub fn supported(&self, places: [f64; 4], v: f64) -> (f64, f64) {
+        supported_rates(places, v, self.dt)
     }
 }
 

@@ -369,7 +369,7 @@ impl Until {
     }
 
     /// Status of an increment with respect to the end of the step.
-    pub fn course(&self, span: Span, [old, new]: [&State; 2]) -> UntilStatus {
+    pub fn status(&self, span: Span, [old, new]: [&State; 2]) -> UntilStatus {
         let clock = SHORTEST * (span.end - span.start) + 64.0 * f64::EPSILON * new.time.abs();
         let share = self.share([old, new]);
         let passed = share.is_some_and(|share| share < 1.0);

@@ -116,7 +116,7 @@ impl Table {
         }
         self.held.clear();
         match row {
-            Row::Held => self.held.append(&mut self.row),
+            Row::Pending => self.held.append(&mut self.row),
             Row::Written | Row::AfterTheHeld => self.rows.append(&mut self.row),
         }
         if self.rows.len() < MANY { Ok(()) } else { self.flush() }

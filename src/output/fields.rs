@@ -215,7 +215,7 @@ fn listed(collections: &mut [Collection]) -> Result<(), Error> {
 impl Observer for Fields {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let is_row = attempt.row != Row::Held;
+        let is_row = attempt.row != Row::Pending;
         self.rows += usize::from(is_row);
         let is_due = match self.frames_of.of {
             Selection::Rows(every) => self.rows.is_multiple_of(every),

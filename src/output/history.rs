@@ -18,7 +18,7 @@ use crate::bars::fields::Summary;
 use crate::bars::{Bar, BarState};
 use crate::contact::conduit::ConduitState;
 use crate::contact::nodal_forces::Resultant;
-use crate::contact::scatter::Course;
+use crate::contact::scatter::PointSequence;
 use crate::contact::{ContactPair, ContactState};
 use crate::equations::contacts;
 use crate::laws::friction::{Regime, observables};
@@ -38,7 +38,7 @@ pub struct HistoryRows {
     /// Center of each undeformed slave surface, the reference point of moments
     middles: Vec<Vector2<f64>>,
     /// How the points of each contact follow each other
-    surfaces: Vec<Course>,
+    surfaces: Vec<PointSequence>,
     bodies: Arc<[BodyMeans]>,
     /// ∫ N_a ds of the watched edge sets
     edges: Vec<EdgeMeans>,
@@ -102,7 +102,7 @@ impl Rows for HistoryRows {
         let rows = Self {
             observed,
             middles: model.contacts.iter().map(|pair| pair.middle(&undeformed)).collect(),
-            surfaces: model.contacts.iter().map(|pair| Course::new(&pair.points, &undeformed)).collect(),
+            surfaces: model.contacts.iter().map(|pair| PointSequence::new(&pair.points, &undeformed)).collect(),
             bodies: model.bodies.iter().map(|body| BodyMeans::new(model, body)).collect(),
             edges,
             memory: Memory {
@@ -178,7 +178,7 @@ impl HistoryRows {
             *heat += more;
             row.extend([*heat, more / (state.time - old.time)]);
         }
-        row.extend(surfaces.iter().zip(&state.contacts).map(|(course, states)| course.scatter(states)));
+        row.extend(surfaces.iter().zip(&state.contacts).map(|(points, states)| points.scatter(states)));
         for body in &model.mesh.rigid_bodies {
             row.extend([body.angle(&x), body.radius * state.reaction[2 * body.turning]]);
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::worst::Worst;
 use crate::contact::ContactState;
 use crate::contact::master::Master;
-use crate::contact::scatter::Course;
+use crate::contact::scatter::PointSequence;
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::text::count;
 use crate::model::{Method, Model, State};
@@ -27,7 +27,7 @@ pub struct Scattered {
     within: BTreeMap<usize, Within>,
     /// How the points of each contact follow each other
     #[serde(skip)]
-    courses: BTreeMap<usize, Course>,
+    sequences: BTreeMap<usize, PointSequence>,
 }
 
 /// Scatter of a contact within a step.
@@ -50,14 +50,15 @@ impl Scattered {
         }
         let contacts = model.contacts.iter().zip(&model.methods).zip(&state.contacts).enumerate();
         for (k, ((pair, chosen), states)) in contacts.filter(|(_, ((pair, _), _))| attempt.step.joins(pair)) {
-            let course = self.courses.entry(k).or_insert_with(|| Course::new(&pair.points, &model.mesh.undeformed()));
+            let sequence =
+                self.sequences.entry(k).or_insert_with(|| PointSequence::new(&pair.points, &model.mesh.undeformed()));
             let within = self.within.entry(k).or_default();
-            within.add(course.scatter(states), attempt.dt, state.time);
+            within.add(sequence.scatter(states), attempt.dt, state.time);
             if !attempt.ends_step(state) {
                 continue;
             }
             let within = std::mem::take(within);
-            let (size, found) = within.largest(course, states, state.time, &attempt.step.name);
+            let (size, found) = within.largest(sequence, states, state.time, &attempt.step.name);
             if size <= self.worst.bound(k, 1.0) {
                 continue;
             }
@@ -89,7 +90,7 @@ impl Within {
     }
 
     /// The largest scatter of a step over its bound, in the end and over its time, and what there is to be said of it.
-    fn largest(&self, course: &Course, states: &[ContactState], end: f64, step: &str) -> (f64, String) {
+    fn largest(&self, sequence: &PointSequence, states: &[ContactState], end: f64, step: &str) -> (f64, String) {
         let told = |time: f64, scatter: f64, how: String| {
             let percent = 100.0 * scatter;
             format!(
@@ -98,14 +99,14 @@ impl Within {
             )
         };
         let mean = (self.squares / self.duration).sqrt();
-        let at_end = course.scatter(states);
+        let at_end = sequence.scatter(states);
         let most = |a: (f64, String), b: (f64, String)| if b.0 > a.0 { b } else { a };
         let over_time = format!(" (column scatter), and by {:.0} % over the time of step `{step}`", 100.0 * mean);
         let found = most(
             (at_end / SCATTERS, told(end, at_end, " (column scatter)".into())),
             (mean / SCATTERS, told(self.time, self.largest, over_time)),
         );
-        let Some(all_over) = course.short_scatter(states) else { return found };
+        let Some(all_over) = sequence.short_scatter(states) else { return found };
         let closed = states.iter().filter(|state| state.is_closed()).count();
         let on = format!(" on {}", count(closed, "closed point"));
         most(found, (all_over / SCATTERS_IF_SHORT, told(end, all_over, on)))

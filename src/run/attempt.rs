@@ -61,19 +61,19 @@ impl Simulation {
                         let phase = half.map_or_else(|| self.rupture(), |dt| again(dt, Touching::default()));
                         Outcome::Rejected(Verdict::Rupture, phase)
                     }
-                    // A long increment can pass from stable equilibria to an unstable branch beside them; a short one rather
+                    // A long increment can pass from stable equilibria to an unstable branch near them; a short one rather
                     // follows the stable branch. A branch that becomes unstable itself does so however short increments are.
                     Judgement { accepted: true, .. } if loses_stability && number <= HALVINGS && half.is_some() => {
                         let dt = half.unwrap_or(dt);
                         Outcome::Rejected(Verdict::Unstable, again(dt, Touching::default()))
                     }
-                    Judgement { accepted: true, next, .. } => match course(step, [old, &new]) {
+                    Judgement { accepted: true, next, .. } => match until(step, [old, &new]) {
                         Some(UntilStatus::Passed(dt)) => {
                             let dt = Until::shorter(dt, new.dt, number);
                             Outcome::Rejected(Verdict::Passed, again(dt, Touching::default()))
                         }
-                        course => {
-                            let phase = after(step, &new, course, next, touching);
+                        until => {
+                            let phase = after(step, &new, until, next, touching);
                             accepted = Some(Arc::new(new));
                             Outcome::Accepted(phase)
                         }
@@ -198,13 +198,13 @@ impl Simulation {
 }
 
 /// Status of an increment with respect to the reaction that ends the step, if one does.
-fn course(step: &Step, states: [&State; 2]) -> Option<UntilStatus> {
-    step.until.as_ref().map(|until| until.course(step.span, states))
+fn until(step: &Step, states: [&State; 2]) -> Option<UntilStatus> {
+    step.until.as_ref().map(|until| until.status(step.span, states))
 }
 
 /// Next phase after an accepted increment.
-fn after(step: &Step, new: &State, course: Option<UntilStatus>, next: f64, touching: Touching) -> Phase {
-    let dt = match course {
+fn after(step: &Step, new: &State, until: Option<UntilStatus>, next: f64, touching: Touching) -> Phase {
+    let dt = match until {
         Some(UntilStatus::Met) => return Phase::Met,
         Some(_) if new.time >= step.span.end => return Phase::Missed,
         Some(UntilStatus::Before(Some(left))) => next.min(left),

@@ -89,13 +89,13 @@ impl Attempt<'_> {
     /// Whether the step ends with the new state, at its end time or at the reaction that ends it.
     pub fn ends_step(&self, state: &State) -> bool {
         let Step { span, until, .. } = self.step;
-        let met = |until: &Until| until.course(*span, [self.old, state]) == UntilStatus::Met;
+        let met = |until: &Until| until.status(*span, [self.old, state]) == UntilStatus::Met;
         state.time >= span.end || until.as_ref().is_some_and(met)
     }
 
     /// Role of the increment in the results, given the time of the last row [T].
     pub(super) fn row_after(&self, model: &Model, last: f64) -> Row {
-        let Some(new) = self.accepted else { return Row::Held };
+        let Some(new) = self.accepted else { return Row::Pending };
         let Some(interval) = model.requests.interval else { return Row::Written };
         let is_kept = || {
             matches!(self.step.scheme, Scheme::Explicit { .. })
@@ -106,7 +106,7 @@ impl Attempt<'_> {
         match regimes(model, self.old) != regimes(model, new) {
             true => Row::AfterTheHeld,
             false if is_kept() => Row::Written,
-            false => Row::Held,
+            false => Row::Pending,
         }
     }
 }
@@ -125,10 +125,10 @@ const ROUND_OFF: f64 = 1e-9;
 pub enum Row {
     /// A row of the results.
     Written,
-    /// A row, preceded by the increment held back before it, if there is one.
+    /// A row, preceded by the pending increment before it, if there is one.
     AfterTheHeld,
-    /// Held back: a row only if an event follows. Rejected attempts are never rows.
-    Held,
+    /// A row only if an event follows. Rejected attempts are never rows.
+    Pending,
 }
 
 /// Outcome of an attempt.

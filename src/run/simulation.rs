@@ -160,7 +160,7 @@ impl Simulation {
             dt: candidate.dt,
             iterations: &candidate.iterations,
             accepted: candidate.accepted.as_deref(),
-            row: Row::Held,
+            row: Row::Pending,
             verdict: candidate.verdict(),
             cause: candidate.cause(),
             local_error: candidate.local_error,
@@ -198,7 +198,7 @@ impl Simulation {
     /// # Errors
     /// Returns [`Error`] if no other attempt can succeed.
     pub fn apply(&mut self, candidate: Candidate) -> Result<(), Error> {
-        let is_row = self.attempt_of(&candidate).row != Row::Held;
+        let is_row = self.attempt_of(&candidate).row != Row::Pending;
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
         if let Outcome::Paused(midway) = outcome {
             (self.control.coupling, self.explicit, self.midway) = (coupling, explicit, Some(midway));

@@ -146,9 +146,9 @@ impl CondensedNewton {
     fn condense(&mut self, trial: Trial) -> Result<Option<Arc<OfLength>>, TrialFailure> {
         let one = self.condensation.memory() + Eliminated::memory(self.nodes.nodes.len());
         let free = available_memory().map_or(MOST_MEMORY, |free| (free / 2).min(MOST_MEMORY));
-        let held = self.by_length.len() * one;
+        let used = self.by_length.len() * one;
         // Memory already used counts as available.
-        let most = (held + free).min(MOST_MEMORY) / one.max(1);
+        let most = (used + free).min(MOST_MEMORY) / one.max(1);
         self.by_length.drain(..(self.by_length.len() + 1).saturating_sub(most.max(1)));
         let Self { nodes, bodies, system, pattern, condensation, .. } = self;
         bodies.assemble(trial, &trial.old.displacement, &[], Request::Tangent, system)?;

@@ -17,7 +17,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::failure::IncrementFailure;
-use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Reached, TooFast, Wall};
+use crate::contact::conduit::{Amounts, Conduit, ConduitState, Reached, TooFast, Wall, WallMotion};
 use crate::contact::{ContactPair, ContactState};
 use crate::equations::Trial;
 use crate::model::state::{State, Water as BodyWater};
@@ -46,7 +46,7 @@ pub type Arrived = Vec<Option<ConduitState>>;
 
 /// How the water of a contact has gone through an increment.
 #[derive(Clone, Debug, Default)]
-pub struct WaterCourse {
+pub struct WaterHistory {
     /// p_k of the last pass, under which equilibrium was found, of every node [F/L²]
     pub pressure: Vec<f64>,
     /// Open length [L]
@@ -126,7 +126,7 @@ struct Flowing<'a> {
     walls: Vec<Wall>,
     /// p̂(p_k)
     found: Reached,
-    /// Ends of the steps of the run beside which it flows [T]
+    /// Ends of the steps of the run whose neighbour it belongs to [T]
     steps: Option<&'a [f64]>,
 }
 
@@ -161,14 +161,14 @@ impl Flowing<'_> {
     /// Pressures from the surfaces at the end, with the rates that these began with on request.
     fn march(&self, trial: Trial, rates: Option<&[Wall]>) -> Result<Reached, IncrementFailure> {
         let predicted = if self.pressure.is_empty() { &self.old.pressure } else { &self.pressure };
-        let course = Course {
+        let motion = WallMotion {
             span: [trial.old.time, trial.time],
             walls: [&self.old.walls, &self.walls],
             rates,
             gives_way: [&self.compliance, predicted],
             steps: self.steps,
         };
-        self.conduit.march(&self.old.pressure, &course).map_err(|TooFast { time, step }| {
+        self.conduit.march(&self.old.pressure, &motion).map_err(|TooFast { time, step }| {
             let why = format!("its pressure has no value from t = {time:e} on, whatever the step (last {step:e})");
             self.failure(why)
         })
@@ -311,17 +311,17 @@ impl<'a> Water<'a> {
     }
 
     /// How the water has gone through the increment.
-    pub fn courses(&self, model: &Model) -> Vec<Option<WaterCourse>> {
-        let mut courses = vec![None; model.contacts.len()];
+    pub fn histories(&self, model: &Model) -> Vec<Option<WaterHistory>> {
+        let mut histories = vec![None; model.contacts.len()];
         for Flowing { number, pressure, open, found, .. } in &self.flowing {
             let (pressure, steps) = (pressure.clone(), found.steps.clone());
-            courses[*number] = Some(WaterCourse { pressure, open: *open, steps });
+            histories[*number] = Some(WaterHistory { pressure, open: *open, steps });
         }
-        courses
+        histories
     }
 }
 
-/// The water at the end of an explicit increment, in which the surfaces come to be what is told of each contact.
+/// The water at the end of an explicit increment, from the walls of each contact at its end.
 ///
 /// # Errors
 /// Returns [`IncrementFailure`] if its pressures are impossible.
@@ -347,11 +347,11 @@ fn arrive(flowing: &[Flowing], model: &Model, trial: Trial) -> Result<Arrived, I
     Ok(arrived)
 }
 
-/// Water of a run in an increment, beside which that of its neighbours flows.
+/// Water of a run in an increment, by which that of its neighbours flows.
 #[derive(Clone, Copy)]
 pub struct RunWater<'a> {
     /// How it has gone through the increment
-    pub courses: &'a [Option<WaterCourse>],
+    pub histories: &'a [Option<WaterHistory>],
     /// The states at its start and at its end
     pub states: [&'a State; 2],
 }
@@ -359,7 +359,11 @@ pub struct RunWater<'a> {
 impl RunWater<'_> {
     /// The state at the start under the pressures of the last pass.
     pub fn pressed(&self, model: &Model) -> State {
-        pressed(model, self.states[0], self.courses.iter().map(|course| course.as_ref().map(|course| &course.pressure)))
+        pressed(
+            model,
+            self.states[0],
+            self.histories.iter().map(|history| history.as_ref().map(|history| &history.pressure)),
+        )
     }
 }
 
@@ -375,14 +379,14 @@ pub struct NeighbourWater {
 impl NeighbourWater {
     /// Begins as far from the pressures of the run as at the start of the increment.
     pub fn new(run: &RunWater, old: &State) -> Self {
-        let ahead = |((course, run), own): ((&Option<WaterCourse>, &ConduitState), &ConduitState)| {
+        let ahead = |((history, run), own): ((&Option<WaterHistory>, &ConduitState), &ConduitState)| {
             let before = own.pressure.iter().zip(&run.pressure);
-            let ahead = |course: &WaterCourse| {
-                course.pressure.iter().zip(before).map(|(p, (own, run))| p + (own - run)).collect()
+            let ahead = |history: &WaterHistory| {
+                history.pressure.iter().zip(before).map(|(p, (own, run))| p + (own - run)).collect()
             };
-            course.as_ref().map(ahead)
+            history.as_ref().map(ahead)
         };
-        let each = run.courses.iter().zip(&run.states[0].conduits).zip(&old.conduits);
+        let each = run.histories.iter().zip(&run.states[0].conduits).zip(&old.conduits);
         Self { pressure: each.map(ahead).collect(), ..Self::default() }
     }
 
@@ -406,15 +410,16 @@ impl NeighbourWater {
         let (mut now, mut next) = (Vec::new(), Vec::new());
         let (mut difference, mut largest) = (0.0f64, 0.0f64);
         for flowing in &mut all {
-            let (Some(course), Some(pressure)) = (&run.courses[flowing.number], &self.pressure[flowing.number]) else {
+            let (Some(history), Some(pressure)) = (&run.histories[flowing.number], &self.pressure[flowing.number])
+            else {
                 continue;
             };
             flowing.pressure.clone_from(pressure);
-            (flowing.open, flowing.steps) = (course.open, Some(&course.steps[..]));
+            (flowing.open, flowing.steps) = (history.open, Some(&history.steps[..]));
             flowing.walls = flowing.conduit.walls(&contacts[flowing.number]);
             flowing.give_way();
             flowing.found = flowing.march(trial, None)?;
-            let left = run.states[1].conduits[flowing.number].pressure.iter().zip(&course.pressure);
+            let left = run.states[1].conduits[flowing.number].pressure.iter().zip(&history.pressure);
             for ((p, found), (reached, before)) in pressure.iter().zip(&flowing.found.pressure).zip(left) {
                 let wanted = found - (reached - before);
                 difference = difference.max((wanted - p).abs());
@@ -489,7 +494,7 @@ pub fn receive(model: &Model, arrived: Arrived, state: &mut State) {
     }
 }
 
-/// Gives a state, whose last increment is that from `old`, the water of contacts that is solved with that of the bodies beside them.
+/// Gives a state, whose last increment is that from `old`, the water of contacts that is solved with that of their bodies.
 pub fn receive_with_bodies(model: &Model, step: &Step, dt: f64, old: &BodyWater, state: &mut State) {
     let Some(flow) = &model.flow else { return };
     for (number, pair) in model.contacts.iter().enumerate().filter(|(_, pair)| step.joins(pair)) {

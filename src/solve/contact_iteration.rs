@@ -83,7 +83,7 @@
 //! linear solve, where α_t is a penalty above 20 (λ + 2G)/h. Below that it gains nothing.
 //!
 //! A point that was predicted to stick but slips may have missed the range because of errors of its neighbours only. It is
-//! predicted to stick once more if the tractions predicted by that linear solve would have held it. Switch `stick_again`, which
+//! predicted to stick once more if the tractions predicted by that linear solve would not have exceeded its strength. Switch `stick_again`, which
 //! requires `stick`; `aid_stick_again` counts the points.
 //!
 //! Source: sticking is linear, so one solve shows whether the point ends in that range: the predictor of return
@@ -124,7 +124,7 @@ struct Point {
     predicted_tractions: Tractions,
     /// Whether it was limited at the start of the increment
     limited: bool,
-    /// Whether the committed state keeps it closed
+    /// Whether it is closed in the committed state
     active_at_start: bool,
     /// Pressure used by friction at a point that has just closed
     predicted_pressure: Option<f64>,
@@ -180,7 +180,7 @@ pub struct ContactIteration {
     linearized: Vec<PairResponse>,
     /// Contact points as linearized in the next solve
     next: Vec<PairResponse>,
-    /// Contact points as they are, kept to reuse their memory
+    /// Contact points as they are, stored to reuse their memory
     plain: Vec<PairResponse>,
     /// u of the last linear solve [L]
     linearized_at: Vec<f64>,
@@ -194,8 +194,8 @@ impl ContactIteration {
         self.points.clear();
     }
 
-    /// Evaluates the contact points at the displacement `u`: for a residual without predictions; for a tangent with all of them, about
-    /// which [`ContactIteration::note`] is told once it is assembled.
+    /// Evaluates the contact points at the displacement `u`: for a residual without predictions; for a tangent with all of them, of
+    /// which [`ContactIteration::note`] records what was used.
     ///
     /// # Errors
     /// Returns [`TrialFailure`] if a friction law fails.
@@ -380,9 +380,9 @@ impl Slipping {
             (friction.traction / friction.pressure).abs() * (predicted_tractions.pressure - state.pores) + of_bond;
         // A point that slips below its strength would also slip with these tractions, unless they are far lower or the slip
         // abates.
-        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };
+        let limit = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };
         let sticks = match self.stuck {
-            true => slips && predicted_tractions.traction.abs() < held,
+            true => slips && predicted_tractions.traction.abs() < limit,
             false => self.slip * slip < 0.0,
         };
         self.slip = slip;

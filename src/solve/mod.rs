@@ -21,7 +21,7 @@ use crate::linear::LinearSolver;
 use crate::linear::system::System;
 use crate::model::Model;
 use condensed_newton::CondensedNewton;
-use conduits::WaterCourse;
+use conduits::WaterHistory;
 use contact_iteration::{Acted, ContactIteration};
 pub use failure::IncrementFailure;
 use newton::Iteration;
@@ -52,7 +52,7 @@ pub struct Pass {
     /// Coupling of the nodes at it, on which the order of elimination depends
     pub coupling: Arc<Coupling>,
     /// Water of each contact under which it was found; empty where none flows
-    pub water: Vec<Option<WaterCourse>>,
+    pub water: Vec<Option<WaterHistory>>,
 }
 
 impl Workspace {

@@ -9,13 +9,13 @@
 //! r is the residual that the tolerance of the run has left, r′ that of a neighbour by its own equations. Its tangent differs from K by
 //! O(ε) if its parameters and its state do, so a correction leaves a fraction O(ε) of the error: one or two are enough.
 //!
-//! Neighbours with the parameters θ + k ε, k = −1, 1 or 1, 2, are corrected together, by the parts of the polynomial in k through their
+//! Neighbours with the parameters θ + k ε, k = −1, 1 or 1, 2, are corrected together, by the coefficients of the polynomial in k through their
 //! residuals and that of the run, k = 0:
 //! ```text
 //! r_k − r = a₁ k + a₂ k²,   u_k ← u_k − k K⁻¹ a₁ − k² K⁻¹ a₂                                                     (2)
 //! ```
-//! The first part is the derivative. Their tangents differ from K in proportion to k, so its correction leaves what is proportional to k²,
-//! and only a fraction O(ε²) of a₁ itself. The second part is O(ε²) and drops out of the derivative: it is corrected only where it is larger
+//! The first coefficient is the derivative. Their tangents differ from K in proportion to k, so its correction leaves what is proportional to k²,
+//! and only a fraction O(ε²) of a₁ itself. The second one is O(ε²) and drops out of the derivative: it is corrected only where it is larger
 //! than that, or where a contact point has another status in one of them than in the run.
 //!
 //! Bodies that θ does not act on, and that have no internal variables, are linear so close to the run: K_b (u′ − u) stands for the change of
@@ -56,7 +56,7 @@ const SURE: f64 = 3e-8;
 /// ‖r‖/‖f‖ below which another correction would change round-off only [-]
 const ROUND_OFF: f64 = 0.02 * TOLERANCE;
 
-/// Allowed ‖r‖/‖f‖ of the part that drops out of the derivative, where contact points have the same status as in the run [-]
+/// Allowed ‖r‖/‖f‖ of the coefficient that drops out of the derivative, where contact points have the same status as in the run [-]
 const CURVATURE: f64 = 1e-10;
 
 /// The tangent of a run at a solution, and its factors.
@@ -112,8 +112,8 @@ impl Tangent {
     }
 }
 
-/// A neighbour on its way to equilibrium.
-pub struct Seeker<'a> {
+/// A neighbour whose equilibrium is sought.
+pub struct NeighbourProblem<'a> {
     /// its model
     pub model: &'a Model,
     /// its increment
@@ -128,8 +128,8 @@ pub struct Seeker<'a> {
     pub offset: f64,
 }
 
-/// A part of (2), and what corrections have left of it.
-struct Part {
+/// A coefficient a₁ or a₂ of (2), and what corrections have left of it.
+struct Coefficient {
     /// Weights of the residuals in it
     weights: Vec<f64>,
     /// k or k² of every neighbour
@@ -139,17 +139,17 @@ struct Part {
     /// ‖r‖/‖f‖ at the last evaluation, and before it
     left: f64,
     before: f64,
-    /// Whether the last correction was of this part too
+    /// Whether the last correction was of this one too
     was_corrected: bool,
 }
 
-impl Part {
-    /// All parts of neighbours with these k.
+impl Coefficient {
+    /// All coefficients of neighbours with these k.
     fn of(offset: &[f64]) -> Vec<Self> {
         let count = offset.len();
         let powers = DMatrix::from_fn(count, count, |k, j| (0..j).fold(offset[k], |power, _| power * offset[k]));
         let inverse = powers.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(count, count));
-        let part = |j: usize| Self {
+        let coefficient = |j: usize| Self {
             weights: inverse.row(j).iter().copied().collect(),
             powers: powers.column(j).iter().copied().collect(),
             drops_out: j > 0,
@@ -157,11 +157,11 @@ impl Part {
             before: f64::INFINITY,
             was_corrected: true,
         };
-        (0..count).map(part).collect()
+        (0..count).map(coefficient).collect()
     }
 
     /// a₁ or a₂
-    fn residual(&self, neighbours: &[Seeker], own: &[f64]) -> Vec<f64> {
+    fn residual(&self, neighbours: &[NeighbourProblem], own: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; own.len()];
         for (weight, neighbour) in self.weights.iter().zip(neighbours) {
             let residuals = neighbour.work.system.residual.iter().zip(own);
@@ -178,33 +178,33 @@ impl Part {
         self.left == 0.0 || self.left <= tolerance && (is_corrected || tolerance == CURVATURE)
     }
 
-    /// Whether it falls from the largest part that was corrected, of which a correction leaves a fraction in all parts.
+    /// Whether it falls from the largest coefficient that was corrected, of which a correction leaves a fraction in all of them.
     fn falls(&self, tolerance: f64, before: f64) -> bool {
         self.left <= tolerance || self.left <= SLOW * before
     }
 }
 
-impl Seeker<'_> {
+impl NeighbourProblem<'_> {
     fn evaluate(&mut self, solids: Option<SolidForces>) -> Result<(), TrialFailure> {
         let Workspace { assembler, system, .. } = &mut *self.work;
         assembler.residual_of_neighbour(self.trial, &self.u, solids, system)
     }
 }
 
-/// Neighbours whose difference is a derivative, on their way.
+/// Neighbours whose difference is a derivative.
 struct Group<'a> {
-    neighbours: Vec<Seeker<'a>>,
-    parts: Vec<Part>,
-    course: Course,
+    neighbours: Vec<NeighbourProblem<'a>>,
+    coefficients: Vec<Coefficient>,
+    status: Status,
 }
 
-/// How far a group has come.
+/// Status of the iterations of a group.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Course {
-    OnItsWay,
-    Solved,
+enum Status {
+    Iterates,
+    Converged,
     /// The tangent of the run does not serve it
-    Left,
+    Diverged,
 }
 
 /// A correction of the neighbours of a group.
@@ -212,7 +212,7 @@ struct Correction {
     /// k or k² of every neighbour
     powers: Vec<f64>,
     /// −a₁ or −a₂, and then K⁻¹ times that
-    way: Vec<f64>,
+    direction: Vec<f64>,
 }
 
 /// The run at a solution.
@@ -227,9 +227,9 @@ struct Run<'a> {
 }
 
 impl<'a> Group<'a> {
-    fn new(neighbours: Vec<Seeker<'a>>) -> Self {
+    fn new(neighbours: Vec<NeighbourProblem<'a>>) -> Self {
         let offset: Vec<f64> = neighbours.iter().map(|neighbour| neighbour.offset).collect();
-        Self { parts: Part::of(&offset), neighbours, course: Course::OnItsWay }
+        Self { coefficients: Coefficient::of(&offset), neighbours, status: Status::Iterates }
     }
 
     fn evaluate(&mut self, solids: Option<&LinearizedSolids>) -> Result<(), TrialFailure> {
@@ -244,68 +244,68 @@ impl<'a> Group<'a> {
 
     /// Largest distance from the prescribed motions.
     fn missed(&self) -> f64 {
-        let of = |Seeker { work, trial, u, .. }: &Seeker| work.assembler.missed(*trial, u);
+        let of = |NeighbourProblem { work, trial, u, .. }: &NeighbourProblem| work.assembler.missed(*trial, u);
         self.neighbours.iter().map(of).fold(0.0, f64::max)
     }
 
     /// Evaluates the neighbours, and returns what is to be corrected.
     fn corrections(&mut self, run: &Run) -> Vec<Correction> {
-        if self.course != Course::OnItsWay {
+        if self.status != Status::Iterates {
             return Vec::new();
         }
         if self.evaluate(run.solids).is_err() {
-            self.course = Course::Left;
+            self.status = Status::Diverged;
             return Vec::new();
         }
         let missed = self.missed();
-        let Self { neighbours, parts, course } = self;
-        let status = |neighbour: &Seeker| regimes(&neighbour.model.contacts, neighbour.work.contacts());
-        let are_alike = neighbours.iter().all(|neighbour| status(neighbour) == run.statuses);
+        let Self { neighbours, coefficients, status } = self;
+        let regimes_of = |neighbour: &NeighbourProblem| regimes(&neighbour.model.contacts, neighbour.work.contacts());
+        let are_alike = neighbours.iter().all(|neighbour| regimes_of(neighbour) == run.statuses);
         let (mut corrections, mut fall) = (Vec::new(), true);
-        let before = parts.iter().filter(|part| part.was_corrected).map(|part| part.left).fold(0.0, f64::max);
-        for part in parts {
-            let mut residual = part.residual(neighbours, run.residual);
+        let before = coefficients.iter().filter(|one| one.was_corrected).map(|one| one.left).fold(0.0, f64::max);
+        for one in coefficients {
+            let mut residual = one.residual(neighbours, run.residual);
             let share = run.assembler.share(neighbours[0].trial.step, &residual, run.measures);
-            (part.before, part.left) = (part.left, share.max(missed));
-            let tolerance = if part.drops_out && are_alike { CURVATURE } else { TOLERANCE };
-            fall &= part.falls(tolerance, before);
-            part.was_corrected = !part.is_solved(tolerance);
-            if part.was_corrected {
+            (one.before, one.left) = (one.left, share.max(missed));
+            let tolerance = if one.drops_out && are_alike { CURVATURE } else { TOLERANCE };
+            fall &= one.falls(tolerance, before);
+            one.was_corrected = !one.is_solved(tolerance);
+            if one.was_corrected {
                 residual.iter_mut().for_each(|r| *r = -*r);
-                corrections.push(Correction { powers: part.powers.clone(), way: residual });
+                corrections.push(Correction { powers: one.powers.clone(), direction: residual });
             }
         }
         if corrections.is_empty() {
-            *course = Course::Solved;
+            *status = Status::Converged;
         } else if !fall {
-            *course = Course::Left;
+            *status = Status::Diverged;
             corrections.clear();
         }
         corrections
     }
 
     fn correct(&mut self, corrections: Vec<Correction>) {
-        for Correction { powers, way } in corrections {
+        for Correction { powers, direction } in corrections {
             for (neighbour, power) in self.neighbours.iter_mut().zip(powers) {
-                neighbour.u.iter_mut().zip(&way).for_each(|(u, way)| *u += power * way);
+                neighbour.u.iter_mut().zip(&direction).for_each(|(u, direction)| *u += power * direction);
             }
         }
     }
 
     /// The solution of every neighbour; those that have none yet are solved by themselves.
     fn end(self) -> Result<Vec<Vec<f64>>, IncrementFailure> {
-        let Self { neighbours, course, .. } = self;
-        match course {
-            Course::Solved => Ok(neighbours.into_iter().map(|neighbour| neighbour.u).collect()),
+        let Self { neighbours, status, .. } = self;
+        match status {
+            Status::Converged => Ok(neighbours.into_iter().map(|neighbour| neighbour.u).collect()),
             _ => neighbours.into_iter().map(by_itself).collect(),
         }
     }
 }
 
-/// Equilibrium of groups of neighbours, each group for one derivative, beside the run whose tangent is given; or why a group has none near
+/// Equilibrium of groups of neighbours, each group for one derivative, by the tangent of the run; or why a group has none near
 /// the run. Groups are evaluated in parallel, and corrected together: the factors are read once for all of them.
 pub fn solve_neighbours(
-    groups: Vec<Vec<Seeker>>,
+    groups: Vec<Vec<NeighbourProblem>>,
     tangent: &mut Tangent,
 ) -> Vec<Result<Vec<Vec<f64>>, IncrementFailure>> {
     let Tangent { assembler, system, solver, solids, measures, serves } = tangent;
@@ -315,7 +315,7 @@ pub fn solve_neighbours(
     loop {
         let of = |group: &mut Group| if *serves { group.corrections(&run) } else { Vec::new() };
         let mut corrections: Vec<Vec<Correction>> = groups.par_iter_mut().with_max_len(1).map(of).collect();
-        let mut columns: Vec<&mut [f64]> = corrections.iter_mut().flatten().map(|one| &mut one.way[..]).collect();
+        let mut columns: Vec<&mut [f64]> = corrections.iter_mut().flatten().map(|one| &mut one.direction[..]).collect();
         if columns.is_empty() {
             break;
         }
@@ -326,7 +326,9 @@ pub fn solve_neighbours(
 }
 
 /// Equilibrium of a neighbour by Newton's method.
-fn by_itself(Seeker { model, trial, work, mut u, .. }: Seeker) -> Result<Vec<f64>, IncrementFailure> {
+fn by_itself(
+    NeighbourProblem { model, trial, work, mut u, .. }: NeighbourProblem,
+) -> Result<Vec<f64>, IncrementFailure> {
     if !u.iter().all(|u| u.is_finite()) {
         u.clone_from(&trial.old.displacement);
     }

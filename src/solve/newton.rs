@@ -197,8 +197,8 @@ pub fn solve<E: Equations>(
     iterations: &mut Vec<Iteration>,
 ) -> Result<Vec<f64>, NewtonFailure<E::Failure>> {
     equations.evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-    let mut course = Convergence::new(settings);
-    while let Some(plan) = course.judge(iterations, system)? {
+    let mut convergence = Convergence::new(settings);
+    while let Some(plan) = convergence.judge(iterations, system)? {
         let here = if plan.searched { system.residual.clone() } else { Vec::new() };
         if plan.factorized {
             equations.evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
@@ -220,7 +220,7 @@ pub fn solve<E: Equations>(
             Err(failure) if plan.factorized => return Err(NewtonFailure::Evaluation(failure)),
             Err(_) => {
                 // The old tangent failed: the next correction starts from the same iterate.
-                course.old_tangent_serves = false;
+                convergence.old_tangent_serves = false;
                 u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= x);
                 equations.evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
             }

@@ -125,8 +125,8 @@ impl<'a> Passes<'a> {
             self.start = Some(found.displacement);
             return Ok(None);
         }
-        let courses = self.water.courses(self.model);
-        self.solutions.iter_mut().for_each(|pass| pass.water.clone_from(&courses));
+        let histories = self.water.histories(self.model);
+        self.solutions.iter_mut().for_each(|pass| pass.water.clone_from(&histories));
         found.water = self.water.arrive(self.model, self.trial)?;
         Ok(Some(found))
     }

@@ -38,7 +38,7 @@ pub struct Watch {
 impl Watch {
     /// Begins it, at a new increment or not, from an extrapolated start value or not.
     pub fn new(model: &Model, trial: Trial, begins: bool, extrapolated: bool) -> Self {
-        let Trial { old, step, dt, stiffening, .. } = trial;
+        let Trial { old, step, stiffening, .. } = trial;
         let unaided =
             old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0);
         let tolerance = model.newton.tolerance;
@@ -47,7 +47,7 @@ impl Watch {
             max_iterations: model.newton.max_iterations,
             old_tangents: model.aids.old_tangents,
             downhill: model.aids.downhill,
-            gives_up: step.scheme.is_dynamic() && step.shorter(dt, 1).is_some(),
+            gives_up: step.scheme.is_dynamic() && trial.may_be_shortened(),
         };
         let seeks_floating = begins && unaided;
         let (flips, acted) = (Flips::default(), Acted::default());

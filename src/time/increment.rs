@@ -68,13 +68,13 @@ pub(super) fn arrive(
 
 /// What is found at the end of an increment, from what was `beyond` it; that itself unless the scheme looks beyond the end.
 fn reach_end(model: &Model, end: Trial, beyond: Found, work: &mut Workspace) -> Result<Found, IncrementFailure> {
-    let Trial { old, step, dt, .. } = end;
+    let Trial { old, step, .. } = end;
     let theta = step.scheme.theta();
-    let Some(scheme) = step.scheme.coefficients().filter(|_| theta > 1.0) else { return Ok(beyond) };
+    let Some(scheme) = end.integration().filter(|_| theta > 1.0) else { return Ok(beyond) };
     let ahead = &beyond.evaluation.acceleration;
     let reach = |dof: usize| {
         let (v, a) = (old.velocity[dof], old.acceleration[dof]);
-        old.displacement[dof] + scheme.increment(v, a, a + (ahead[dof] - a) / theta, dt)
+        old.displacement[dof] + scheme.increment(v, a, a + (ahead[dof] - a) / theta)
     };
     let mut displacement: Vec<f64> = (0..ahead.len()).map(reach).collect();
     for support in &step.supports {

@@ -23,7 +23,7 @@ use crate::linear::Multifrontal;
 use crate::model::{Model, State, Step};
 use crate::solve::conduits::{Arrived, NeighbourWater, RunWater};
 use crate::solve::equilibrium::Found;
-use crate::solve::neighbour::{Seeker, Tangent, solve_neighbours};
+use crate::solve::neighbour::{NeighbourProblem, Tangent, solve_neighbours};
 use crate::solve::passes::multiply;
 use crate::solve::{IncrementFailure, Pass, Workspace};
 
@@ -56,8 +56,8 @@ impl BaseIncrement<'_> {
 
     /// Its water along contacts.
     fn water(&self) -> RunWater<'_> {
-        let courses = self.passes.last().map_or(&[][..], |pass| &pass.water);
-        RunWater { courses, states: [self.old, self.new] }
+        let histories = self.passes.last().map_or(&[][..], |pass| &pass.water);
+        RunWater { histories, states: [self.old, self.new] }
     }
 }
 
@@ -139,20 +139,20 @@ impl Neighbour {
         Ok(way)
     }
 
-    /// Prepares a pass, beside the run whose tangent is given.
-    fn seeker<'a>(
+    /// Prepares a pass for the tangent of the run.
+    fn problem<'a>(
         &'a mut self,
         base: &BaseIncrement,
         pass: &Pass,
         tangent: &Tangent,
         way: &'a InProgress,
-    ) -> Option<Seeker<'a>> {
+    ) -> Option<NeighbourProblem<'a>> {
         let has_same_bodies = self.has_same_bodies(base);
         let Self { model, offset, step, work, .. } = self;
         tangent.couple(work);
         let u = pass.displacement.iter().zip(&way.u).zip(&way.of_run).map(|((run, own), of_run)| run + (own - of_run));
         let u = u.collect();
-        Some(Seeker {
+        Some(NeighbourProblem {
             model,
             trial: base.trial(way.old.as_ref()?, step.as_ref()?, pass),
             work,
@@ -251,14 +251,14 @@ fn solve(
     groups: &mut [Group],
     all: &mut [Result<Vec<InProgress>, IncrementFailure>],
 ) {
-    let mut seekers = Vec::new();
+    let mut problems = Vec::new();
     for (group, ways) in groups.iter_mut().zip(&*all).filter(|(_, ways)| are_in_progress(ways)) {
         if let Ok(ways) = ways {
             let each = group.iter_mut().zip(ways);
-            seekers.push(each.filter_map(|(neighbour, way)| neighbour.seeker(base, pass, tangent, way)).collect());
+            problems.push(each.filter_map(|(neighbour, way)| neighbour.problem(base, pass, tangent, way)).collect());
         }
     }
-    let found = solve_neighbours(seekers, tangent);
+    let found = solve_neighbours(problems, tangent);
     for (ways, found) in all.iter_mut().filter(|ways| are_in_progress(ways)).zip(found) {
         match (ways.as_mut(), found) {
             (Ok(ways), Ok(found)) => {

@@ -82,7 +82,7 @@ pub struct Judgement {
     pub error: Option<LocalError>,
 }
 
-/// Estimated error of an increment, of a displacement or of slip, beside what is allowed of it [L].
+/// Estimated error of an increment, of a displacement or of slip, and what is allowed [L].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalError {
     /// estimate
@@ -341,7 +341,7 @@ impl Directions {
 /// 2^(k/4), k = 0 … 3.
 const FRACTIONS: [f64; 4] = [1.0, 1.189_207_115_002_721, std::f64::consts::SQRT_2, 1.681_792_830_507_429];
 
-/// Relative round-off allowed in comparing with a rung.
+/// Relative round-off allowed in comparing with a length of the ladder.
 const LADDER_ROUND_OFF: f64 = 1e-12;
 
 /// Δt of the next attempt, from the length that the error of a dynamic step or its iterations require.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use fecontact::contact::force::ContactState;
-use fecontact::contact::scatter::Course;
+use fecontact::contact::scatter::PointSequence;
 use fecontact::mesh::configuration::Configuration;
 use fecontact::model::state::State;
 use nalgebra::Vector2;
@@ -21,9 +21,10 @@ fn scatter(run: &Finished, half: f64, angle: f64, after: f64) -> f64 {
     let inner: Vec<usize> = (0..points.len())
         .filter(|&point| turned(points[point].at(&undeformed).into(), -angle)[0].abs() < half)
         .collect();
-    let course = Course::new(&inner.iter().map(|&point| points[point].clone()).collect::<Vec<_>>(), &undeformed);
+    let sequence =
+        PointSequence::new(&inner.iter().map(|&point| points[point].clone()).collect::<Vec<_>>(), &undeformed);
     let of = |state: &State| -> f64 {
-        course.scatter(&inner.iter().map(|&point| state.contacts[0][point].clone()).collect::<Vec<_>>())
+        sequence.scatter(&inner.iter().map(|&point| state.contacts[0][point].clone()).collect::<Vec<_>>())
     };
     run.states.iter().filter(|state| state.time > after).map(of).fold(0.0, f64::max)
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use fecontact::contact::scatter::Course;
+use fecontact::contact::scatter::PointSequence;
 use fecontact::mesh::configuration::Configuration;
 use fecontact::model::state::State;
 use serde_json::{Value, json};
@@ -384,8 +384,8 @@ fn ironing_by_a_disk_does_not_scatter() {
     (case["steps"][1]["duration"], case["steps"][1]["supports"][0]["ux"]) = (json!(3), json!(3.3));
     let run = finish_at(&case, &path);
     let undeformed = Configuration::undeformed(&run.model.mesh.nodes);
-    let course = Course::new(&run.model.contacts[0].points, &undeformed);
-    let most = run.states.iter().map(|state| course.scatter(&state.contacts[0])).fold(0.0, f64::max);
+    let sequence = PointSequence::new(&run.model.contacts[0].points, &undeformed);
+    let most = run.states.iter().map(|state| sequence.scatter(&state.contacts[0])).fold(0.0, f64::max);
     let inner = run.last().contacts[0].iter().filter(|at| at.is_closed()).count();
     println!("scatter {most:.4}, {inner} points, {} solves", run.report.newton_iterations);
     assert!(most < 0.02 && inner > 8);

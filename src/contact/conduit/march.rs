@@ -15,9 +15,9 @@
 use super::channel::{Amounts, Conduit, Gives, Wall};
 use super::line::Room;
 
-/// What the surfaces do in an increment.
+/// Motion of the walls of a conduit in an increment.
 #[derive(Clone, Copy, Debug)]
-pub struct Course<'a> {
+pub struct WallMotion<'a> {
     /// Start and end [T]
     pub span: [f64; 2],
     /// At every node at the start and at the end
@@ -30,7 +30,7 @@ pub struct Course<'a> {
     pub steps: Option<&'a [f64]>,
 }
 
-impl Course<'_> {
+impl WallMotion<'_> {
     /// s
     fn share(&self, time: f64) -> f64 {
         let [start, end] = self.span;
@@ -104,8 +104,8 @@ impl Conduit {
     ///
     /// # Errors
     /// Returns [`TooFast`] if a pressure is not finite, or steps would have to be too short.
-    pub fn march(&self, start: &[f64], course: &Course) -> Result<Reached, TooFast> {
-        let [from, to] = course.span;
+    pub fn march(&self, start: &[f64], motion: &WallMotion) -> Result<Reached, TooFast> {
+        let [from, to] = motion.span;
         let mut stops: Vec<f64> = self.corners().filter(|corner| from < *corner && *corner < to).collect();
         stops.push(to);
         stops.sort_by(f64::total_cmp);
@@ -113,9 +113,9 @@ impl Conduit {
         let mut reached = Reached { pressure: start.to_vec(), ..Reached::default() };
         let mut room = Steps::default();
         let (mut time, mut next) = (from, to - from);
-        if let Some(steps) = course.steps {
+        if let Some(steps) = motion.steps {
             for &end in steps {
-                let found = self.two_ways(&reached.pressure, start, [time, end], course, &mut room);
+                let found = self.two_ways(&reached.pressure, start, [time, end], motion, &mut room);
                 let step = end - time;
                 if !found.error.is_finite() {
                     return Err(TooFast { time, step });
@@ -128,7 +128,7 @@ impl Conduit {
         for stop in stops {
             while time < stop {
                 let end = if time + next > stop - SHORTEST * (to - from) { stop } else { time + next };
-                let found = self.two_ways(&reached.pressure, start, [time, end], course, &mut room);
+                let found = self.two_ways(&reached.pressure, start, [time, end], motion, &mut room);
                 let error = found.error;
                 let share = (SAFETY / error.sqrt()).clamp(SHARES[0], SHARES[1]);
                 let is_short = end - time <= SHORTEST * (to - from);
@@ -148,11 +148,11 @@ impl Conduit {
     }
 
     /// (5), with e over what is allowed.
-    fn two_ways(&self, from: &[f64], start: &[f64], span: [f64; 2], course: &Course, room: &mut Steps) -> Found {
+    fn two_ways(&self, from: &[f64], start: &[f64], span: [f64; 2], motion: &WallMotion, room: &mut Steps) -> Found {
         let middle = 0.5 * (span[0] + span[1]);
-        let (one, whole) = self.step(from, start, span, course, room);
-        let (half, first) = self.step(from, start, [span[0], middle], course, room);
-        let (two, second) = self.step(&half, start, [middle, span[1]], course, room);
+        let (one, whole) = self.step(from, start, span, motion, room);
+        let (half, first) = self.step(from, start, [span[0], middle], motion, room);
+        let (two, second) = self.step(&half, start, [middle, span[1]], motion, room);
         let halves = first.combined(1.0, second, 1.0);
         let [mut error, mut scale, mut largest] = [0.0f64; 3];
         for node in 0..from.len() {
@@ -174,10 +174,10 @@ impl Conduit {
         from: &[f64],
         start: &[f64],
         span: [f64; 2],
-        course: &Course,
+        motion: &WallMotion,
         room: &mut Steps,
     ) -> (Vec<f64>, Amounts) {
-        let mut amounts = self.set_up(from, start, span, course, room);
+        let mut amounts = self.set_up(from, start, span, motion, room);
         let Steps { joints, own_part, diagonal, right, prescribed, way, left, room } = room;
         way.clone_from(right);
         self.line.solve(diagonal, joints, prescribed, way, room);
@@ -204,9 +204,16 @@ impl Conduit {
     }
 
     /// Sets up (4), without what flows between nodes on the right side; returns the volumes that are known.
-    fn set_up(&self, from: &[f64], start: &[f64], [t0, t1]: [f64; 2], course: &Course, room: &mut Steps) -> Amounts {
+    fn set_up(
+        &self,
+        from: &[f64],
+        start: &[f64],
+        [t0, t1]: [f64; 2],
+        motion: &WallMotion,
+        room: &mut Steps,
+    ) -> Amounts {
         let (h, n) = (t1 - t0, self.line.count());
-        let shares = [t0, t1].map(|time| course.share(time));
+        let shares = [t0, t1].map(|time| motion.share(time));
         let Steps { joints, own_part, diagonal, right, prescribed, .. } = room;
         [&mut *joints, &mut *own_part, &mut *right].into_iter().for_each(Vec::clear);
         joints.resize(n, 0.0);
@@ -214,9 +221,9 @@ impl Conduit {
         let coefficient = self.leak.as_ref().map_or(0.0, |leak| leak.coefficient);
         let mut transmissivity = Vec::with_capacity(n);
         for (node, (length, holds)) in self.line.lengths().iter().zip(&self.holds).enumerate() {
-            let [before, after] = shares.map(|share| course.wall(node, share));
+            let [before, after] = shares.map(|share| motion.wall(node, share));
             transmissivity.push(self.transmissivity.at(node, after));
-            let (softness, predicted) = (course.compliance(node), course.gives_way[1].get(node).copied());
+            let (softness, predicted) = (motion.compliance(node), motion.gives_way[1].get(node).copied());
             let foreseen =
                 softness * predicted.map_or(0.0, |predicted| predicted - start[node]) * (shares[1] - shares[0]);
             let source = self.source.as_ref().map_or(0.0, |source| h * source(self.line.nodes[node], t1));

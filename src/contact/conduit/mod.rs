@@ -6,4 +6,4 @@ mod march;
 
 pub use self::channel::{Amounts, Conduit, ConduitState, Gives, InTime, Leak, SourceAt, Transmissivity, Wall, Well};
 pub use self::line::{Line, Piece};
-pub use self::march::{Course, Reached, TooFast};
+pub use self::march::{Reached, TooFast, WallMotion};

@@ -6,7 +6,7 @@
 //! f_0 are the forces of the initial stress.
 //!
 //! Motions are taken relative to the element's first node: a rigid translation causes no round-off, and the columns of K_e of
-//! that node are not needed (in axisymmetry this holds for axial motions only, and all columns are kept). An element stores
+//! that node are not needed (in axisymmetry this holds for axial motions only, and all columns are stored). An element stores
 //! them unless an earlier one has the same: 384 bytes for Q4, 256 for T3, 960 for T6, 1792 for Q8, 2560 for Q9. Equal elements
 //! of a regular mesh differ in the last bits of their node positions unless these are exactly representable.
 //!
@@ -166,12 +166,12 @@ impl Constant {
 
     /// Σ K_e on the current pattern; `None` if there are no constant elements.
     pub fn total(&mut self, model: &Model, layout: &Layout) -> Option<&SparseMatrix> {
-        kept(&mut self.total, model, layout, &self.is, |_| 1.0)
+        stored(&mut self.total, model, layout, &self.is, |_| 1.0)
     }
 
     /// Σ τ K_e on the current pattern; `None` if there is none.
     pub fn viscous(&mut self, model: &Model, retardation: &[f64], layout: &Layout) -> Option<&SparseMatrix> {
-        kept(&mut self.viscous, model, layout, &self.is, |body| retardation[body])
+        stored(&mut self.viscous, model, layout, &self.is, |body| retardation[body])
     }
 
     /// Discards that sum because τ has changed.
@@ -181,7 +181,7 @@ impl Constant {
 }
 
 /// Sum of the constant elements' matrices, each multiplied by a factor of its body; stored for this pattern or recomputed.
-fn kept<'a>(
+fn stored<'a>(
     sum: &'a mut Option<SparseMatrix>,
     model: &Model,
     layout: &Layout,
@@ -216,10 +216,10 @@ fn length(n: usize, ring: bool) -> usize {
 
 /// The stored columns.
 fn columns(matrix: &[f64], n: usize, ring: bool) -> Vec<f64> {
-    let mut kept = vec![0.0; length(n, ring)];
+    let mut stored = vec![0.0; length(n, ring)];
     let columns = matrix.chunks_exact(2 * n).skip(2 * first(ring));
-    kept.chunks_exact_mut(rows(n)).zip(columns).for_each(|(kept, column)| kept[..2 * n].copy_from_slice(column));
-    kept
+    stored.chunks_exact_mut(rows(n)).zip(columns).for_each(|(stored, column)| stored[..2 * n].copy_from_slice(column));
+    stored
 }
 
 /// K_e, column by column; `None` if the undeformed element has forces.

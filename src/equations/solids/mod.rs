@@ -77,7 +77,7 @@ impl LinearizedSolids {
         ways.iter().zip(ways.chunks(2).flat_map(of_few)).map(|(way, change)| self.changed(way, change)).collect()
     }
 
-    /// The forces a way apart, with their change K (u − u₀).
+    /// The forces at a distance, with their change K (u − u₀).
     fn changed(&self, way: &[f64], change: Vec<f64>) -> SolidForces {
         let both = self.force.iter().zip(&change);
         let more = way.iter().zip(both).map(|(way, (force, change))| way * (force + 0.5 * change)).sum::<f64>();

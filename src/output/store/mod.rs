@@ -126,7 +126,7 @@ impl InterfaceStore {
 fn due(held: &mut Option<Record>, new: Record, row: Row) -> Vec<Record> {
     let before = held.take();
     match row {
-        Row::Held => {
+        Row::Pending => {
             *held = Some(new);
             Vec::new()
         }

@@ -18,12 +18,12 @@ pub const OF_MACHINE: [&str; 2] = ["stiffness", "mass"];
 pub(super) struct Derivatives<'a> {
     law: &'a dyn SensitiveLaw,
     slider: Option<Slider>,
-    courses: Vec<Course>,
+    derivatives: Vec<Derivative>,
     steps: Vec<Step>,
 }
 
 /// Derivatives by one parameter.
-struct Course {
+struct Derivative {
     parameter: Option<&'static str>,
     state: Variation,
     /// of k and M
@@ -34,7 +34,7 @@ struct Course {
     rows: Vec<f64>,
 }
 
-impl Course {
+impl Derivative {
     fn new(law: &dyn SensitiveLaw, name: &str) -> Self {
         let parameter = law.parameters().iter().copied().find(|known| *known == name);
         let state = parameter.map_or(Variation::default(), |name| law.start(name));
@@ -43,7 +43,7 @@ impl Course {
     }
 
     /// Takes a derivative at a row: none by a parameter that neither the law nor the machine has.
-    fn tell(&mut self, derivative: f64) {
+    fn record(&mut self, derivative: f64) {
         let known = self.parameter.is_some() || self.machine != [0.0; 2];
         self.rows.push(if known { derivative } else { f64::NAN });
     }
@@ -55,10 +55,10 @@ impl Course {
 
 impl<'a> Derivatives<'a> {
     pub fn new(law: &'a dyn SensitiveLaw, slider: Option<Slider>, by: &[String]) -> Self {
-        Self { law, slider, courses: by.iter().map(|name| Course::new(law, name)).collect(), steps: Vec::new() }
+        Self { law, slider, derivatives: by.iter().map(|name| Derivative::new(law, name)).collect(), steps: Vec::new() }
     }
 
-    /// Takes the next step; rows are told from time to time.
+    /// Takes the next step; some are rows.
     pub fn take(&mut self, step: Step) -> Result<Vec<LawRow>, Error> {
         self.steps.push(step);
         if self.steps.len() < TOGETHER { Ok(Vec::new()) } else { self.rows() }
@@ -67,59 +67,65 @@ impl<'a> Derivatives<'a> {
     /// Rows of the steps since the last ones.
     pub fn rows(&mut self) -> Result<Vec<LawRow>, Error> {
         let (law, steps) = (self.law, std::mem::take(&mut self.steps));
-        let vary = |courses: &mut [Course]| {
+        let vary = |derivatives: &mut [Derivative]| {
             steps.iter().try_for_each(|step| {
                 let varied = match self.slider {
-                    Some(slider) => of_force(law, slider, step, &mut courses[0]),
-                    None => of_traction(law, step, courses),
+                    Some(slider) => of_force(law, slider, step, &mut derivatives[0]),
+                    None => of_traction(law, step, derivatives),
                 };
                 varied.map_err(|cause| Error::Law { time: step.time, cause })
             })
         };
         // A law is varied along two directions at once, of which a slider's slip takes one.
         let together = if self.slider.is_some() { 1 } else { 2 };
-        self.courses.par_chunks_mut(together).try_for_each(vary)?;
-        let columns: Vec<Vec<f64>> = self.courses.iter_mut().map(|course| std::mem::take(&mut course.rows)).collect();
+        self.derivatives.par_chunks_mut(together).try_for_each(vary)?;
+        let columns: Vec<Vec<f64>> =
+            self.derivatives.iter_mut().map(|derivative| std::mem::take(&mut derivative.rows)).collect();
         let rows = steps.into_iter().filter_map(|step| step.row).enumerate();
         Ok(rows.map(|(k, row)| LawRow { derivatives: columns.iter().map(|of| of[k]).collect(), ..*row }).collect())
     }
 }
 
 /// ∂q/∂parameter at the end of a step with a given slip.
-fn of_traction(law: &dyn SensitiveLaw, step: &Step, courses: &mut [Course]) -> Result<(), LawFailure> {
-    let direction = |k: usize| courses.get(k).map_or(Direction::default(), Course::direction);
+fn of_traction(law: &dyn SensitiveLaw, step: &Step, derivatives: &mut [Derivative]) -> Result<(), LawFailure> {
+    let direction = |k: usize| derivatives.get(k).map_or(Direction::default(), Derivative::direction);
     let varied = law.vary(&step.old, step.sliding, [direction(0), direction(1)])?;
-    for (course, state) in courses.iter_mut().zip(varied) {
+    for (derivative, state) in derivatives.iter_mut().zip(varied) {
         if step.row.is_some() {
-            course.tell(state.traction);
+            derivative.record(state.traction);
         }
-        course.state = state;
+        derivative.state = state;
     }
     Ok(())
 }
 
 /// ∂F/∂parameter of a slider at the end of a step, of the same length.
-fn of_force(law: &dyn SensitiveLaw, slider: Slider, step: &Step, course: &mut Course) -> Result<(), LawFailure> {
+fn of_force(
+    law: &dyn SensitiveLaw,
+    slider: Slider,
+    step: &Step,
+    derivative: &mut Derivative,
+) -> Result<(), LawFailure> {
     let Some(Moved { from, to, pulled }) = &step.moved else {
-        course.tell(0.0);
+        derivative.record(0.0);
         return Ok(());
     };
     let (slip, dt) = (step.sliding.slip, step.sliding.dt);
     let by_slip = Direction { slip: 1.0, ..Direction::default() };
-    let [given, by_slip] = law.vary(&step.old, step.sliding, [course.direction(), by_slip])?;
-    let ([dstiffness, dmass], [du, dv, da]) = (course.machine, course.motion);
+    let [given, by_slip] = law.vary(&step.old, step.sliding, [derivative.direction(), by_slip])?;
+    let ([dstiffness, dmass], [du, dv, da]) = (derivative.machine, derivative.motion);
     let (per, stretch) = (4.0 / (dt * dt), pulled - to.slip);
     let inertia = per * (slip - dt * from.rate) - from.acceleration;
     let driven = dstiffness * stretch - slider.stiffness * du - given.traction - dmass * inertia
         + slider.mass * (per * dt * dv + da);
     let dslip = driven / (slider.mass * per + slider.stiffness + by_slip.traction);
-    course.motion = [du + dslip, 2.0 * dslip / dt - dv, per * (dslip - dt * dv) - da];
-    course.state = given;
-    course.state.traction += by_slip.traction * dslip;
-    let variables = course.state.variables.values_mut().zip(by_slip.variables.values());
+    derivative.motion = [du + dslip, 2.0 * dslip / dt - dv, per * (dslip - dt * dv) - da];
+    derivative.state = given;
+    derivative.state.traction += by_slip.traction * dslip;
+    let variables = derivative.state.variables.values_mut().zip(by_slip.variables.values());
     variables.for_each(|(to, by)| *to += by * dslip);
     if step.row.is_some() {
-        course.tell(dstiffness * stretch - slider.stiffness * course.motion[0]);
+        derivative.record(dstiffness * stretch - slider.stiffness * derivative.motion[0]);
     }
     Ok(())
 }

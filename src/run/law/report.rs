@@ -1,4 +1,4 @@
-//! What a law test tells: its rows, and in a report peaks of friction and holds.
+//! What a law test prints: its rows, and in a report peaks of friction and holds.
 
 use serde::Serialize;
 

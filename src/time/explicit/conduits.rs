@@ -1,4 +1,4 @@
-//! Water that flows along contacts in explicit increments: beside the motion, at the displacements that are known before the forces.
+//! Water that flows along contacts in explicit increments, at the displacements that are known before the forces.
 //!
 //! The pressure at the end of an increment follows from the surfaces there, as the force of a spring 1/S per area does, by which the stable
 //! increment is bounded ([`crate::contact::pair::ContactPair::stiffest`]). A transmissivity that goes with slip or pressure is that of the

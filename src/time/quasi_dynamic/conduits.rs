@@ -3,7 +3,7 @@
 //! Within a step the slip, by which a transmissivity may go, goes on at the rate at its start; the surfaces neither open nor dilate.
 
 use super::slip_equations::Rates;
-use crate::contact::conduit::{Amounts, Conduit, ConduitState, Course, Wall};
+use crate::contact::conduit::{Amounts, Conduit, ConduitState, Wall, WallMotion};
 use crate::contact::{ContactPair, ContactState};
 use crate::laws::tableau::{C, STAGES};
 use crate::model::{Model, State};
@@ -88,9 +88,9 @@ impl<'a> Conduits<'a> {
                 };
                 let [from, to] = share.map(between);
                 let span = share.map(|share| time + share * h);
-                let course = Course { span, walls: [&from, &to], rates: None, gives_way: [&[], &[]], steps: None };
+                let motion = WallMotion { span, walls: [&from, &to], rates: None, gives_way: [&[], &[]], steps: None };
                 let (pressure, amounts) = &flowing.stages[stage - 1];
-                flowing.stages[stage] = match flowing.conduit.march(pressure, &course) {
+                flowing.stages[stage] = match flowing.conduit.march(pressure, &motion) {
                     Ok(reached) => (reached.pressure, amounts.combined(1.0, reached.amounts, 1.0)),
                     // Without a pressure the stage has no rates, and the step is refused.
                     Err(_) => (vec![f64::NAN; pressure.len()], Amounts::default()),
