@@ -316,11 +316,12 @@ impl ContactPair {
     }
 
     /// The larger of α_n and α_t. Dilatant slip, δp = α_n tan ψ δu and δq = μ δp, has the stiffness α_n (1 + μ tan ψ), which is
-    /// below 2 α_n for μ < 1. Water that flows presses back by 1/S per opening [F/L³].
+    /// below 2 α_n for μ < 1. Water that flows presses back by 1/S per opening, or by what the pores beside take up [F/L³].
     pub fn stiffest(&self, slave: &SlavePoint) -> f64 {
         let law = &self.law(slave).description;
         let lifted = if law.opening.is_empty() { 1.0 } else { 2.0 };
-        let water = self.conduit.as_ref().map_or(0.0, |conduit| 1.0 / conduit.storage);
+        let of_pores = self.seam.as_ref().map_or(0.0, |seam| seam.trapped);
+        let water = self.conduit.as_ref().map_or(of_pores, |conduit| 1.0 / conduit.storage);
         (lifted * self.alpha_n).max(law.stiffness) + water
     }
 

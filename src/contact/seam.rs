@@ -49,6 +49,8 @@ pub struct Seam {
     pub open: Option<Drained>,
     /// What passes through an element beside the contact, at most [L³/(F T)]
     pub beside: f64,
+    /// Rise of p_w per closure at most, were the water trapped: ∂p_w/∂p_a times the area of a corner over what its pores take up, of both sides [F/L³]
+    pub trapped: f64,
 }
 
 /// The place outside to which surfaces that are apart drain.

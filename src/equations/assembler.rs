@@ -319,7 +319,12 @@ impl Assembler {
             let clock = Instant::now();
             assembler.attend(trial.step, trial.old);
             assembler.solids.retard(trial.step);
-            assembler.add(Term::OF_PLACE, trial, Motion { u, v }, responses, false, None)?;
+            // Balances of water are measured by the volumes that cancel in them.
+            let scaled = assembler.model.flow.is_some();
+            if scaled {
+                assembler.magnitudes.fill(0.0);
+            }
+            assembler.add(Term::OF_PLACE, trial, Motion { u, v }, responses, scaled, None)?;
             if let Some(v) = v {
                 assembler.add_viscous([u, v]);
             }
@@ -327,6 +332,44 @@ impl Assembler {
             assembler.seconds.assembly += clock.elapsed().as_secs_f64();
             Ok(())
         })
+    }
+
+    /// Computes the balances of water alone, (4) of `pore_flow.rs`, at the displacement `u`, among the forces of the evaluation; on request
+    /// their tangent is returned.
+    ///
+    /// # Errors
+    /// The same as for [`Assembler::residual`].
+    pub fn balances(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+    ) -> Result<Option<SparseMatrix>, TrialFailure> {
+        let model = self.model.clone();
+        let between = model.contacts.iter().any(|pair| pair.seam.is_some());
+        let terms: &[Term] = if between { &[Term::PoreFlow, Term::Interfaces] } else { &[Term::PoreFlow] };
+        let add = |assembler: &mut Self, responses: &[PairResponse]| {
+            assembler.attend(trial.step, trial.old);
+            let mut tangent = (request == Request::Tangent).then(|| {
+                assembler.cover(trial.step, trial.old, responses);
+                assembler.layout.matrix()
+            });
+            assembler.evaluation.force.fill(0.0);
+            assembler.add(terms, trial, Motion { u, v: None }, responses, false, tangent.as_mut())?;
+            Ok(tangent)
+        };
+        if between { self.with_responses(trial, u, request, add) } else { add(self, &[]) }
+    }
+
+    /// Δt/β of the balances of water in an increment [T].
+    pub fn span_of_water(trial: Trial) -> f64 {
+        pore_flow::span(trial)
+    }
+
+    /// Residuals of the balances of water as last evaluated, and the magnitudes of their parts; both are empty where none flows [F].
+    pub fn balanced(&self) -> [&[f64]; 2] {
+        let first = self.model.flow.as_ref().map_or(self.model.dofs(), |flow| flow.dof(0));
+        [&self.evaluation.force[first..], &self.magnitudes[first..]]
     }
 
     /// Adds the viscous forces of the bodies to the forces, and stores their nodal values as the damping.

@@ -38,7 +38,7 @@ mod evolving;
 pub mod inertia;
 pub mod links;
 mod loads;
-mod pore_flow;
+pub mod pore_flow;
 pub mod slip_operator;
 pub mod solids;
 pub mod sums;

@@ -13,7 +13,7 @@
 //! Source: M. A. Biot (1941), J. Appl. Phys. 12, 155; the projection: Dohrmann & Bochev (2004), Int. J. Numer. Meth. Fluids 46, 183; White & Borja
 //! (2008), Comput. Methods Appl. Mech. Eng. 197, 4353.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
 use super::channels;
@@ -145,6 +145,26 @@ fn opened(wet: &WetElement, point: &WetPoint, u: &[f64]) -> Result<Opened, Mater
     }
     let by = point.gradients.iter().enumerate().map(|(a, g)| area * g * hoop + Vector2::new(plane * around(a), 0.0));
     Ok(Opened { jacobian: plane * hoop, by: by.collect() })
+}
+
+/// Stiffness that water which is trapped in an element at the displacement `u` adds to it, Bᵀ (S + P)⁻¹ B with B = ∫ b N ∂J/∂u dV: two dofs for every
+/// node of the element in the mesh [F/L].
+///
+/// # Errors
+/// Returns [`MaterialFailure`] if the element is inverted.
+pub fn trapped(wet: &WetElement, u: &[f64]) -> Result<DMatrix<f64>, MaterialFailure> {
+    let (corners, nodes) = (wet.pressures.len(), wet.points.first().map_or(0, |point| point.gradients.len()));
+    let mut opens = DMatrix::zeros(corners, 2 * nodes);
+    for point in &wet.points {
+        let is = opened(wet, point, u)?;
+        for (a, value) in point.values.iter().enumerate() {
+            for (node, by) in is.by.iter().enumerate() {
+                (0..2).for_each(|i| opens[(a, 2 * node + i)] += wet.biot * point.volume * value * by[i]);
+            }
+        }
+    }
+    let takes = (&wet.storage + &wet.projection).cholesky();
+    Ok(takes.map_or_else(|| DMatrix::zeros(2 * nodes, 2 * nodes), |takes| opens.transpose() * takes.solve(&opens)))
 }
 
 /// J_n F_n⁻¹ k/γ_w F_n⁻ᵀ, and J_n F_n⁻¹ k/γ_w.

@@ -16,7 +16,7 @@ pub(super) struct Times {
 impl Times {
     /// Those of an increment.
     pub fn of(trial: Trial) -> Self {
-        let ratio = trial.old.last_increment.as_ref().and_then(|last| last.ratio(trial.dt)).unwrap_or(0.0);
+        let ratio = trial.old.ratio(trial.dt).unwrap_or(0.0);
         Self { memory: ratio * ratio / (1.0 + 2.0 * ratio), span: trial.dt * (1.0 + ratio) / (1.0 + 2.0 * ratio) }
     }
 }

@@ -62,6 +62,9 @@ pub struct State {
     pub energy: Energy,
 }
 
+/// Difference of two lengths of explicit increments that is round-off, over either [-]
+const EQUAL: f64 = 1e-8;
+
 #[doc(hidden)]
 impl State {
     /// Begins a step, which refers to the present state, with the bodies that are absent in it.
@@ -133,6 +136,18 @@ impl State {
     /// Whether it was reached by an explicit increment, with accelerations of lumped masses.
     pub fn is_of_explicit(&self) -> bool {
         self.last_increment.is_none() && self.dt > 0.0
+    }
+
+    /// Δt over the last increment, explicit or not, which water goes on from; `None` where that says nothing of this one.
+    pub fn ratio(&self, dt: f64) -> Option<f64> {
+        match &self.last_increment {
+            Some(last) => last.ratio(dt),
+            // Equal explicit increments differ by round-off.
+            None if self.is_of_explicit() => {
+                LastIncrement::ratio_to(self.dt, dt).map(|ratio| if (ratio - 1.0).abs() < EQUAL { 1.0 } else { ratio })
+            }
+            None => None,
+        }
     }
 
     /// Removes the motion from a state for statics; its energy counts as damping dissipation.
@@ -220,7 +235,11 @@ impl LastIncrement {
 
     /// Δt over that of this increment; `None` where the rate of this one says nothing of it.
     pub fn ratio(&self, dt: f64) -> Option<f64> {
-        Some(dt / self.dt).filter(|ratio| *ratio <= Self::LONGEST_BY_IT)
+        Self::ratio_to(self.dt, dt)
+    }
+
+    fn ratio_to(last: f64, dt: f64) -> Option<f64> {
+        Some(dt / last).filter(|ratio| *ratio <= Self::LONGEST_BY_IT)
     }
 
     /// The fraction of its motion by which an increment of Δt is expected to go on, in a model whose water flows or not.

@@ -335,8 +335,8 @@ const MANY: [f64; 2] = [1e6, 1e7];
 /// the shortest side for explicit ones.
 fn many_increments(model: &Model) -> Option<String> {
     let crossed = |(e, element)| {
-        let material = model.body_of(e).material.description();
-        shortest_side(&model.mesh, element) / (material.p_wave_modulus / material.density).sqrt()
+        let body = model.body_of(e);
+        shortest_side(&model.mesh, element) / (body.wave_modulus() / body.material.description().density).sqrt()
     };
     let crossed = model.mesh.elements.iter().enumerate().map(crossed).fold(f64::INFINITY, f64::min);
     let of_steps = |explicit: bool| -> f64 {

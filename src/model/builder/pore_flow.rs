@@ -170,11 +170,11 @@ pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
     for (k, step) in model.steps.iter().enumerate() {
         let place = format!("steps[{k}]");
         let message = format!(
-            "is not for water that flows, as in `{first}`: take static steps, or newmark, hht or generalized_alpha, or leave out \
+            "is not for water that flows, as in `{first}`: take static steps, or newmark, hht, generalized_alpha or explicit, or leave out \
              pore_fluid.permeability"
         );
-        let serves =
-            step.scheme == Scheme::Static || step.scheme.coefficients().is_some() && step.scheme.theta() == 1.0;
+        let is_quasi_static_or_dynamic = step.scheme == Scheme::Static || step.scheme.coefficients().is_some();
+        let serves = step.scheme.is_explicit() || is_quasi_static_or_dynamic && step.scheme.theta() == 1.0;
         refuse_if(!serves, format!("{place}.scheme"), message)?;
         let message = format!("is not for a model with water that flows, as in `{first}`: leave it out");
         refuse_if(step.rupture.is_some(), format!("{place}.rupture"), &message)?;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::DMatrix;
+
 use super::contact::Contact;
 use super::error::{Checked, check_finite, check_not_negative, refuse_if};
 use super::fluid::FluidPressure;
@@ -22,6 +24,7 @@ const OPEN: f64 = 1e-4;
 pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &Model) -> Checked<Option<Seam>> {
     let mut nodes = BTreeMap::new();
     let mut most = [0.0f64; 2];
+    let mut trapped = [0.0f64; 2];
     let (mut sides, mut size) = (0, f64::INFINITY);
     let groups = [Some(contact.slave.as_str()), contact.master_group()];
     let (Some(flow), None | Some(FluidPressure::Flow(_)), false) =
@@ -54,6 +57,7 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
             let mobility = wet.mobility[0].max(wet.mobility[1]);
             most[side] = most[side].max(mobility / wet.size);
             size = size.min(wet.size);
+            trapped[side] = trapped[side].max(rises(edge, wet, model));
             let part = |node: usize, share: f64| Some(part(flow.of_node[node]?, share));
             let [start, end] = [edge.nodes[0], edge.nodes[1]];
             for &node in &edge.nodes {
@@ -86,7 +90,22 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
         aperture: OPEN * size,
         outlet: flow.outlets.iter().position(|name| *name == contact.name).unwrap_or_default(),
     });
-    Ok((sides > 0).then_some(Seam { nodes, channel, conductance, open, beside }))
+    // p_w is the mean of both sides, and each takes up half of the volume.
+    let trapped = if sides == 2 { 0.25 * (trapped[0] + trapped[1]) } else { trapped[0].max(trapped[1]) };
+    Ok((sides > 0).then_some(Seam { nodes, channel, conductance, open, beside, trapped }))
+}
+
+/// Half the area of an edge over what the pores at one of its ends take up at least per pressure, by a diagonal below S + P of its element [F/L³].
+fn rises(edge: &Edge, wet: &WetElement, model: &Model) -> f64 {
+    let ends = [0, 1].map(|k| model.mesh.nodes[edge.nodes[k]]);
+    let area = 0.5 * (ends[1] - ends[0]).norm() * model.mesh.section.weight(0.5 * (ends[0] + ends[1]));
+    let (lumped, takes) = (wet.storage.column_sum(), &wet.storage + &wet.projection);
+    let corners = lumped.len();
+    let scaled = DMatrix::from_fn(corners, corners, |a, b| takes[(a, b)] / (lumped[a] * lumped[b]).sqrt());
+    let least = scaled.symmetric_eigenvalues().min();
+    let at_ends = model.mesh.elements[wet.element].nodes[..corners].iter().zip(lumped.iter());
+    let at_ends = at_ends.filter(|(node, _)| edge.nodes[..2].contains(node));
+    at_ends.map(|(_, lumped)| area / (least * lumped)).fold(0.0, f64::max)
 }
 
 /// Refuses a pressure of what opens where that does not drain.

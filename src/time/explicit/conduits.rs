@@ -14,23 +14,20 @@ use crate::solve::failure::IncrementFailure;
 impl Explicit {
     /// Evaluates the forces at the predicted displacements, with the water at the end of the increment, which is returned.
     pub(super) fn forces_in_water(
-        &self,
+        &mut self,
         time: f64,
         velocity: Option<&[f64]>,
         state: &mut State,
         assembler: &mut Assembler,
     ) -> Result<Arrived, IncrementFailure> {
-        let model = &*self.model;
-        let forces = |state: &State, assembler: &mut Assembler| {
-            assembler.forces(self.trial(time, state), &self.displacement, velocity).map_err(IncrementFailure::Start)
-        };
+        let model = &*self.model.clone();
         if model.contacts.iter().all(|pair| pair.conduit.is_none()) {
-            forces(state, assembler)?;
+            self.forces_with_pressures(time, velocity, state, assembler)?;
             return Ok(Arrived::new());
         }
         let arrived = flow(model, self.trial(time, state), |k, _| state.conduits[k].walls.clone())?;
         press_by(model, &arrived, state);
-        forces(state, assembler)?;
+        self.forces_with_pressures(time, velocity, state, assembler)?;
         let found = &assembler.evaluation.contacts;
         let again = flow(model, self.trial(time, state), |k, conduit| conduit.walls(&found[k]))?;
         let separation = |(old, new): (&Wall, &Wall)| old.opening != new.opening;
@@ -40,7 +37,7 @@ impl Explicit {
         });
         if opens {
             press_by(model, &again, state);
-            forces(state, assembler)?;
+            self.forces_with_pressures(time, velocity, state, assembler)?;
             return Ok(again);
         }
         // The slip of this increment counts from the next one on.

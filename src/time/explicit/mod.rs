@@ -21,12 +21,15 @@
 //! element, the oscillation is faster than any wave of the mesh and stays local: an impact produces high-frequency oscillation
 //! unless the body is viscous.
 //!
+//! Water that flows through bodies and contacts: `pressures.rs` and `conduits.rs`.
+//!
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
 mod conduits;
 mod motion;
 mod plates;
+mod pressures;
 mod stability;
 
 use std::sync::Arc;
@@ -43,6 +46,7 @@ use crate::model::{Model, State, Step};
 use crate::solve::failure::IncrementFailure;
 use motion::masses;
 use plates::Plates;
+use pressures::{PressureSolver, moving};
 pub use stability::ExplicitMemory;
 use stability::Stability;
 
@@ -83,6 +87,8 @@ pub struct Explicit {
     mean_velocity: Vec<f64>,
     /// Motion of each support in the increment, and its velocity before
     places: Vec<([f64; 4], f64)>,
+    /// Factors of the balances of water that flows through bodies
+    pressures: PressureSolver,
 }
 
 /// Number of degrees of freedom that one thread updates at a time.
@@ -106,7 +112,8 @@ impl Explicit {
     /// Increments that go on from where these are; the memory goes with them, and these make their own if they go on as well.
     pub fn branch(&mut self) -> Self {
         let [displacement, mean_velocity] = [&mut self.displacement, &mut self.mean_velocity].map(std::mem::take);
-        Self { displacement, mean_velocity, ..self.clone() }
+        let pressures = std::mem::take(&mut self.pressures);
+        Self { displacement, mean_velocity, pressures, ..self.clone() }
     }
 
     /// Whether increments have reached their lower bound.
@@ -157,6 +164,7 @@ impl Explicit {
             displacement: Vec::new(),
             mean_velocity: Vec::new(),
             places: Vec::new(),
+            pressures: PressureSolver::default(),
         }
     }
 
@@ -229,7 +237,10 @@ impl Explicit {
         let (model, step, dt) = (&*self.model.clone(), &*self.step.clone(), time - state.time);
         let old = (&state.displacement, &state.velocity, &state.acceleration);
         self.displacement.resize(state.displacement.len(), 0.0);
-        let ways = self.displacement.par_chunks_mut(CHUNK).enumerate().map(|(chunk, u)| {
+        let (places, pressures) = self.displacement.split_at_mut(2 * moving(model));
+        let rates = old.0[places.len()..].iter().zip(&old.1[places.len()..]);
+        pressures.iter_mut().zip(rates).for_each(|(p, (before, rate))| *p = before + dt * rate);
+        let ways = places.par_chunks_mut(CHUNK).enumerate().map(|(chunk, u)| {
             let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
             let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
             let rates = v.chunks_exact(2).zip(a.chunks_exact(2));

@@ -4,6 +4,7 @@ use nalgebra::Matrix2;
 use rayon::prelude::*;
 
 use super::plates::DamperForces;
+use super::pressures::moving;
 use super::{CHUNK, Explicit};
 use crate::equations::damping;
 use crate::equations::{Assembler, Evaluation, Trial};
@@ -60,8 +61,11 @@ impl Explicit {
         let found = &mut assembler.evaluation;
         heat(step, found, state);
         self.add_damper_forces(state.time, &state.velocity, found);
-        let accelerations = found.force.iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);
+        let moving = 2 * moving(model);
+        found.force[moving..].fill(0.0);
+        let accelerations = found.force[..moving].iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);
         state.acceleration = accelerations.collect();
+        state.acceleration.resize(found.force.len(), 0.0);
         state.force.clone_from(&found.force);
         state.damping.clone_from(&found.damping);
         state.external.clone_from(&found.loads);
@@ -110,14 +114,17 @@ impl Explicit {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let dt = time - state.time;
         let is_viscous = model.is_viscous(step);
+        let mut mean_velocity = std::mem::take(&mut self.mean_velocity);
         if is_viscous {
             let ways = self.displacement.iter().zip(&state.displacement);
-            self.mean_velocity.clear();
-            self.mean_velocity.extend(ways.map(|(new, old)| (new - old) / dt));
+            mean_velocity.clear();
+            mean_velocity.extend(ways.map(|(new, old)| (new - old) / dt));
         }
-        let velocity = is_viscous.then_some(&self.mean_velocity[..]);
-        let arrived = self.forces_in_water(time, velocity, state, assembler)?;
-        if velocity.is_none() && !self.dampers.is_empty() {
+        let velocity = is_viscous.then_some(&mean_velocity[..]);
+        let arrived = self.forces_in_water(time, velocity, state, assembler);
+        self.mean_velocity = mean_velocity;
+        let arrived = arrived?;
+        if !is_viscous && !self.dampers.is_empty() {
             assembler.evaluation.damping.fill(0.0);
         }
         let found = &mut assembler.evaluation;
@@ -142,6 +149,7 @@ impl Explicit {
         found.reactions.clear();
         found.reactions.extend(step.supports.iter().map(|support| reaction(support.at)));
         accept(model, step, time, &mut self.displacement, found, state);
+        self.note_rates(&self.displacement, state);
         receive(model, arrived, state);
         Ok(())
     }
@@ -149,7 +157,8 @@ impl Explicit {
     /// (8) for dofs without dashpots.
     fn accelerate(&self, dt: f64, state: &mut State, force: &[f64]) {
         let State { velocity, acceleration, .. } = state;
-        let chunks = velocity.par_chunks_mut(CHUNK).zip(acceleration.par_chunks_mut(CHUNK));
+        let moving = 2 * moving(&self.model);
+        let chunks = velocity[..moving].par_chunks_mut(CHUNK).zip(acceleration[..moving].par_chunks_mut(CHUNK));
         let chunks = chunks.zip(force.par_chunks(CHUNK).zip(self.mass.par_chunks(CHUNK / 2)));
         chunks.for_each(|((velocity, acceleration), (force, mass))| {
             let rates = velocity.chunks_exact_mut(2).zip(acceleration.chunks_exact_mut(2));

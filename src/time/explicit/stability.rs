@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use super::Explicit;
 use crate::contact::master::Master;
 use crate::contact::surface::{SegmentWeights, SlavePoint};
+use crate::equations::pore_flow::trapped;
 use crate::equations::sums::TrialFailure;
 use crate::mesh::configuration::{Configuration, vector};
 use crate::mesh::rigid::RigidBody;
@@ -298,7 +299,9 @@ impl Element {
         if size < CRUSHED * undeformed {
             return Err(TrialFailure::crushed(model, e, size / undeformed));
         }
-        Ok(Self { bounds: bounds(model, retardation, e, &local, memory)?, size })
+        let trapped = model.flow.as_ref().and_then(|flow| flow.wet(e)).map(|wet| trapped(wet, u)).transpose();
+        let trapped = trapped.map_err(|failure| TrialFailure::material(model, e, failure))?;
+        Ok(Self { bounds: bounds(model, retardation, e, &local, (memory, trapped))?, size })
     }
 }
 
@@ -317,13 +320,13 @@ fn size(model: &Model, e: usize, u: &[Vector2<f64>]) -> f64 {
     area.abs() / pairs.map(|(a, b)| (places[a] - places[b]).norm()).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// λ_e and c of an element at nodal displacements and internal variables of its material [1/T², 1/T].
+/// λ_e and c of an element at nodal displacements, internal variables of its material and the stiffness of trapped water [1/T², 1/T].
 fn bounds(
     model: &Model,
     retardation: f64,
     e: usize,
     local: &[Vector2<f64>],
-    memory: &[f64],
+    (memory, trapped): (&[f64], Option<DMatrix<f64>>),
 ) -> Result<[f64; 2], TrialFailure> {
     let body = &model.bodies[model.body_of_element[e]];
     let n = 2 * local.len();
@@ -339,6 +342,7 @@ fn bounds(
     };
     answer.map_err(|failure| TrialFailure::material(model, e, failure))?;
     let mass = model.element_lumped_mass(e);
+    trapped.into_iter().for_each(|trapped| tangent += trapped);
     let elastic = largest_eigenvalue(&tangent, &mass);
     if retardation == 0.0 {
         return Ok([elastic, 0.0]);

@@ -1,0 +1,368 @@
+//! Bodies full of water that moves with them in explicit increments: closed forms of the equations u–p, implicit increments, and the stability
+//! limit. The columns are those of `saturated.rs`.
+
+use std::f64::consts::PI;
+
+use crate::common::{Blocks, close, distance, finish, goes_on, half_way, on_threads, quadratic, with};
+use crate::saturated::{Q, audit, balance, column, found, off, soil, vibration};
+use serde_json::{Value, json};
+
+fn explicit() -> Value {
+    json!({"explicit": {}})
+}
+
+/// Every quadrilateral of a mesh as two triangles, along one diagonal and the other in turn.
+fn triangles(mesh: &Value) -> Value {
+    let mut mesh = mesh.clone();
+    for elements in mesh["elements"].as_object_mut().expect("bodies").values_mut() {
+        let all: Vec<[usize; 4]> = serde_json::from_value(elements.clone()).expect("quadrilaterals");
+        let halves = |(k, [a, b, c, d]): (usize, [usize; 4])| match k % 2 {
+            0 => [[a, b, c], [a, c, d]],
+            _ => [[a, b, d], [b, c, d]],
+        };
+        *elements = json!(all.into_iter().enumerate().flat_map(halves).collect::<Vec<_>>());
+    }
+    mesh
+}
+
+fn meshed(kind: &str, blocks: &Value) -> Value {
+    match kind {
+        "q4" => blocks.clone(),
+        "q8" => quadratic(blocks, half_way),
+        "t3" => triangles(blocks),
+        _ => quadratic(&triangles(blocks), half_way),
+    }
+}
+
+/// A pulse on the top arrives at the base after H/c, twice as high, with c² = M/ρ where the water is free to leave everywhere, and
+/// (M + K_w/n)/ρ where it has no time to.
+#[test]
+fn waves_have_the_speed_of_the_mixture() {
+    let load = |time: f64| (-((time - 0.4) / 0.12f64).powi(2)).exp();
+    for (what, permeability, speed, drainage) in [
+        ("trapped", 1e-9, f64::sqrt(1.0 + Q), json!([])),
+        ("drained", 1.0, 1.0, json!([{"on": "b0_left", "pressure": 0}, {"on": "b0_right", "pressure": 0}])),
+    ] {
+        for (kind, elements) in [("q8", 30), ("q4", 80), ("t3", 80), ("t6", 30)] {
+            let mut case = column(
+                "q4",
+                &[elements],
+                &soil(permeability),
+                json!({
+                    "scheme": explicit(), "duration": 0.8 + 1.0 / speed, "dt": {"initial": 1}, "drainage": drainage,
+                    "loads": [{"on": "b0_top", "dead_pressure": "exp(-((t-0.4)/0.12)^2)"}],
+                }),
+            );
+            case["mesh"] = meshed(kind, &case["mesh"]);
+            let run = finish(&case);
+            let off = |state: &fecontact::model::state::State| {
+                (run.reaction("b0_bottom", state)[1] / 0.05 - 2.0 * load(state.time - 1.0 / speed)).abs() / 2.0
+            };
+            let worst = run.states.iter().map(off).fold(0.0, f64::max);
+            println!(
+                "{what}, {kind}: worst of the reaction {worst:.1e} of its peak, {} increments",
+                run.last().increment
+            );
+            assert!(worst < 0.02, "{what}, {kind}: {worst}");
+            audit(&run, 1e-9);
+        }
+    }
+}
+
+/// A load that swings, under which water flows in and out of a column that it damps: of second order in time.
+#[test]
+fn a_column_swings_as_the_closed_form_says() {
+    let kappa = 0.05;
+    let case = |kind: &str, count: usize, dt: f64| {
+        let mut case = column(
+            "q4",
+            &[count],
+            &soil(kappa),
+            json!({
+                "scheme": explicit(), "duration": 4, "dt": {"initial": dt, "max": dt}, "drainage": [{"on": "b0_top", "pressure": 0}],
+                "loads": [{"on": "b0_top", "dead_pressure": "0.01*(1-cos(3*t))"}],
+            }),
+        );
+        case["mesh"] = meshed(kind, &case["mesh"]);
+        case
+    };
+    for (kind, count) in [("q4", 40), ("q8", 16), ("t3", 40), ("t6", 16)] {
+        let run = finish(&case(kind, count, 1.0));
+        let error = off(&run, |time| vibration(kappa, 3.0, time), 1);
+        println!("{kind}: {error:.1e}, {} increments", run.last().increment);
+        assert!(error < 4e-3, "{kind}: {error}");
+        balance(&run, 1e-11);
+        audit(&run, 1e-9);
+    }
+    let [coarse, fine, finest] = [0.02, 0.01, 0.005].map(|dt| finish(&case("q4", 12, dt)));
+    let order = (off(&coarse, |time| found(&fine, time, 1), 1) / off(&fine, |time| found(&finest, time, 1), 1)).log2();
+    println!("order {order:.2}");
+    assert!(order > 1.9, "{order}");
+    let small = case("q4", 4, 1.0);
+    goes_on(&small, &finish(&small), 7);
+}
+
+/// A column without inertia to speak of under a load L = 1 − exp(−a t) consolidates as Terzaghi's (1943) series says, with water that gives way,
+/// λ = (m + ½)π, c = κ/(1/M + 1/Q), B = Q/(M + Q):
+///
+/// ```text
+/// p = Σ 2 (−1)^m/λ c_m cos λz,   settlement = L/M − Σ 2/λ² c_m/M,   c_m = B a/(c λ² − a) (exp(−a t) − exp(−c λ² t))
+/// ```
+#[test]
+fn a_slow_load_consolidates() {
+    let (trapped, rate) = (20.0, 20.0);
+    let mut body = soil(1.0);
+    body["material"]["density"] = json!(3e-4);
+    body["pore_fluid"]["bulk_modulus"] = json!(0.5 * trapped);
+    let (c, share) = (1.0 / (1.0 + 1.0 / trapped), trapped / (1.0 + trapped));
+    let terzaghi = |time: f64| {
+        (0..400).fold([1.0 - (-rate * time).exp(), 0.0], |[settled, base], m| {
+            let (lambda, sign) = ((f64::from(m) + 0.5) * PI, if m % 2 == 0 { 1.0 } else { -1.0 });
+            let fades = c * lambda * lambda;
+            let part = share * rate / (fades - rate) * ((-rate * time).exp() - (-fades * time).exp());
+            [settled - 2.0 / (lambda * lambda) * part, base + 2.0 * sign / lambda * part]
+        })
+    };
+    for (kind, count) in [("q8", 4), ("q4", 12)] {
+        let mut case = column(
+            "q4",
+            &[count],
+            &body,
+            json!({
+                "scheme": explicit(), "duration": 0.5, "dt": {"initial": 1},
+                "drainage": [{"on": "b0_top", "pressure": 0}], "loads": [{"on": "b0_top", "dead_pressure": "1-exp(-20*t)"}],
+            }),
+        );
+        case["mesh"] = meshed(kind, &case["mesh"]);
+        let run = finish(&case);
+        for time in [0.1, 0.5] {
+            let [[u, p], [settled, base]] = [found(&run, time, 1), terzaghi(time)];
+            println!(
+                "{kind}, {} increments, T = {time}: U {:.5} ({settled:.5}), p {p:.5} ({base:.5})",
+                run.last().increment,
+                -u
+            );
+            close("U", -u, settled, 2e-3);
+            close("p", p, base, 3e-3);
+        }
+        balance(&run, 1e-10);
+    }
+}
+
+/// Uneven ground under a strip that sinks in, drained beside it.
+fn ground(kind: &str, law: &str, section: &str, scheme: &Value, dt: f64) -> Value {
+    let uneven = |s: f64, t: f64| {
+        [1.0 + 1.5 * s + 0.05 * (4.0 * t).sin() * s * (1.0 - s), t + 0.08 * (5.0 * s).sin() * t * (1.0 - t)]
+    };
+    let blocks = Blocks::default().block("soil", [4, 3], uneven);
+    json!({
+        "mesh": meshed(kind, &blocks.json()), "section": section,
+        "bodies": {"soil": {
+            "material": {"model": law, "E": 0.9, "nu": 0.2, "density": 2e-3},
+            "pore_fluid": {"bulk_modulus": 4, "porosity": 0.4, "permeability": 0.3, "permeability_y": 0.2, "unit_weight": 1, "biot": 0.9, "kozeny_carman": law != "linear"},
+        }},
+        "steps": [{
+            "name": "load", "duration": 1, "scheme": scheme, "dt": {"initial": dt, "max": dt},
+            "supports": [{"on": "soil_bottom", "ux": 0, "uy": 0}, {"on": "soil_left", "ux": 0}],
+            "drainage": [{"on": "soil_right", "pressure": 0}, {"on": "soil_bottom", "flux": "-0.01*t"}],
+            "loads": [{"on": "soil_top", "dead_pressure": "0.1*(1-cos(3*t))"}],
+        }],
+        "output": {"interval": 0.1},
+    })
+}
+
+/// Pressures, displacements and outflow of explicit increments are those of implicit ones as short: with all elements, in rings, at large strains and with
+/// a permeability that follows the void ratio.
+#[test]
+fn implicit_increments_agree() {
+    for (kind, law, section) in [
+        ("q4", "linear", "plane_strain"),
+        ("t3", "linear", "plane_strain"),
+        ("q8", "linear", "axisymmetric"),
+        ("t6", "linear", "plane_strain"),
+        ("q4", "hencky", "axisymmetric"),
+        ("q8", "hencky", "plane_strain"),
+        ("t3", "neo_hookean", "plane_strain"),
+    ] {
+        let moving = finish(&ground(kind, law, section, &explicit(), 1.0));
+        let dt = 0.025 / (0.025 / moving.last().dt).round();
+        let solved = finish(&ground(kind, law, section, &json!({"hht": {"alpha": -0.1}}), 4.0 * dt));
+        let states = [moving.last(), solved.last()];
+        let flow = moving.model.flow.as_ref().expect("water flows");
+        let split = |state: &fecontact::model::state::State| {
+            let pressures = (0..flow.count()).map(|k| flow.pressure(k, Some(&state.displacement)));
+            (state.displacement[..flow.dof(0)].to_vec(), pressures.collect::<Vec<_>>())
+        };
+        let [(u, p), (solved_u, solved_p)] = states.map(split);
+        let size = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        let errors = [distance(&u, &solved_u) / size(&u), distance(&p, &solved_p) / size(&p)];
+        let [out, solved_out] = states.map(|state| state.water.outlets[0].volume);
+        println!(
+            "{kind} {law} {section}: {} increments, u {:.1e}, p {:.1e} of {:.2e}, outflow {out:.5e} for {solved_out:.5e}",
+            moving.last().increment,
+            errors[0],
+            errors[1],
+            size(&p)
+        );
+        assert!(errors[0] < 2e-3 && errors[1] < 5e-3, "{kind} {law} {section}: {errors:?}");
+        close("outflow", out, solved_out, 2e-3 * out.abs());
+        balance(&moving, 1e-10);
+        audit(&moving, 1e-5);
+    }
+}
+
+/// Ground and its water at rest stay there through steps of both kinds: gravity on the mixture, which weighs 20, and on the water, 10.
+#[test]
+fn what_is_at_rest_stays_there() {
+    let mut body = soil(0.1);
+    body["material"]["density"] = json!(2);
+    body["initial_stress"] = json!({"geostatic": {"surface": 1, "weight": 10, "K0": 0.5}});
+    body["pore_fluid"] = json!({"bulk_modulus": 100, "porosity": 0.4, "permeability": 0.1, "unit_weight": 10, "weighs": true, "pressure": "10*(1-y)"});
+    for kind in ["q4", "q8"] {
+        let mut case = column(
+            "q4",
+            &[6],
+            &body,
+            json!({
+                "scheme": explicit(), "duration": 0.5, "dt": {"initial": 0.05}, "loads": [{"on": "b0", "gravity": {"y": "-10"}}],
+                "drainage": [{"on": "b0_top", "head": 1}],
+            }),
+        );
+        case["mesh"] = meshed(kind, &case["mesh"]);
+        let step = case["steps"][0].clone();
+        for schemes in [
+            &[explicit()][..],
+            &[json!("static"), explicit(), json!("static")],
+            &[explicit(), explicit(), json!({"newmark": {}}), explicit()],
+        ] {
+            let steps = schemes.iter().enumerate().map(|(k, scheme)| {
+                let own = if k == 0 { &step } else { &json!({"duration": 0.5, "dt": {"initial": 0.05}}) };
+                with(own.clone(), &json!({"name": format!("step {k}"), "scheme": scheme}))
+            });
+            case["steps"] = steps.collect();
+            let run = finish(&case);
+            for state in &run.states {
+                let farthest = state.displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+                assert!(farthest < 1e-10, "{kind}: it moves by {farthest}");
+            }
+        }
+    }
+}
+
+/// The same bits on any number of threads, and of a run that goes on.
+#[test]
+fn bits_are_the_same() {
+    let case = ground("q8", "hencky", "plane_strain", &explicit(), 1.0);
+    let [one, four] = [1, 4].map(|threads| on_threads(threads, || finish(&case)));
+    assert!(one.last() == four.last(), "threads change bits");
+    goes_on(&case, &one, 3);
+}
+
+/// Random soils on uneven meshes under a load that jumps: with increments at the limit nothing grows, whatever the water does.
+#[test]
+fn increments_at_the_limit_are_stable() {
+    let mut random = 7u64;
+    let mut draw = |low: f64, high: f64| {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (random >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for trial in 0..40 {
+        let kind = ["q4", "t3", "q8", "t6"][trial % 4];
+        let law = ["linear", "hencky"][trial / 4 % 2];
+        let (shift, bend, stretch) = (draw(-0.1, 0.1), draw(-0.1, 0.1), draw(0.2, 2.0));
+        let uneven = |s: f64, t: f64| {
+            [1.0 + s + shift * (4.0 * t).sin() * s * (1.0 - s), stretch * (t + bend * (5.0 * s).sin() * t * (1.0 - t))]
+        };
+        let mesh = meshed(kind, &Blocks::default().block("soil", [4, 3], uneven).json());
+        let section = ["plane_strain", "axisymmetric"][trial / 8 % 2];
+        let (porosity, permeability) = (draw(0.2, 0.6), 10f64.powf(draw(-8.0, 2.0)));
+        let case = json!({
+            "mesh": mesh, "section": section,
+            "bodies": {"soil": {
+                "material": {"model": law, "E": 1, "nu": draw(0.0, 0.45), "density": draw(0.5, 2.0)},
+                "pore_fluid": {"bulk_modulus": 10f64.powf(draw(-2.0, 2.0)), "porosity": porosity, "permeability": permeability, "unit_weight": 1, "biot": draw(porosity, 1.0)},
+            }},
+            "steps": [{
+                "name": "shake", "duration": 40, "scheme": {"explicit": {"safety": 1.0}}, "dt": {"initial": 1},
+                "supports": [{"on": "soil_bottom", "ux": 0, "uy": 0}], "drainage": [{"on": "soil_right", "pressure": 0}],
+                "loads": [{"on": "soil_top", "dead_pressure": "1e-4*ramp(t)"}],
+            }],
+        });
+        let case = serde_json::from_str(&case.to_string().replace("ramp(t)", "(1-exp(-1000*t))")).expect("a case");
+        let run = finish(&case);
+        let farthest = |state: &fecontact::model::state::State| {
+            state.displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()))
+        };
+        let half = run.states.len() / 2;
+        let [first, last] =
+            [&run.states[..half], &run.states[half..]].map(|part| part.iter().map(farthest).fold(0.0, f64::max));
+        println!(
+            "{trial} {kind} {law}: {} increments, {first:.2e}, {last:.2e}, water {:.1e}",
+            run.last().increment,
+            permeability
+        );
+        assert!(last < 3.0 * first, "{trial} {kind} {law}: {last} after {first}");
+        audit(&run, 1e-6);
+    }
+}
+
+/// Two wet blocks under a load that swings, one of them with a coarser mesh.
+fn two_blocks(kind: &str, more: &Value, scheme: &Value, dt: f64) -> Value {
+    let blocks = Blocks::default().rectangle("low", [4, 2], [0.0, -0.5], [1.0, 0.0]);
+    let blocks = blocks.rectangle("high", [3, 2], [0.0, 0.0], [1.0, 0.5]);
+    let mut body = soil(0.3);
+    body["material"]["density"] = json!(2e-2);
+    body["initial_stress"] = json!({"components": {"xx": 0, "yy": -0.02, "zz": 0, "xy": 0}});
+    let contact = json!({"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.3}, "initial": {"pressure": 0.02}});
+    json!({
+        "mesh": meshed(kind, &blocks.json()), "bodies": {"low": body, "high": body}, "contacts": {"cut": with(contact, more)},
+        "steps": [{
+            "name": "load", "duration": 1, "scheme": scheme, "dt": {"initial": dt, "max": dt},
+            "supports": [{"on": "low_bottom", "ux": 0, "uy": 0}],
+            "drainage": [{"on": "high_top", "pressure": 0}, {"on": "low_bottom", "pressure": "0.01*(1-cos(3*t))"}],
+            "loads": [{"on": "high_top", "dead_pressure": "0.02+0.01*(1-cos(3*t))"}],
+        }],
+        "output": {"interval": 0.1},
+    })
+}
+
+/// Water across contacts, along them and out of what opens goes as in implicit increments as short, and is all accounted for.
+#[test]
+fn contacts_agree_with_implicit_increments() {
+    let along =
+        json!({"fluid_pressure": {"flow": {"storage": 0.3, "transmissivity": 0.2, "viscosity": 1, "initial": 0}}});
+    let uplift = json!({"open_pressure": 0});
+    for (what, kind, more) in [
+        ("across", "q4", json!({})),
+        ("across", "t3", json!({"seal": 0.1})),
+        ("across", "q8", json!({"method": "mortar"})),
+        ("along", "q4", along),
+        ("out", "q4", uplift),
+    ] {
+        let set = |mut case: Value| {
+            if what == "out" {
+                case["steps"][0]["drainage"][1]["pressure"] = json!("0.08*(1-cos(3*t))");
+            }
+            case
+        };
+        let moving = finish(&set(two_blocks(kind, &more, &explicit(), 1.0)));
+        let dt = 0.025 / (0.025 / moving.last().dt).round();
+        let solved = finish(&set(two_blocks(kind, &more, &json!({"hht": {"alpha": -0.1}}), 4.0 * dt)));
+        let flow = moving.model.flow.as_ref().expect("water flows");
+        let states = [moving.last(), solved.last()];
+        let [p, solved_p] = states
+            .map(|state| (0..flow.count()).map(|k| flow.pressure(k, Some(&state.displacement))).collect::<Vec<_>>());
+        let size = p.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        let outlets = states.map(|state| state.water.outlets.iter().map(|outlet| outlet.volume).collect::<Vec<_>>());
+        println!(
+            "{what} {kind}: {} increments, p {:.1e}, out {outlets:.4?}",
+            moving.last().increment,
+            distance(&p, &solved_p) / size
+        );
+        assert!(distance(&p, &solved_p) < 0.02 * size, "{what} {kind}");
+        let most = outlets[0].iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        assert!(distance(&outlets[0], &outlets[1]) < 0.01 * most, "{what} {kind}: {outlets:?}");
+        balance(&moving, 1e-9);
+        goes_on(&set(two_blocks(kind, &more, &explicit(), 1.0)), &moving, 4);
+    }
+}
