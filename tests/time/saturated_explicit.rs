@@ -34,11 +34,17 @@ fn meshed(kind: &str, blocks: &Value) -> Value {
     }
 }
 
-/// A pulse on the top arrives at the base after H/c, twice as high, with c² = M/ρ where the water is free to leave everywhere, and
-/// (M + K_w/n)/ρ where it has no time to.
+/// A pulse on the top runs down with c² = M/ρ where the water is free to leave everywhere, and (M + K_w/n)/ρ where it has no time to: half way down
+/// it moves the column by ∫ load(t − ½/c) dt/(ρ c), until it comes back from the base.
 #[test]
 fn waves_have_the_speed_of_the_mixture() {
-    let load = |time: f64| (-((time - 0.4) / 0.12f64).powi(2)).exp();
+    // Trapezoidal rule; there is no load before
+    let passed = |time: f64| -> f64 {
+        let load = |time: f64| (-((time - 0.4) / 0.12f64).powi(2)).exp();
+        let parts = (time.max(0.0) / 1e-3).ceil().max(1.0);
+        let at = |k: f64| load(time.max(0.0) * k / parts);
+        (0..parts as usize).map(|k| 0.5 * (at(k as f64) + at(k as f64 + 1.0)) * time.max(0.0) / parts).sum()
+    };
     for (what, permeability, speed, drainage) in [
         ("trapped", 1e-9, f64::sqrt(1.0 + Q), json!([])),
         ("drained", 1.0, 1.0, json!([{"on": "b0_left", "pressure": 0}, {"on": "b0_right", "pressure": 0}])),
@@ -49,20 +55,20 @@ fn waves_have_the_speed_of_the_mixture() {
                 &[elements],
                 &soil(permeability),
                 json!({
-                    "scheme": explicit(), "duration": 0.8 + 1.0 / speed, "dt": {"initial": 1}, "drainage": drainage,
+                    "scheme": explicit(), "duration": 1.5 / speed, "dt": {"initial": 1}, "drainage": drainage,
                     "loads": [{"on": "b0_top", "dead_pressure": "exp(-((t-0.4)/0.12)^2)"}],
                 }),
             );
             case["mesh"] = meshed(kind, &case["mesh"]);
             let run = finish(&case);
+            let nodes = &run.model.mesh.nodes[..run.model.mesh.own_nodes()];
+            let middle =
+                nodes.iter().position(|x| (x - nalgebra::Vector2::new(0.0, 0.5)).norm() < 1e-9).expect("a node");
             let off = |state: &fecontact::model::state::State| {
-                (run.reaction("b0_bottom", state)[1] / 0.05 - 2.0 * load(state.time - 1.0 / speed)).abs() / 2.0
+                (state.displacement[2 * middle + 1] + passed(state.time - 0.5 / speed) / speed).abs()
             };
-            let worst = run.states.iter().map(off).fold(0.0, f64::max);
-            println!(
-                "{what}, {kind}: worst of the reaction {worst:.1e} of its peak, {} increments",
-                run.last().increment
-            );
+            let worst = run.states.iter().map(off).fold(0.0, f64::max) * speed / passed(1.0);
+            println!("{what}, {kind}: off by {worst:.1e} of the way, {} increments", run.last().increment);
             assert!(worst < 0.02, "{what}, {kind}: {worst}");
             audit(&run, 1e-9);
         }
@@ -112,7 +118,7 @@ fn a_column_swings_as_the_closed_form_says() {
 fn a_slow_load_consolidates() {
     let (trapped, rate) = (20.0, 20.0);
     let mut body = soil(1.0);
-    body["material"]["density"] = json!(3e-4);
+    body["material"]["density"] = json!(1e-4);
     body["pore_fluid"]["bulk_modulus"] = json!(0.5 * trapped);
     let (c, share) = (1.0 / (1.0 + 1.0 / trapped), trapped / (1.0 + trapped));
     let terzaghi = |time: f64| {
@@ -123,7 +129,7 @@ fn a_slow_load_consolidates() {
             [settled - 2.0 / (lambda * lambda) * part, base + 2.0 * sign / lambda * part]
         })
     };
-    for (kind, count) in [("q8", 4), ("q4", 12)] {
+    for (kind, count) in [("q8", 8), ("q4", 16)] {
         let mut case = column(
             "q4",
             &[count],
@@ -158,7 +164,7 @@ fn ground(kind: &str, law: &str, section: &str, scheme: &Value, dt: f64) -> Valu
     json!({
         "mesh": meshed(kind, &blocks.json()), "section": section,
         "bodies": {"soil": {
-            "material": {"model": law, "E": 0.9, "nu": 0.2, "density": 2e-3},
+            "material": {"model": law, "E": 0.9, "nu": 0.2, "density": 1e-3},
             "pore_fluid": {"bulk_modulus": 4, "porosity": 0.4, "permeability": 0.3, "permeability_y": 0.2, "unit_weight": 1, "biot": 0.9, "kozeny_carman": law != "linear"},
         }},
         "steps": [{
@@ -185,8 +191,8 @@ fn implicit_increments_agree() {
         ("t3", "neo_hookean", "plane_strain"),
     ] {
         let moving = finish(&ground(kind, law, section, &explicit(), 1.0));
-        let dt = 0.025 / (0.025 / moving.last().dt).round();
-        let solved = finish(&ground(kind, law, section, &json!({"hht": {"alpha": -0.1}}), 4.0 * dt));
+        let dt = 0.1 / (0.1 / moving.last().dt).round();
+        let solved = finish(&ground(kind, law, section, &json!({"hht": {"alpha": -0.1}}), 2.0 * dt));
         let states = [moving.last(), solved.last()];
         let flow = moving.model.flow.as_ref().expect("water flows");
         let split = |state: &fecontact::model::state::State| {
@@ -266,7 +272,7 @@ fn increments_at_the_limit_are_stable() {
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         low + (high - low) * (random >> 11) as f64 / (1u64 << 53) as f64
     };
-    for trial in 0..40 {
+    for trial in 0..24 {
         let kind = ["q4", "t3", "q8", "t6"][trial % 4];
         let law = ["linear", "hencky"][trial / 4 % 2];
         let (shift, bend, stretch) = (draw(-0.1, 0.1), draw(-0.1, 0.1), draw(0.2, 2.0));
@@ -283,7 +289,7 @@ fn increments_at_the_limit_are_stable() {
                 "pore_fluid": {"bulk_modulus": 10f64.powf(draw(-2.0, 2.0)), "porosity": porosity, "permeability": permeability, "unit_weight": 1, "biot": draw(porosity, 1.0)},
             }},
             "steps": [{
-                "name": "shake", "duration": 40, "scheme": {"explicit": {"safety": 1.0}}, "dt": {"initial": 1},
+                "name": "shake", "duration": 20, "scheme": {"explicit": {"safety": 1.0}}, "dt": {"initial": 1},
                 "supports": [{"on": "soil_bottom", "ux": 0, "uy": 0}], "drainage": [{"on": "soil_right", "pressure": 0}],
                 "loads": [{"on": "soil_top", "dead_pressure": "1e-4*ramp(t)"}],
             }],
@@ -302,16 +308,16 @@ fn increments_at_the_limit_are_stable() {
             permeability
         );
         assert!(last < 3.0 * first, "{trial} {kind} {law}: {last} after {first}");
-        audit(&run, 1e-6);
+        audit(&run, 1e-5);
     }
 }
 
 /// Two wet blocks under a load that swings, one of them with a coarser mesh.
 fn two_blocks(kind: &str, more: &Value, scheme: &Value, dt: f64) -> Value {
-    let blocks = Blocks::default().rectangle("low", [4, 2], [0.0, -0.5], [1.0, 0.0]);
-    let blocks = blocks.rectangle("high", [3, 2], [0.0, 0.0], [1.0, 0.5]);
+    let blocks = Blocks::default().rectangle("low", [6, 3], [0.0, -0.5], [1.0, 0.0]);
+    let blocks = blocks.rectangle("high", [4, 3], [0.0, 0.0], [1.0, 0.5]);
     let mut body = soil(0.3);
-    body["material"]["density"] = json!(2e-2);
+    body["material"]["density"] = json!(1e-2);
     body["initial_stress"] = json!({"components": {"xx": 0, "yy": -0.02, "zz": 0, "xy": 0}});
     let contact = json!({"slave": "high_bottom", "master": "low_top", "friction": {"law": "coulomb", "mu": 0.3}, "initial": {"pressure": 0.02}});
     json!({
@@ -346,8 +352,8 @@ fn contacts_agree_with_implicit_increments() {
             case
         };
         let moving = finish(&set(two_blocks(kind, &more, &explicit(), 1.0)));
-        let dt = 0.025 / (0.025 / moving.last().dt).round();
-        let solved = finish(&set(two_blocks(kind, &more, &json!({"hht": {"alpha": -0.1}}), 4.0 * dt)));
+        let dt = 0.1 / (0.1 / moving.last().dt).round();
+        let solved = finish(&set(two_blocks(kind, &more, &json!({"hht": {"alpha": -0.1}}), 2.0 * dt)));
         let flow = moving.model.flow.as_ref().expect("water flows");
         let states = [moving.last(), solved.last()];
         let [p, solved_p] = states
