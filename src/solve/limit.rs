@@ -101,7 +101,7 @@ fn unstable_slip(step: &Step, state: &State, pair: &ContactPair, states: &[Conta
         format!(
             "slip of contact `{}` may be unstable here: where it slips, {what} by up to {} per slip (force over \
              length); if the bodies and their loading are softer than that, no static equilibrium follows: take a \
-             dynamic step (\"hht\"), with densities; ",
+             dynamic step (\"hht\"), with densities and with a `dt.min` that resolves fast slip; ",
             pair.name,
             number(weakening)
         )
