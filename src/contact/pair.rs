@@ -143,6 +143,8 @@ pub struct InitialTraction {
 pub struct Arrival {
     /// Predicted time of closure, as a fraction of the increment; 0 without a prediction
     pub at: f64,
+    /// Time of closure if the surfaces have approached at a steady rate, first by the gap and then by the compression, alike
+    pub came: f64,
     /// Friction force that is uncertain because the slip before closure is not known [F]
     pub uncertainty: f64,
 }
@@ -341,7 +343,7 @@ impl ContactPair {
     /// Uncertainty of friction by the slip before closure, for a point that was open at the start of the increment and is
     /// closed `now`, including the omitted dilation after closure. The slip before closure lies between zero and its value had
     /// the previous motion continued until closure; `foreseen` is the state predicted by that motion. The uncertainty is 0 for
-    /// any other point, and for one that slides at the friction limit in all these cases.
+    /// a point that slides at the friction limit in all these cases; any other point has no arrival.
     ///
     /// # Errors
     /// Returns [`LawFailure`] if the law has no response to one of the slips.
@@ -356,8 +358,10 @@ impl ContactPair {
         if pressure <= 0.0 || !old.is_separated(self.touch + self.fading(slave)) {
             return Ok(None);
         }
+        let gap = old.clearance();
+        let came = gap / (gap + self.compliance_after_touch(true) * now.contact_pressure());
         let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;
-        let at = if met { old.clearance() / (old.clearance() - foreseen.clearance()) } else { 0.0 };
+        let at = if met { gap / (gap - foreseen.clearance()) } else { 0.0 };
         let free = foreseen.slip * at;
         let respond = |slip: f64| {
             let sliding = Sliding { slip, pressure, dt };
@@ -374,7 +378,7 @@ impl ContactPair {
             let lift = respond(now.slip * way / (old.clearance() + way))?.state.opening - now.friction.opening;
             uncertainty = uncertainty.hypot(lift / (self.compliance + 1.0 / self.alpha_n) * now.length);
         }
-        Ok((uncertainty > 0.0).then_some(Arrival { at, uncertainty }))
+        Ok(Some(Arrival { at, came, uncertainty }))
     }
 
     /// Pressure that remains at a point that closed within one iterate after the bodies have deformed: p/(1 + α_n c).

@@ -7,9 +7,12 @@
 //!   uncertain. Where surfaces dilate, the opening by slip after closure is uncertain, too: they do not dilate in the increment
 //!   in which they close (`contact/force.rs`).
 //! - Otherwise the increment is subdivided: up to the predicted closure if nothing of the contact was closed before, else
-//!   as far as few enough points close; then on to its intended end. The contact force is the largest of all attempts at the
-//!   increment. The next increment is subdivided from the start, into parts as long as the longest of this one, or twice as long if
-//!   none was rejected: where contact advances, as under a wheel, it meets closures as well.
+//!   as far as few enough points close. The contact force is the largest of all attempts at the increment. The increments that follow
+//!   are no longer than it was meant to be, and begin as long as its longest part, or twice as long if none was rejected: where
+//!   contact advances, as under a wheel, they meet closures as well.
+//! - As soon as such a part is rejected as well, each increment ends just beyond the next closure. It is foreseen from the gaps and
+//!   the rates at which they close, and comes later in the ratio in which the last one did; from then on friction becomes uncertain at the
+//!   rate at which it did after the last one, up to half of what is allowed.
 //! - The shortest increment is accepted whatever its uncertainty; a warning reports it.
 //! - A point that closes and opens again within one increment is not detected.
 
@@ -44,6 +47,21 @@ pub struct Touching {
     longest: f64,
     /// Whether a part of it was rejected
     was_refused: bool,
+    /// Whether a part was rejected whose length followed from the one before: from then on increments follow the closures
+    follows: bool,
+    /// How points of each contact close in subdivided increments
+    advances: Vec<Advance>,
+}
+
+/// How points of a contact close one after the other.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Advance {
+    /// Rate at which friction became uncertain after the last closures [F/T]; 0 before the first
+    growth: f64,
+    /// How much later than foreseen they came, as a ratio of times; `None` before the second
+    delay: Option<f64>,
+    /// When the next one was foreseen, after the last, and for when [T]
+    foreseen: Option<(f64, f64)>,
 }
 
 impl Touching {
@@ -60,6 +78,7 @@ impl Touching {
     ) -> (Judgement, f64) {
         let (uncertainty, share, meets) = self.uncertainty(model, [old, new], foreseen.unwrap_or(&new.contacts));
         if uncertainty > UNCERTAINTY && can_shorten(step, old, new) {
+            self.follows |= self.whole.is_some() && self.refused == 0;
             self.whole.get_or_insert((new.time, new.dt));
             // A rejected attempt shows that the prediction was inaccurate.
             let most = if self.refused == 0 { 1.0 } else { 0.5 };
@@ -77,24 +96,55 @@ impl Touching {
         }
         let Some((end, dt)) = self.whole else {
             self.forces.clear();
+            self.advances.clear();
             return (judged, uncertainty);
         };
         self.longest = self.longest.max(new.dt);
+        let next = self.to_next_closure(model, [old, new]).filter(|_| self.follows);
         let left = end - new.time;
         if left > step.increments.min {
             // Where points close one after the other, the uncertainty grows with Δt².
             let share = (AIM * UNCERTAINTY / uncertainty).sqrt().clamp(LEAST_SHARE, GROWTH);
-            let next = if touches { left } else { left.min(share * new.dt) };
+            let next = match next {
+                Some(next) if !touches => dt.min(next),
+                _ if touches => left,
+                _ => left.min(share * new.dt),
+            };
             return (Judgement { next, ..judged }, uncertainty);
         }
-        let next = if self.was_refused { self.longest } else { GROWTH * self.longest };
+        let longest = if self.was_refused { self.longest } else { GROWTH * self.longest };
+        let next = next.unwrap_or(longest);
+        let (follows, advances) = (self.follows, std::mem::take(&mut self.advances));
         self.give_up();
         let end = (new.time + dt).min(step.span.end);
         if next < dt && end - new.time > step.increments.min {
-            self.whole = Some((end, dt));
+            (self.whole, self.follows, self.advances) = (Some((end, dt)), follows, advances);
             return (Judgement { next, ..judged }, uncertainty);
         }
         (Judgement { next: dt, ..judged }, uncertainty)
+    }
+
+    /// Length of an increment to just beyond the next closure, `None` where none is foreseen or none has come [T].
+    ///
+    /// ```text
+    /// Δt = ρ τ + ½ ε F/u̇          τ = min g/(−ġ) over open points, ρ: delay; u̇: growth of what is uncertain, ε F: what is allowed of it
+    /// ```
+    fn to_next_closure(&mut self, model: &Model, [old, new]: [&State; 2]) -> Option<f64> {
+        let contacts = model.contacts.iter().zip(&self.forces).zip(old.contacts.iter().zip(&new.contacts));
+        let mut least: Option<f64> = None;
+        for (advance, ((pair, force), states)) in self.advances.iter_mut().zip(contacts) {
+            let first = states.0.iter().zip(states.1).filter_map(|(old, now)| {
+                let approach = old.clearance() - now.clearance();
+                let comes = now.is_separated(pair.touch) && approach > 0.0 && approach.is_finite();
+                comes.then(|| new.dt * now.clearance() / approach)
+            });
+            let Some(first) = first.reduce(f64::min).filter(|_| advance.growth > 0.0) else { continue };
+            advance.foreseen.get_or_insert((new.time, new.time + first));
+            let delay = advance.delay.unwrap_or(1.0);
+            let next = delay * first + AIM * UNCERTAINTY * force / advance.growth;
+            least = Some(least.map_or(next, |least| least.min(next)));
+        }
+        least
     }
 
     /// Largest uncertain fraction of a contact's force; the fraction of the increment for which it is small enough, and whether
@@ -106,21 +156,28 @@ impl Touching {
         foreseen: &[Vec<ContactState>],
     ) -> (f64, f64, bool) {
         self.forces.resize(model.contacts.len(), 0.0);
+        self.advances.resize(model.contacts.len(), Advance::default());
         let mut uncertainty = 0.0f64;
         let (mut share, mut meets) = (1.0f64, false);
         for (k, pair) in model.contacts.iter().enumerate() {
             let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
             let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.time, new.dt);
-            let unknown = Some(Arrival { at: 0.0, uncertainty: f64::INFINITY });
-            let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
+            let unknown = Some(Arrival { at: 0.0, came: 0.0, uncertainty: f64::INFINITY });
+            let mut arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
             let force = |state: &ContactState| state.contact_pressure().hypot(state.shear()) * state.length;
             self.forces[k] = self.forces[k].max(new.contacts[k].iter().map(force).sum());
+            self.advances[k].note(&arrivals, new.time - new.dt, new.dt);
+            arrivals.retain(|arrival| arrival.uncertainty > 0.0);
             let all: f64 = arrivals.iter().map(|arrival| arrival.uncertainty).sum();
             if all > 0.0 {
                 uncertainty = uncertainty.max(all / self.forces[k]);
                 let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
                 let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| !state.is_closed());
-                let most = if meets_first { first } else { longest(&arrivals, AIM * UNCERTAINTY * self.forces[k]) };
+                let most = if meets_first {
+                    first
+                } else {
+                    longest(&arrivals, AIM * UNCERTAINTY * self.forces[k], self.follows)
+                };
                 if most < share {
                     (share, meets) = (most, meets_first);
                 }
@@ -140,11 +197,30 @@ impl Touching {
     }
 }
 
+/// Bounds of the delay of a closure.
+const DELAYS: [f64; 2] = [0.25, 4.0];
+
+impl Advance {
+    /// Records the closures in an increment from a time, accepted or not.
+    fn note(&mut self, arrivals: &[Arrival], from: f64, dt: f64) {
+        let known = || arrivals.iter().filter(|arrival| arrival.came < 1.0 && arrival.uncertainty.is_finite());
+        let Some(first) = known().map(|arrival| arrival.came).reduce(f64::min) else { return };
+        let rate = |arrival: &Arrival| arrival.uncertainty / ((1.0 - arrival.came) * dt);
+        self.growth = known().map(rate).fold(0.0, f64::max);
+        if let Some((made, expected)) = self.foreseen.take() {
+            let delay = (from + first * dt - made) / (expected - made);
+            self.delay = Some(delay.clamp(DELAYS[0], DELAYS[1]));
+        }
+    }
+}
+
 /// Fraction of an increment in which the uncertain force is at most `allowed`, if the force of each point grows linearly
-/// after its closure.
-fn longest(arrivals: &[Arrival], allowed: f64) -> f64 {
-    let uncertainty =
-        |share: f64| -> f64 { arrivals.iter().map(|a| a.uncertainty * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum() };
+/// after its closure: as foreseen, or as it came.
+fn longest(arrivals: &[Arrival], allowed: f64, as_it_came: bool) -> f64 {
+    let at = |arrival: &Arrival| if as_it_came { arrival.came } else { arrival.at };
+    let uncertainty = |share: f64| -> f64 {
+        arrivals.iter().map(|a| a.uncertainty * ((share - at(a)) / (1.0 - at(a))).max(0.0)).sum()
+    };
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);

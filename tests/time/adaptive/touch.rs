@@ -178,6 +178,37 @@ fn touch_costs_nothing_where_friction_does_not_ask() {
     assert_eq!(dragged.len(), 10);
 }
 
+/// Where points close one after the other, as in front of a rigid ring that rolls up a bore, increments end just beyond each closure: there
+/// are few more than closures, and few attempts are rejected. As long as they are after a rejection, or twice that, they take 389 solves.
+#[test]
+fn increments_follow_the_closures_of_a_ring_that_rolls() {
+    let (radius, ring, thickness) = (156.0, 111.5, 4.0);
+    let place = |radius: f64, degrees: f64| [radius * degrees.to_radians().cos(), radius * degrees.to_radians().sin()];
+    let [from, to] = [250.0, 330.0];
+    let corners =
+        [place(radius, from), place(radius, to), place(radius + thickness, to), place(radius + thickness, from)];
+    let centre = [0.0, ring - radius];
+    let still = json!({"on": "seat", "ux": 0, "uy": 0});
+    let run = finish(&json!({
+        "mesh": {"blocks": [{"body": "outer", "kind": "Q4", "elements": [160, 4], "corners": corners,
+                             "arcs": [[0, 0], null, [0, 0], null], "sides": ["bore", null, "seat", null]}]},
+        "bodies": {"outer": {"material": {"model": "neo_hookean", "E": 5000, "nu": 0.3}}},
+        "rigid_bodies": {"ring": {"reference": centre}},
+        "contacts": {"c": {"slave": "bore", "master": {"circle": {"centre": centre, "radius": ring}}, "rigid_body": "ring",
+                           "friction": {"law": "coulomb", "mu": 1.0}}},
+        "steps": [
+            {"name": "touch", "duration": 1, "supports": [still, {"on": "ring", "ux": 0, "uy": -0.05, "angle": 0}]},
+            {"name": "weight", "duration": 1, "supports": [{"on": "ring", "uy": null}], "loads": [{"on": "ring", "force": {"y": -500}}]},
+            {"name": "roll", "duration": 0.2, "dt": {"initial": 0.02}, "supports": [{"on": "ring", "ux": null, "angle": -0.12}]},
+        ],
+    }));
+    println!(
+        "{} increments, {} rejected, {} solves",
+        run.report.increments, run.report.rejected, run.report.newton_iterations
+    );
+    assert!(run.report.newton_iterations <= 290 && run.report.rejected <= 15);
+}
+
 /// Rate-and-state friction that ages in the flight and slips after touch: in one step the friction of a slab that flies to
 /// touch in a step of its own, in a hundred increments from there.
 #[test]
