@@ -301,7 +301,7 @@ impl Element {
         }
         let trapped = model.flow.as_ref().and_then(|flow| flow.wet(e)).map(|wet| trapped(wet, u)).transpose();
         let trapped = trapped.map_err(|failure| TrialFailure::material(model, e, failure))?;
-        Ok(Self { bounds: bounds(model, retardation, e, &local, (memory, trapped))?, size })
+        Ok(Self { bounds: bounds(model, retardation, e, &local, memory, trapped)?, size })
     }
 }
 
@@ -326,7 +326,8 @@ fn bounds(
     retardation: f64,
     e: usize,
     local: &[Vector2<f64>],
-    (memory, trapped): (&[f64], Option<DMatrix<f64>>),
+    memory: &[f64],
+    trapped: Option<DMatrix<f64>>,
 ) -> Result<[f64; 2], TrialFailure> {
     let body = &model.bodies[model.body_of_element[e]];
     let n = 2 * local.len();
