@@ -10,7 +10,8 @@
 //!   as far as few enough points close. The contact force is the largest of all attempts at the increment. The increments that follow
 //!   are no longer than it was meant to be, and begin as long as its longest part, or twice as long if none was rejected: where
 //!   contact advances, as under a wheel, they meet closures as well.
-//! - As soon as such a part is rejected as well, each increment ends just beyond the next closure. It is foreseen from the gaps and
+//! - As soon as such a part is rejected as well, in which points open, as behind a wheel, each increment ends just beyond the next closure. (Where
+//!   contact only grows, shear that is locked in would alternate from point to point.) The closure is foreseen from the gaps and
 //!   the rates at which they close, and comes later in the ratio in which the last one did; from then on friction becomes uncertain at the
 //!   rate at which it did after the last one, up to half of what is allowed.
 //! - The shortest increment is accepted whatever its uncertainty; a warning reports it.
@@ -47,7 +48,8 @@ pub struct Touching {
     longest: f64,
     /// Whether a part of it was rejected
     was_refused: bool,
-    /// Whether a part was rejected whose length followed from the one before: from then on increments follow the closures
+    /// Whether a part was rejected whose length followed from the one before, and in which points opened: from then on increments follow the
+    /// closures
     follows: bool,
     /// How points of each contact close in subdivided increments
     advances: Vec<Advance>,
@@ -78,7 +80,7 @@ impl Touching {
     ) -> (Judgement, f64) {
         let (uncertainty, share, meets) = self.uncertainty(model, [old, new], foreseen.unwrap_or(&new.contacts));
         if uncertainty > UNCERTAINTY && can_shorten(step, old, new) {
-            self.follows |= self.whole.is_some() && self.refused == 0;
+            self.follows |= self.whole.is_some() && self.refused == 0 && moves_on(model, [old, new]);
             self.whole.get_or_insert((new.time, new.dt));
             // A rejected attempt shows that the prediction was inaccurate.
             let most = if self.refused == 0 { 1.0 } else { 0.5 };
@@ -195,6 +197,15 @@ impl Touching {
     pub fn give_up(&mut self) {
         *self = Self::default();
     }
+}
+
+/// Whether a contact opens somewhere in an increment.
+fn moves_on(model: &Model, [old, new]: [&State; 2]) -> bool {
+    let contacts = model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts));
+    contacts.into_iter().any(|(pair, (old, new))| {
+        let mut states = old.iter().zip(new);
+        states.any(|(old, new)| old.is_closed() && new.is_separated(pair.touch))
+    })
 }
 
 /// Bounds of the delay of a closure.

@@ -52,10 +52,12 @@ pub(super) fn threads(base: &Base) -> Outcome {
     to_the_bit(base, &pool.install(|| base.run(&base.ways)))
 }
 
-/// Whether a penalty or a method, that of a tie as well, is chosen for a case by the schemes of its steps: with fewer
-/// steps it may be another, and the command refuses to go on there.
+/// Whether a penalty, a method, that of a tie as well, or the tractions of an edge are chosen for a case by the schemes of its steps:
+/// with fewer steps they may be others, and the command refuses to go on there.
 fn is_chosen_by_steps(draft: &Draft) -> bool {
     let by_default = draft.is("normal", "default") || draft.is("method", "chosen") || draft.is("flange", "tied");
+    // Mortar has one traction on a quadratic edge, and in explicit runs one at each of its nodes.
+    let by_default = by_default || draft.is("method", "mortar") && is_quadratic(draft.of("block_element"));
     let other = ["then", "rupture"].iter().any(|slot| draft.has(slot)) || draft.is("scheme", "quasi_dynamic");
     by_default && other
 }
