@@ -102,7 +102,7 @@ impl Touching {
             return (judged, uncertainty);
         };
         self.longest = self.longest.max(new.dt);
-        let next = self.to_next_closure(model, [old, new]).filter(|_| self.follows);
+        let next = self.until_next_closure(model, [old, new]).filter(|_| self.follows);
         let left = end - new.time;
         if left > step.increments.min {
             // Where points close one after the other, the uncertainty grows with Δt².
@@ -131,7 +131,7 @@ impl Touching {
     /// ```text
     /// Δt = ρ τ + ½ ε F/u̇          τ = min g/(−ġ) over open points, ρ: delay; u̇: growth of what is uncertain, ε F: what is allowed of it
     /// ```
-    fn to_next_closure(&mut self, model: &Model, [old, new]: [&State; 2]) -> Option<f64> {
+    fn until_next_closure(&mut self, model: &Model, [old, new]: [&State; 2]) -> Option<f64> {
         let contacts = model.contacts.iter().zip(&self.forces).zip(old.contacts.iter().zip(&new.contacts));
         let mut least: Option<f64> = None;
         for (advance, ((pair, force), states)) in self.advances.iter_mut().zip(contacts) {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{Blocks, close, distance, finish, goes_on, half_way, on_threads, quadratic, with};
+use crate::common::{Blocks, Finished, close, distance, finish, goes_on, half_way, on_threads, quadratic, with};
 use crate::saturated::{Q, audit, balance, column, found, off, soil, vibration};
 use serde_json::{Value, json};
 
@@ -332,43 +332,60 @@ fn two_blocks(kind: &str, more: &Value, scheme: &Value, dt: f64) -> Value {
     })
 }
 
-/// Water across contacts, along them and out of what opens goes as in implicit increments as short, and is all accounted for.
+/// Water across contacts and along them goes as in implicit increments twice as long, and is all accounted for.
 #[test]
 fn contacts_agree_with_implicit_increments() {
     let along =
         json!({"fluid_pressure": {"flow": {"storage": 0.3, "transmissivity": 0.2, "viscosity": 1, "initial": 0}}});
-    let uplift = json!({"open_pressure": 0});
     for (what, kind, more) in [
         ("across", "q4", json!({})),
         ("across", "t3", json!({"seal": 0.1})),
         ("across", "q8", json!({"method": "mortar"})),
         ("along", "q4", along),
-        ("out", "q4", uplift),
     ] {
-        let set = |mut case: Value| {
-            if what == "out" {
-                case["steps"][0]["drainage"][1]["pressure"] = json!("0.08*(1-cos(3*t))");
-            }
-            case
-        };
-        let moving = finish(&set(two_blocks(kind, &more, &explicit(), 1.0)));
+        let moving = finish(&two_blocks(kind, &more, &explicit(), 1.0));
         let dt = 0.1 / (0.1 / moving.last().dt).round();
-        let solved = finish(&set(two_blocks(kind, &more, &json!({"hht": {"alpha": -0.1}}), 2.0 * dt)));
-        let flow = moving.model.flow.as_ref().expect("water flows");
-        let states = [moving.last(), solved.last()];
-        let [p, solved_p] = states
-            .map(|state| (0..flow.count()).map(|k| flow.pressure(k, Some(&state.displacement))).collect::<Vec<_>>());
-        let size = p.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-        let outlets = states.map(|state| state.water.outlets.iter().map(|outlet| outlet.volume).collect::<Vec<_>>());
-        println!(
-            "{what} {kind}: {} increments, p {:.1e}, out {outlets:.4?}",
-            moving.last().increment,
-            distance(&p, &solved_p) / size
-        );
-        assert!(distance(&p, &solved_p) < 0.02 * size, "{what} {kind}");
-        let most = outlets[0].iter().fold(0.0f64, |most, value| most.max(value.abs()));
-        assert!(distance(&outlets[0], &outlets[1]) < 0.01 * most, "{what} {kind}: {outlets:?}");
+        let solved = finish(&two_blocks(kind, &more, &json!({"hht": {"alpha": -0.1}}), 2.0 * dt));
+        let [pressures, outlets] = apart(&moving, &solved);
+        println!("{what} {kind}: {} increments, p {pressures:.1e}, out {outlets:.1e}", moving.last().increment);
+        assert!(pressures < 0.02 && outlets < 0.01, "{what} {kind}: {pressures}, {outlets}");
         balance(&moving, 1e-9);
-        goes_on(&set(two_blocks(kind, &more, &explicit(), 1.0)), &moving, 4);
+        goes_on(&two_blocks(kind, &more, &explicit(), 1.0), &moving, 4);
     }
+}
+
+/// Water that lifts the upper block, and leaves by the gap: outflow .0773. Implicit increments come to it as they are made shorter, .0595, .0722, .0743 and
+/// .0752 in increments of 1/250, 1/500, 1/1000 and 1/2000.
+#[test]
+fn what_opens_drains_as_in_short_implicit_increments() {
+    let lifted = |scheme: &Value, dt: f64| {
+        let mut case = two_blocks("q4", &json!({"open_pressure": 0}), scheme, dt);
+        case["steps"][0]["duration"] = json!(2);
+        case["steps"][0]["drainage"][1]["pressure"] = json!("0.08*(1-cos(3*t))");
+        case
+    };
+    let moving = finish(&lifted(&explicit(), 1.0));
+    let solved = finish(&lifted(&json!({"hht": {"alpha": -0.1}}), 1e-3));
+    let flow = moving.model.flow.as_ref().expect("water flows");
+    let gap = flow.outlets.iter().position(|name| name == "cut").expect("an outlet");
+    let [out, expected] = [&moving, &solved].map(|run| run.last().water.outlets[gap].volume);
+    println!("out {out:.4} {expected:.4}, {} increments", moving.last().increment);
+    close("out", out, expected, 0.06 * expected);
+    assert!(expected > 0.07, "{expected}");
+    balance(&moving, 1e-9);
+    goes_on(&lifted(&explicit(), 1.0), &moving, 4);
+}
+
+/// Differences of the pressures at the ends of two runs, and of what has left by their outlets, over the largest of each.
+fn apart(run: &Finished, other: &Finished) -> [f64; 2] {
+    let flow = run.model.flow.as_ref().expect("water flows");
+    let pressures = |run: &Finished| -> Vec<f64> {
+        (0..flow.count()).map(|k| flow.pressure(k, Some(&run.last().displacement))).collect()
+    };
+    let outlets =
+        |run: &Finished| -> Vec<f64> { run.last().water.outlets.iter().map(|outlet| outlet.volume).collect() };
+    let over = |values: &[f64], others: &[f64]| {
+        distance(values, others) / values.iter().fold(0.0f64, |most, value| most.max(value.abs()))
+    };
+    [over(&pressures(run), &pressures(other)), over(&outlets(run), &outlets(other))]
 }
