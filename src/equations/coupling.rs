@@ -185,10 +185,10 @@ impl Layout {
         new
     }
 
-    /// Groups with copies, expressed by their originals, and every copy with its original.
+    /// Groups with copies or followers, expressed by their originals and with their leaders, and every copy with its original.
     fn tied<'a>(&self, groups: impl Iterator<Item = &'a [usize]> + Clone) -> Vec<Vec<usize>> {
         let ties = &self.model.ties;
-        let mut linked = self.linked(groups.clone());
+        let linked = self.linked(groups.clone());
         if ties.pairs().is_empty() {
             return linked;
         }
@@ -196,7 +196,9 @@ impl Layout {
         let moved = groups.map(|group| (group, originals(group))).filter(|(group, originals)| group != originals);
         let mut tied: Vec<Vec<usize>> = moved.map(|(_, originals)| originals).collect();
         tied.extend(ties.pairs().iter().map(|&(copy, original)| vec![copy, original]));
-        tied.append(&mut linked);
+        // Leaders are coupled with the originals of what their followers meet.
+        tied.extend(linked.iter().map(|group| originals(group)));
+        tied.extend(linked);
         tied
     }
 

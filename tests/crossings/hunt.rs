@@ -202,6 +202,7 @@ const ONCE_BROKEN: &[(u64, &str, &str)] = &[
          press:dead_pressure spring:ground stress:components",
     ),
     (24, "later", "approach:slanted bond:pulls flange:tied massless:yes scheme:wilson second_contact:yes"),
+    (48, "tangents", "periodic:yes plate:rigid press:pressure sliding:small smooth:yes"),
 ];
 
 #[test]

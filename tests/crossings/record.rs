@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use fecontact::case;
 use fecontact::contact::{ContactPair, SlavePoint};
-use fecontact::model::Model;
+use fecontact::model::{Model, State, Step};
 use fecontact::output::events::wave_speeds;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
@@ -141,6 +141,36 @@ fn built(document: &Value) -> Result<Arc<Model>, String> {
     let path = Path::new("case.json");
     let case = case::from_text(&document.to_string(), path).map_err(|error| error.to_string())?;
     case::build(&case, path).map(Arc::new).map_err(|error| error.to_string())
+}
+
+/// An increment that a run has solved.
+pub struct Solved {
+    pub model: Arc<Model>,
+    pub step: Step,
+    pub old: State,
+    pub new: State,
+}
+
+/// The increments of a case, up to where its run stops; none where it is refused.
+pub fn increments(document: &Value) -> Vec<Solved> {
+    let Ok(model) = built(document) else { return Vec::new() };
+    let mut simulation = Simulation::new(model.clone());
+    let mut all = Vec::new();
+    while let Ok(Some(candidate)) = simulation.try_increment() {
+        let attempt = simulation.attempt_of(&candidate);
+        if let Some(new) = attempt.accepted {
+            all.push(Solved {
+                model: model.clone(),
+                step: attempt.step.clone(),
+                old: attempt.old.clone(),
+                new: new.clone(),
+            });
+        }
+        if simulation.apply(candidate).is_err() {
+            break;
+        }
+    }
+    all
 }
 
 /// The observers whose tables are compared.

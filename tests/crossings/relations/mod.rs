@@ -8,6 +8,7 @@ mod halved;
 mod held;
 mod led;
 mod limits;
+mod tangents;
 mod told;
 mod written;
 
@@ -25,6 +26,7 @@ use halved::halved;
 use held::{absent, dilating, ladder, resultants, slips};
 use led::{begun_with, dropped, further, resumed, threads};
 use limits::{sides_swapped, slow_dynamics, small_and_finite, stiff_and_augmented};
+use tangents::tangents;
 use told::{followed, overstressed, watered};
 use written::{
     axis_told, body_in_two, driven, inclined, later, mirrored, moved, renamed, shuffled, steps_in_two, told_in_time,
@@ -200,6 +202,7 @@ pub const RELATIONS: &[Relation] = &[
     Relation { name: "halved", rarity: 24, check: halved },
     Relation { name: "buckled", rarity: 8, check: buckled },
     Relation { name: "derivatives", rarity: 5, check: derivatives },
+    Relation { name: "tangents", rarity: 5, check: tangents },
     Relation { name: "energies", rarity: 3, check: energies },
     Relation { name: "linear energies", rarity: 3, check: linear_energies },
     Relation { name: "switched", rarity: 2, check: switched },
