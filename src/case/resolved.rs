@@ -90,11 +90,11 @@ pub(super) fn keep_opening(contact: &mut Contact, pair: &ContactPair, model: &Mo
 /// Writes the stiffness of a bond that no friction law gives into a contact.
 fn keep_stiffness(contact: &mut Contact, pair: &ContactPair) {
     let of_friction = pair.laws.iter().all(|law| law.law.description().stiffness_is_penalty);
-    let besides = pair.laws.iter().find_map(|law| match &law.cohesion {
+    let bond_stiffness = pair.laws.iter().find_map(|law| match &law.cohesion {
         Some(Cohesion::Parallel(bond)) => Some(bond.stiffness()),
         _ => None,
     });
-    if let (false, Some(stiffness), Some(bond)) = (of_friction, besides, &mut contact.bond) {
+    if let (false, Some(stiffness), Some(bond)) = (of_friction, bond_stiffness, &mut contact.bond) {
         bond.alpha_t = Some(stiffness);
     }
 }

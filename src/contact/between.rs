@@ -46,7 +46,7 @@ impl Between {
     }
 
     /// ∂(p − p)/∂p of what drives each of [`ACROSS`], for a dof behind the point.
-    fn apart(&self, j: usize) -> [f64; 3] {
+    fn difference(&self, j: usize) -> [f64; 3] {
         ACROSS.map(|[from, to]| self.shares[from][j] - self.shares[to][j])
     }
 
@@ -72,10 +72,10 @@ impl Between {
 
     /// (4) of `seam.rs` of each dof behind the point [F].
     pub(super) fn forces(&self) -> impl Iterator<Item = f64> + '_ {
-        let apart = ACROSS.map(|[from, to]| self.pressures[from] - self.pressures[to]);
-        let flows: [f64; 3] = std::array::from_fn(|k| self.passes[k] * apart[k]);
+        let differences = ACROSS.map(|[from, to]| self.pressures[from] - self.pressures[to]);
+        let flows: [f64; 3] = std::array::from_fn(|k| self.passes[k] * differences[k]);
         (0..self.scales.len()).map(move |j| {
-            let across: f64 = self.apart(j).iter().zip(flows).map(|(apart, flow)| apart * flow).sum();
+            let across: f64 = self.difference(j).iter().zip(flows).map(|(difference, flow)| difference * flow).sum();
             -self.scales[j] * (self.of_dof(j) * self.taken + across + self.drains[0] * self.excess_by(j))
         })
     }
@@ -89,7 +89,7 @@ impl Between {
     pub(super) fn vary(&self, length: f64, [dgap, dlength]: [&[f64]; 2], tangent: &mut [f64], all: usize) {
         let (dofs, count) = (dgap.len(), self.scales.len());
         for j in 0..count {
-            let (mean, apart, scale) = (self.of_dof(j), self.apart(j), self.scales[j]);
+            let (mean, own, scale) = (self.of_dof(j), self.difference(j), self.scales[j]);
             for c in (0..dofs).filter(|_| self.counts) {
                 tangent[c * all + dofs + j] -= scale * mean * (length * dgap[c] + self.gap * dlength[c]);
             }
@@ -97,8 +97,8 @@ impl Between {
                 tangent[c * all + dofs + j] -= scale * self.drains[1] * self.excess_by(j) * dgap[c];
             }
             for i in 0..count {
-                let other = self.apart(i);
-                let across: f64 = (0..ACROSS.len()).map(|k| self.passes[k] * apart[k] * other[k]).sum();
+                let other = self.difference(i);
+                let across: f64 = (0..ACROSS.len()).map(|k| self.passes[k] * own[k] * other[k]).sum();
                 let out: f64 = self.shares[..2].iter().map(|shares| shares[i] * shares[j]).sum();
                 tangent[(dofs + i) * all + dofs + j] -= scale * (across + self.drains[0] * out) * self.scales[i];
             }

@@ -57,11 +57,11 @@ impl PointSequence {
     }
 
     /// The larger scatter over the points with so many closed ones on either side; `None` if no two of them are neighbours.
-    fn alternation(&self, states: &[ContactState], beside: usize) -> Option<f64> {
+    fn alternation(&self, states: &[ContactState], neighbours: usize) -> Option<f64> {
         let inner = |k: usize| -> Option<[f64; 2]> {
-            let first = k.checked_sub(beside)?;
-            let goes_on = self.next.get(first..k + beside)?.iter().all(Option::is_some);
-            let closed = states.get(first..=k + beside)?.iter().all(ContactState::is_closed);
+            let first = k.checked_sub(neighbours)?;
+            let goes_on = self.next.get(first..k + neighbours)?.iter().all(Option::is_some);
+            let closed = states.get(first..=k + neighbours)?.iter().all(ContactState::is_closed);
             Some([self.next[k - 1]?, self.next[k]?]).filter(|_| goes_on && closed)
         };
         let ways: Vec<Option<[f64; 2]>> = (0..states.len()).map(inner).collect();

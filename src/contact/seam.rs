@@ -48,7 +48,7 @@ pub struct Seam {
     /// Where surfaces that are apart drain
     pub open: Option<Drained>,
     /// What passes through an element beside the contact, at most [L³/(F T)]
-    pub beside: f64,
+    pub most_by_element: f64,
     /// Rise of p_w per closure at most, were the water trapped: ∂p_w/∂p_a times the area of a corner over what its pores take up, of both sides [F/L³]
     pub trapped: f64,
 }
@@ -106,7 +106,7 @@ impl Seam {
 
     /// Most that passes into the bodies per length from what flows along the contact [L³/(F T)].
     pub fn most(&self) -> f64 {
-        self.conductance.min(self.beside)
+        self.conductance.min(self.most_by_element)
     }
 
     /// The water at a point of the slave with these weights of x_s − x_m, and the nodes of its pressures; `seeps` is ℓ Δt/β.

@@ -301,7 +301,7 @@ impl ConvergenceCriterion {
         u: &[f64],
         magnitudes: &[f64],
     ) -> Vec<f64> {
-        let Trial { old, step, dt, .. } = trial;
+        let Trial { old, step, .. } = trial;
         let stiffness = &self.stiffness;
         let of_part = self.farthest(old);
         let farthest = |node: usize| of_part[self.coupled.of_node[node]];
@@ -321,8 +321,8 @@ impl ConvergenceCriterion {
         for (dof, force) in pore_flow::prescribed(model, trial, u) {
             squares[dof / 2] += force * force;
         }
-        let way: Vec<f64> =
-            old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();
+        let of_dof = |(dof, u): (usize, &f64)| RATES * (u.abs() + trial.way(dof, false).abs());
+        let way: Vec<f64> = old.displacement.iter().enumerate().map(of_dof).collect();
         let scheme = trial.integration();
         if let (Some(scheme), Some(mass)) = (scheme, mass) {
             let [inertia] = mass.multiply_symmetric([&way]);
@@ -332,7 +332,7 @@ impl ConvergenceCriterion {
                 *squared += stiffness[node][2] * square(&way, node) * dvelocity.powi(2);
             }
         }
-        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity());
+        let dvelocity = trial.dvelocity();
         for dashpot in &step.loads.dashpots {
             squares[dashpot.dof / 2] += (dashpot.coefficient * dvelocity * way[dashpot.dof]).powi(2);
         }

@@ -81,16 +81,18 @@ impl Inertia {
         let scheme = trial.integration()?;
         let (velocity, acceleration) = rates(model, trial, u, scheme);
         let accelerations = old.acceleration.iter().zip(&acceleration);
-        let mut weighted: Vec<f64> = accelerations.map(|(old, new)| blend(scheme.alpha_m, *old, *new)).collect();
-        let mut factors = vec![(1.0 - scheme.alpha_m) * scheme.dacceleration(); u.len()];
+        let mut weighted: Vec<f64> =
+            accelerations.map(|(old, new)| blend(scheme.coefficients.alpha_m, *old, *new)).collect();
+        let mut factors = vec![(1.0 - scheme.coefficients.alpha_m) * scheme.dacceleration(); u.len()];
         for support in &step.supports {
             let at = support.at;
-            let along = blend(scheme.alpha_f, at.of(&old.acceleration), at.of(&acceleration));
+            let along = blend(scheme.coefficients.alpha_f, at.of(&old.acceleration), at.of(&acceleration));
             match at.inclined {
                 None => (weighted[at.dof], factors[at.dof]) = (along, 0.0),
                 Some(_) => {
                     let missed = missed(support, trial.prescribed(support, model), u);
-                    let rest = (scheme.alpha_f - scheme.alpha_m) * scheme.dacceleration() * missed;
+                    let rest =
+                        (scheme.coefficients.alpha_f - scheme.coefficients.alpha_m) * scheme.dacceleration() * missed;
                     at.set(along + rest, &mut weighted);
                 }
             }
@@ -99,7 +101,7 @@ impl Inertia {
             weighted[dof] = of_leaders(&weighted) + factors[dof] * (u[dof] - base);
         }
         let turning = Turning::all(model, trial, u, scheme);
-        let rate = (1.0 - scheme.alpha_m) * scheme.dacceleration();
+        let rate = (1.0 - scheme.coefficients.alpha_m) * scheme.dacceleration();
         turning.iter().for_each(|plate| plate.weighted(scheme, rate, &mut weighted));
         links::spread_turning(model, rate, u, &mut weighted);
         let [force, weighted] = mass.multiply_symmetric([&acceleration, &weighted]);
@@ -110,13 +112,14 @@ impl Inertia {
     /// the trial displacement, and the inertia.
     pub fn balance(&self, old_force: &[f64], force: &[f64], residual: &mut Vec<f64>) {
         residual.clear();
-        let blended = old_force.iter().zip(force).map(|(&old, &force)| blend(self.scheme.alpha_f, old, force));
+        let blended =
+            old_force.iter().zip(force).map(|(&old, &force)| blend(self.scheme.coefficients.alpha_f, old, force));
         residual.extend(blended.zip(&self.weighted).map(|(force, inertia)| force + inertia));
     }
 
     /// Weights the tangent of the forces alike, and adds that of the inertia.
     pub fn weigh(&self, model: &Model, mass: &SparseMatrix, tangent: &mut SparseMatrix) {
-        tangent.values.iter_mut().for_each(|value| *value *= 1.0 - self.scheme.alpha_f);
+        tangent.values.iter_mut().for_each(|value| *value *= 1.0 - self.scheme.coefficients.alpha_f);
         self.stiffen(model, mass, tangent);
     }
 

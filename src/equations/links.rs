@@ -58,7 +58,7 @@ pub fn perpendicular(e: Vector2<f64>) -> Vector2<f64> {
 
 /// Average of the values before and after, weighted with α_f.
 fn blended(scheme: TimeIntegration, [before, after]: [Vector2<f64>; 2]) -> Vector2<f64> {
-    before * scheme.alpha_f + after * (1.0 - scheme.alpha_f)
+    before * scheme.coefficients.alpha_f + after * (1.0 - scheme.coefficients.alpha_f)
 }
 
 /// Sets the values of B relative to A to `along`, keeping those of R with its G.
@@ -177,7 +177,7 @@ pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tan
         system.residual[2 * b + 1] = weight * stretch(model, [a, b], u);
         if tangent {
             keep_length(model, [a, b], [e, lever], weight, &mut system.tangent);
-            let share = scheme.map_or(1.0, |scheme| 1.0 - scheme.alpha_f);
+            let share = scheme.map_or(1.0, |scheme| 1.0 - scheme.coefficients.alpha_f);
             let turned = Vector2::new(force.y, -force.x) * (share / length);
             let matrix = &mut system.tangent;
             for (node, sign) in [(a, -1.0), (b, 1.0)] {
@@ -293,14 +293,14 @@ impl Turning {
 
     /// Applies the constraint to the weighted accelerations of the scheme.
     pub fn weighted(&self, scheme: TimeIntegration, rate: f64, values: &mut [f64]) {
-        let angular = blend(scheme.alpha_m, self.angular[0], self.angular[1]);
+        let angular = blend(scheme.coefficients.alpha_m, self.angular[0], self.angular[1]);
         let arm = blended(scheme, self.e);
         self.give(perpendicular(arm) * angular - arm * self.square(scheme) + self.excess.0 * rate, values);
     }
 
     /// Weighted square of the angular velocity, (ω²)_f.
     fn square(&self, scheme: TimeIntegration) -> f64 {
-        blend(scheme.alpha_f, self.spin[0].powi(2), self.spin[1].powi(2))
+        blend(scheme.coefficients.alpha_f, self.spin[0].powi(2), self.spin[1].powi(2))
     }
 
     /// Sets the values of B relative to A to `relative`, keeping those of R.
@@ -312,8 +312,8 @@ impl Turning {
     fn beyond(&self, scheme: TimeIntegration, rate: f64) -> Matrix2<f64> {
         let [e, turned] = [self.e[1], perpendicular(self.e[1])];
         let angle = turned.transpose() / e.norm_squared();
-        let (m, f) = (1.0 - scheme.alpha_m, 1.0 - scheme.alpha_f);
-        let angular = blend(scheme.alpha_m, self.angular[0], self.angular[1]);
+        let (m, f) = (1.0 - scheme.coefficients.alpha_m, 1.0 - scheme.coefficients.alpha_f);
+        let angular = blend(scheme.coefficients.alpha_m, self.angular[0], self.angular[1]);
         let arm = blended(scheme, self.e);
         let spun = perpendicular(arm) * angle * (m * scheme.dacceleration());
         let turn = Matrix2::new(0.0, -angular, angular, 0.0);

@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use crate::mesh::configuration::vector;
 use crate::model::boundary::Moment;
 use crate::model::scheme::TimeIntegration;
+use crate::model::state::LastIncrement;
 use crate::model::support::Prescribed;
 use crate::model::{Model, State, Step};
 
@@ -57,6 +58,22 @@ impl<'a> Trial<'a> {
     /// Whether the state at its start is evaluated, and nothing moves.
     pub fn is_instant(&self) -> bool {
         self.dt == 0.0
+    }
+
+    /// ∂v/∂u at the end of the increment, of the mean velocity without inertia [1/T].
+    pub fn dvelocity(&self) -> f64 {
+        self.integration().map_or(1.0 / self.dt, |scheme| scheme.dvelocity())
+    }
+
+    /// Δt v₀ + ½ Δt² a₀ of a dof: its way in the increment if it goes on as it began, with its acceleration or without [L].
+    pub fn way(&self, dof: usize, accelerates: bool) -> f64 {
+        let acceleration = if accelerates { self.old.acceleration[dof] } else { 0.0 };
+        self.dt * (self.old.velocity[dof] + 0.5 * self.dt * acceleration)
+    }
+
+    /// The fraction of the motion of the last increment by which this one is expected to go on, in a model whose water flows or not.
+    pub fn pace(&self, last: &LastIncrement, flows: bool) -> Option<f64> {
+        last.goes_on(self.dt, flows)
     }
 
     /// v of a dof that moves by Δu in an increment without inertia, and ∂v/∂Δu.

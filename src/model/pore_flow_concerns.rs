@@ -109,8 +109,8 @@ fn unprescribed(model: &Model, flow: &PoreFlow) -> Option<String> {
     let part_of = CoupledParts::of(model).of_node;
     let parts = |drain: &Drain| drain.corners.iter().map(|(k, ..)| part_of[flow.dof(*k) / 2]).collect::<Vec<_>>();
     model.steps.iter().find_map(|step| {
-        let held: Vec<usize> = step.drains.iter().filter(|drain| drain.kind != DrainKind::Flux).flat_map(parts).collect();
-        let drain = step.drains.iter().find(|drain| is_given(drain) && parts(drain).iter().all(|part| !held.contains(part)))?;
+        let prescribed: Vec<usize> = step.drains.iter().filter(|drain| drain.kind != DrainKind::Flux).flat_map(parts).collect();
+        let drain = step.drains.iter().find(|drain| is_given(drain) && parts(drain).iter().all(|part| !prescribed.contains(part)))?;
         Some(format!(
             "step `{}`: water flows through `{}` by a given flux, and no pressure is prescribed: the flow changes the volume of the body, limited only by its \
              stiffness; prescribe a `pressure`, `head` or `seepage` on another side, unless this is intended",

@@ -262,12 +262,8 @@ impl Coefficients {
 /// A dynamic scheme over an increment of length Δt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeIntegration {
-    /// Weight of the old inertia force
-    pub alpha_m: f64,
-    /// Weight of the old internal, contact and external forces
-    pub alpha_f: f64,
-    beta: f64,
-    gamma: f64,
+    /// Those of the scheme
+    pub coefficients: Coefficients,
     /// Δt [T]
     dt: f64,
 }
@@ -275,30 +271,29 @@ pub struct TimeIntegration {
 impl TimeIntegration {
     /// That of a scheme; `None` for statics and central differences.
     pub fn new(scheme: Scheme, dt: f64) -> Option<Self> {
-        let Coefficients { alpha_m, alpha_f, beta, gamma } = scheme.coefficients()?;
-        Some(Self { alpha_m, alpha_f, beta, gamma, dt })
+        Some(Self { coefficients: scheme.coefficients()?, dt })
     }
 
     /// ∂a₁/∂u₁ = 1/(β Δt²) [1/T²].
     pub fn dacceleration(&self) -> f64 {
-        1.0 / (self.beta * self.dt * self.dt)
+        1.0 / (self.coefficients.beta * self.dt * self.dt)
     }
 
     /// ∂v₁/∂u₁ = γ/(β Δt) [1/T].
     pub fn dvelocity(&self) -> f64 {
-        self.gamma / (self.beta * self.dt)
+        self.coefficients.gamma / (self.coefficients.beta * self.dt)
     }
 
     /// (v₁, a₁) of one dof from its displacement increment Δu and (v₀, a₀).
     pub fn rates(&self, increment: f64, v: f64, a: f64) -> (f64, f64) {
-        let Self { beta, gamma, dt, .. } = *self;
+        let Self { coefficients: Coefficients { beta, gamma, .. }, dt } = *self;
         let a1 = (increment - dt * v) / (beta * dt * dt) - (0.5 / beta - 1.0) * a;
         (v + dt * ((1.0 - gamma) * a + gamma * a1), a1)
     }
 
     /// Δu of one dof from (v₀, a₀) and a₁: the inverse of equation (2).
     pub fn increment(&self, v: f64, a: f64, a1: f64) -> f64 {
-        let Self { beta, dt, .. } = *self;
+        let Self { coefficients: Coefficients { beta, .. }, dt } = *self;
         dt * v + dt * dt * ((0.5 - beta) * a + beta * a1)
     }
 

@@ -91,7 +91,7 @@ impl Within {
 
     /// The largest scatter of a step over its bound, in the end and over its time, and what there is to be said of it.
     fn largest(&self, sequence: &PointSequence, states: &[ContactState], end: f64, step: &str) -> (f64, String) {
-        let told = |time: f64, scatter: f64, how: String| {
+        let text = |time: f64, scatter: f64, how: String| {
             let percent = 100.0 * scatter;
             format!(
                 "t = {}: tractions alternate from point to point by {percent:.0} % of the mean pressure{how}",
@@ -103,12 +103,12 @@ impl Within {
         let most = |a: (f64, String), b: (f64, String)| if b.0 > a.0 { b } else { a };
         let over_time = format!(" (column scatter), and by {:.0} % over the time of step `{step}`", 100.0 * mean);
         let found = most(
-            (at_end / SCATTERS, told(end, at_end, " (column scatter)".into())),
-            (mean / SCATTERS, told(self.time, self.largest, over_time)),
+            (at_end / SCATTERS, text(end, at_end, " (column scatter)".into())),
+            (mean / SCATTERS, text(self.time, self.largest, over_time)),
         );
         let Some(all_over) = sequence.short_scatter(states) else { return found };
         let closed = states.iter().filter(|state| state.is_closed()).count();
         let on = format!(" on {}", count(closed, "closed point"));
-        most(found, (all_over / SCATTERS_IF_SHORT, told(end, all_over, on)))
+        most(found, (all_over / SCATTERS_IF_SHORT, text(end, all_over, on)))
     }
 }

@@ -152,17 +152,17 @@ pub fn start_value(model: &Model, trial: Trial) -> (Vec<f64>, bool) {
 
 /// Displacement if the motion goes on; `None` if there was none, or it has met a contact.
 fn extrapolated(model: &Model, trial: Trial) -> Option<Vec<f64>> {
-    let Trial { old, step, dt, .. } = trial;
-    let State { displacement, velocity, acceleration, .. } = old;
-    let last = goes_on(old);
+    let Trial { old, step, .. } = trial;
+    let (displacement, last) = (&old.displacement, goes_on(old));
     if !(step.scheme.is_dynamic() && step.increments.error.is_some()) {
         let last = last?;
-        let share = last.goes_on(dt, model.flow.is_some())?;
+        let share = trial.pace(last, model.flow.is_some())?;
         return Some(displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect());
     }
+    let last = last.and_then(|last| Some((trial.pace(last, false)?, last)));
     let way = |dof: usize| match last {
-        _ if !model.massless[dof / 2] => dt * (velocity[dof] + 0.5 * dt * acceleration[dof]),
-        Some(last) => dt / last.dt * last.displacement[dof],
+        _ if !model.massless[dof / 2] => trial.way(dof, true),
+        Some((share, last)) => share * last.displacement[dof],
         None => 0.0,
     };
     Some((0..displacement.len()).map(|dof| displacement[dof] + way(dof)).collect())

@@ -74,16 +74,16 @@ impl Symbolic {
     pub fn contributions(&self, threads: usize) -> usize {
         let passed_on = |number: usize| self.fronts[number].below().pow(2);
         let rooms = threads * self.forests.iter().map(|forest| forest.room).max().unwrap_or(0);
-        let mut held: usize =
+        let mut stored: usize =
             self.forests.iter().flat_map(|forest| &forest.roots).map(|&root| passed_on(root as usize)).sum();
-        let mut peak = held;
+        let mut peak = stored;
         let mut done = 0;
         let end = self.fronts.len();
         for end in self.forests.iter().map(|forest| forest.fronts.clone()).chain(iter::once(end..end)) {
             for number in done..end.start {
-                held += passed_on(number);
-                peak = peak.max(held);
-                held -= self.fronts[number].children.iter().map(|&child| passed_on(child as usize)).sum::<usize>();
+                stored += passed_on(number);
+                peak = peak.max(stored);
+                stored -= self.fronts[number].children.iter().map(|&child| passed_on(child as usize)).sum::<usize>();
             }
             done = end.end;
         }

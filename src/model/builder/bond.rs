@@ -44,13 +44,13 @@ pub fn bond(
     let message = "is given by the friction law already (adhesion, or cohesion of slip_weakening): leave one of them \
                    out; a bond that softens or pulls goes with frictionless, coulomb or slip_weakening without \
                    cohesion";
-    let besides = [
+    let further = [
         ("residual", residual.is_some()),
         ("slip", slip.is_some()),
         ("bonded", bonded),
         ("alpha_t", stiffness.is_some()),
     ];
-    for (key, is_given) in [("strength", strength.is_some()), ("tension", tension != 0.0)].into_iter().chain(besides) {
+    for (key, is_given) in [("strength", strength.is_some()), ("tension", tension != 0.0)].into_iter().chain(further) {
         refuse_if(has_own && is_given, at(key), message)?;
     }
     let message = "is missing: the friction law has no strength without pressure";

@@ -69,7 +69,7 @@ pub fn conduit(place: &str, contact: &Contact, points: &[SlavePoint], model: &Mo
     let wells = wells
         .map(|(k, given)| well(&format!("{place}.wells[{k}]"), given, &line, model))
         .collect::<Checked<Vec<_>>>()?;
-    check_apart(place, &wells)?;
+    check_distances(place, &wells)?;
     let shares: Vec<Weights> = shares.collect();
     let lengths: Vec<f64> = points.iter().map(|point| point.current_length(&undeformed)).collect();
     let mut holds = vec![0.0; nodes.len()];
@@ -119,10 +119,10 @@ pub fn channels(contacts: &[Contact], bodies: &[Body], mesh: &Mesh) -> BTreeMap<
     let of = |contact: &Contact| {
         let Some(FluidPressure::Flow(flow)) = &contact.fluid_pressure else { return None };
         let slave = sides(Some(&contact.slave));
-        let beside = slave.iter().chain(sides(contact.master_group())).any(|edge| wet.contains(&edge.element));
+        let touches_wet = slave.iter().chain(sides(contact.master_group())).any(|edge| wet.contains(&edge.element));
         let nodes: BTreeSet<usize> = slave.iter().flat_map(|edge| edge.nodes.iter().copied()).collect();
         let at = |node: usize| (node, flow.initial.value(mesh.nodes[node]));
-        beside.then(|| (contact.name.clone(), nodes.into_iter().map(at).collect()))
+        touches_wet.then(|| (contact.name.clone(), nodes.into_iter().map(at).collect()))
     };
     contacts.iter().filter_map(of).collect()
 }
@@ -199,7 +199,7 @@ fn well(place: &str, given: &FlowWell, line: &Line, model: &Model) -> Checked<We
 }
 
 /// No two pressures are prescribed at a node at the same time.
-fn check_apart(place: &str, wells: &[Well]) -> Checked<()> {
+fn check_distances(place: &str, wells: &[Well]) -> Checked<()> {
     let prescribed = |well: &&Well| matches!(well.gives, Gives::Pressure(_));
     for (k, one) in wells.iter().enumerate().filter(|(_, well)| prescribed(well)) {
         let clashes = |other: &&Well| {

@@ -267,8 +267,8 @@ fn check_of_bodies(given: &InitialTractions, contact: &Contact, place: &str) -> 
 
 /// Checks that tractions that follow from the stress of bodies are not given besides.
 fn check_alone(given: &InitialTractions, place: &str) -> Checked<()> {
-    let besides = [("pressure", &given.pressure), ("traction", &given.traction)];
-    if let Some((key, _)) = besides.iter().find(|(_, it)| it.is_some()) {
+    let others = [("pressure", &given.pressure), ("traction", &given.traction)];
+    if let Some((key, _)) = others.iter().find(|(_, it)| it.is_some()) {
         let message = "has no meaning together with of_bodies: leave one out";
         return Err(ModelError::new(format!("{place}.{key}"), message));
     }

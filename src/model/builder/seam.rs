@@ -74,9 +74,9 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
     if !passes {
         without(place, contact)?;
     }
-    let beside = most[0].max(most[1]);
+    let most_by_element = most[0].max(most[1]);
     // From body to body the less permeable one governs; into what is between them each drains by itself.
-    let governs = if channel.is_empty() { most[0].min(most[1]) } else { beside };
+    let governs = if channel.is_empty() { most[0].min(most[1]) } else { most_by_element };
     let given = contact.seal.unwrap_or(NEARLY_CONTINUOUS * governs);
     check_not_negative(&format!("{place}.seal"), given)?;
     let conductance = if passes { given } else { 0.0 };
@@ -86,13 +86,13 @@ pub fn seam(place: &str, contact: &Contact, conduit: Option<&Conduit>, model: &M
     refuse_if(contact.open_pressure.is_some() && same, format!("{place}.open_pressure"), message)?;
     let open = contact.open_pressure.map(|pressure| Drained {
         pressure,
-        conductance: NEARLY_CONTINUOUS * beside,
+        conductance: NEARLY_CONTINUOUS * most_by_element,
         aperture: OPEN * size,
         outlet: flow.outlets.iter().position(|name| *name == contact.name).unwrap_or_default(),
     });
     // p_w is the mean of both sides, and each takes up half of the volume.
     let trapped = if sides == 2 { 0.25 * (trapped[0] + trapped[1]) } else { trapped[0].max(trapped[1]) };
-    Ok((sides > 0).then_some(Seam { nodes, channel, conductance, open, beside, trapped }))
+    Ok((sides > 0).then_some(Seam { nodes, channel, conductance, open, most_by_element, trapped }))
 }
 
 /// Half the area of an edge over what the pores at one of its ends take up at least per pressure, by a diagonal below S + P of its element [F/L³].

@@ -28,7 +28,7 @@ pub const STORE: &str = "gradients.zarr";
 /// Quantities of contacts that are differentiated.
 const QUANTITIES: [&str; 3] = ["slip", "pressure", "traction"];
 
-/// Saved memory: of the store, and the record held back.
+/// Saved memory: of the store, and the pending record.
 pub type Memory = (Saved, Option<Record>);
 
 /// The store.
@@ -36,7 +36,7 @@ pub type Memory = (Saved, Option<Record>);
 pub struct DerivativeStore {
     store: Store,
     /// Record that is written only if an event follows
-    held: Option<Record>,
+    pending: Option<Record>,
     /// Number of values of each array and place of a value
     widths: Vec<usize>,
     /// Whether those of displacements are stored
@@ -71,7 +71,7 @@ impl DerivativeStore {
         let mut attributes = attributes(model);
         attributes.insert("by".into(), json!(by));
         let store = Store::new(folder.join(STORE), attributes, fixed, growing);
-        Self { store, held: None, widths, of_nodes: of_displacements }
+        Self { store, pending: None, widths, of_nodes: of_displacements }
     }
 
     /// Creates its files.
@@ -105,7 +105,7 @@ impl DerivativeStore {
             record.push(by_each.iter().flat_map(|values| &values[first..first + width]).copied().collect());
             first += width;
         }
-        due(&mut self.held, record, row).iter().try_for_each(|record| self.store.push(record))?;
+        due(&mut self.pending, record, row).iter().try_for_each(|record| self.store.push(record))?;
         self.store.share()
     }
 
@@ -119,7 +119,7 @@ impl DerivativeStore {
     /// # Errors
     /// Returns [`Error::Output`] if its files cannot be written.
     pub fn save(&mut self) -> Result<Memory, Error> {
-        Ok((self.store.save()?, self.held.clone()))
+        Ok((self.store.save()?, self.pending.clone()))
     }
 
     /// Checks that what was saved is unchanged.
@@ -134,8 +134,8 @@ impl DerivativeStore {
     ///
     /// # Errors
     /// Returns [`Error::Output`] if later records cannot be removed.
-    pub fn restore(&mut self, (saved, held): Memory) -> Result<(), Error> {
-        self.held = held;
+    pub fn restore(&mut self, (saved, pending): Memory) -> Result<(), Error> {
+        self.pending = pending;
         self.store.restore(saved)
     }
 

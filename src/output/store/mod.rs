@@ -39,7 +39,7 @@ pub struct InterfaceStore {
     /// Names of the quantities of each contact
     names: Vec<Vec<&'static str>>,
     /// Record that is written only if an event follows
-    held: Option<Record>,
+    pending: Option<Record>,
     /// Time of the last record, and slip of every contact and point at that time
     last: (f64, Vec<Vec<f64>>),
 }
@@ -52,7 +52,7 @@ const SLIP_RATE: usize = 2;
 /// Time, and the quantities of all contacts in sequence.
 type Record = Vec<Vec<f64>>;
 
-/// Saved memory: of the store, the record held back, and the last record.
+/// Saved memory: of the store, the pending record, and the last record.
 type Memory = (Saved, Option<Record>, (f64, Vec<Vec<f64>>));
 
 impl InterfaceStore {
@@ -93,7 +93,7 @@ impl InterfaceStore {
         Self {
             store: Store::new(folder.join(STORE), attributes(model), fixed, growing),
             names,
-            held: None,
+            pending: None,
             last: (start.time, start.contacts.iter().map(slips).collect()),
         }
     }
@@ -122,12 +122,12 @@ impl InterfaceStore {
     }
 }
 
-/// Records to be written now, after a new one that may be held back.
-fn due(held: &mut Option<Record>, new: Record, row: Row) -> Vec<Record> {
-    let before = held.take();
+/// Records to be written now, after a new one that may be pending.
+fn due(pending: &mut Option<Record>, new: Record, row: Row) -> Vec<Record> {
+    let before = pending.take();
     match row {
         Row::Pending => {
-            *held = Some(new);
+            *pending = Some(new);
             Vec::new()
         }
         Row::Written => vec![new],
@@ -139,7 +139,7 @@ impl Observer for InterfaceStore {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let record = self.record_of(model, state);
-        due(&mut self.held, record, attempt.row).into_iter().try_for_each(|record| self.write(record))?;
+        due(&mut self.pending, record, attempt.row).into_iter().try_for_each(|record| self.write(record))?;
         self.store.share()
     }
 
@@ -148,7 +148,7 @@ impl Observer for InterfaceStore {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::remembered(&(self.store.save()?, &self.held, &self.last))
+        csv::remembered(&(self.store.save()?, &self.pending, &self.last))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
@@ -157,7 +157,7 @@ impl Observer for InterfaceStore {
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         let saved;
-        (saved, self.held, self.last) = csv::recalled::<Memory>(memory)?;
+        (saved, self.pending, self.last) = csv::recalled::<Memory>(memory)?;
         self.store.restore(saved)
     }
 
