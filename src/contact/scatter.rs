@@ -1,12 +1,13 @@
 //! Scatter of tractions from point to point along a slave surface, which the mesh has made and not the problem.
 //!
 //! ```text
-//! r_i = p_i − (line through the neighbours of i)                     inner points: i and three points on either side are closed
+//! r_i = p_i − (line through the neighbours of i)                     inner points: i and three points on either side are in contact
 //! scatter of p = 1/p̄ · √(Σ m_i²/n),   m_i = min(|r_i|, |r_i+1|) where r_i r_i+1 < 0, otherwise 0
 //! ```
 //! over the n inner points, with their mean pressure p̄; that of q by p̄ as well, m_i being the least of three residuals that alternate: where slip
 //! reverses, q has a step, of which two do. Towards the end of a contact the elastic pressure is
-//! steep, at the corner of a block singular, which no mesh resolves over its last points. A smooth pressure has residuals of one sign, or small
+//! steep, at the corner of a block singular, which no mesh resolves over its last points. What alternates most opens every other point: these
+//! are in contact with p = 0. A smooth pressure has residuals of one sign, or small
 //! ones where its curvature changes; a kink or the edge of a contact has a single large one. What alternates counts twice its amplitude.
 
 use super::force::ContactState;
@@ -50,19 +51,23 @@ impl PointSequence {
         self.alternation(states, ADJACENT).unwrap_or(0.0)
     }
 
-    /// The same over all points between two closed ones, of a contact so short that no two neighbours are inner points; `None` on others [-]
+    /// The same over all points between two in contact, of a contact so short that no two neighbours are inner points; `None` on others [-]
     pub fn short_scatter(&self, states: &[ContactState]) -> Option<f64> {
         let is_long = self.alternation(states, ADJACENT).is_some();
         self.alternation(states, 1).filter(|_| !is_long)
     }
 
-    /// The larger scatter over the points with so many closed ones on either side; `None` if no two of them are neighbours.
+    /// The larger scatter over the points with so many in contact on either side; `None` if no two of them are neighbours.
     fn alternation(&self, states: &[ContactState], neighbours: usize) -> Option<f64> {
+        let is_closed = |k: usize| states.get(k).is_some_and(ContactState::is_closed);
+        let goes_on = |k: usize| self.after(k - 1).is_some() && self.after(k).is_some();
+        let is_gap = |k: usize| k > 0 && goes_on(k) && !is_closed(k) && is_closed(k - 1) && is_closed(k + 1);
+        let is_skipped = |k: usize| is_gap(k) && (is_gap(k + 2) || k > 2 && is_gap(k - 2));
         let inner = |k: usize| -> Option<[f64; 2]> {
             let first = k.checked_sub(neighbours)?;
             let goes_on = self.next.get(first..k + neighbours)?.iter().all(Option::is_some);
-            let closed = states.get(first..=k + neighbours)?.iter().all(ContactState::is_closed);
-            Some([self.next[k - 1]?, self.next[k]?]).filter(|_| goes_on && closed)
+            let in_contact = (first..=k + neighbours).all(|k| is_closed(k) || is_skipped(k));
+            Some([self.next[k - 1]?, self.next[k]?]).filter(|_| goes_on && in_contact)
         };
         let ways: Vec<Option<[f64; 2]>> = (0..states.len()).map(inner).collect();
         if !ways.windows(2).any(|pair| pair.iter().all(Option::is_some)) {

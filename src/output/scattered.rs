@@ -1,6 +1,6 @@
 //! Warning about tractions that alternate from point to point: sums of them may be right, the distribution is not.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use serde::{Deserialize, Serialize};
 
@@ -13,8 +13,13 @@ use crate::model::text::count;
 use crate::model::{Method, Model, State};
 use crate::run::observer::Attempt;
 
-/// Scatter of tractions that causes a warning, at the end of a step or as rms over its time, over the mean pressure.
+/// Scatter of tractions that causes a warning, at the end of a step or as rms over a part of its time, over the mean pressure.
 const SCATTERS: f64 = 0.05;
+
+/// Shortest part of a step over which tractions that alternate are told, as a fraction of its time.
+const PART: f64 = 0.1;
+/// Its least number of increments, unless it is half of the step: in one or two, slip that begins and contact that advances alternate as well.
+const INCREMENTS: usize = 3;
 
 /// The same at the end of a step for a contact so short that all of it lies close to its ends, where pressures are steep.
 const SCATTERS_IF_SHORT: f64 = 0.125;
@@ -33,13 +38,30 @@ pub struct Scattered {
 /// Scatter of a contact within a step.
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct Within {
-    /// ∫ scatter² dt [T]
-    squares: f64,
+    /// The last increments, twice as long as the shortest part: half of a longer one alternates as much
+    last: VecDeque<Scatter>,
+    worst: Period,
+}
+
+/// Scatter at the end of an increment.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+struct Scatter {
     /// [T]
-    duration: f64,
-    largest: f64,
-    /// when it was largest [T]
-    time: f64,
+    end: f64,
+    /// [T]
+    dt: f64,
+    scatter: f64,
+}
+
+/// Increments in a row.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+struct Period {
+    /// Its beginning and end [T]
+    span: [f64; 2],
+    /// rms of the scatter over its time
+    mean: f64,
+    /// The increment with the largest scatter
+    largest: Scatter,
 }
 
 impl Scattered {
@@ -53,12 +75,13 @@ impl Scattered {
             let sequence =
                 self.sequences.entry(k).or_insert_with(|| PointSequence::new(&pair.points, &model.mesh.undeformed()));
             let within = self.within.entry(k).or_default();
-            within.add(sequence.scatter(states), attempt.dt, state.time);
+            let increment = Scatter { end: state.time, dt: attempt.dt, scatter: sequence.scatter(states) };
+            within.add(increment, attempt.step.span.end - attempt.step.span.start);
             if !attempt.ends_step(state) {
                 continue;
             }
             let within = std::mem::take(within);
-            let (size, found) = within.largest(sequence, states, state.time, &attempt.step.name);
+            let (size, found) = within.largest(sequence, states, state.time);
             if size <= self.worst.bound(k, 1.0) {
                 continue;
             }
@@ -81,16 +104,32 @@ impl Scattered {
 }
 
 impl Within {
-    fn add(&mut self, scatter: f64, dt: f64, time: f64) {
-        self.squares += scatter * scatter * dt;
-        self.duration += dt;
-        if scatter > self.largest {
-            (self.largest, self.time) = (scatter, time);
+    /// Adds an increment of a step so long, which ends parts of it.
+    fn add(&mut self, increment: Scatter, step: f64) {
+        let Self { last, worst } = self;
+        last.push_back(increment);
+        let (mut part, mut squares, mut duration) = (Period::default(), 0.0, 0.0);
+        for (count, before) in last.iter().rev().enumerate() {
+            squares += before.scatter.powi(2) * before.dt;
+            duration += before.dt;
+            if before.scatter > part.largest.scatter {
+                part.largest = *before;
+            }
+            let begin = before.end - before.dt;
+            part = Period { span: [begin, increment.end], mean: (squares / duration).sqrt(), ..part };
+            let least = if count + 1 < INCREMENTS { 0.5 } else { PART };
+            if duration >= least * step && part.mean > worst.mean {
+                *worst = part;
+            }
+        }
+        while last.len() > 2 * INCREMENTS && duration - last[0].dt > 2.0 * PART * step {
+            duration -= last[0].dt;
+            last.pop_front();
         }
     }
 
-    /// The largest scatter of a step over its bound, in the end and over its time, and what there is to be said of it.
-    fn largest(&self, sequence: &PointSequence, states: &[ContactState], end: f64, step: &str) -> (f64, String) {
+    /// The largest scatter of a step over its bound, in the end and over a part of its time, and what there is to be said of it.
+    fn largest(&self, sequence: &PointSequence, states: &[ContactState], end: f64) -> (f64, String) {
         let text = |time: f64, scatter: f64, how: String| {
             let percent = 100.0 * scatter;
             format!(
@@ -98,13 +137,14 @@ impl Within {
                 time_text(time)
             )
         };
-        let mean = (self.squares / self.duration).sqrt();
+        let Period { span, mean, largest } = self.worst;
         let at_end = sequence.scatter(states);
         let most = |a: (f64, String), b: (f64, String)| if b.0 > a.0 { b } else { a };
-        let over_time = format!(" (column scatter), and by {:.0} % over the time of step `{step}`", 100.0 * mean);
+        let [from, to] = span.map(time_text);
+        let over_time = format!(" (column scatter), and by {:.0} % from t = {from} to {to}", 100.0 * mean);
         let found = most(
             (at_end / SCATTERS, text(end, at_end, " (column scatter)".into())),
-            (mean / SCATTERS, text(self.time, self.largest, over_time)),
+            (mean / SCATTERS, text(largest.end, largest.scatter, over_time)),
         );
         let Some(all_over) = sequence.short_scatter(states) else { return found };
         let closed = states.iter().filter(|state| state.is_closed()).count();
