@@ -288,11 +288,12 @@ impl ContactPair {
     /// variations if `varied`.
     pub(super) fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Met> {
         let index = Index::new(&self.master, x);
-        let overlaps = match (&self.mortar, &self.master) {
+        let cut = match (&self.mortar, &self.master) {
             (Some(mortar), Master::Mesh(surface)) if self.small.is_none() => {
                 let mut overlaps = Overlaps::default();
                 mortar.cut(surface, &index, [x, x], &mut overlaps);
-                Some(overlaps)
+                let ridges = mortar.ridges(surface, &overlaps, x);
+                Some((overlaps, ridges))
             }
             _ => None,
         };
@@ -304,7 +305,8 @@ impl ContactPair {
                 (Some(small), ..) => Some(small.points[point].as_ref()?.meet(x, x, k)),
                 (_, Some(mortar), Master::Rigid(body)) => mortar.meet_rigid(point, body, [x, x], k, &mut room),
                 (_, Some(mortar), Master::Mesh(surface)) => {
-                    let facing = mortar.facing(surface, overlaps.as_ref()?);
+                    let (overlaps, ridges) = cut.as_ref()?;
+                    let facing = mortar.facing(surface, overlaps, ridges);
                     facing.weigh(point, x, &mut room, &mut weights);
                     let weights = Some(&weights).filter(|weights| varied && !weights.is_empty());
                     facing.meet(point, weights, x, k, &mut room)

@@ -10,11 +10,13 @@
 //! right-handed. The gap g = (x_slave − x_m)·n is positive when open, the pressure p positive in compression, and
 //! the traction on the slave is t = p n − q s.
 
+mod averages;
 mod between;
 mod bonded;
 pub mod conduit;
 pub mod depth;
 pub mod dual;
+mod entering;
 pub mod fluid;
 pub mod force;
 mod hats;
@@ -29,6 +31,7 @@ pub mod point;
 pub mod pores;
 pub mod projection;
 pub mod response;
+mod ridges;
 pub mod scatter;
 pub mod seam;
 pub mod search;

@@ -28,18 +28,19 @@ use std::iter::repeat;
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
+use super::averages::{Averages, Extent, Pieces};
 use super::dual::{Dual, DualVector, Number};
 pub use super::hats::Hats;
 use super::hats::{Part, centre, gauss_around, parts};
 use super::kinematics::{Kinematics, Lever, Meeting, past_rigid};
 use super::master::{Master, Rigid};
 pub use super::mortar_segments::Overlaps;
-use super::mortar_segments::{CutEdge, Frame, Line, Overlap, between_nodes, oblique};
+use super::mortar_segments::{CutEdge, Frame, Overlap, between_nodes};
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, lone_point};
 use super::projection::{Projection, tangent_of};
+use super::ridges::{self, Corners, Ridges};
 use super::search::{Index, KeptSearch};
 use super::surface::{Segment, Surface};
-use crate::mesh::shape;
 use crate::mesh::{Configuration, Section};
 
 /// The slave side: its edges, and the edges at each contact point.
@@ -53,6 +54,8 @@ pub struct Mortar {
     at: Vec<Vec<Part>>,
     /// Gauss points around each point, with their lengths multiplied by φ_j
     around: Vec<Vec<SlavePoint>>,
+    /// Corners that may enter first
+    pub(super) corners: Corners,
 }
 
 /// Weights of all points in the committed configuration; constant during the iterations of an increment.
@@ -63,6 +66,8 @@ pub struct Committed {
     places: Vec<(usize, [Vector2<f64>; 2])>,
     search: KeptSearch,
     overlaps: Overlaps,
+    /// Corners that enter first
+    ridges: Ridges,
     /// Buffers, each for several points
     rooms: Vec<Room>,
     /// Weights of each point, empty without a projection on the master
@@ -70,6 +75,11 @@ pub struct Committed {
 }
 
 impl Committed {
+    /// Corners that enter first.
+    pub fn ridges(&self) -> &Ridges {
+        &self.ridges
+    }
+
     /// Weights of a point, if it has a projection on the master.
     pub fn weights(&self, point: usize) -> Option<&Weights> {
         self.weights.get(point).filter(|weights| !weights.is_empty())
@@ -91,7 +101,8 @@ pub fn mortar_points(edges: &[Vec<usize>], hats: Hats, positions: &[Vector2<f64>
         ..lone_point(edges[of[0].edge][of[0].node], 0.0)
     };
     let points = at.iter().zip(&around).map(point).collect();
-    (points, Mortar { depths: vec![f64::INFINITY; edges.len()], edges: edges.to_vec(), at, around })
+    let (depths, corners) = (vec![f64::INFINITY; edges.len()], Corners::default());
+    (points, Mortar { depths, edges: edges.to_vec(), at, around, corners })
 }
 
 impl Mortar {
@@ -100,7 +111,7 @@ impl Mortar {
         let segments = || surface.segments.iter().flat_map(Segment::nodes);
         let nodes = || self.edges.iter().flatten().copied().chain(segments());
         let places = || nodes().map(|node| (node, x.split(&[(node, 1.0)], Vector2::zeros())));
-        let Committed { section, places: kept, search, overlaps, rooms, weights } = committed;
+        let Committed { section, places: kept, search, overlaps, ridges, rooms, weights } = committed;
         if *section == x.section() && weights.len() == self.at.len() && places().eq(kept.iter().copied()) {
             return;
         }
@@ -108,11 +119,12 @@ impl Mortar {
         kept.clear();
         kept.extend(places());
         self.cut(surface, &Index::kept(master, [x, x], search), [x, x], overlaps);
+        *ridges = self.ridges(surface, overlaps, x);
         weights.resize_with(self.at.len(), Weights::default);
         rooms.resize_with(self.at.len().div_ceil(TOGETHER), Room::default);
         let parts = weights.par_chunks_mut(TOGETHER).zip(rooms).enumerate();
         parts.for_each(|(part, (weights, room))| {
-            let facing = self.facing(surface, overlaps);
+            let facing = self.facing(surface, overlaps, ridges);
             weights.iter_mut().enumerate().for_each(|(k, weights)| facing.weigh(TOGETHER * part + k, x, room, weights));
         });
     }
@@ -124,9 +136,14 @@ impl Mortar {
         edges.for_each(|((edge, &depth), cut)| cut.cut(edge, depth, surface, index, x));
     }
 
-    /// The slave edges as they face a mesh surface, cut in some configuration.
-    pub fn facing<'a>(&'a self, surface: &'a Surface, overlaps: &'a Overlaps) -> Facing<'a> {
-        Facing { mortar: self, surface, overlaps }
+    /// Corners that enter first, given the slave edges as cut in a configuration.
+    pub fn ridges(&self, surface: &Surface, overlaps: &Overlaps, x: &Configuration) -> Ridges {
+        self.corners.entering(&self.edges, surface, overlaps, x)
+    }
+
+    /// The slave edges as they face a mesh surface, cut in some configuration, with the ridges of the committed one.
+    pub fn facing<'a>(&'a self, surface: &'a Surface, overlaps: &'a Overlaps, ridges: &'a Ridges) -> Facing<'a> {
+        Facing { mortar: self, surface, overlaps, ridges }
     }
 }
 
@@ -136,6 +153,7 @@ pub struct Facing<'a> {
     mortar: &'a Mortar,
     surface: &'a Surface,
     overlaps: &'a Overlaps,
+    ridges: &'a Ridges,
 }
 
 impl Facing<'_> {
@@ -176,13 +194,12 @@ impl Facing<'_> {
         if !self.average(point, frame, averages) {
             return None;
         }
-        let Averages { weights, length } = averages;
         let along = self.mortar.along(point, frame);
         let (s, n) = (along.clone(), along.turned());
         relative.clear();
-        relative.extend(weights.iter().map(|w| w.over(length)));
+        relative.extend(averages.means());
         let mean = frame.combine(relative);
-        let gap = n.dot(&mean);
+        let gap = averages.least.clone().unwrap_or_else(|| n.dot(&mean));
         let mut slip = N::constant(0.0);
         if let Some(old) = old {
             let mut moved = DualVector::default();
@@ -191,7 +208,7 @@ impl Facing<'_> {
             }
             slip = s.dot(&moved.minus(&mean));
         }
-        let length = length.scaled(self.surface.share());
+        let length = averages.length().scaled(self.surface.share());
         let met = Meeting { gap: gap.value(), master_point };
         MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, axes: [s, n] }.write(k);
         Some(met)
@@ -204,7 +221,7 @@ impl Facing<'_> {
         frame.place(x);
         found.clear();
         if self.average(point, frame, averages) {
-            found.extend(frame.nodes.iter().zip(&averages.weights).map(|(&node, w)| (node, w / averages.length)));
+            found.extend(frame.nodes.iter().copied().zip(averages.means()));
         }
     }
 
@@ -243,90 +260,80 @@ impl Facing<'_> {
         }
     }
 
-    /// Computes the average at a point in `averages`; returns whether the master overlaps enough of its edges.
+    /// Computes the average at a point in `averages`, next to a ridge over what is closed (`ridges.rs`); returns whether the master overlaps
+    /// enough of its edges.
     fn average<N: Number>(&self, point: usize, frame: &Frame<N>, averages: &mut Averages<N>) -> bool {
-        averages.clear(frame.nodes.len());
-        let mut whole = 0.0;
-        for &Part { edge: e, ref hat, .. } in &self.mortar.at[point] {
-            let edge = &self.mortar.edges[e];
+        let parts = &self.mortar.at[point];
+        let chord = |part: &Part| {
+            let edge = &self.mortar.edges[part.edge];
             let chord = frame.at(edge[1]).minus(frame.at(edge[0]));
-            let depths = [0, 1].map(|end| frame.depth(frame.at(edge[end])).map_or(1.0, |depth| depth.value()));
-            whole += chord.dot(&chord).value().sqrt() * 0.5 * (depths[0] + depths[1]);
-            let along = chord.normalized();
-            for (_, overlap) in self.near(point).filter(|(part, _)| part.edge == e) {
-                averages.integrate(edge, hat, overlap, &self.surface.segments[overlap.segment], &along, frame);
+            chord.dot(&chord).value().sqrt()
+        };
+        let depth = |node: usize| frame.depth(frame.at(node)).map_or(1.0, |depth| depth.value());
+        let depths = |part: &Part| self.mortar.edges[part.edge][..2].iter().map(|&node| depth(node)).sum::<f64>();
+        let whole: f64 = parts.iter().map(|part| chord(part) * 0.5 * depths(part)).sum();
+        let mut least = None;
+        if self.has_ridge(point) {
+            least = self.integrate(point, Extent::Closed, frame, averages);
+            let is_deep = averages.mean_depth() > NEGLIGIBLE * chord(&parts[0]);
+            if is_deep && averages.length().value() > NEGLIGIBLE * whole {
+                return true;
             }
         }
-        averages.length.value() > NEGLIGIBLE * whole
+        self.integrate(point, Extent::All, frame, averages);
+        averages.least = least.filter(|gap| gap.value() > 0.0);
+        averages.length().value() > NEGLIGIBLE * whole
+    }
+
+    /// Whether a point is next to a ridge, or faces one.
+    fn has_ridge(&self, point: usize) -> bool {
+        let Self { mortar: Mortar { edges, .. }, ridges, surface, .. } = self;
+        let is_next = |(part, overlap): (&Part, &Overlap)| {
+            ridges.are_at(part, &edges[part.edge]) || ridges.are_faced(surface.segments[overlap.segment].ends)
+        };
+        !ridges.is_empty() && self.near(point).any(is_next)
+    }
+
+    /// Sums the integrals at a point in `averages`; returns the least gap of its overlaps if only what is closed counts.
+    fn integrate<N: Number>(
+        &self,
+        point: usize,
+        extent: Extent,
+        frame: &Frame<N>,
+        averages: &mut Averages<N>,
+    ) -> Option<N> {
+        averages.clear(frame.nodes.len(), extent);
+        let mut least: Option<N> = None;
+        for &Part { edge: e, ref hat, .. } in &self.mortar.at[point] {
+            let edge = &self.mortar.edges[e];
+            let along = frame.at(edge[1]).minus(frame.at(edge[0])).normalized();
+            for (_, overlap) in self.near(point).filter(|(part, _)| part.edge == e) {
+                let facing = Pieces { edge, segment: &self.surface.segments[overlap.segment], along: &along, frame };
+                let mut ends = facing.ends(overlap);
+                if extent == Extent::Closed {
+                    if between_nodes(edge.len(), hat, overlap.middle()).0 == 0.0 {
+                        continue;
+                    }
+                    let gaps = ends.each_ref().map(|xi| facing.gap(xi));
+                    let closed = ridges::closed(ends, &gaps);
+                    let all = gaps.into_iter().chain(least.take());
+                    least = all.min_by(|a, b| a.value().total_cmp(&b.value()));
+                    let Some(closed) = closed else { continue };
+                    ends = closed;
+                }
+                averages.integrate(&facing, hat, ends);
+            }
+        }
+        least
     }
 }
 
-/// Smallest overlapping fraction of the edges for which a point counts as in contact: the mean over a sliver is
-/// dominated by round-off.
+/// Smallest overlapping fraction of the edges for which a point counts as in contact, and smallest mean depth next to a ridge in lengths of its
+/// edge: the mean over a sliver is dominated by round-off.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// ξ of the nodes of an edge: its ends, then its middle.
 const NODE_AT: [f64; 3] = [-1.0, 1.0, 0.0];
-
-/// Tributary length A_j and mortar weights W_ja of a point.
-#[derive(Clone, Debug, Default)]
-struct Averages<N> {
-    pub weights: Vec<N>,
-    pub length: N,
-}
-
-impl<N: Number> Averages<N> {
-    /// Resets the sums, for `nodes` nodes.
-    pub fn clear(&mut self, nodes: usize) {
-        self.weights.clear();
-        self.weights.resize(nodes, N::default());
-        self.length = N::default();
-    }
-
-    /// Adds the integrals over one overlap.
-    pub fn integrate(
-        &mut self,
-        edge: &[usize],
-        hat: &[f64; 3],
-        overlap: &Overlap,
-        segment: &Segment,
-        along: &DualVector<N>,
-        frame: &Frame<N>,
-    ) {
-        let ends = overlap.ends.map(|cut| match cut.node {
-            None => N::constant(cut.xi),
-            Some(node) => Line::Edge(edge).coordinate(frame.at(node), along, cut.xi, frame),
-        });
-        let (half, middle) = (ends[1].minus(&ends[0]).scaled(0.5), ends[0].plus(&ends[1]).scaled(0.5));
-        let points = if edge.len() == 2 && segment.middle.is_none() { 2 } else { 4 };
-        for (at, weight) in shape::gauss(points) {
-            let xi = middle.plus(&half.scaled(at));
-            let slave = Line::Edge(edge);
-            let values = slave.values(&xi);
-            let slope = slave.slope(&xi, frame);
-            let (value, rate) = between_nodes(edge.len(), hat, xi.value());
-            let position = frame.position(edge.iter().copied(), &values);
-            let share = slope.dot(&slope).sqrt().times(&half.scaled(weight)).times(&xi.map(value, rate));
-            let share = match frame.depth(&position) {
-                Some(depth) => share.times(&depth),
-                None => share,
-            };
-            let share = match oblique(segment, along, frame) {
-                Some(factor) => share.times(&factor),
-                None => share,
-            };
-            let master = Line::Segment(segment);
-            let eta = master.coordinate(&position, along, 0.5, frame);
-            self.length.accumulate(1.0, &share);
-            for (&node, value) in edge.iter().zip(&values) {
-                self.weights[frame.local(node)].accumulate(1.0, &share.times(value));
-            }
-            for (node, value) in segment.nodes().zip(master.values(&eta)) {
-                self.weights[frame.local(node)].accumulate(-1.0, &share.times(&value));
-            }
-        }
-    }
-}
 
 /// Buffer for the averages at one point after another.
 #[derive(Clone, Debug, Default)]

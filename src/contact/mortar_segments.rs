@@ -45,7 +45,8 @@ pub(super) struct Overlap {
 }
 
 impl Overlap {
-    fn middle(&self) -> f64 {
+    /// ξ of its middle.
+    pub(super) fn middle(&self) -> f64 {
         0.5 * (self.ends[0].xi + self.ends[1].xi)
     }
 

@@ -143,7 +143,7 @@ impl<'a> Locating<'a> {
                 let index = Index::kept(&pair.master, [before, x], search);
                 mortar.commit(&pair.master, surface, before, committed);
                 mortar.cut(surface, &index, [before, x], overlaps);
-                Self::Averaged(mortar.facing(surface, overlaps), committed)
+                Self::Averaged(mortar.facing(surface, overlaps, committed.ridges()), committed)
             }
             (None, _) => Self::Projected(Index::kept(&pair.master, [before, x], search)),
         }

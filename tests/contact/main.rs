@@ -21,6 +21,7 @@ mod points;
 mod profiles;
 mod random;
 mod remedies;
+mod ridges;
 mod rigid_bodies;
 mod rings;
 mod scattered;

@@ -221,6 +221,7 @@ fn begin(pair: &mut ContactPair, contact: &Contact, model: &Model, absent: &BTre
     pair.comes_stressed = pair.bodies.iter().flatten().any(|body| absent.contains(body))
         && contact.initial.as_ref().is_some_and(|initial| initial.of_bodies);
     initial::start(pair, contact, model, &place)?;
+    pair.find_corners(&model.mesh.nodes);
     fluid::check_fluid(pair, &place, model, 0.0)
 }
 
