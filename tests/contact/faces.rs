@@ -34,7 +34,8 @@ fn mean_gap(nodes: &[Vector2<f64>]) -> (f64, Vec<(usize, f64)>) {
     mortar.cut(&surface, &Index::new(&Master::Mesh(surface.clone()), &x), [&x, &x], &mut overlaps);
     let (mut k, mut room) = (Kinematics::default(), Room::default());
     k.varied = true;
-    let met = mortar.facing(&surface, &overlaps).meet(right, None, &x, &mut k, &mut room).expect("a master");
+    let ridges = mortar.ridges(&surface, &overlaps, &x);
+    let met = mortar.facing(&surface, &overlaps, &ridges).meet(right, None, &x, &mut k, &mut room).expect("a master");
     let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
     (met.gap, dofs.zip(k.dgap.iter().copied()).collect())
 }

@@ -125,10 +125,11 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
         assert_eq!(points.len(), expected.len());
         let pair = pair(points, Master::Mesh(master.clone()), FRICTIONLESS);
         let overlaps = overlaps(&pair, &mortar, &master, &configuration);
+        let ridges = mortar.ridges(&master, &overlaps, &configuration);
         for (k, expected) in expected.into_iter().enumerate() {
             let mut met = Kinematics::new(false);
             mortar
-                .facing(&master, &overlaps)
+                .facing(&master, &overlaps, &ridges)
                 .meet(k, None, &configuration, &mut met, &mut Room::default())
                 .expect("the master faces the point");
             let away = (met.tangent - expected.normalize()).norm();
@@ -187,7 +188,8 @@ fn nodes_beyond_a_quadratic_edge_do_not_cut_it() {
             let (surface, (points, mortar)) = (Surface::new(segments), mortar_points(&slave, Hats::OfEdges, &x));
             let pair = pair(points, Master::Mesh(surface.clone()), FRICTIONLESS);
             let overlaps = overlaps(&pair, &mortar, &surface, &configuration);
-            let facing = mortar.facing(&surface, &overlaps);
+            let ridges = mortar.ridges(&surface, &overlaps, &configuration);
+            let facing = mortar.facing(&surface, &overlaps, &ridges);
             let meet = |k| facing.meet(k, None, &configuration, &mut Kinematics::new(false), &mut Room::default());
             (0..3).map(|k| meet(k).expect("the roof faces the point").gap).collect()
         };
@@ -230,7 +232,8 @@ pub fn check_mortar_tangent(
     let before = Configuration::undeformed(before);
     let was = overlaps(pair, mortar, surface, &before);
     let (mut room, mut weights) = (Room::default(), Vec::new());
-    mortar.facing(surface, &was).weigh(k, &before, &mut room, &mut weights);
+    let ridges = mortar.ridges(surface, &was, &before);
+    mortar.facing(surface, &was, &ridges).weigh(k, &before, &mut room, &mut weights);
     let weights = Some(weights).filter(|weights| !weights.is_empty());
     let open = pair.laws[0].law.initial_state(0.0, 0.0);
     let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
@@ -240,7 +243,7 @@ pub fn check_mortar_tangent(
         let x = Configuration::undeformed(x);
         let is = overlaps(pair, mortar, surface, &x);
         let mut kinematics = Kinematics::new(true);
-        let facing = mortar.facing(surface, &is);
+        let facing = mortar.facing(surface, &is, &ridges);
         let met = facing.meet(k, weights.as_ref(), &x, &mut kinematics, &mut Room::default());
         let met = met.expect("the master faces the point");
         closes(pair, &pair.points[k], met.gap, &old, increment).then(|| {
