@@ -21,10 +21,15 @@ use super::sums::{Dependence, Sums, TrialFailure};
 use super::trial::Trial;
 use super::water_balances::{Balances, Times};
 use crate::laws::bulk::{MaterialFailure, cofactor};
-use crate::mesh::configuration::vector;
-use crate::model::pore_flow::{PoreFlow, WetElement, WetPoint};
-use crate::model::state::{Outflow, State, Water};
+use crate::model::pore_flow::{ConstantFlow, MOST_NODES, PoreFlow, WetElement, WetPoint};
+use crate::model::state::{Outflow, Water};
 use crate::model::{Activated, Model};
+
+/// Number of elements whose contributions are stored at once before they are added.
+const BATCH: usize = 1024;
+
+/// Number of elements that one thread evaluates at a time.
+const MANY: usize = 64;
 
 /// The flow goes by the state at the start of the increment, and the volume by the displacement.
 pub(super) fn dependence(model: &Model) -> Dependence {
@@ -55,16 +60,18 @@ pub(super) fn add(
     };
     let wet = flow.elements.iter().filter(|wet| trial.step.has(model.body_of_element[wet.element]));
     let elements: Vec<&WetElement> = wet.collect();
-    let answers: Vec<Result<Answer, TrialFailure>> = elements.par_iter().map(of).collect();
     let mut balances = Balances::new(flow);
-    for (answer, wet) in answers.into_iter().zip(elements) {
-        let answer = answer?;
-        for (a, &k) in wet.pressures.iter().enumerate() {
-            balances.take(k, answer.change[a], answer.size[a]);
-            balances.let_out(k, times.span * answer.flow[a], 0.0);
-        }
-        if wanted {
-            sums.couple(&wet.nodes, &answer.tangent);
+    for batch in elements.chunks(BATCH) {
+        let answers: Vec<Result<Answer, TrialFailure>> = batch.par_iter().with_min_len(MANY).map(of).collect();
+        for (answer, wet) in answers.into_iter().zip(batch) {
+            let answer = answer?;
+            for (a, &k) in wet.pressures.iter().enumerate() {
+                balances.take(k, answer.change[a], answer.size[a]);
+                balances.let_out(k, times.span * answer.flow[a], 0.0);
+            }
+            if wanted {
+                sums.couple(&wet.nodes, &answer.tangent);
+            }
         }
     }
     for (k, before) in old.change.iter().enumerate() {
@@ -126,25 +133,25 @@ struct Answer {
     tangent: Vec<f64>,
 }
 
-/// A body at a point: J, and ∂J/∂u of every node.
-struct Opened {
-    jacobian: f64,
-    by: Vec<Vector2<f64>>,
-}
-
-fn opened(wet: &WetElement, point: &WetPoint, u: &[f64]) -> Result<Opened, MaterialFailure> {
-    let (f, hoop) = wet.deformed(point, u);
-    let around = |a: usize| point.hoop.get(a).copied().unwrap_or(0.0);
+/// J of a deformed element at a point.
+fn jacobian(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> Result<f64, MaterialFailure> {
     if wet.is_linear {
-        let by = point.gradients.iter().enumerate().map(|(a, g)| g + Vector2::new(around(a), 0.0));
-        return Ok(Opened { jacobian: f.trace() - 1.0 + (hoop - 1.0), by: by.collect() });
+        return Ok(f.trace() - 1.0 + (hoop - 1.0));
     }
-    let (area, plane) = (cofactor(&f), f.determinant());
-    if !(plane > 0.0 && hoop > 0.0) {
+    let plane = f.determinant();
+    if !(plane > 0.0 && *hoop > 0.0) {
         return Err(MaterialFailure::Inverted { jacobian: plane * hoop });
     }
-    let by = point.gradients.iter().enumerate().map(|(a, g)| area * g * hoop + Vector2::new(plane * around(a), 0.0));
-    Ok(Opened { jacobian: plane * hoop, by: by.collect() })
+    Ok(plane * hoop)
+}
+
+/// ∂J/∂u of every node of a deformed element at a point.
+fn opens_by(wet: &WetElement, point: &WetPoint, (f, hoop): &(Matrix2<f64>, f64)) -> [Vector2<f64>; MOST_NODES] {
+    let mut by = [Vector2::zeros(); MOST_NODES];
+    let (area, plane) = if wet.is_linear { (Matrix2::identity(), 1.0) } else { (cofactor(f) * *hoop, f.determinant()) };
+    by.iter_mut().zip(&point.gradients).for_each(|(by, gradient)| *by = area * gradient);
+    by.iter_mut().zip(&point.hoop).for_each(|(by, around)| by.x += plane * around);
+    by
 }
 
 /// Stiffness that water which is trapped in an element at the displacement `u` adds to it, Bᵀ (S + P)⁻¹ B with B = ∫ b N ∂J/∂u dV: two dofs for every
@@ -156,9 +163,11 @@ pub fn trapped(wet: &WetElement, u: &[f64]) -> Result<DMatrix<f64>, MaterialFail
     let (corners, nodes) = (wet.pressures.len(), wet.points.first().map_or(0, |point| point.gradients.len()));
     let mut opens = DMatrix::zeros(corners, 2 * nodes);
     for point in &wet.points {
-        let is = opened(wet, point, u)?;
+        let deformed = wet.deformed(point, &wet.moved(u));
+        jacobian(wet, &deformed)?;
+        let by = opens_by(wet, point, &deformed);
         for (a, value) in point.values.iter().enumerate() {
-            for (node, by) in is.by.iter().enumerate() {
+            for (node, by) in by[..nodes].iter().enumerate() {
                 (0..2).for_each(|i| opens[(a, 2 * node + i)] += wet.biot * point.volume * value * by[i]);
             }
         }
@@ -167,26 +176,39 @@ pub fn trapped(wet: &WetElement, u: &[f64]) -> Result<DMatrix<f64>, MaterialFail
     Ok(takes.map_or_else(|| DMatrix::zeros(2 * nodes, 2 * nodes), |takes| opens.transpose() * takes.solve(&opens)))
 }
 
-/// J_n F_n⁻¹ k/γ_w F_n⁻ᵀ, and J_n F_n⁻¹ k/γ_w.
-fn conducts(wet: &WetElement, point: &WetPoint, old: &State) -> [Matrix2<f64>; 2] {
+/// J_n F_n⁻¹ k/γ_w F_n⁻ᵀ, and J_n F_n⁻¹ k/γ_w, of an element deformed at the start of the increment.
+fn conducts(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> [Matrix2<f64>; 2] {
     let mobility = Matrix2::new(wet.mobility[0], 0.0, 0.0, wet.mobility[1]);
     if wet.is_linear {
         return [mobility; 2];
     }
-    let (f, hoop) = wet.deformed(point, &old.displacement);
     // J F⁻¹ = cofᵀ
-    let area = cofactor(&f).transpose() * hoop;
-    let inverse = cofactor(&f) / f.determinant();
+    let area = cofactor(f).transpose() * *hoop;
+    let inverse = cofactor(f) / f.determinant();
     [area * mobility * inverse, area * mobility]
+}
+
+/// Pressures of the corners of an element, and scales of their dofs.
+struct Corners {
+    now: [f64; 4],
+    before: [f64; 4],
+    scales: [f64; 4],
 }
 
 impl Increment<'_> {
     fn evaluate(&self, wanted: bool) -> Result<Answer, MaterialFailure> {
-        let Self { flow, wet, trial, u, times } = self;
+        let Self { flow, wet, trial, u, .. } = self;
         let (old, corners) = (&trial.old.displacement, wet.pressures.len());
-        let now: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(u))).collect();
-        let before: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(old))).collect();
-        let scales: Vec<f64> = wet.pressures.iter().map(|&k| flow.scales[k]).collect();
+        let of = |value: &dyn Fn(usize) -> f64| {
+            let mut all = [0.0; 4];
+            all.iter_mut().zip(&wet.pressures).for_each(|(own, &k)| *own = value(k));
+            all
+        };
+        let at = Corners {
+            now: of(&|k| flow.pressure(k, Some(u))),
+            before: of(&|k| flow.pressure(k, Some(old))),
+            scales: of(&|k| flow.scales[k]),
+        };
         let mut answer = Answer::default();
         let dofs = 2 * wet.nodes.len();
         if wanted {
@@ -194,55 +216,121 @@ impl Increment<'_> {
         }
         for (a, b) in (0..corners).flat_map(|a| (0..corners).map(move |b| (a, b))) {
             let takes = wet.storage[(a, b)] + wet.projection[(a, b)];
-            let part = takes * (now[b] - before[b]);
+            let part = takes * (at.now[b] - at.before[b]);
             answer.change[a] += part;
             answer.size[a] += part.abs();
             if wanted {
-                answer.tangent[wet.places[b] * dofs + wet.places[a]] -= scales[a] * scales[b] * takes;
+                answer.tangent[wet.places[b] * dofs + wet.places[a]] -= at.scales[a] * at.scales[b] * takes;
             }
         }
-        for point in &wet.points {
-            let is = opened(wet, point, u)?;
-            let was = opened(wet, point, old)?;
-            let share = wet.biot * point.volume;
-            let gross: f64 =
-                (is.by.iter().zip(&wet.nodes)).map(|(by, &n)| by.dot(&(vector(u, n) - vector(old, n))).abs()).sum();
-            let pressure: f64 = point.values.iter().zip(&before).map(|(n, p)| n * p).sum();
-            let share_of_k = wet.permeability(was.jacobian, pressure);
-            let [conducts, falls] = conducts(wet, point, trial.old).map(|part| part * share_of_k);
-            let slope: Vector2<f64> = point.slopes.iter().zip(&now).map(|(slope, p)| slope * *p).sum();
-            let v = conducts * slope + falls * Vector2::new(0.0, wet.weight);
-            for a in 0..corners {
-                answer.change[a] += point.values[a] * share * (is.jacobian - was.jacobian);
-                answer.size[a] += point.values[a].abs() * share * gross;
-                answer.flow[a] += point.volume * v.dot(&point.slopes[a]);
-                let driven = point.slopes[a].dot(&(falls * Vector2::new(0.0, wet.weight))).abs();
-                let size = (0..corners).map(|b| (point.slopes[a].dot(&(conducts * point.slopes[b])) * now[b]).abs());
-                answer.size[a] += times.span * point.volume * (driven + size.sum::<f64>());
-            }
-            if wanted {
-                self.couple(point, &is, &conducts, &scales, &mut answer.tangent);
-            }
+        let moved = [wet.moved(u), wet.moved(old)];
+        match &wet.constant {
+            Some(constant) => self.add_constant(constant, moved, &at, wanted, &mut answer),
+            None => wet.points.iter().try_for_each(|point| self.add_point(point, &moved, &at, wanted, &mut answer))?,
         }
         Ok(answer)
     }
 
-    /// Adds what couples displacements and pressures, and the flow, to the tangent.
-    fn couple(&self, point: &WetPoint, is: &Opened, conducts: &Matrix2<f64>, scales: &[f64], tangent: &mut [f64]) {
-        let (wet, dofs) = (self.wet, 2 * self.wet.nodes.len());
-        for (a, place) in wet.places.iter().copied().enumerate() {
-            let share = scales[a] * wet.biot * point.volume * point.values[a];
-            for (node, by) in is.by.iter().enumerate() {
-                for (i, by) in by.iter().enumerate() {
-                    let dof = 2 * node + i;
-                    tangent[place * dofs + dof] -= share * by;
-                    tangent[dof * dofs + place] -= share * by;
+    /// Adds what opens and flows in an element in which nothing changes.
+    fn add_constant(
+        &self,
+        ConstantFlow { opens, conducts, falls }: &ConstantFlow,
+        [now, before]: [[Vector2<f64>; MOST_NODES]; 2],
+        at: &Corners,
+        wanted: bool,
+        answer: &mut Answer,
+    ) {
+        let Self { wet, times, .. } = self;
+        let (corners, nodes, dofs) = (wet.pressures.len(), opens.ncols() / 2, 2 * wet.nodes.len());
+        for node in 0..nodes {
+            let way = now[node] - before[node];
+            for (dof, way) in [(2 * node, way.x), (2 * node + 1, way.y)] {
+                for (a, opens) in opens.column(dof).iter().enumerate() {
+                    answer.change[a] += opens * way;
+                    answer.size[a] += (opens * way).abs();
+                    if wanted {
+                        let (place, share) = (wet.places[a], at.scales[a] * opens);
+                        answer.tangent[place * dofs + dof] -= share;
+                        answer.tangent[dof * dofs + place] -= share;
+                    }
                 }
             }
-            for (b, other) in wet.places.iter().copied().enumerate() {
-                let flows = point.slopes[a].dot(&(conducts * point.slopes[b]));
-                tangent[other * dofs + place] -= scales[a] * scales[b] * self.times.span * point.volume * flows;
+        }
+        for a in 0..corners {
+            answer.flow[a] += falls[a];
+            answer.size[a] += times.span * falls[a].abs();
+            for b in 0..corners {
+                let flows = conducts[(a, b)];
+                answer.flow[a] += flows * at.now[b];
+                answer.size[a] += times.span * (flows * at.now[b]).abs();
+                if wanted {
+                    answer.tangent[wet.places[b] * dofs + wet.places[a]] -=
+                        at.scales[a] * at.scales[b] * times.span * flows;
+                }
             }
+        }
+    }
+
+    /// Adds what opens and flows at a point.
+    fn add_point(
+        &self,
+        point: &WetPoint,
+        moved: &[[Vector2<f64>; MOST_NODES]; 2],
+        at: &Corners,
+        wanted: bool,
+        answer: &mut Answer,
+    ) -> Result<(), MaterialFailure> {
+        let Self { wet, times, .. } = self;
+        let (corners, [now, before]) = (wet.pressures.len(), moved);
+        let [is, was] = moved.each_ref().map(|moved| wet.deformed(point, moved));
+        let [jacobian_is, jacobian_was] = [jacobian(wet, &is)?, jacobian(wet, &was)?];
+        let by = opens_by(wet, point, &is);
+        let share = wet.biot * point.volume;
+        let nodes = now.iter().zip(before).zip(&by).take(point.gradients.len());
+        let gross: f64 = nodes.map(|((now, before), by)| by.dot(&(now - before)).abs()).sum();
+        let pressure: f64 = point.values.iter().zip(&at.before).map(|(n, p)| n * p).sum();
+        let share_of_k = wet.permeability(jacobian_was, pressure);
+        let [conducts, falls] = conducts(wet, &was).map(|part| part * share_of_k);
+        let falls = falls * Vector2::new(0.0, wet.weight);
+        let slope: Vector2<f64> = point.slopes.iter().zip(&at.now).map(|(slope, p)| slope * *p).sum();
+        let v = conducts * slope + falls;
+        for a in 0..corners {
+            let opens = point.values[a] * share;
+            answer.change[a] += opens * (jacobian_is - jacobian_was);
+            answer.size[a] += opens.abs() * gross;
+            answer.flow[a] += point.volume * v.dot(&point.slopes[a]);
+            let along = conducts.transpose() * point.slopes[a];
+            let size: f64 = (0..corners).map(|b| (along.dot(&point.slopes[b]) * at.now[b]).abs()).sum();
+            answer.size[a] += times.span * point.volume * (point.slopes[a].dot(&falls).abs() + size);
+            if wanted {
+                self.couple(point, [a, wet.places[a]], &by, &along, &at.scales, &mut answer.tangent);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds what couples displacements and the pressure of a corner, with its place, and the flow `along` its slope, to the tangent.
+    fn couple(
+        &self,
+        point: &WetPoint,
+        [a, place]: [usize; 2],
+        by: &[Vector2<f64>],
+        along: &Vector2<f64>,
+        scales: &[f64; 4],
+        tangent: &mut [f64],
+    ) {
+        let (wet, dofs) = (self.wet, 2 * self.wet.nodes.len());
+        let share = scales[a] * wet.biot * point.volume * point.values[a];
+        for (node, by) in by[..point.gradients.len()].iter().enumerate() {
+            for (i, by) in by.iter().enumerate() {
+                let dof = 2 * node + i;
+                tangent[place * dofs + dof] -= share * by;
+                tangent[dof * dofs + place] -= share * by;
+            }
+        }
+        for (b, other) in wet.places.iter().copied().enumerate() {
+            let flows = along.dot(&point.slopes[b]);
+            tangent[other * dofs + place] -= scales[a] * scales[b] * self.times.span * point.volume * flows;
         }
     }
 }

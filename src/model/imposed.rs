@@ -316,13 +316,7 @@ impl Model {
     /// Writes the pressures of water that flows through an element to the variables of its material, at a displacement or at the start.
     pub fn write_flow(&self, u: Option<&[f64]>, element: usize, new: &mut [f64]) {
         let Some((flow, wet)) = self.flow.as_ref().and_then(|flow| Some((flow, flow.wet(element)?))) else { return };
-        let law = self.body_of(element).material.description();
-        let Some(slot) = law.slot(&GIVEN_PRESSURE) else { return };
-        let pressures = wet.pressures.iter().map(|&k| flow.pressure(k, u));
-        let pressures: Vec<f64> = pressures.collect();
-        for (new, point) in new.chunks_exact_mut(law.variables.len()).zip(&wet.points) {
-            slot.of_mut(new)[0] = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
-        }
+        wet.write(flow, u, new);
     }
 
     /// Work of a change of the pressure in the pores of an element, as it came, in an increment, −½ (o₀ + o₁) Δp with o, what its pores have opened

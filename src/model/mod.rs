@@ -15,6 +15,7 @@ mod random;
 mod requests;
 pub(crate) mod resistance;
 mod stages;
+mod stored_water;
 pub(crate) mod support;
 mod unfit;
 pub(crate) mod warnings;

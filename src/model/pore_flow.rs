@@ -11,12 +11,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
+use super::Body;
 use super::boundary::Profile;
 use super::element::SolidElement;
 use super::imposed::PoreFluid;
-use super::state::{Outflow, State, Water};
-use super::{Body, Model};
-use crate::laws::bulk::{GIVEN_PRESSURE, MaterialDescription};
+use crate::laws::bulk::{GIVEN_PRESSURE, MaterialDescription, Slot};
 use crate::mesh::Mesh;
 use crate::mesh::configuration::vector;
 
@@ -64,6 +63,10 @@ pub struct WetElement {
     pub activation: Vec<Vector2<f64>>,
     /// quadrature points
     pub points: Vec<WetPoint>,
+    /// what opens and flows, where that does not change
+    pub constant: Option<ConstantFlow>,
+    /// place of the given pressure among the internal variables of the material, and their number
+    pub(super) variables: Option<(Slot<2>, usize)>,
     /// ∫ N_a N_b dV/Q: what the pores take up by the pressure [L⁵/F]
     pub storage: DMatrix<f64>,
     /// ∫ (N_a − ΠN_a)(N_b − ΠN_b) dV/(2G) of linear elements, Π being the mean: without it pressures of neighbours alternate [L⁵/F]
@@ -86,6 +89,21 @@ pub struct WetElement {
     pub diffusivity: f64,
     /// square root of the area [L]
     pub size: f64,
+}
+
+/// Most nodes of an element.
+pub const MOST_NODES: usize = 9;
+
+/// What opens and flows in an element of a linear body, whose permeability does not change.
+#[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct ConstantFlow {
+    /// ∫ b N_a ∂J/∂u dV, by corner and dof of a node of the mesh [L²]
+    pub opens: DMatrix<f64>,
+    /// ∫ ∇N_a·k/γ_w ∇N_b dV [L⁵/(F T)]
+    pub conducts: DMatrix<f64>,
+    /// ∫ ∇N_a·k g dV of water that weighs [L³/T]
+    pub falls: Vec<f64>,
 }
 
 /// A quadrature point of an element that water flows through.
@@ -380,13 +398,15 @@ impl WetElement {
         let storage = storage(fluid, &law);
         let (along_x, weight) = (fluid.permeability?, fluid.unit_weight?);
         let mobility = [along_x, fluid.permeability_y.unwrap_or(along_x)].map(|k| k / weight);
-        Some(Self {
+        let wet = Self {
             element: e,
             nodes,
             pressures,
             places,
             activation,
             points: points.collect(),
+            constant: None,
+            variables: law.slot(&GIVEN_PRESSURE).map(|slot| (slot, law.variables.len())),
             storage: mass * storage,
             projection: if is_equal { spread / (2.0 * law.shear_modulus) } else { DMatrix::zeros(corners, corners) },
             volumes: volumes.iter().copied().collect(),
@@ -398,7 +418,28 @@ impl WetElement {
             is_linear: law.is_linear,
             diffusivity: mobility[0].max(mobility[1]) * law.p_wave_modulus,
             size: solid.area().sqrt(),
-        })
+        };
+        let is_constant = wet.is_linear && wet.void_ratio.is_none() && wet.suction.is_none();
+        Some(Self { constant: is_constant.then(|| wet.constant()), ..wet })
+    }
+
+    /// What opens and flows in the undeformed element.
+    fn constant(&self) -> ConstantFlow {
+        let (corners, nodes) = (self.pressures.len(), self.points.first().map_or(0, |point| point.gradients.len()));
+        let [mut opens, mut conducts] = [2 * nodes, corners].map(|columns| DMatrix::zeros(corners, columns));
+        let (mut falls, [kx, ky]) = (vec![0.0; corners], self.mobility);
+        for (point, a) in self.points.iter().flat_map(|point| (0..corners).map(move |a| (point, a))) {
+            let (own, share) = (point.slopes[a], self.biot * point.volume * point.values[a]);
+            for (node, gradient) in point.gradients.iter().enumerate() {
+                opens[(a, 2 * node)] += share * (gradient.x + point.hoop.get(node).copied().unwrap_or(0.0));
+                opens[(a, 2 * node + 1)] += share * gradient.y;
+            }
+            for (b, slope) in point.slopes.iter().enumerate() {
+                conducts[(a, b)] += point.volume * (kx * own.x * slope.x + ky * own.y * slope.y);
+            }
+            falls[a] += point.volume * ky * own.y * self.weight;
+        }
+        ConstantFlow { opens, conducts, falls }
     }
 }
 
@@ -422,17 +463,30 @@ const LEAST: f64 = 1e-4;
 
 #[doc(hidden)]
 impl WetElement {
+    /// Displacements of its nodes since it came [L].
+    pub fn moved(&self, u: &[f64]) -> [Vector2<f64>; MOST_NODES] {
+        let mut moved = [Vector2::zeros(); MOST_NODES];
+        moved.iter_mut().zip(&self.nodes).for_each(|(moved, &node)| *moved = vector(u, node));
+        moved.iter_mut().zip(&self.activation).for_each(|(moved, activation)| *moved -= activation);
+        moved
+    }
+
     /// F in the plane, and the stretch out of it, at a point.
-    pub fn deformed(&self, point: &WetPoint, u: &[f64]) -> (Matrix2<f64>, f64) {
-        let mut f = Matrix2::identity();
-        let mut hoop = 1.0;
-        for (a, (&node, gradient)) in self.nodes.iter().zip(&point.gradients).enumerate() {
-            let activation = self.activation.get(a).copied().unwrap_or_default();
-            let moved = vector(u, node) - activation;
-            f += moved * gradient.transpose();
-            hoop += point.hoop.get(a).map_or(0.0, |share| share * moved.x);
-        }
+    pub fn deformed(&self, point: &WetPoint, moved: &[Vector2<f64>; MOST_NODES]) -> (Matrix2<f64>, f64) {
+        let (mut f, mut hoop) = (Matrix2::identity(), 1.0);
+        moved.iter().zip(&point.gradients).for_each(|(moved, gradient)| f += moved * gradient.transpose());
+        moved.iter().zip(&point.hoop).for_each(|(moved, share)| hoop += share * moved.x);
         (f, hoop)
+    }
+
+    /// Writes the pressure at every point to the variables of the material there.
+    pub fn write(&self, flow: &PoreFlow, u: Option<&[f64]>, variables: &mut [f64]) {
+        let Some((slot, count)) = self.variables else { return };
+        let mut pressures = [0.0; 4];
+        pressures.iter_mut().zip(&self.pressures).for_each(|(p, &k)| *p = flow.pressure(k, u));
+        for (own, point) in variables.chunks_exact_mut(count).zip(&self.points) {
+            slot.of_mut(own)[0] = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
+        }
     }
 
     /// Permeability over that at the start, at a volume and a pressure.
@@ -443,101 +497,5 @@ impl WetElement {
         });
         let of_water = self.suction.map_or(1.0, |suction| (pressure.min(0.0) / suction).exp().max(LEAST));
         of_pores * of_water
-    }
-}
-
-#[doc(hidden)]
-impl Model {
-    /// The water at the start of a run.
-    pub fn first_water(&self) -> Water {
-        self.flow.as_ref().map_or_else(Water::default, |flow| Water {
-            change: vec![0.0; flow.count()],
-            outlets: vec![Outflow::default(); flow.outlets.len()],
-            channels: vec![[Outflow::default(); 2]; flow.channels.len()],
-            peaks: vec![0.0; flow.bodies.len()],
-            excess: vec![0.0; flow.bodies.len()],
-            brought: vec![0.0; flow.bodies.len()],
-            between: 0.0,
-        })
-    }
-
-    /// Water that all bodies have taken up, that is between their surfaces and that has left through outlets, which is none but for errors, and how much has come and gone;
-    /// `None` where none flows [L³].
-    pub fn balance_of_water(&self, state: &State) -> Option<[f64; 2]> {
-        let flow = self.flow.as_ref()?;
-        let taken = flow.bodies.iter().filter_map(|&body| self.water_of(body, state)).map(|[taken, _]| taken);
-        let left = (state.water.outlets.iter()).chain(state.water.channels.as_flattened()).map(|outlet| outlet.volume);
-        Some(
-            taken
-                .chain(left)
-                .chain([state.water.between])
-                .fold([0.0; 2], |[sum, size], volume| [sum + volume, size + volume.abs()]),
-        )
-    }
-
-    /// Mean seepage through an element, −k/γ_w (∇p − γ_w g) in the place where it is now [L/T].
-    pub fn seepage(&self, wet: &WetElement, state: &State) -> Vector2<f64> {
-        let Some(flow) = &self.flow else { return Vector2::zeros() };
-        let wet = &*self.wet(state, wet);
-        let pressures: Vec<f64> = wet.pressures.iter().map(|&k| flow.pressure(k, Some(&state.displacement))).collect();
-        let (mut sum, mut volume) = (Vector2::zeros(), 0.0);
-        for point in &wet.points {
-            let mut slope: Vector2<f64> = point.slopes.iter().zip(&pressures).map(|(slope, p)| slope * *p).sum();
-            let (f, hoop) = wet.deformed(point, &state.displacement);
-            let mut jacobian = f.trace() - 1.0 + (hoop - 1.0);
-            if !wet.is_linear {
-                slope = f.transpose().try_inverse().unwrap_or_default() * slope;
-                jacobian = f.determinant() * hoop;
-            }
-            let driven = slope + Vector2::new(0.0, wet.weight);
-            let pressure: f64 = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
-            let share = point.volume * wet.permeability(jacobian, pressure);
-            sum -= share * Vector2::new(wet.mobility[0] * driven.x, wet.mobility[1] * driven.y);
-            volume += point.volume;
-        }
-        sum / volume
-    }
-
-    /// Notes the mean pressure of each body that is there in excess of that at the start, and the largest so far.
-    pub fn note_water(&self, state: &mut State) {
-        for (k, &body) in self.flow.iter().flat_map(|flow| flow.bodies.iter().enumerate()) {
-            if let Some([_, excess]) = self.stored_water(body, state).filter(|_| state.has(body)) {
-                let Water { peaks, excess: now, .. } = &mut state.water;
-                peaks[k] = if excess.abs() > peaks[k].abs() { excess } else { peaks[k] };
-                now[k] = excess;
-            }
-        }
-    }
-
-    /// What a body in which water flows has taken up of it while it was there, ∫ (b (J − 1) + (p − p₀)/Q) dV since it came, and its mean pressure in
-    /// excess of that at the start; `None` of any other [L³], [F/L²].
-    pub fn water_of(&self, body: usize, state: &State) -> Option<[f64; 2]> {
-        let number = self.flow.as_ref()?.bodies.iter().position(|other| *other == body)?;
-        let [prescribed, excess] = if state.has(body) { self.stored_water(body, state)? } else { [0.0, f64::NAN] };
-        Some([prescribed - state.water.brought[number], excess])
-    }
-
-    /// The same, but for what it brought.
-    pub(super) fn stored_water(&self, body: usize, state: &State) -> Option<[f64; 2]> {
-        let flow = self.flow.as_ref().filter(|flow| flow.bodies.contains(&body))?;
-        let law = self.bodies[body].material.description();
-        let slot = law.slot(&GIVEN_PRESSURE)?;
-        let [mut taken, mut excess, mut volume] = [0.0; 3];
-        for wet in self.bodies[body].elements.iter().filter_map(|&e| flow.wet(e)) {
-            let wet = self.wet(state, wet);
-            let memory = self.memories.of(wet.element, &state.memory);
-            for (point, own) in wet.points.iter().zip(memory.chunks_exact(law.variables.len())) {
-                taken += point.volume * slot.of(own)[1];
-            }
-            let risen: Vec<f64> = (wet.pressures.iter())
-                .map(|&k| flow.pressure(k, Some(&state.displacement)) - flow.initial[k])
-                .collect();
-            for (a, rise) in risen.iter().enumerate() {
-                taken += rise * wet.storage.column(a).sum();
-                excess += rise * wet.volumes[a];
-                volume += wet.volumes[a];
-            }
-        }
-        Some([taken, excess / volume])
     }
 }
