@@ -16,11 +16,12 @@ use super::gradients::Differentiated;
 use super::read::clipped;
 use super::resolved::with_defaults;
 use super::{Written, read};
+use crate::contact::mortar::Hats;
 use crate::contact::{ContactState, SlavePoint};
-use crate::mesh::Mesh;
-use crate::model::builder::{Checked, ModelError, evaluation, regime};
+use crate::mesh::{Group, Mesh};
+use crate::model::builder::{Checked, Contact, ModelError, evaluation, hats, regime};
 use crate::model::scheme::Regime;
-use crate::model::{Model, State};
+use crate::model::{Method, Model, State};
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::output::gradients::Parameter;
 use crate::run::{Saved, SavedRun};
@@ -325,8 +326,8 @@ fn coming(document: &Value) -> BTreeMap<&str, [usize; 2]> {
     first.into_iter().filter_map(|(body, place)| Some((body, place?))).collect()
 }
 
-/// Checks that the methods and penalties that a case leaves open are those of the run so far. They are other ones where a step has inertia
-/// or is explicit: the points would be others, and their gaps other pressures.
+/// Checks that the methods and penalties that a case leaves open, and the tractions of quadratic edges, are those of the run so far. They are
+/// other ones where a step has inertia or is explicit: the points would be others, and their gaps other pressures.
 fn same_defaults(before: &Value, now: &Case, mesh: &Mesh) -> Checked<()> {
     let Ok(before) = read::input::<Case>(before) else { return Ok(()) };
     let regimes = [&before.steps, &now.steps].map(|steps| regime(steps));
@@ -336,6 +337,16 @@ fn same_defaults(before: &Value, now: &Case, mesh: &Mesh) -> Checked<()> {
     let explicit = regimes.iter().any(|regime| matches!(regime, Regime::Explicit | Regime::QuasiDynamic));
     for (name, contact) in &now.contacts {
         let [was, is] = regimes.map(|regime| evaluation(contact, mesh, regime).map(|own| (own.method, own.points)));
+        let [had, has] = regimes.map(|regime| tractions_on_edges(contact, mesh, regime));
+        if was == is && had != has {
+            let message = format!(
+                "is mortar, which has one traction on a quadratic edge of `{}`, and one at each of its nodes in a case with an explicit or \
+                 quasi_dynamic step, or with `rupture`: the run so far knows those of the other kind. Write all steps into one case and run \
+                 that from the beginning, or take \"gauss_to_segment\" in both cases",
+                contact.slave
+            );
+            return Err(ModelError::new(format!("contacts.{name}.method"), message));
+        }
         let key = if was != is {
             "method"
         } else if contact.area.is_none() && contact.normal.alpha_n.is_none() && (explicit || !contact.tied) {
@@ -349,6 +360,13 @@ fn same_defaults(before: &Value, now: &Case, mesh: &Mesh) -> Checked<()> {
         return Err(ModelError::new(format!("contacts.{name}.{key}"), message));
     }
     Ok(())
+}
+
+/// Nodes of the slave's quadratic edges that have a traction by mortar; `None` by other methods, and where no edge is quadratic.
+fn tractions_on_edges(contact: &Contact, mesh: &Mesh, regime: Regime) -> Option<Hats> {
+    let is_mortar = evaluation(contact, mesh, regime).is_some_and(|chosen| chosen.method == Method::Mortar);
+    let Some(Group::Edges(edges)) = mesh.groups.get(&contact.slave).filter(|_| is_mortar) else { return None };
+    edges.iter().any(|edge| edge.nodes.len() == 3).then(|| hats(contact, mesh, regime))
 }
 
 /// Friction parameters that affect only the start of a run, or stored states.

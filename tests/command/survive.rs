@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::common::{Blocks, store};
+use crate::common::{Blocks, half_way, quadratic, store};
 use fecontact::output::checkpoint;
 use fecontact::output::files::Lock;
 use fecontact::output::store::read;
@@ -389,6 +389,33 @@ fn a_case_begins_where_another_has_ended() {
     drags["begin_with"] = json!(unfinished.path().join("out"));
     written(folder.path(), &drags);
     assert!(told(&run(folder.path(), "none", &[]), 2).contains("the run is not complete"));
+}
+
+/// Mortar has other tractions on quadratic edges where a step is explicit: with steps of the other kind alone no run goes on, and says why.
+#[test]
+fn tractions_of_quadratic_edges_go_by_the_schemes_of_a_case() {
+    let folder = TempDir::new().expect("a folder");
+    let mut whole = dragged(json!("static"), 2);
+    whole["mesh"] = quadratic(&whole["mesh"], half_way);
+    whole["contacts"]["base"]["normal"] = json!({"alpha_n": 1e4});
+    whole["contacts"]["base"]["method"] = json!("mortar");
+    let mut drags = whole.clone();
+    let steps = whole["steps"].as_array_mut().expect("steps");
+    drags["steps"] = json!([steps.pop().expect("a step")]);
+    drags["begin_with"] = json!("pressed");
+    written(folder.path(), &whole);
+    done(&run(folder.path(), "pressed", &[]));
+    written(folder.path(), &drags);
+    done(&run(folder.path(), "static", &[]));
+    drags["steps"][0]["scheme"] = json!({"explicit": {}});
+    written(folder.path(), &drags);
+    let text = told(&run(folder.path(), "refused", &[]), 2);
+    let expected = [
+        "contacts.base.method: is mortar",
+        "one traction on a quadratic edge of `block_bottom`",
+        "Write all steps into one case",
+    ];
+    assert!(expected.iter().all(|part| text.contains(part)), "{text}");
 }
 
 /// A body that a later step adds is absent from the start: a run in which it was there cannot go on as that case.

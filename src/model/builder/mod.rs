@@ -87,8 +87,8 @@ pub use load_step::{
     IncrementSettings, LoadStep, OF_CRITICAL_SLIP, Rotation, RuptureSettings, Support, UNTIL_TOLERANCE, UntilSettings,
 };
 pub use loads::LoadsInForce;
-pub(crate) use pair::evaluation;
 pub use pair::{default_alpha_t, default_over, tangential_over};
+pub(crate) use pair::{evaluation, hats};
 pub use reduction::with_friction;
 pub use requests::Gauge;
 pub use rigid::{LoadingPlateInput, MovingPlateInput, Plate, RigidBodyInput};

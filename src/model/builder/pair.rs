@@ -296,7 +296,7 @@ fn meets_corners(contact: &Contact, mesh: &Mesh) -> bool {
 /// Nodes of quadratic edges that have a traction. What is tied, keeps nodes that face nodes or waves that a middle node would average
 /// has one at each; so has what carries an initial stress of its bodies: constant along edges, a pressure that grows with depth would not
 /// be in equilibrium with it at each node; and so have edges against a bent rigid master, which a mean over an edge lets in.
-fn hats(contact: &Contact, mesh: &Mesh, regime: Regime) -> Hats {
+pub fn hats(contact: &Contact, mesh: &Mesh, regime: Regime) -> Hats {
     let asked = asked(contact, mesh, regime);
     let explicit = matches!(regime, Regime::Explicit | Regime::QuasiDynamic);
     let faces = || contact.master_group().is_some_and(|master| nodes_meet(&contact.slave, master, mesh));
