@@ -185,6 +185,7 @@ impl PointEvaluation<'_> {
                 .then_some(BondState { elastic_slip: if is_own { 0.0 } else { state.elastic_slip }, ..state }),
             water: old.water,
             came: old.came,
+            closures: old.closures,
         }
     }
 

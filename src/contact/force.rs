@@ -280,6 +280,7 @@ impl<'a> PointEvaluation<'a> {
             bond: bond_answer.map(|answer| answer.response.state),
             water: old.water,
             came: old.came,
+            closures: old.closures + u32::from(!(old.is_closed() || increment.during.settles)),
         })
     }
 

@@ -142,6 +142,7 @@ impl ContactPair {
                 pores: total - pressure,
                 water: None,
                 came: Came::default(),
+                closures: 0,
             }
         };
         let mut states: Vec<ContactState> =
@@ -221,6 +222,7 @@ impl ContactPair {
             pores: 0.0,
             water: None,
             came: Came::default(),
+            closures: 0,
         };
         self.points.iter().map(state).collect()
     }

@@ -257,6 +257,8 @@ pub struct ContactState {
     pub water: Option<WaterPoint>,
     /// How the point came, in a contact that has come under stress; nothing in others
     pub came: Came,
+    /// How often it has closed in explicit increments
+    pub closures: u32,
 }
 
 /// How a point of a contact came that has come under stress.

@@ -44,6 +44,8 @@ pub enum Kind {
     Cavitates,
     /// Water opens the surfaces along which it flows
     OpenedByWater,
+    /// Surfaces rattle on their penalty
+    Rattles,
 }
 
 /// Warning about a pressure above the bound of uniqueness.

@@ -11,6 +11,7 @@ pub(crate) mod friction_history;
 mod instability;
 pub(crate) mod law;
 mod opened;
+mod rattling;
 pub mod results;
 mod scattered;
 mod slid_bars;

@@ -18,6 +18,7 @@ use super::depths;
 use super::few_edges::FewEdges;
 use super::instability::Instability;
 use super::opened::by_water;
+use super::rattling::rattles;
 use super::scattered::Scattered;
 use super::slid_bars;
 use super::unpressed::Unpressed;
@@ -128,6 +129,7 @@ impl Observer for Warnings {
             self.once(number, Kind::DeepPenetration, pair, state.time, || depths::penetrates(pair, states, &x));
             let both = [&attempt.old.contacts[number][..], states];
             self.once(number, Kind::OpenedByWater, pair, state.time, || by_water(pair, both, &x));
+            self.once(number, Kind::Rattles, pair, state.time, || rattles(pair, states, &x));
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
             for (point, (old, contact)) in points.filter(|(_, (_, new))| new.is_closed()) {
                 for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {

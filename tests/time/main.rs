@@ -14,6 +14,7 @@ mod impact;
 mod quasi_dynamic;
 mod radiation;
 mod saturated;
+mod saturated_contacts;
 mod saturated_explicit;
 mod slabs;
 mod slip_control;
