@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use crate::common::{Blocks, Finished, close, distance, finish, goes_on, half_way, on_threads, quadratic, with};
-use crate::saturated::{Q, audit, balance, column, found, off, soil, vibration};
+use crate::saturated::{Q, audit, balance, column, found, off, pressure, soil, vibration};
 use serde_json::{Value, json};
 
 fn explicit() -> Value {
@@ -25,7 +25,7 @@ fn triangles(mesh: &Value) -> Value {
     mesh
 }
 
-fn meshed(kind: &str, blocks: &Value) -> Value {
+pub fn meshed(kind: &str, blocks: &Value) -> Value {
     match kind {
         "q4" => blocks.clone(),
         "q8" => quadratic(blocks, half_way),
@@ -177,8 +177,35 @@ fn ground(kind: &str, law: &str, section: &str, scheme: &Value, dt: f64) -> Valu
     })
 }
 
-/// Pressures, displacements and outflow of explicit increments are those of implicit ones as short: with all elements, in rings, at large strains and with
-/// a permeability that follows the void ratio.
+/// Pressures, displacements and outflow of explicit increments are those of implicit ones as short.
+fn agrees(what: &str, case: impl Fn(&Value, f64) -> Value) {
+    let moving = finish(&case(&explicit(), 1.0));
+    let dt = 0.1 / (0.1 / moving.last().dt).round();
+    let solved = finish(&case(&json!({"hht": {"alpha": -0.1}}), 2.0 * dt));
+    let states = [moving.last(), solved.last()];
+    let flow = moving.model.flow.as_ref().expect("water flows");
+    let split = |state: &fecontact::model::state::State| {
+        let pressures = (0..flow.count()).map(|k| flow.pressure(k, Some(&state.displacement)));
+        (state.displacement[..flow.dof(0)].to_vec(), pressures.collect::<Vec<_>>())
+    };
+    let [(u, p), (solved_u, solved_p)] = states.map(split);
+    let size = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+    let errors = [distance(&u, &solved_u) / size(&u), distance(&p, &solved_p) / size(&p)];
+    let [out, solved_out] = states.map(|state| state.water.outlets[0].volume);
+    println!(
+        "{what}: {} increments, u {:.1e}, p {:.1e} of {:.2e}, outflow {out:.5e} for {solved_out:.5e}",
+        moving.last().increment,
+        errors[0],
+        errors[1],
+        size(&p)
+    );
+    assert!(errors[0] < 2e-3 && errors[1] < 5e-3, "{what}: {errors:?}");
+    close("outflow", out, solved_out, 2e-3 * out.abs());
+    balance(&moving, 1e-10);
+    audit(&moving, 1e-5);
+}
+
+/// With all elements, in rings, at large strains and with a permeability that follows the void ratio.
 #[test]
 fn implicit_increments_agree() {
     for (kind, law, section) in [
@@ -190,30 +217,34 @@ fn implicit_increments_agree() {
         ("q8", "hencky", "plane_strain"),
         ("t3", "neo_hookean", "plane_strain"),
     ] {
-        let moving = finish(&ground(kind, law, section, &explicit(), 1.0));
-        let dt = 0.1 / (0.1 / moving.last().dt).round();
-        let solved = finish(&ground(kind, law, section, &json!({"hht": {"alpha": -0.1}}), 2.0 * dt));
-        let states = [moving.last(), solved.last()];
-        let flow = moving.model.flow.as_ref().expect("water flows");
-        let split = |state: &fecontact::model::state::State| {
-            let pressures = (0..flow.count()).map(|k| flow.pressure(k, Some(&state.displacement)));
-            (state.displacement[..flow.dof(0)].to_vec(), pressures.collect::<Vec<_>>())
-        };
-        let [(u, p), (solved_u, solved_p)] = states.map(split);
-        let size = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-        let errors = [distance(&u, &solved_u) / size(&u), distance(&p, &solved_p) / size(&p)];
-        let [out, solved_out] = states.map(|state| state.water.outlets[0].volume);
-        println!(
-            "{kind} {law} {section}: {} increments, u {:.1e}, p {:.1e} of {:.2e}, outflow {out:.5e} for {solved_out:.5e}",
-            moving.last().increment,
-            errors[0],
-            errors[1],
-            size(&p)
-        );
-        assert!(errors[0] < 2e-3 && errors[1] < 5e-3, "{kind} {law} {section}: {errors:?}");
-        close("outflow", out, solved_out, 2e-3 * out.abs());
-        balance(&moving, 1e-10);
-        audit(&moving, 1e-5);
+        agrees(&format!("{kind} {law} {section}"), |scheme, dt| ground(kind, law, section, scheme, dt));
+    }
+}
+
+/// Beside viscosity, dashpots, an absorbing side, rigid plates and plates that stay level, a truss and a beam; the load of each is its own.
+#[test]
+fn implicit_increments_agree_beside_other_parts() {
+    let bar = |more: Value| {
+        let ends = json!({"points": [[1.3, 0.3], [2.2, 0.7]], "ea": 0.5, "mass": 1e-4, "start": {"on": "soil"}, "end": {"on": "soil"}});
+        json!({"bars": {"tie": with(ends, &more)}})
+    };
+    for (what, of_case, of_soil, load) in [
+        ("viscosity", json!({}), json!({"damping": {"stiffness": 0.02, "mass": 0.5}}), json!(null)),
+        ("dashpots", json!({}), json!({}), json!({"on": "soil_top", "dashpot": {"cx": 0.02, "cy": 0.03}})),
+        ("absorbing", json!({}), json!({}), json!({"on": "soil_right", "absorbing": true})),
+        ("rigid plate", json!({"plates": [{"on": "soil_top", "moves": "rigid"}]}), json!({}), json!(null)),
+        ("level plate", json!({"plates": [{"on": "soil_top", "moves": "uy_alike"}]}), json!({}), json!(null)),
+        ("truss", bar(json!({"segments": 1})), json!({}), json!(null)),
+        ("beam", bar(json!({"segments": 2, "ei": 0.01})), json!({}), json!(null)),
+    ] {
+        agrees(what, |scheme, dt| {
+            let mut case = with(ground("q4", "linear", "plane_strain", scheme, dt), &of_case);
+            case["bodies"]["soil"] = with(case["bodies"]["soil"].clone(), &of_soil);
+            if !load.is_null() {
+                case["steps"][0]["loads"].as_array_mut().expect("loads").push(load.clone());
+            }
+            case
+        });
     }
 }
 
@@ -354,16 +385,18 @@ fn contacts_agree_with_implicit_increments() {
     }
 }
 
+/// Two wet blocks, the upper one of which is lifted by the water and drains by the gap.
+pub fn lifted(scheme: &Value, dt: f64) -> Value {
+    let mut case = two_blocks("q4", &json!({"open_pressure": 0}), scheme, dt);
+    case["steps"][0]["duration"] = json!(2);
+    case["steps"][0]["drainage"][1]["pressure"] = json!("0.08*(1-cos(3*t))");
+    case
+}
+
 /// Water that lifts the upper block, and leaves by the gap: outflow .0773. Implicit increments come to it as they are made shorter, .0595, .0722, .0743 and
 /// .0752 in increments of 1/250, 1/500, 1/1000 and 1/2000.
 #[test]
 fn what_opens_drains_as_in_short_implicit_increments() {
-    let lifted = |scheme: &Value, dt: f64| {
-        let mut case = two_blocks("q4", &json!({"open_pressure": 0}), scheme, dt);
-        case["steps"][0]["duration"] = json!(2);
-        case["steps"][0]["drainage"][1]["pressure"] = json!("0.08*(1-cos(3*t))");
-        case
-    };
     let moving = finish(&lifted(&explicit(), 1.0));
     let solved = finish(&lifted(&json!({"hht": {"alpha": -0.1}}), 1e-3));
     let flow = moving.model.flow.as_ref().expect("water flows");
@@ -388,4 +421,111 @@ fn apart(run: &Finished, other: &Finished) -> [f64; 2] {
         distance(values, others) / values.iter().fold(0.0f64, |most, value| most.max(value.abs()))
     };
     [over(&pressures(run), &pressures(other)), over(&outlets(run), &outlets(other))]
+}
+
+/// A column that is compressed as it is told, by J: sealed, its pressure is b Q (1 − J), 1/Q = n/K_w + (b − n)(1 − b)/K; then water flows through it by Darcy's law
+/// with the permeability of Kozeny and Carman, k (e/e₀)³ (1 + e₀)/(1 + e), e = (1 + e₀) J − 1, along a way that is shorter by J. A linear body counts as undeformed.
+#[test]
+fn water_of_a_given_volume_has_its_pressure_and_flow() {
+    let (biot, porosity, bulk, jacobian) = (0.8, 0.5, 0.9 / (3.0 * (1.0 - 2.0 * 0.2)), 0.9);
+    let pressure_expected = biot * (1.0 - jacobian) / (porosity / 1.0 + (biot - porosity) * (1.0 - biot) / bulk);
+    let (start, now) = (1.0f64, 2.0 * jacobian - 1.0);
+    let share = (now / start).powi(3) * (1.0 + start) / (1.0 + now) / jacobian;
+    for (law, expected) in [("hencky", 0.05 * 10.0 * share), ("linear", 0.05 * 10.0)] {
+        for (kind, scheme) in [("q4", explicit()), ("t6", explicit()), ("q4", json!("static"))] {
+            let mut body = soil(10.0);
+            body["material"]["model"] = json!(law);
+            body["pore_fluid"]["biot"] = json!(biot);
+            body["pore_fluid"]["kozeny_carman"] = json!(law == "hencky");
+            let step = json!({
+                "scheme": scheme, "duration": 1, "dt": {"initial": 0.1},
+                "supports": [{"on": "b0", "ux": 0, "uy": "-0.1*y*min(t,1)"}],
+            });
+            let mut case = column("q4", &[4], &body, step);
+            case["mesh"] = meshed(kind, &case["mesh"]);
+            let drains = json!([{"on": "b0_top", "pressure": 0}, {"on": "b0_bottom", "pressure": 1}]);
+            let steps = case["steps"].as_array_mut().expect("steps");
+            steps.push(json!({"name": "flow", "duration": 1, "drainage": drains}));
+            let run = finish(&case);
+            let found = pressure(&run, run.at(1.0), [0.0, 0.0]);
+            let flow = run.model.flow.as_ref().expect("water flows");
+            let rate = |name: &str| {
+                let outlet = flow.outlets.iter().position(|other| other == name).expect("an outlet");
+                run.last().water.outlets[outlet].rate
+            };
+            println!(
+                "{law} {kind} {scheme}: p {found:.6} ({pressure_expected:.6}), q {:.6} ({expected:.6})",
+                rate("b0_top")
+            );
+            close("p", found, pressure_expected, 1e-9);
+            close("flow out", rate("b0_top"), expected, 1e-5 * expected);
+            close("flow in", -rate("b0_bottom"), expected, 1e-5 * expected);
+        }
+    }
+}
+
+/// A wet block on wet ground that is sheared slowly until friction, which weakens by slip, lets it go.
+fn let_go(permeability: f64, drains: Value, step: Value) -> Value {
+    let mut case = two_blocks(
+        "q4",
+        &json!({"friction": {"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.2, "D_c": 2e-3}}),
+        &json!("static"),
+        0.05,
+    );
+    for body in ["low", "high"] {
+        case["bodies"][body]["pore_fluid"]["permeability"] = json!(permeability);
+    }
+    case["steps"] = json!([with(
+        json!({
+            "name": "shear", "duration": 2.6, "dt": {"initial": 0.05, "min": 1e-3, "max": 0.05}, "drainage": drains,
+            "supports": [{"on": "low_bottom", "ux": 0, "uy": 0}, {"on": "high_top", "ux": {"rate": 0.03}}],
+            "loads": [{"on": "high_top", "dead_pressure": "0.02+0.002*t"}],
+        }),
+        &step,
+    )]);
+    case
+}
+
+/// Where a wet contact slips fast, the step goes on by explicit increments and returns from them with its water: what drains everywhere slips as dry
+/// bodies do, and what drains slowly as by implicit increments that follow the motion.
+#[test]
+fn a_wet_contact_ruptures() {
+    let rupture = json!({"rupture": {"slip_rate": 0.2}});
+    let everywhere =
+        ["low_left", "low_right", "low_bottom", "low_top", "high_left", "high_right", "high_bottom", "high_top"]
+            .map(|side| json!({"on": side, "pressure": 0}));
+    let slip = |run: &Finished| {
+        let states = &run.last().contacts[0];
+        states.iter().map(|state| state.friction.plastic_slip).sum::<f64>() / states.len() as f64
+    };
+    let free = finish(&let_go(1e3, json!(everywhere), rupture.clone()));
+    let mut dry = let_go(1.0, json!([]), rupture.clone());
+    for body in ["low", "high"] {
+        dry["bodies"][body].as_object_mut().expect("a body").remove("pore_fluid");
+    }
+    let dry = finish(&dry);
+    println!("slip {:.5e}, dry {:.5e}, {} ruptures", slip(&free), slip(&dry), free.report.ruptures);
+    assert!(free.report.ruptures > 0 && dry.report.ruptures > 0);
+    close("slip", slip(&free), slip(&dry), 1e-3 * slip(&dry).abs());
+
+    let drains = json!([{"on": "high_top", "pressure": 0}]);
+    let slow = finish(&let_go(0.02, drains.clone(), rupture.clone()));
+    let followed = finish(&let_go(
+        0.02,
+        drains.clone(),
+        json!({"scheme": {"hht": {"alpha": -0.3}}, "dt": {"initial": 2e-3, "max": 2e-3}}),
+    ));
+    let [_, outlets] = apart(&slow, &followed);
+    println!(
+        "slip {:.5e}, followed {:.5e}, out {outlets:.1e}, {} ruptures",
+        slip(&slow),
+        slip(&followed),
+        slow.report.ruptures
+    );
+    assert!(slow.report.ruptures > 0);
+    // Waves go on in the implicit step, which the static one stops.
+    close("slip", slip(&slow), slip(&followed), 0.08 * slip(&followed).abs());
+    assert!(outlets < 0.03, "{outlets}");
+    balance(&slow, 1e-9);
+    goes_on(&let_go(0.02, drains, rupture), &slow, 20);
 }

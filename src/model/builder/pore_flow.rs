@@ -176,8 +176,6 @@ pub fn check(contacts: &[Contact], model: &Model) -> Checked<()> {
         let is_quasi_static_or_dynamic = step.scheme == Scheme::Static || step.scheme.coefficients().is_some();
         let serves = step.scheme.is_explicit() || is_quasi_static_or_dynamic && step.scheme.theta() == 1.0;
         refuse_if(!serves, format!("{place}.scheme"), message)?;
-        let message = format!("is not for a model with water that flows, as in `{first}`: leave it out");
-        refuse_if(step.rupture.is_some(), format!("{place}.rupture"), &message)?;
     }
     let tied = |node: usize| flow.of_node.get(node).copied().flatten().is_some();
     let is_periodic = |pair: &&(usize, usize)| tied(pair.0) && tied(pair.1);
