@@ -256,9 +256,9 @@ impl Increment<'_> {
                 }
             }
         }
-        for a in 0..corners {
-            answer.flow[a] += falls[a];
-            answer.size[a] += times.span * falls[a].abs();
+        for (a, falls) in falls.iter().enumerate() {
+            answer.flow[a] += falls;
+            answer.size[a] += times.span * falls.abs();
             for b in 0..corners {
                 let flows = conducts[(a, b)];
                 answer.flow[a] += flows * at.now[b];
