@@ -234,6 +234,7 @@ fn committed(friction: FrictionState, master_point: impl Into<Option<MasterPoint
     ContactState {
         water: None,
         came: Default::default(),
+        closures: 0,
         bond: None,
         friction,
         master_point: master_point.into(),
