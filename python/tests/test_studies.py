@@ -262,7 +262,7 @@ def script(out: Path, **options: Any) -> subprocess.Popen[str]:
     """A study in a process of its own."""
     text = (
         f"import sys; sys.path.insert(0, {str(HERE)!r})\nfrom test_studies import *\n"
-        f"if __name__ == '__main__':\n    studies.study(slider(4000.0), {{MU_S: [0.4, 0.5]}}, peak, {str(out)!r}, workers=2, progress=False)\n"
+        f"if __name__ == '__main__':\n    studies.study(slider(1000.0), {{MU_S: [0.4, 0.5]}}, peak, {str(out)!r}, workers=2, progress=False)\n"
     )
     file = out.parent / "script.py"
     file.write_text(text)
@@ -283,9 +283,9 @@ def test_a_study_that_ends_leaves_no_solver_and_goes_on(tmp_path: Path, by: sign
     if by == signal.SIGINT:
         written = pd.read_csv(out / "table.csv")["status"]
         assert set(written) <= {"pending", "completed"} and "pending" in set(written)
-    table = studies.study(slider(4000.0), {MU_S: [0.4, 0.5]}, peak, out, workers=2, progress=False)
+    table = studies.study(slider(1000.0), {MU_S: [0.4, 0.5]}, peak, out, workers=2, progress=False)
     assert set(table["status"]) == {"completed"} and any(record["resumed"] for record in records(out).values())
-    same_as_alone(out, slider(4000.0), table, 1, tmp_path / "alone")
+    same_as_alone(out, slider(1000.0), table, 1, tmp_path / "alone")
 
 
 def test_runs_write_fields_only_where_the_case_asks_for_them(tmp_path: Path) -> None:
