@@ -78,6 +78,11 @@ pub(super) struct Layout {
     blocks: Vec<BlockPosition>,
     /// Start of each element's blocks
     starts: Vec<usize>,
+    /// The blocks of each element that water flows through: for each node that stands for its pressures those of all its nodes in the node's
+    /// column, then those of its nodes in the mesh in the node's row
+    water_blocks: Vec<BlockPosition>,
+    /// Start of the blocks of each such element, and the end
+    water_starts: Vec<usize>,
     /// Nodes of the closed contact points last included, each list preceded by its length
     contacts: Vec<usize>,
     /// Their blocks, point after point
@@ -98,6 +103,8 @@ impl Layout {
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             starts: starts.collect(),
+            water_blocks: Vec::new(),
+            water_starts: Vec::new(),
             contacts: Vec::new(),
             contact_blocks: Vec::new(),
         };
@@ -146,6 +153,7 @@ impl Layout {
         blocks.reserve_exact(self.starts.last().copied().unwrap_or(0));
         model.mesh.elements.iter().for_each(|element| blocks.extend(self.blocks_between(&element.nodes)));
         self.blocks = blocks;
+        self.find_water();
         self.contacts.clear();
         self.contact_blocks.clear();
     }
@@ -240,11 +248,39 @@ impl Layout {
         &self.blocks[self.starts[element]..self.starts[element + 1]]
     }
 
+    /// Finds the blocks of the elements that water flows through.
+    fn find_water(&mut self) {
+        self.water_blocks.clear();
+        self.water_starts.clear();
+        let model = self.model.clone();
+        for wet in model.flow.iter().flat_map(|flow| &flow.elements) {
+            self.water_starts.push(self.water_blocks.len());
+            for pressures in &wet.nodes[wet.in_mesh..] {
+                let (all, in_mesh) = (&wet.nodes, &wet.nodes[..wet.in_mesh]);
+                let column = all.iter().map(|row| self.block(*row, *pressures));
+                let row = in_mesh.iter().map(|column| self.block(*pressures, *column));
+                let found: Vec<BlockPosition> = column.chain(row).collect();
+                self.water_blocks.extend(found);
+            }
+        }
+        self.water_starts.push(self.water_blocks.len());
+    }
+
+    /// Block of two coupled nodes.
+    fn block(&self, row: usize, column: usize) -> BlockPosition {
+        let found = self.pattern.block(self.original(row), self.original(column));
+        found.expect("nodes are coupled before they are added")
+    }
+
+    /// Blocks of an element that water flows through, by its number among them: for each node that stands for its pressures those of all its
+    /// nodes in the node's column, then those of its nodes in the mesh in the node's row.
+    pub fn blocks_of_water(&self, number: usize) -> &[BlockPosition] {
+        &self.water_blocks[self.water_starts[number]..self.water_starts[number + 1]]
+    }
+
     /// Blocks between some coupled nodes, column by column.
     pub fn blocks_between(&self, nodes: &[usize]) -> Vec<BlockPosition> {
-        let nodes: Vec<usize> = nodes.iter().map(|&node| self.original(node)).collect();
-        let block = |row, column| self.pattern.block(row, column).expect("nodes are coupled before they are added");
-        nodes.iter().flat_map(|&column| nodes.iter().map(move |&row| block(row, column))).collect()
+        nodes.iter().flat_map(|&column| nodes.iter().map(move |&row| self.block(row, column))).collect()
     }
 
     /// Creates a matrix on the current pattern.

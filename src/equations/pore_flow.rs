@@ -17,16 +17,16 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
 use super::channels;
-use super::sums::{Dependence, Sums, TrialFailure};
+use super::sums::{Dependence, PressureColumns, Sums, TrialFailure};
 use super::trial::Trial;
 use super::water_balances::{Balances, Times};
 use crate::laws::bulk::{MaterialFailure, cofactor};
-use crate::model::pore_flow::{ConstantFlow, MOST_NODES, PoreFlow, WetElement, WetPoint};
+use crate::model::pore_flow::{ConstantFlow, MOST_CORNERS, MOST_NODES, PoreFlow, WetElement, WetPoint};
 use crate::model::state::{Outflow, Water};
 use crate::model::{Activated, Model};
 
 /// Number of elements whose contributions are stored at once before they are added.
-const BATCH: usize = 1024;
+const BATCH: usize = 256;
 
 /// Number of elements that one thread evaluates at a time.
 const MANY: usize = 64;
@@ -53,24 +53,24 @@ pub(super) fn add(
     let Some(flow) = &model.flow else { return Ok(()) };
     let (times, old) = (Times::of(trial), &trial.old.water);
     let wanted = sums.tangent.is_some();
-    let of = |wet: &&WetElement| {
-        Increment { flow, wet: activated.wet(wet), trial, u, times }
-            .evaluate(wanted)
-            .map_err(|cause| TrialFailure::material(model, wet.element, cause))
+    let evaluate = |(_, wet): &(usize, &WetElement)| {
+        let increment = Increment { flow, wet: activated.wet(wet), trial, u, times };
+        let answer = increment.evaluate().map_err(|cause| TrialFailure::material(model, wet.element, cause))?;
+        Ok((answer, wanted.then(|| increment.columns(&answer))))
     };
-    let wet = flow.elements.iter().filter(|wet| trial.step.has(model.body_of_element[wet.element]));
-    let elements: Vec<&WetElement> = wet.collect();
+    let there = |(_, wet): &(usize, &WetElement)| trial.step.has(model.body_of_element[wet.element]);
+    let elements: Vec<(usize, &WetElement)> = flow.elements.iter().enumerate().filter(there).collect();
     let mut balances = Balances::new(flow);
     for batch in elements.chunks(BATCH) {
-        let answers: Vec<Result<Answer, TrialFailure>> = batch.par_iter().with_min_len(MANY).map(of).collect();
-        for (answer, wet) in answers.into_iter().zip(batch) {
-            let answer = answer?;
+        let answers: Vec<Result<_, TrialFailure>> = batch.par_iter().with_min_len(MANY).map(evaluate).collect();
+        for (answer, &(number, wet)) in answers.into_iter().zip(batch) {
+            let (answer, columns) = answer?;
             for (a, &k) in wet.pressures.iter().enumerate() {
                 balances.take(k, answer.change[a], answer.size[a]);
                 balances.let_out(k, times.span * answer.flow[a], 0.0);
             }
-            if wanted {
-                sums.couple(&wet.nodes, &answer.tangent);
+            if let Some(columns) = &columns {
+                sums.couple_pressures(number, wet, columns);
             }
         }
     }
@@ -124,13 +124,16 @@ struct Increment<'a> {
     times: Times,
 }
 
-/// What an element adds: Δm, ∫ v·∇N dV, the magnitudes of their parts, and the tangent of all its nodes, column by column.
-#[derive(Default)]
+/// What an element adds, by corner: Δm, ∫ v·∇N dV, the magnitudes of their parts, and what they change by with the displacements and pressures.
+#[derive(Clone, Copy, Default)]
 struct Answer {
-    change: [f64; 4],
-    flow: [f64; 4],
-    size: [f64; 4],
-    tangent: Vec<f64>,
+    change: [f64; MOST_CORNERS],
+    flow: [f64; MOST_CORNERS],
+    size: [f64; MOST_CORNERS],
+    /// ∫ b N ∂J/∂u dV of all nodes [L²]
+    opens: [[Vector2<f64>; MOST_NODES]; MOST_CORNERS],
+    /// ∂Δm/∂p + Δt/β ∫ ∇N·∂v/∂∇p ∇N dV [L⁵/F]
+    takes: [[f64; MOST_CORNERS]; MOST_CORNERS],
 }
 
 /// J of a deformed element at a point.
@@ -160,13 +163,13 @@ fn opens_by(wet: &WetElement, point: &WetPoint, (f, hoop): &(Matrix2<f64>, f64))
 /// # Errors
 /// Returns [`MaterialFailure`] if the element is inverted.
 pub fn trapped(wet: &WetElement, u: &[f64]) -> Result<DMatrix<f64>, MaterialFailure> {
-    let (corners, nodes) = (wet.pressures.len(), wet.points.first().map_or(0, |point| point.gradients.len()));
+    let (corners, nodes) = (wet.pressures.len(), wet.in_mesh);
     let mut opens = DMatrix::zeros(corners, 2 * nodes);
     for point in &wet.points {
         let deformed = wet.deformed(point, &wet.moved(u));
         jacobian(wet, &deformed)?;
         let by = opens_by(wet, point, &deformed);
-        for (a, value) in point.values.iter().enumerate() {
+        for (a, value) in point.values[..corners].iter().enumerate() {
             for (node, by) in by[..nodes].iter().enumerate() {
                 (0..2).for_each(|i| opens[(a, 2 * node + i)] += wet.biot * point.volume * value * by[i]);
             }
@@ -188,87 +191,48 @@ fn conducts(wet: &WetElement, (f, hoop): &(Matrix2<f64>, f64)) -> [Matrix2<f64>;
     [area * mobility * inverse, area * mobility]
 }
 
-/// Pressures of the corners of an element, and scales of their dofs.
+/// Pressures of the corners of an element.
+#[derive(Default)]
 struct Corners {
-    now: [f64; 4],
-    before: [f64; 4],
-    scales: [f64; 4],
+    now: [f64; MOST_CORNERS],
+    before: [f64; MOST_CORNERS],
 }
 
 impl Increment<'_> {
-    fn evaluate(&self, wanted: bool) -> Result<Answer, MaterialFailure> {
-        let Self { flow, wet, trial, u, .. } = self;
+    fn evaluate(&self) -> Result<Answer, MaterialFailure> {
+        let Self { flow, wet, trial, u, times } = self;
         let (old, corners) = (&trial.old.displacement, wet.pressures.len());
-        let of = |value: &dyn Fn(usize) -> f64| {
-            let mut all = [0.0; 4];
-            all.iter_mut().zip(&wet.pressures).for_each(|(own, &k)| *own = value(k));
-            all
-        };
-        let at = Corners {
-            now: of(&|k| flow.pressure(k, Some(u))),
-            before: of(&|k| flow.pressure(k, Some(old))),
-            scales: of(&|k| flow.scales[k]),
-        };
-        let mut answer = Answer::default();
-        let dofs = 2 * wet.nodes.len();
-        if wanted {
-            answer.tangent.resize(dofs * dofs, 0.0);
+        let mut at = Corners::default();
+        for (a, &k) in wet.pressures.iter().enumerate() {
+            (at.now[a], at.before[a]) = (flow.pressure(k, Some(u)), flow.pressure(k, Some(old)));
         }
-        for (a, b) in (0..corners).flat_map(|a| (0..corners).map(move |b| (a, b))) {
-            let takes = wet.storage[(a, b)] + wet.projection[(a, b)];
-            let part = takes * (at.now[b] - at.before[b]);
-            answer.change[a] += part;
-            answer.size[a] += part.abs();
-            if wanted {
-                answer.tangent[wet.places[b] * dofs + wet.places[a]] -= at.scales[a] * at.scales[b] * takes;
-            }
-        }
+        let (mut answer, mut flows) = (Answer::default(), Flows::default());
         let moved = [wet.moved(u), wet.moved(old)];
         match &wet.constant {
-            Some(constant) => self.add_constant(constant, moved, &at, wanted, &mut answer),
-            None => wet.points.iter().try_for_each(|point| self.add_point(point, &moved, &at, wanted, &mut answer))?,
+            Some(constant) => flows.add_constant(constant, &mut answer),
+            None => wet.points.iter().try_for_each(|point| self.add_point(point, &moved, &at, &mut answer, &mut flows))?,
+        }
+        let [now, before] = moved;
+        for a in 0..corners {
+            for ((now, before), opens) in now.iter().zip(&before).zip(&answer.opens[a]).take(wet.in_mesh) {
+                let part = opens.component_mul(&(now - before));
+                answer.size[a] += part.x.abs() + part.y.abs();
+                if wet.constant.is_some() {
+                    answer.change[a] += part.x + part.y;
+                }
+            }
+            answer.flow[a] += flows.falls[a];
+            answer.size[a] += times.span * flows.falls[a].abs();
+            for b in 0..corners {
+                let stores = wet.storage[(a, b)] + wet.projection[(a, b)];
+                let (taken, out) = (stores * (at.now[b] - at.before[b]), flows.conducts[a][b] * at.now[b]);
+                answer.change[a] += taken;
+                answer.flow[a] += out;
+                answer.size[a] += taken.abs() + times.span * out.abs();
+                answer.takes[a][b] = stores + times.span * flows.conducts[a][b];
+            }
         }
         Ok(answer)
-    }
-
-    /// Adds what opens and flows in an element in which nothing changes.
-    fn add_constant(
-        &self,
-        ConstantFlow { opens, conducts, falls }: &ConstantFlow,
-        [now, before]: [[Vector2<f64>; MOST_NODES]; 2],
-        at: &Corners,
-        wanted: bool,
-        answer: &mut Answer,
-    ) {
-        let Self { wet, times, .. } = self;
-        let (corners, nodes, dofs) = (wet.pressures.len(), opens.ncols() / 2, 2 * wet.nodes.len());
-        for node in 0..nodes {
-            let way = now[node] - before[node];
-            for (dof, way) in [(2 * node, way.x), (2 * node + 1, way.y)] {
-                for (a, opens) in opens.column(dof).iter().enumerate() {
-                    answer.change[a] += opens * way;
-                    answer.size[a] += (opens * way).abs();
-                    if wanted {
-                        let (place, share) = (wet.places[a], at.scales[a] * opens);
-                        answer.tangent[place * dofs + dof] -= share;
-                        answer.tangent[dof * dofs + place] -= share;
-                    }
-                }
-            }
-        }
-        for (a, falls) in falls.iter().enumerate() {
-            answer.flow[a] += falls;
-            answer.size[a] += times.span * falls.abs();
-            for b in 0..corners {
-                let flows = conducts[(a, b)];
-                answer.flow[a] += flows * at.now[b];
-                answer.size[a] += times.span * (flows * at.now[b]).abs();
-                if wanted {
-                    answer.tangent[wet.places[b] * dofs + wet.places[a]] -=
-                        at.scales[a] * at.scales[b] * times.span * flows;
-                }
-            }
-        }
     }
 
     /// Adds what opens and flows at a point.
@@ -277,60 +241,62 @@ impl Increment<'_> {
         point: &WetPoint,
         moved: &[[Vector2<f64>; MOST_NODES]; 2],
         at: &Corners,
-        wanted: bool,
         answer: &mut Answer,
+        flows: &mut Flows,
     ) -> Result<(), MaterialFailure> {
-        let Self { wet, times, .. } = self;
-        let (corners, [now, before]) = (wet.pressures.len(), moved);
+        let wet = self.wet;
         let [is, was] = moved.each_ref().map(|moved| wet.deformed(point, moved));
         let [jacobian_is, jacobian_was] = [jacobian(wet, &is)?, jacobian(wet, &was)?];
         let by = opens_by(wet, point, &is);
-        let share = wet.biot * point.volume;
-        let nodes = now.iter().zip(before).zip(&by).take(point.gradients.len());
-        let gross: f64 = nodes.map(|((now, before), by)| by.dot(&(now - before)).abs()).sum();
         let pressure: f64 = point.values.iter().zip(&at.before).map(|(n, p)| n * p).sum();
-        let share_of_k = wet.permeability(jacobian_was, pressure);
+        let share_of_k = point.volume * wet.permeability(jacobian_was, pressure);
         let [conducts, falls] = conducts(wet, &was).map(|part| part * share_of_k);
         let falls = falls * Vector2::new(0.0, wet.weight);
-        let slope: Vector2<f64> = point.slopes.iter().zip(&at.now).map(|(slope, p)| slope * *p).sum();
-        let v = conducts * slope + falls;
-        for a in 0..corners {
-            let opens = point.values[a] * share;
-            answer.change[a] += opens * (jacobian_is - jacobian_was);
-            answer.size[a] += opens.abs() * gross;
-            answer.flow[a] += point.volume * v.dot(&point.slopes[a]);
-            let along = conducts.transpose() * point.slopes[a];
-            let size: f64 = (0..corners).map(|b| (along.dot(&point.slopes[b]) * at.now[b]).abs()).sum();
-            answer.size[a] += times.span * point.volume * (point.slopes[a].dot(&falls).abs() + size);
-            if wanted {
-                self.couple(point, [a, wet.places[a]], &by, &along, &at.scales, &mut answer.tangent);
-            }
+        for a in 0..wet.pressures.len() {
+            let share = wet.biot * point.volume * point.values[a];
+            answer.change[a] += share * (jacobian_is - jacobian_was);
+            answer.opens[a].iter_mut().zip(&by).for_each(|(opens, by)| *opens += share * by);
+            flows.falls[a] += point.slopes[a].dot(&falls);
+            let along = conducts.tr_mul(&point.slopes[a]);
+            flows.conducts[a].iter_mut().zip(&point.slopes).for_each(|(flows, slope)| *flows += along.dot(slope));
         }
         Ok(())
     }
 
-    /// Adds what couples displacements and the pressure of a corner, with its place, and the flow `along` its slope, to the tangent.
-    fn couple(
-        &self,
-        point: &WetPoint,
-        [a, place]: [usize; 2],
-        by: &[Vector2<f64>],
-        along: &Vector2<f64>,
-        scales: &[f64; 4],
-        tangent: &mut [f64],
-    ) {
-        let (wet, dofs) = (self.wet, 2 * self.wet.nodes.len());
-        let share = scales[a] * wet.biot * point.volume * point.values[a];
-        for (node, by) in by[..point.gradients.len()].iter().enumerate() {
-            for (i, by) in by.iter().enumerate() {
-                let dof = 2 * node + i;
-                tangent[place * dofs + dof] -= share * by;
-                tangent[dof * dofs + place] -= share * by;
+    /// Columns of the tangent of the pressures' dofs: the rows are dofs of all its nodes, two for each.
+    fn columns(&self, answer: &Answer) -> PressureColumns {
+        let Self { flow, wet, .. } = self;
+        let (mut columns, first) = ([[0.0; 2 * (MOST_NODES + MOST_CORNERS)]; 2 * MOST_CORNERS], 2 * wet.in_mesh);
+        let scales = |a: usize| flow.scales[wet.pressures[a]];
+        for (b, &place) in wet.places.iter().enumerate() {
+            let column = &mut columns[place - first];
+            for (rows, opens) in column.chunks_exact_mut(2).zip(&answer.opens[b][..wet.in_mesh]) {
+                rows[0] -= scales(b) * opens.x;
+                rows[1] -= scales(b) * opens.y;
+            }
+            for (a, &place) in wet.places.iter().enumerate() {
+                column[place] -= scales(a) * scales(b) * answer.takes[a][b];
             }
         }
-        for (b, other) in wet.places.iter().copied().enumerate() {
-            let flows = along.dot(&point.slopes[b]);
-            tangent[other * dofs + place] -= scales[a] * scales[b] * self.times.span * point.volume * flows;
+        columns
+    }
+}
+
+/// Flow through an element: ∫ ∇N·∂v/∂∇p ∇N dV and ∫ ∇N·v dV of water at rest that weighs [L⁵/(F T)], [L³/T].
+#[derive(Default)]
+struct Flows {
+    conducts: [[f64; MOST_CORNERS]; MOST_CORNERS],
+    falls: [f64; MOST_CORNERS],
+}
+
+impl Flows {
+    /// Adds what flows in an element in which nothing changes; what opens there goes to the answer.
+    fn add_constant(&mut self, ConstantFlow { opens, conducts, falls }: &ConstantFlow, answer: &mut Answer) {
+        for (a, falls) in falls.iter().enumerate() {
+            self.falls[a] = *falls;
+            self.conducts[a].iter_mut().zip(conducts.row(a).iter()).for_each(|(own, conducts)| *own = *conducts);
+            let nodes = answer.opens[a].iter_mut().enumerate().take(opens.ncols() / 2);
+            nodes.for_each(|(node, own)| *own = Vector2::new(opens[(a, 2 * node)], opens[(a, 2 * node + 1)]));
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::laws::bulk::MaterialFailure;
 use crate::laws::friction::LawFailure;
 use crate::linear::{BlockPosition, SparseMatrix};
 use crate::model::Model;
+use crate::model::pore_flow::{MOST_CORNERS, MOST_NODES, WetElement};
 use crate::model::scheme::time_text;
 use crate::model::text::{number, vector};
 
@@ -61,7 +62,31 @@ impl Sums<'_> {
             add_blocks(tangent, &blocks, local, nodes.len());
         }
     }
+
+    /// Adds the columns of the pressures of an element that water flows through, by its number among such elements, and their transposes among the
+    /// columns of its nodes' displacements.
+    pub fn couple_pressures(&mut self, number: usize, wet: &WetElement, columns: &PressureColumns) {
+        let Some(tangent) = &mut self.tangent else { return };
+        let (nodes, in_mesh) = (wet.nodes.len(), wet.in_mesh);
+        let blocks = self.layout.blocks_of_water(number).chunks_exact(nodes + in_mesh);
+        for (pair, blocks) in columns.chunks_exact(2).zip(blocks) {
+            let (own, transposed) = blocks.split_at(nodes);
+            for (node, block) in own.iter().enumerate() {
+                for (j, column) in pair.iter().enumerate() {
+                    (0..2).for_each(|i| tangent.values[block.value(i, j)] += column[2 * node + i]);
+                }
+            }
+            for (node, block) in transposed.iter().enumerate() {
+                for (i, row) in pair.iter().enumerate() {
+                    (0..2).for_each(|j| tangent.values[block.value(i, j)] += row[2 * node + j]);
+                }
+            }
+        }
+    }
 }
+
+/// Columns of the pressures' dofs in the tangent of an element that water flows through; the rows are two dofs of each of all its nodes.
+pub(super) type PressureColumns = [[f64; 2 * (MOST_NODES + MOST_CORNERS)]; 2 * MOST_CORNERS];
 
 /// Adds a dense tangent of `n` nodes (column-major, two dofs per node) at the given blocks (column by column).
 pub(super) fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {

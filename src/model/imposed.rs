@@ -335,8 +335,8 @@ impl Model {
     /// Number of variables of an element's material at a point, those of the given pressure, and this; `None` without one.
     fn water(&self, element: usize) -> Option<(usize, Slot<2>, &PorePressure)> {
         let body = self.body_of(element);
-        let law = body.material.description();
         let given = body.pore_pressure.as_ref()?;
+        let law = body.material.description();
         law.slot(&GIVEN_PRESSURE).map(|slot| (law.variables.len(), slot, given))
     }
 
@@ -365,8 +365,9 @@ impl Model {
     /// Number of variables of an element's material at a point, and those of its temperature; `None` without thermal expansion.
     fn heat(&self, element: usize) -> Option<(usize, Slot<2>)> {
         let body = self.body_of(element);
+        body.thermal?;
         let law = body.material.description();
-        body.thermal.and_then(|_| law.slot(&TEMPERATURE)).map(|slot| (law.variables.len(), slot))
+        law.slot(&TEMPERATURE).map(|slot| (law.variables.len(), slot))
     }
 
     /// Reference positions of an element's quadrature points.

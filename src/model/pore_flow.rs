@@ -55,6 +55,8 @@ pub struct WetElement {
     pub element: usize,
     /// its nodes, then those that stand for its pressures
     pub nodes: Vec<usize>,
+    /// number of its nodes in the mesh
+    pub in_mesh: usize,
     /// number of the pressure of each corner
     pub pressures: Vec<usize>,
     /// place of the pressure of each corner among the dofs of the nodes
@@ -91,8 +93,10 @@ pub struct WetElement {
     pub size: f64,
 }
 
-/// Most nodes of an element.
+/// Most nodes and corners of an element.
 pub const MOST_NODES: usize = 9;
+/// See [`MOST_NODES`].
+pub const MOST_CORNERS: usize = 4;
 
 /// What opens and flows in an element of a linear body, whose permeability does not change.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,18 +110,18 @@ pub struct ConstantFlow {
     pub falls: Vec<f64>,
 }
 
-/// A quadrature point of an element that water flows through.
-#[derive(Clone, Debug, PartialEq)]
+/// A quadrature point of an element that water flows through. What there is for corners and nodes that the element does not have is zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct WetPoint {
     /// N of the corners
-    pub values: Vec<f64>,
+    pub values: [f64; MOST_CORNERS],
     /// ∂N/∂X of the corners [1/L]
-    pub slopes: Vec<Vector2<f64>>,
+    pub slopes: [Vector2<f64>; MOST_CORNERS],
     /// ∂N/∂X of all nodes [1/L]
-    pub gradients: Vec<Vector2<f64>>,
-    /// N/R of all nodes of a ring; empty in plane [1/L]
-    pub hoop: Vec<f64>,
+    pub gradients: [Vector2<f64>; MOST_NODES],
+    /// N/R of all nodes of a ring; zero in plane [1/L]
+    pub hoop: [f64; MOST_NODES],
     /// reference volume [L³]
     pub volume: f64,
 }
@@ -379,10 +383,10 @@ impl WetElement {
         };
         let quadrature = solid.quadrature();
         let points = quadrature.iter().zip(solid.geometry()).map(|(point, (gradients, hoop, volume))| WetPoint {
-            values: linear.values(point.at),
-            slopes: slopes(point.at).0,
-            gradients: gradients.to_vec(),
-            hoop: hoop.to_vec(),
+            values: filled(linear.values(point.at)),
+            slopes: filled(slopes(point.at).0),
+            gradients: filled(gradients.iter().copied()),
+            hoop: filled(hoop.iter().copied()),
             volume,
         });
         let mut mass = DMatrix::<f64>::zeros(corners, corners);
@@ -400,6 +404,7 @@ impl WetElement {
         let mobility = [along_x, fluid.permeability_y.unwrap_or(along_x)].map(|k| k / weight);
         let wet = Self {
             element: e,
+            in_mesh: positions.len(),
             nodes,
             pressures,
             places,
@@ -425,22 +430,29 @@ impl WetElement {
 
     /// What opens and flows in the undeformed element.
     fn constant(&self) -> ConstantFlow {
-        let (corners, nodes) = (self.pressures.len(), self.points.first().map_or(0, |point| point.gradients.len()));
+        let (corners, nodes) = (self.pressures.len(), self.in_mesh);
         let [mut opens, mut conducts] = [2 * nodes, corners].map(|columns| DMatrix::zeros(corners, columns));
         let (mut falls, [kx, ky]) = (vec![0.0; corners], self.mobility);
         for (point, a) in self.points.iter().flat_map(|point| (0..corners).map(move |a| (point, a))) {
             let (own, share) = (point.slopes[a], self.biot * point.volume * point.values[a]);
-            for (node, gradient) in point.gradients.iter().enumerate() {
-                opens[(a, 2 * node)] += share * (gradient.x + point.hoop.get(node).copied().unwrap_or(0.0));
+            for (node, gradient) in point.gradients[..nodes].iter().enumerate() {
+                opens[(a, 2 * node)] += share * (gradient.x + point.hoop[node]);
                 opens[(a, 2 * node + 1)] += share * gradient.y;
             }
-            for (b, slope) in point.slopes.iter().enumerate() {
+            for (b, slope) in point.slopes[..corners].iter().enumerate() {
                 conducts[(a, b)] += point.volume * (kx * own.x * slope.x + ky * own.y * slope.y);
             }
             falls[a] += point.volume * ky * own.y * self.weight;
         }
         ConstantFlow { opens, conducts, falls }
     }
+}
+
+/// As many of some values as there are places, and zeros in the others.
+fn filled<T: Copy + Default, const N: usize>(values: impl IntoIterator<Item = T>) -> [T; N] {
+    let mut all = [T::default(); N];
+    all.iter_mut().zip(values).for_each(|(own, value)| *own = value);
+    all
 }
 
 /// 1/Q = n/K_w + (b − n)/K_s,  K_s = K/(1 − b) [L²/F].
@@ -466,7 +478,7 @@ impl WetElement {
     /// Displacements of its nodes since it came [L].
     pub fn moved(&self, u: &[f64]) -> [Vector2<f64>; MOST_NODES] {
         let mut moved = [Vector2::zeros(); MOST_NODES];
-        moved.iter_mut().zip(&self.nodes).for_each(|(moved, &node)| *moved = vector(u, node));
+        moved.iter_mut().zip(&self.nodes[..self.in_mesh]).for_each(|(moved, &node)| *moved = vector(u, node));
         moved.iter_mut().zip(&self.activation).for_each(|(moved, activation)| *moved -= activation);
         moved
     }
@@ -482,7 +494,7 @@ impl WetElement {
     /// Writes the pressure at every point to the variables of the material there.
     pub fn write(&self, flow: &PoreFlow, u: Option<&[f64]>, variables: &mut [f64]) {
         let Some((slot, count)) = self.variables else { return };
-        let mut pressures = [0.0; 4];
+        let mut pressures = [0.0; MOST_CORNERS];
         pressures.iter_mut().zip(&self.pressures).for_each(|(p, &k)| *p = flow.pressure(k, u));
         for (own, point) in variables.chunks_exact_mut(count).zip(&self.points) {
             slot.of_mut(own)[0] = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
