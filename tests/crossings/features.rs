@@ -159,7 +159,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["pores:flow"], &["scheme:wilson"], "a scheme that looks beyond an increment"),
     (
         &["pores:flow"],
-        &["ground_element:f_bar", "block_element:f_bar", "rupture", "heat", "periodic", "master:itself"],
+        &["ground_element:f_bar", "block_element:f_bar", "heat", "periodic", "master:itself"],
         "what water that flows through bodies is not for",
     ),
     (&["gap"], &["fluid:constant", "fluid:in_time", "fluid:by_place"], "water of given pressure between the surfaces"),

@@ -529,3 +529,72 @@ fn a_wet_contact_ruptures() {
     balance(&slow, 1e-9);
     goes_on(&let_go(0.02, drains, rupture), &slow, 20);
 }
+
+/// What is prescribed of water holds at the end of every increment: the pressure of an outlet and that of a well along a contact, which change with time. No
+/// force is left where pressures are unknowns, as the balances are met.
+#[test]
+fn what_is_prescribed_is_that_of_the_end_of_an_increment() {
+    let top = |time: f64| 0.01 * (3.0 * time).sin();
+    let well = |time: f64| 0.01 * (1.0 - (2.0 * time).cos());
+    let along = json!({"fluid_pressure": {"flow": {"storage": 0.3, "transmissivity": 0.2, "viscosity": 1, "initial": 0,
+        "wells": [{"at": [0, 0], "pressure": "0.01*(1-cos(2*t))"}]}}});
+    let mut case = two_blocks("q4", &along, &explicit(), 1.0);
+    case["steps"][0]["drainage"] = json!([{"on": "high_top", "pressure": "0.01*sin(3*t)"}]);
+    let run = finish(&case);
+    let flow = run.model.flow.as_ref().expect("water flows");
+    let line = &run.model.contacts[0].conduit.as_ref().expect("a conduit").line;
+    let end = line.nodes.iter().position(|&node| run.model.mesh.nodes[node].x.abs() < 1e-9).expect("an end");
+    for state in run.states.iter().filter(|state| state.time > 0.0) {
+        close("outlet", pressure(&run, state, [0.5, 0.5]), top(state.time), 1e-7);
+        close("well", state.conduits[0].pressure[end], well(state.time), 1e-7);
+        assert!(state.force[flow.dof(0)..].iter().all(|force| *force == 0.0), "a force at a pressure");
+    }
+    // An increment earlier the values are others.
+    let dt = run.last().dt;
+    assert!(0.01 * 3.0 * dt > 1e-5, "{dt}");
+}
+
+/// An outlet that lets water out alone opens and closes as a column swings: all of its water is accounted for, in every increment.
+#[test]
+fn seepage_that_switches_is_balanced() {
+    let mut body = soil(0.05);
+    body["material"]["model"] = json!("hencky");
+    let mut case = column(
+        "q4",
+        &[12],
+        &body,
+        json!({
+            "scheme": explicit(), "duration": 4, "dt": {"initial": 1}, "drainage": [{"on": "b0_top", "seepage": true}],
+            "loads": [{"on": "b0_top", "dead_pressure": "0.02*sin(3*t)"}],
+        }),
+    );
+    case["output"] = json!({"interval": 0.05});
+    let run = finish(&case);
+    let rates: Vec<f64> = run.states.iter().map(|state| state.water.outlets[0].rate).collect();
+    let switches = rates.windows(2).filter(|pair| (pair[0] == 0.0) != (pair[1] == 0.0)).count();
+    assert!(switches >= 3 && rates.iter().all(|rate| *rate >= 0.0), "{switches} switches");
+    balance(&run, 1e-11);
+}
+
+/// Water of ground that is held, whose pressure is even and leaves through a filter, p' = −κ p/(S H): the first increment of a static step after explicit ones is
+/// one of backward Euler, p/(1 + κ Δt/(S H)), as what explicit increments remember ends with their step.
+#[test]
+fn a_static_step_begins_anew_after_an_explicit_one() {
+    let mut body = soil(1e6);
+    body["pore_fluid"]["pressure"] = json!(1);
+    let mut case = column(
+        "q4",
+        &[2],
+        &body,
+        json!({"scheme": explicit(), "duration": 0.2, "dt": {"initial": 0.01}, "drainage": [{"on": "b0_top", "pressure": 0, "filter": 0.7}]}),
+    );
+    case["steps"][0]["supports"] = json!([{"on": "b0", "ux": 0, "uy": 0}]);
+    let steps = case["steps"].as_array_mut().expect("steps");
+    steps.push(json!({"name": "rest", "scheme": "static", "duration": 0.1, "dt": {"initial": 0.1}}));
+    let run = finish(&case);
+    let [before, after] = [run.at(0.2), run.last()].map(|state| pressure(&run, state, [0.0, 0.0]));
+    let faded = (-0.7f64 * 0.2 / 0.5).exp();
+    println!("{before:.6} ({faded:.6}), then {:.7} of it", after / before);
+    close("explicit", before, faded, 1e-3);
+    close("static", after / before, 1.0 / (1.0 + 0.7 * 0.1 / 0.5), 1e-5);
+}
