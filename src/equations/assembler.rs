@@ -444,7 +444,11 @@ impl Assembler {
                     *strain_energy = elastic + evolved.stored;
                     (*dissipated, *plastic, *heating) = (evolved.dissipated, evolved.plastic, evolved.heating);
                 }
-                Term::PoreFlow => pore_flow::add(model, activated, trial, u, water, &mut sums)?,
+                Term::PoreFlow => {
+                    let pressed = pore_flow::add(model, activated, trial, u, water, memory, &mut sums)?;
+                    *strain_energy += pressed.stored;
+                    *heating += pressed.work;
+                }
                 Term::Interfaces => {
                     contacts::add(responses, &mut sums);
                     contacts::add_water(model, trial, responses, water);

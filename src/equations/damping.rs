@@ -51,7 +51,7 @@ pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
         return Dependence::Nothing;
     }
     let mut viscous = model.bodies.iter().zip(dampings).filter(|(_, damping)| damping.retardation > 0.0);
-    match viscous.all(|(body, _)| damps_by_stiffness(&*body.material)) {
+    match viscous.all(|(body, _)| damps_by_stiffness(body.law_of_elements())) {
         true => Dependence::StepSize,
         false => Dependence::Displacement,
     }
@@ -60,7 +60,7 @@ pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
 /// Nodes of the bodies whose viscous stress is not that of a constant stiffness, and of viscous bars: their tangent is not symmetric.
 pub(super) fn unsymmetric(model: &Model, step: &Step) -> Vec<usize> {
     let viscous = model.bodies.iter().zip(model.dampings(step)).filter(|(_, damping)| damping.retardation > 0.0);
-    let unsymmetric = viscous.filter(|(body, _)| !damps_by_stiffness(&*body.material));
+    let unsymmetric = viscous.filter(|(body, _)| !damps_by_stiffness(body.law_of_elements()));
     let bars = model.bars_in(step).filter(|(_, bar)| bar.retardation > 0.0).flat_map(|(_, bar)| bar.nodes());
     unsymmetric.flat_map(|(body, _)| body.nodes.iter().copied()).chain(bars).collect()
 }

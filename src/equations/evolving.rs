@@ -31,7 +31,7 @@ type Place<'a> = (&'a mut [f64], &'a mut [f64]);
 
 /// Whether a body is one of them.
 pub(super) fn evolves(model: &Model, body: usize) -> bool {
-    let material = &model.bodies[body].material;
+    let material = model.bodies[body].law_of_elements();
     !material.description().variables.is_empty() || !material.description().is_symmetric
 }
 

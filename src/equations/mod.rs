@@ -15,6 +15,7 @@
 //! | term | contribution to F or r | contribution to the audit |
 //! |---|---|---|
 //! | `solids` | stress of the bodies | strain energy |
+//! | `pore_flow` | balances of water that flows, and its pressure on elastic bodies | strain energy, work of the pressure |
 //! | [`contacts`] | contact and friction | energy in penalties, friction, shrink fits |
 //! | [`bars`] | trusses and beams | strain energy, energy of bond, friction, yielding |
 //! | `loads` | −loads, springs, initial stress | work |
@@ -38,7 +39,7 @@ mod evolving;
 pub mod inertia;
 pub mod links;
 mod loads;
-pub mod pore_flow;
+mod pore_flow;
 pub mod slip_operator;
 pub mod solids;
 pub mod sums;
@@ -46,6 +47,7 @@ pub mod supports;
 pub mod term;
 pub mod trial;
 mod water_balances;
+pub mod wet_elements;
 
 pub use assembler::Assembler;
 pub use coupling::Coupling;

@@ -17,6 +17,8 @@ pub struct Body {
     pub name: String,
     /// bulk law
     pub material: Arc<dyn Material>,
+    /// the law of the skeleton, if it remembers nothing but the pressure of water that flows, which then acts with its balances
+    pub skeleton: Option<Arc<dyn Material>>,
     /// damping in dynamic steps that do not specify another
     pub damping: Damping,
     /// initial stress, if any
@@ -36,6 +38,11 @@ pub struct Body {
 }
 
 impl Body {
+    /// The law by which its elements answer to their deformation alone.
+    pub fn law_of_elements(&self) -> &dyn Material {
+        self.skeleton.as_deref().unwrap_or(&*self.material)
+    }
+
     /// The fluid in its pores, if it flows.
     pub fn flowing(&self) -> Option<&PoreFluid> {
         self.pore_fluid.as_ref().filter(|fluid| fluid.flows())
@@ -120,6 +127,11 @@ impl Memories {
     /// Part of one element.
     pub fn of<'a>(&self, element: usize, memory: &'a [f64]) -> &'a [f64] {
         &memory[self.starts[element]..self.starts[element + 1]]
+    }
+
+    /// Part of one element, to be changed.
+    pub fn of_mut<'a>(&self, element: usize, memory: &'a mut [f64]) -> &'a mut [f64] {
+        &mut memory[self.starts[element]..self.starts[element + 1]]
     }
 
     /// Iterates over the parts of all elements in order.

@@ -67,8 +67,8 @@ pub struct WetElement {
     pub points: Vec<WetPoint>,
     /// what opens and flows, where that does not change
     pub constant: Option<ConstantFlow>,
-    /// place of the given pressure among the internal variables of the material, and their number
-    pub(super) variables: Option<(Slot<2>, usize)>,
+    /// place of the given pressure, and of what the pores have opened by, among the internal variables of the material, and their number
+    pub variables: Option<(Slot<2>, usize)>,
     /// ∫ N_a N_b dV/Q: what the pores take up by the pressure [L⁵/F]
     pub storage: DMatrix<f64>,
     /// ∫ (N_a − ΠN_a)(N_b − ΠN_b) dV/(2G) of linear elements, Π being the mean: without it pressures of neighbours alternate [L⁵/F]
@@ -87,6 +87,8 @@ pub struct WetElement {
     pub biot: f64,
     /// whether the body is linear: its water flows through the undeformed body
     pub is_linear: bool,
+    /// whether the pressure acts with the balances of the water, not in the law of the body
+    pub presses: bool,
     /// c = k M/γ_w, and the size [L²/T], [L]
     pub diffusivity: f64,
     /// square root of the area [L]
@@ -97,6 +99,8 @@ pub struct WetElement {
 pub const MOST_NODES: usize = 9;
 /// See [`MOST_NODES`].
 pub const MOST_CORNERS: usize = 4;
+/// Most quadrature points of an element.
+pub const MOST_POINTS: usize = 9;
 
 /// What opens and flows in an element of a linear body, whose permeability does not change.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,6 +128,13 @@ pub struct WetPoint {
     pub hoop: [f64; MOST_NODES],
     /// reference volume [L³]
     pub volume: f64,
+}
+
+impl WetPoint {
+    /// p there, of the pressures of the corners [F/L²].
+    pub fn pressure(&self, corners: &[f64; MOST_CORNERS]) -> f64 {
+        self.values.iter().zip(corners).map(|(n, p)| n * p).sum()
+    }
 }
 
 /// Flow through what holds a pressure, in multiples of that through an element beside it under the same difference: the pressure is held to the
@@ -421,6 +432,7 @@ impl WetElement {
             void_ratio: fluid.kozeny_carman.then(|| fluid.porosity / (1.0 - fluid.porosity)),
             biot,
             is_linear: law.is_linear,
+            presses: body.skeleton.is_some(),
             diffusivity: mobility[0].max(mobility[1]) * law.p_wave_modulus,
             size: solid.area().sqrt(),
         };
@@ -497,7 +509,7 @@ impl WetElement {
         let mut pressures = [0.0; MOST_CORNERS];
         pressures.iter_mut().zip(&self.pressures).for_each(|(p, &k)| *p = flow.pressure(k, u));
         for (own, point) in variables.chunks_exact_mut(count).zip(&self.points) {
-            slot.of_mut(own)[0] = point.values.iter().zip(&pressures).map(|(n, p)| n * p).sum();
+            slot.of_mut(own)[0] = point.pressure(&pressures);
         }
     }
 

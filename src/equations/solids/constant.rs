@@ -47,8 +47,8 @@ const FEW_BLOCKS: usize = 2;
 /// Whether the tangent of an element is the same at every displacement: for a linear law at small strains with no or constant
 /// internal variables; with F-bar the tangent varies nevertheless.
 pub fn is_constant(model: &Model, element: usize) -> bool {
-    let material = &model.bodies[model.body_of_element[element]].material;
-    is_linear_elastic(&**material) && !model.solids[element].is_f_bar()
+    let body = &model.bodies[model.body_of_element[element]];
+    is_linear_elastic(body.law_of_elements()) && !model.solids[element].is_f_bar()
 }
 
 /// Whether the tangent of a law is the same at every strain, and symmetric.
@@ -100,7 +100,7 @@ impl Constant {
     pub fn new(model: &Model, are_there: impl Fn(usize) -> bool) -> Self {
         let never = |body: usize| model.steps.iter().all(|step| model.damping(step, body).retardation == 0.0);
         let undamped = |body: usize| model.bodies[body].damping.retardation == 0.0 && never(body);
-        let fit = |(k, body): (usize, &Body)| undamped(k) || damps_by_stiffness(&*body.material);
+        let fit = |(k, body): (usize, &Body)| undamped(k) || damps_by_stiffness(body.law_of_elements());
         let fit: Vec<bool> = model.bodies.iter().enumerate().map(fit).collect();
         let is = |e: usize| are_there(e) && is_constant(model, e) && fit[model.body_of_element[e]];
         let is: Vec<bool> = (0..model.solids.len()).map(is).collect();
@@ -156,7 +156,7 @@ impl Constant {
         if !energy.is_finite() {
             for e in (0..self.is.len()).filter(|&e| self.is[e]) {
                 let (n, mut forces) = (model.mesh.elements[e].nodes.len(), [Vector2::zeros(); 9]);
-                let material = &*model.bodies[model.body_of_element[e]].material;
+                let material = model.bodies[model.body_of_element[e]].law_of_elements();
                 let found = model.solids[e].nodal_forces(material, &nodal(model, e, u)[..n], &mut forces[..n]);
                 found.map_err(|failure| TrialFailure::material(model, e, failure))?;
             }
@@ -226,7 +226,7 @@ fn columns(matrix: &[f64], n: usize, ring: bool) -> Vec<f64> {
 fn at_rest(model: &Model, e: usize) -> Option<Vec<f64>> {
     let n = model.mesh.elements[e].nodes.len();
     let (mut force, mut matrix) = ([0.0; 18], vec![0.0; 4 * n * n]);
-    let (material, still) = (&*model.bodies[model.body_of_element[e]].material, [Vector2::zeros(); 9]);
+    let (material, still) = (model.bodies[model.body_of_element[e]].law_of_elements(), [Vector2::zeros(); 9]);
     model.solids[e].force_and_tangent(material, &still[..n], &mut force[..2 * n], &mut matrix).ok()?;
     force.iter().all(|force| *force == 0.0).then_some(matrix)
 }
@@ -349,7 +349,10 @@ fn find_places(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
 
 /// Computes the nodal forces of the initial stress of bodies.
 fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
-    let stressed = |block: &Block| model.bodies[block.body].is_stressed();
+    let stressed = |block: &Block| {
+        let body = &model.bodies[block.body];
+        body.is_stressed() && body.skeleton.is_none()
+    };
     if !blocks.iter().any(stressed) {
         return;
     }

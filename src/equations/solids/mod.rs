@@ -22,7 +22,7 @@ use runs::{Runs, gather, gather_magnitudes};
 
 /// The matrix is constant if all elements are.
 pub(super) fn dependence(model: &Model) -> Dependence {
-    let is_elastic: Vec<bool> = model.bodies.iter().map(|body| is_linear_elastic(&*body.material)).collect();
+    let is_elastic: Vec<bool> = model.bodies.iter().map(|body| is_linear_elastic(body.law_of_elements())).collect();
     let is_constant = |(solid, &body): (&SolidElement, &usize)| is_elastic[body] && !solid.is_f_bar();
     let all = model.solids.iter().zip(&model.body_of_element).all(is_constant);
     if all { Dependence::Nothing } else { Dependence::Displacement }

@@ -97,7 +97,7 @@ impl Runs {
                 self.forces[run.places()].fill(Vector2::zeros());
                 continue;
             }
-            let material = &*model.bodies[run.body].material;
+            let material = model.bodies[run.body].law_of_elements();
             let forces = self.forces[run.places()].par_chunks_exact_mut(run.nodes);
             let elements = run.elements.clone().into_par_iter().zip(forces);
             let one = |((e, forces), energy): ((usize, &mut [Vector2<f64>]), &mut _)| {
@@ -116,7 +116,7 @@ impl Runs {
                 self.forces[run.places()].fill(Vector2::zeros());
                 continue;
             }
-            let material = &*model.bodies[run.body].material;
+            let material = model.bodies[run.body].law_of_elements();
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
             self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
             for first in run.elements.clone().step_by(BATCH) {
@@ -155,7 +155,7 @@ impl Runs {
     pub fn evaluate_viscous(&mut self, model: &Model, retardation: &[f64], [u, v]: [&[f64]; 2]) {
         let activated = &*self.activated;
         for run in &self.runs {
-            let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
+            let (material, tau) = (model.bodies[run.body].law_of_elements(), retardation[run.body]);
             let one = |(e, forces): (usize, &mut [Vector2<f64>])| {
                 let [u, v] = [u, v].map(|all| nodal(model, e, all));
                 model.as_activated(activated, e).viscous_forces(
@@ -192,7 +192,7 @@ impl Runs {
     ) {
         let activated = &*self.activated;
         for run in self.runs.iter().filter(|run| retardation[run.body] > 0.0) {
-            let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
+            let (material, tau) = (model.bodies[run.body].law_of_elements(), retardation[run.body]);
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
             self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
             for first in run.elements.clone().step_by(BATCH) {

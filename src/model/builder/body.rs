@@ -116,6 +116,11 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
                 .or(fluid.filter(|fluid| fluid.flows()).map(PoreFluid::coefficient)),
             plate: mesh.section.is_plate() && law.description().sections != Sections::Plate,
         };
+        let own = law.description();
+        let is_alone = !surroundings.stressed && surroundings.expansion.is_none() && !surroundings.plate;
+        let is_elastic = is_alone && own.variables.is_empty() && own.is_symmetric;
+        let flows = fluid.is_some_and(PoreFluid::flows);
+        let skeleton = (flows && is_elastic).then(|| law.clone());
         let material = BodyLaw::around(law, surroundings)
             .ok_or_else(|| ModelError::new(format!("{place}.material"), NEEDS_STRETCH))?;
         check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.description().p_wave_modulus)?;
@@ -130,6 +135,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
         bodies.push(Body {
             name: name.clone(),
             material,
+            skeleton,
             damping: *damping,
             initial_stress: initial_stress.clone(),
             pore_fluid: pore_fluid.clone(),
